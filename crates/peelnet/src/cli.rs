@@ -1,0 +1,329 @@
+//! The commands and their flags. The names are fixed: scripts call them.
+
+use crate::parse::{Size, ViewCount, fraction, positive};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use peelnet_dataset::{Format, Shard};
+use peelnet_gpu::AdapterRequest;
+use peelnet_model::Recipe;
+use peelnet_peel::Peel;
+use peelnet_render::MethodSpec;
+use std::path::PathBuf;
+
+/// Learned order-independent transparency: peel scenes, train a network on their fragments, export it as shader
+/// code, and draw with it.
+#[derive(Debug, Parser)]
+#[command(
+    name = "peelnet",
+    version,
+    subcommand_required = true,
+    arg_required_else_help = true,
+    after_help = "Examples:
+  peelnet doctor                                        what will be used, and why
+  peelnet run --out out/demo                            everything, on the shipped scenes
+  peelnet extract data/scenes/sixteen-050.toml --out d  peel a scene
+  peelnet train d --out m.safetensors                   train the thesis's network on it
+  peelnet export m.safetensors --out w.wgsl             bake the weights into a shader
+  peelnet render data/scenes/sixteen-050.toml --method deep-thesis --model m.safetensors --out a.png
+
+Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage.
+NO_COLOR switches colours off."
+)]
+pub struct Cli {
+    /// What holds for every command.
+    #[command(flatten)]
+    pub global: Global,
+    /// The command.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Flags of every command.
+#[derive(Clone, Debug, Args)]
+pub struct Global {
+    /// The GPU to use: part of an adapter's name, or "software"
+    #[arg(
+        long,
+        global = true,
+        value_name = "NAME|software",
+        default_value = "auto",
+        hide_default_value = true
+    )]
+    pub adapter: AdapterRequest,
+    /// No messages and no progress on stderr, only warnings and errors
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// The result as JSON
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+/// Every command.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Extract, train, export and compare in one go
+    Run(RunArgs),
+    /// Peel scenes on the GPU and write per-fragment features
+    Extract(ExtractArgs),
+    /// Train a network on a dataset
+    Train(TrainArgs),
+    /// Bake a network's weights into shader code
+    Export(ExportArgs),
+    /// Draw a scene with one method
+    Render(RenderArgs),
+    /// Tell what a scene, a dataset or a model is
+    Inspect(InspectArgs),
+    /// Tell which adapters there are, which one is used and why
+    Doctor,
+}
+
+/// `peelnet run`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet run --out out/demo              the shipped sixteen-model scenes, in minutes without a GPU
+  peelnet run --out out/full --full       the thesis's recipe in full: 1024x768, 1.5 million rows, 150 epochs
+  peelnet run my.toml --out out/mine      the same for a scene of your own
+
+DIR gets dataset/, dataset-summary.json and .txt, loss.csv, loss.svg, model.safetensors, model.wgsl, images/,
+table.md, results.json and report.html. Scenes that are marked held-out are compared but never trained on.")]
+pub struct RunArgs {
+    /// Scene files; without any, the shipped sixteen-model scenes
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Folder for everything that is written
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// The thesis's recipe in full size instead of the quick one
+    #[arg(long)]
+    pub full: bool,
+    /// Frame size [default: 512x384, with --full 1024x768]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Rows to train on, about: pixels are sampled to get there [default: 300000, with --full 1500000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub rows: Option<u64>,
+    /// Passes over the training rows [default: the recipe's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub epochs: Option<u32>,
+    /// Seed of sampling and training
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// `peelnet extract`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet extract data/scenes/sixteen-050.toml --out d
+  peelnet extract data/scenes/*.toml --out d --views all --pixels 0.1 --augment 4 --seed 7
+  peelnet extract scene.toml --out d --format csv --size 640x480
+  peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler
+
+DATASET is a folder: manifest.json and the fragment files. The same seed gives the same bytes.")]
+pub struct ExtractArgs {
+    /// Scene files
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Folder of the dataset
+    #[arg(long, value_name = "DATASET")]
+    pub out: PathBuf,
+    /// Frame size in pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x768")]
+    pub size: Size,
+    /// Views of each scene
+    #[arg(long, value_name = "N|all", default_value = "all")]
+    pub views: ViewCount,
+    /// File format: csv, parquet or npy
+    #[arg(long, value_name = "FORMAT", default_value = "parquet")]
+    pub format: Format,
+    /// How to peel: sbuffer, dual or single
+    #[arg(long, value_name = "METHOD", default_value = "sbuffer")]
+    pub peel: Peel,
+    /// Stop peeling after N passes and tell what that left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_passes: Option<u32>,
+    /// Share of the pixels to keep
+    #[arg(long, value_name = "FRACTION", default_value = "1", value_parser = fraction)]
+    pub pixels: f64,
+    /// Varied copies of each scene besides itself
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub augment: u32,
+    /// Seed of sampling and variation
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Write only part I of N
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+}
+
+/// `peelnet train`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet train d --out m.safetensors
+  peelnet train d1 d2 --out m.safetensors --epochs 40 --loss-curve loss.csv --loss-curve loss.svg
+  peelnet train d --out m.safetensors --resume          go on after Ctrl-C, with the same result
+
+Rows of scenes that are marked held-out are never trained on.")]
+pub struct TrainArgs {
+    /// Dataset folders
+    #[arg(value_name = "DATASET", required = true)]
+    pub datasets: Vec<PathBuf>,
+    /// The model file to write; checkpoints lie beside it
+    #[arg(long, value_name = "MODEL")]
+    pub out: PathBuf,
+    /// What to train: thesis (other recipes come later)
+    #[arg(long, value_name = "RECIPE", default_value = "thesis")]
+    pub recipe: Recipe,
+    /// Passes over the training rows [default: the recipe's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub epochs: Option<u32>,
+    /// Rows per step [default: the recipe's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub batch: Option<u32>,
+    /// Learning rate [default: the recipe's]
+    #[arg(long, value_name = "X", value_parser = positive)]
+    pub lr: Option<f64>,
+    /// Seed of initial weights, order and split
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Continue from the checkpoint beside MODEL
+    #[arg(long)]
+    pub resume: bool,
+    /// Also write the loss of every epoch: .csv or .svg; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub loss_curve: Vec<PathBuf>,
+    /// Stop after N epochs without a lower held-out loss and keep the best
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub patience: Option<u32>,
+}
+
+/// Languages of exported shaders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Lang {
+    /// WebGPU
+    Wgsl,
+    /// OpenGL, Vulkan
+    Glsl,
+    /// Direct3D
+    Hlsl,
+    /// Metal
+    Msl,
+    /// Vulkan, binary
+    Spirv,
+}
+
+/// Precisions of exported shaders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Precision {
+    /// 32-bit floats
+    F32,
+    /// 16-bit floats
+    F16,
+}
+
+/// `peelnet export`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet export m.safetensors --out weight.wgsl
+
+The function is run on the GPU and compared with the network before the file is written.")]
+pub struct ExportArgs {
+    /// The model file
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+    /// The shader file to write
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Shading language
+    #[arg(long, value_enum, default_value = "wgsl")]
+    pub lang: Lang,
+    /// Arithmetic of the function
+    #[arg(long, value_enum, default_value = "f32")]
+    pub precision: Precision,
+}
+
+/// `peelnet render`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet render scene.toml --out exact.png
+  peelnet render scene.toml --method wboit-eq9:targets=f32 --out a.exr
+  peelnet render scene.toml --method deep-thesis --model m.safetensors --view 2 --out b.npy
+
+IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
+A learned method without --model takes the shipped model.")]
+pub struct RenderArgs {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// The image to write
+    #[arg(long, value_name = "IMAGE")]
+    pub out: PathBuf,
+    /// How to draw; a knob follows a colon
+    #[arg(long, value_name = "METHOD", default_value = "abuffer")]
+    pub method: MethodSpec,
+    /// Model file of a learned method
+    #[arg(long, value_name = "MODEL")]
+    pub model: Option<PathBuf>,
+    /// Which view of the scene, from 0
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub view: u32,
+    /// Frame size in pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x768")]
+    pub size: Size,
+}
+
+/// `peelnet inspect`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet inspect data/scenes/sixteen-050.toml
+  peelnet inspect d --json | jq .rows
+  peelnet inspect m.safetensors
+
+A dataset is read whole: what its rows say about one another is recomputed, and exit code 1 tells that they disagree.")]
+pub struct InspectArgs {
+    /// A scene file (.toml), a dataset (a folder) or a model (.safetensors)
+    #[arg(value_name = "SCENE|DATASET|MODEL")]
+    pub what: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_declaration_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_has_an_example_that_begins_with_its_name() {
+        for command in Cli::command().get_subcommands() {
+            if command.get_name() == "doctor" {
+                continue;
+            }
+            let help = command.get_after_help().map(ToString::to_string);
+            let start = format!("peelnet {} ", command.get_name());
+            assert!(
+                help.is_some_and(|h| h.contains(&start)),
+                "{}",
+                command.get_name()
+            );
+        }
+    }
+
+    #[test]
+    fn the_specified_flags_are_there() {
+        for line in [
+            "run --out o",
+            "run a.toml b.toml --out o --full --adapter software",
+            "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
+            "train d e --out m --recipe thesis --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
+            "export m --out w --lang wgsl --precision f32",
+            "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
+            "inspect x --json",
+            "doctor --json",
+        ] {
+            let words = std::iter::once("peelnet").chain(line.split(' '));
+            assert!(Cli::try_parse_from(words).is_ok(), "{line}");
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! `peelnet export`: weights into shader code.
+
+use super::Context;
+use crate::cli::{ExportArgs, Lang, Precision};
+use crate::failure::Failure;
+use clap::ValueEnum as _;
+use peelnet_model::Model;
+use serde_json::json;
+
+pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failure> {
+    if args.lang != Lang::Wgsl {
+        return Err(not_yet("--lang", &args.lang, "wgsl"));
+    }
+    if args.precision != Precision::F32 {
+        return Err(not_yet("--precision", &args.precision, "f32"));
+    }
+    let model = Model::load(&args.model)?;
+    let gpu = context.gpu()?;
+    let verification =
+        peelnet_export::export(&gpu, &model, &args.out, &peelnet_export::Options::default())?;
+    context.console.result(
+        || {
+            format!(
+                "{}: {} inputs, verified on {}: {verification}",
+                args.out.display(),
+                model.meta.inputs.len(),
+                gpu.info.name
+            )
+        },
+        || {
+            json!({
+                "out": args.out,
+                "model": args.model,
+                "recipe": model.meta.recipe,
+                "lang": "wgsl",
+                "precision": "f32",
+                "adapter": gpu.info.name,
+                "verification": verification.to_string(),
+            })
+        },
+    )
+}
+
+fn not_yet(flag: &str, value: &impl clap::ValueEnum, there_is: &str) -> Failure {
+    let name = value
+        .to_possible_value()
+        .map_or_else(String::new, |v| v.get_name().to_owned());
+    Failure::Usage(format!(
+        "{flag} {name}: this version does not write it yet; use {flag} {there_is}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_said_with_what_there_is() {
+        let text = not_yet("--lang", &Lang::Glsl, "wgsl").to_string();
+        assert!(
+            text.contains("glsl") && text.contains("use --lang wgsl"),
+            "{text}"
+        );
+        assert_eq!(Lang::value_variants().len(), 5);
+    }
+}

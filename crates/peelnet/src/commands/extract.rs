@@ -1,0 +1,125 @@
+//! `peelnet extract`: scenes into a dataset.
+
+use super::Context;
+use crate::cli::ExtractArgs;
+use crate::failure::Failure;
+use crate::parse::{ViewCount, command_line};
+use crate::progress::{Progress, short, thousands};
+use peelnet_gpu::Gpu;
+use peelnet_peel::{ExtractOptions, ExtractReport, PeelError, Views, extract};
+use peelnet_scene::Scene;
+use serde_json::json;
+use std::path::Path;
+
+pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
+    let scenes = context.scenes(&args.scenes)?;
+    let gpu = context.gpu()?;
+    let report = peel(
+        context,
+        &gpu,
+        &scenes,
+        &ExtractOptions {
+            out: args.out.clone(),
+            size: args.size.0,
+            views: match args.views {
+                ViewCount::All => Views::All,
+                ViewCount::First(n) => Views::First(n),
+            },
+            format: args.format,
+            peel: args.peel,
+            max_passes: args.max_passes,
+            pixels: args.pixels,
+            augment: args.augment,
+            seed: args.seed,
+            shard: args.shard,
+            command: command_line(),
+            budget: None,
+        },
+    )?;
+    // A shard lies in a folder of its own.
+    let folder = match args.shard {
+        Some(shard) => args.out.join(shard.folder()),
+        None => args.out.clone(),
+    };
+    context.console.result(
+        || text(&folder, &report),
+        || {
+            let m = &report.manifest;
+            json!({
+                "out": folder,
+                "rows": m.rows,
+                "pixels": m.pixels,
+                "parts": m.parts.len(),
+                "hash": m.hash,
+                "lost_fragments": report.lost,
+                "coplanar_ties": report.coplanar,
+                "tiles": report.tiles,
+                "gpu_ms": report.gpu_micros / 1e3,
+                "wall_ms": report.wall_micros / 1e3,
+                "rows_by_scene": m.rows_by_scene(),
+                "adapter": m.adapter,
+            })
+        },
+    )
+}
+
+/// Peels with a progress bar, and warns of what peeling left out.
+pub(super) fn peel(
+    context: &Context<'_>,
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+) -> Result<ExtractReport, Failure> {
+    context.console.message(format!(
+        "peeling {} at {}x{} on {}",
+        names(scenes),
+        options.size[0],
+        options.size[1],
+        gpu.info.name
+    ));
+    let bar = Progress::new(context.console, "extract", 1);
+    let report = extract(gpu, scenes, options, context.stop, &mut |p| {
+        let rate = p.rows as f64 / p.seconds.max(1e-3);
+        bar.set(
+            p.items_done.into(),
+            p.items.into(),
+            format!("{} rows, {} rows/s", short(p.rows as f64), short(rate)),
+        );
+    });
+    drop(bar);
+    let report = report.map_err(|error| match error {
+        PeelError::Usage(text) => Failure::Usage(text),
+        other => other.into(),
+    })?;
+    if report.lost > 0 {
+        context.console.warn(format!(
+            "{} fragments were left out ({} peeling); --peel sbuffer without --max-passes keeps all",
+            thousands(report.lost),
+            options.peel
+        ));
+    }
+    Ok(report)
+}
+
+/// What an extraction did, in one line.
+pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
+    let seconds = report.wall_micros / 1e6;
+    format!(
+        "{}: {} rows of {} pixels in {} parts, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {} coplanar pairs",
+        folder.display(),
+        thousands(report.manifest.rows),
+        thousands(report.manifest.pixels),
+        report.manifest.parts.len(),
+        short(report.manifest.rows as f64 / seconds.max(1e-6)),
+        report.gpu_micros / 1e6,
+        thousands(report.coplanar),
+    )
+}
+
+/// The scenes for a message.
+fn names(scenes: &[Scene]) -> String {
+    match scenes {
+        [one] => format!("scene {}", one.name),
+        many => format!("{} scenes", many.len()),
+    }
+}

@@ -1,0 +1,78 @@
+//! One file per command.
+
+mod doctor;
+mod export;
+mod extract;
+mod inspect;
+mod render;
+mod run;
+mod train;
+
+use crate::cli::{Cli, Command, Global};
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::interrupt;
+use peelnet_gpu::Gpu;
+use peelnet_scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// What every command works with.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// Where words go.
+    pub console: Console,
+    /// The global flags.
+    pub global: &'a Global,
+    /// Set by Ctrl-C.
+    pub stop: &'static AtomicBool,
+}
+
+impl Context<'_> {
+    /// Opens the adapter that the flags ask for.
+    fn gpu(&self) -> Result<Gpu, Failure> {
+        Ok(Gpu::new(&self.global.adapter)?)
+    }
+
+    /// Loads scenes and shows their warnings.
+    fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
+        paths.iter().map(|path| self.scene(path)).collect()
+    }
+
+    fn scene(&self, path: &Path) -> Result<Scene, Failure> {
+        let scene = Scene::load(path)?;
+        for warning in &scene.warnings {
+            self.console.warn(warning);
+        }
+        Ok(scene)
+    }
+
+    /// An error if Ctrl-C was pressed.
+    fn check_interrupt(&self) -> Result<(), Failure> {
+        if interrupt::requested() {
+            return Err(Failure::Interrupted);
+        }
+        Ok(())
+    }
+}
+
+/// Runs the command that was parsed.
+///
+/// # Errors
+/// Whatever stopped it.
+pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
+    let context = Context {
+        console: Console::new(cli.global.quiet, cli.global.json),
+        global: &cli.global,
+        stop: interrupt::install(),
+    };
+    match &cli.command {
+        Command::Run(args) => run::run(&context, args),
+        Command::Extract(args) => extract::run(&context, args),
+        Command::Train(args) => train::run(&context, args),
+        Command::Export(args) => export::run(&context, args),
+        Command::Render(args) => render::run(&context, args),
+        Command::Inspect(args) => inspect::run(&context, args),
+        Command::Doctor => doctor::run(&context),
+    }
+}

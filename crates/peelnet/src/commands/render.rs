@@ -1,0 +1,139 @@
+//! `peelnet render`: one frame with one method.
+
+use super::Context;
+use crate::cli::RenderArgs;
+use crate::failure::Failure;
+use crate::learned;
+use crate::progress::thousands;
+use peelnet_render::{Frame, Renderer};
+use serde_json::json;
+use std::path::Path;
+
+/// Endings that an image may have.
+const ENDINGS: [&str; 3] = ["png", "exr", "npy"];
+
+pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failure> {
+    check_ending(&args.out)?;
+    let scene = context.scene(&args.scene)?;
+    let camera = scene.views.get(args.view as usize).ok_or_else(|| {
+        Failure::Usage(format!(
+            "--view {}: {} has {} views, numbered from 0",
+            args.view,
+            args.scene.display(),
+            scene.views.len()
+        ))
+    })?;
+    let gpu = context.gpu()?;
+    let learned = learned::weight_of(&gpu, &args.method, args.model.as_deref())?;
+    let renderer = Renderer::new(&gpu, &scene)?;
+    let mut prepared = renderer.prepare(&args.method, args.size.0, learned.as_ref())?;
+    let frame = renderer.draw(&mut prepared, camera)?;
+    context.check_interrupt()?;
+    if let Some(folder) = args.out.parent().filter(|p| !p.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|e| {
+            Failure::Failed(format!(
+                "{}: cannot create the folder: {e}",
+                folder.display()
+            ))
+        })?;
+    }
+    frame.image.save(&args.out)?;
+    if frame.stats.lost > 0 {
+        context.console.warn(format!(
+            "{}: {} fragments are not in the image",
+            args.method,
+            thousands(frame.stats.lost)
+        ));
+    }
+    if frame.image.non_finite() > 0 {
+        context.console.warn(format!(
+            "{}: {} pixels are not finite",
+            args.method,
+            frame.image.non_finite()
+        ));
+    }
+    context.console.result(
+        || text(args, &gpu.info.name, &frame),
+        || {
+            json!({
+                "out": args.out,
+                "scene": scene.name,
+                "method": args.method.to_string(),
+                "view": args.view,
+                "width": frame.image.width,
+                "height": frame.image.height,
+                "fragments": frame.stats.fragments,
+                "max_layers": frame.stats.max_layers,
+                "lost": frame.stats.lost,
+                "tiles": frame.stats.tiles,
+                "geometry_passes": frame.stats.geometry_passes,
+                "fullscreen_passes": frame.stats.fullscreen_passes,
+                "bytes_per_pixel": frame.stats.bytes_per_pixel,
+                "non_finite_pixels": frame.image.non_finite(),
+                "time_ms": gpu_ms(&frame),
+                "wall_ms": frame.wall_micros / 1e3,
+                "passes": frame.times.iter().map(|t| json!({"label": t.label, "micros": t.micros})).collect::<Vec<_>>(),
+                "adapter": gpu.info.name,
+            })
+        },
+    )
+}
+
+fn check_ending(path: &Path) -> Result<(), Failure> {
+    let ending = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or_default();
+    if ENDINGS.contains(&ending.to_lowercase().as_str()) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "--out {}: the ending says the format; use .png (sRGB), .exr or .npy (linear)",
+        path.display()
+    )))
+}
+
+/// GPU time of all passes, where the adapter measures it.
+fn gpu_ms(frame: &Frame) -> Option<f64> {
+    (!frame.times.is_empty()).then(|| frame.times.iter().map(|t| t.micros).sum::<f64>() / 1e3)
+}
+
+fn text(args: &RenderArgs, adapter: &str, frame: &Frame) -> String {
+    let fragments = frame.stats.fragments.map_or_else(String::new, |n| {
+        format!(
+            ", {} fragments, up to {} a pixel",
+            thousands(n),
+            frame.stats.max_layers.unwrap_or(0)
+        )
+    });
+    let time = gpu_ms(frame).map_or_else(
+        || format!("{:.1} ms by the clock", frame.wall_micros / 1e3),
+        |ms| format!("{ms:.1} ms on the GPU"),
+    );
+    format!(
+        "{}: {} of {}, {}{fragments}; {} geometry and {} full-screen passes, {:.0} bytes a pixel, {time}, on {adapter}",
+        args.out.display(),
+        args.method,
+        args.scene.display(),
+        args.size,
+        frame.stats.geometry_passes,
+        frame.stats.fullscreen_passes,
+        frame.stats.bytes_per_pixel,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings() {
+        for good in ["a.png", "b/c.EXR", "d.npy"] {
+            assert_eq!(check_ending(Path::new(good)), Ok(()));
+        }
+        for bad in ["a", "a.jpg", ".png"] {
+            let failure = check_ending(Path::new(bad));
+            assert!(failure.is_err_and(|f| f.exit_code() == 2), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! `peelnet train`: a dataset into a network.
+
+use super::Context;
+use crate::cli::TrainArgs;
+use crate::failure::Failure;
+use crate::progress::{Progress, short, thousands};
+use peelnet_dataset::Dataset;
+use peelnet_train::{Config, End, Outcome, RunOptions, TrainingData, held_out_errors, train};
+use serde_json::json;
+use std::path::Path;
+
+pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
+    let config = config(args)?;
+    let datasets = args
+        .datasets
+        .iter()
+        .map(Dataset::open)
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut options = RunOptions::new(&args.out, context.stop);
+    options.resume = args.resume;
+    options.loss_curve = args.loss_curve.clone();
+    let outcome = fit(context, &config, &datasets, &options)?;
+    context.console.result(
+        || text(&args.out, &outcome),
+        || {
+            let meta = &outcome.model.meta;
+            json!({
+                "out": args.out,
+                "recipe": meta.recipe,
+                "end": end_name(outcome.end),
+                "epochs": outcome.history.len(),
+                "model_epoch": outcome.model_epoch,
+                "resumed_from": outcome.resumed_from,
+                "losses": meta.losses,
+                "held_out": meta.held_out,
+                "rows": meta.dataset.as_ref().map(|d| d.rows),
+                "dataset": meta.dataset.as_ref().map(|d| &d.hash),
+                "seed": meta.seed,
+                "seconds": seconds(&outcome),
+                "rows_per_s": rows_per_s(&outcome),
+                "checkpoint": outcome.checkpoint,
+            })
+        },
+    )
+}
+
+/// The recipe's settings with those of the flags.
+fn config(args: &TrainArgs) -> Result<Config, Failure> {
+    let mut config = Config::for_recipe(args.recipe)?;
+    config.seed = args.seed;
+    config.epochs = args.epochs.unwrap_or(config.epochs);
+    config.batch = args.batch.map_or(config.batch, |b| b as usize);
+    config.learning_rate = args.lr.unwrap_or(config.learning_rate);
+    config.patience = args.patience.or(config.patience);
+    Ok(config)
+}
+
+/// Trains with a progress bar; the model file has the errors on held-out scenes in it where the datasets hold such.
+pub(super) fn fit(
+    context: &Context<'_>,
+    config: &Config,
+    datasets: &[Dataset],
+    options: &RunOptions<'_>,
+) -> Result<Outcome, Failure> {
+    let data = TrainingData::from_datasets(config.recipe, datasets)?;
+    context.console.message(format!(
+        "training recipe {} on {} rows of {}, {} epochs",
+        config.recipe,
+        thousands(data.rows() as u64),
+        data.source,
+        config.epochs
+    ));
+    let bar = Progress::new(context.console, "train", config.epochs.into());
+    let outcome = train(config, &data, options, |e| {
+        let held_out = e
+            .test_loss
+            .map_or_else(String::new, |l| format!(", held out {l:.6}"));
+        bar.set(
+            e.epoch.into(),
+            e.epochs.into(),
+            format!(
+                "loss {:.6}{held_out}, {} rows/s",
+                e.train_loss,
+                short(e.rows_per_s)
+            ),
+        );
+    });
+    drop(bar);
+    let mut outcome = outcome?;
+    if outcome.end == End::Interrupted {
+        return Err(Failure::Failed(format!(
+            "interrupted after epoch {} of {}; the state is in {}, continue with --resume",
+            outcome.history.len(),
+            config.epochs,
+            outcome.checkpoint.display()
+        )));
+    }
+    if let Some(from) = outcome.resumed_from {
+        context
+            .console
+            .message(format!("continued after epoch {from}"));
+    }
+    let held_out = held_out_errors(&outcome.model, datasets)?;
+    if !held_out.is_empty() {
+        outcome.model.meta.held_out = held_out;
+        outcome.model.save(&options.out)?;
+    }
+    Ok(outcome)
+}
+
+/// Seconds of all epochs.
+pub(super) fn seconds(outcome: &Outcome) -> f64 {
+    outcome.history.iter().map(|e| e.seconds).sum()
+}
+
+/// Median rows a second of the epochs.
+fn rows_per_s(outcome: &Outcome) -> f64 {
+    let mut rates: Vec<f64> = outcome.history.iter().map(|e| e.rows_per_s).collect();
+    rates.sort_by(f64::total_cmp);
+    rates.get(rates.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// What a training did, in a few lines.
+pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
+    let meta = &outcome.model.meta;
+    let loss = |name: &str, loss: Option<f64>| {
+        loss.map_or_else(String::new, |l| format!(", {name} loss {l:.6}"))
+    };
+    let mut t = format!(
+        "{}: recipe {}, weights of epoch {} ({}){}{}{}, {:.1} s, {} rows/s",
+        out.display(),
+        meta.recipe,
+        outcome.model_epoch,
+        match outcome.end {
+            End::Finished => "finished",
+            End::StoppedEarly => "stopped early",
+            End::Interrupted => "interrupted",
+        },
+        loss("training", meta.losses.train),
+        loss("validation", meta.losses.validation),
+        loss("test", meta.losses.test),
+        seconds(outcome),
+        short(rows_per_s(outcome)),
+    );
+    for (scene, error) in &meta.held_out {
+        t.push_str(&format!(
+            "\nheld-out scene {scene}: mean error of T {error:.4}"
+        ));
+    }
+    t
+}
+
+const fn end_name(end: End) -> &'static str {
+    match end {
+        End::Finished => "finished",
+        End::StoppedEarly => "stopped-early",
+        End::Interrupted => "interrupted",
+    }
+}

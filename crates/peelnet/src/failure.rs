@@ -1,0 +1,95 @@
+//! How a command fails: one line and an exit code.
+
+use std::error::Error;
+use std::fmt;
+
+/// Why a command ended early.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The command line cannot be meant so. Exit code 2.
+    Usage(String),
+    /// Something went wrong. Exit code 1.
+    Failed(String),
+    /// Ctrl-C. Exit code 1.
+    Interrupted,
+}
+
+impl Failure {
+    /// 2 for wrong usage, 1 for the rest.
+    pub const fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::Failed(_) | Self::Interrupted => 1,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Usage(text) | Self::Failed(text) => f.write_str(text),
+            Self::Interrupted => f.write_str("interrupted; files that were not finished are gone"),
+        }
+    }
+}
+
+impl<E: Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Failed(one_line(&error))
+    }
+}
+
+/// An error and its sources in one line. A source whose text its parent already contains is left out.
+pub fn one_line(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut next = error.source();
+    while let Some(source) = next {
+        let more = source.to_string();
+        if !text.contains(&more) {
+            text.push_str(": ");
+            text.push_str(&more);
+        }
+        next = source.source();
+    }
+    let lines: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect();
+    lines.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("{text}")]
+    struct Link {
+        text: &'static str,
+        source: Option<Box<Link>>,
+    }
+
+    #[test]
+    fn the_chain_is_folded_and_nothing_is_said_twice() {
+        let error = Link {
+            text: "scene.toml: cannot read",
+            source: Some(Box::new(Link {
+                text: "line 3:\n  unknown key",
+                source: None,
+            })),
+        };
+        assert_eq!(
+            one_line(&error),
+            "scene.toml: cannot read: line 3: unknown key"
+        );
+        let error = Link {
+            text: "a: gone",
+            source: Some(Box::new(Link {
+                text: "gone",
+                source: None,
+            })),
+        };
+        assert_eq!(Failure::from(error), Failure::Failed("a: gone".to_owned()));
+    }
+}

@@ -1,0 +1,161 @@
+//! Values of flags that have a syntax of their own.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// `WxH`: the size of a frame in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong =
+            || format!("'{text}' is not a size; write WIDTHxHEIGHT in pixels, as in 1024x768");
+        let (w, h) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+        let size: [u32; 2] = [
+            w.parse().map_err(|_| wrong())?,
+            h.parse().map_err(|_| wrong())?,
+        ];
+        if size.contains(&0) {
+            return Err("a frame needs at least 1x1 pixels".to_owned());
+        }
+        Ok(Self(size))
+    }
+}
+
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.0[0], self.0[1])
+    }
+}
+
+/// `N` or `all`: how many views of each scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewCount {
+    /// Every view that the scene has.
+    All,
+    /// The first N.
+    First(u32),
+}
+
+impl FromStr for ViewCount {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match (text, text.parse()) {
+            ("all", _) => Ok(Self::All),
+            (_, Ok(n)) if n > 0 => Ok(Self::First(n)),
+            _ => Err(format!(
+                "'{text}' is not a number of views; write 1, 2, … or all"
+            )),
+        }
+    }
+}
+
+impl fmt::Display for ViewCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("all"),
+            Self::First(n) => write!(f, "{n}"),
+        }
+    }
+}
+
+/// A share in 0 < x ≤ 1.
+pub fn fraction(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x <= 1.0 => Ok(x),
+        _ => Err(format!(
+            "'{text}' is not a fraction; write a number above 0 and up to 1"
+        )),
+    }
+}
+
+/// A positive number.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err(format!("'{text}' is not a number above 0")),
+    }
+}
+
+/// One argument as a shell would need it.
+pub fn shell_word(argument: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@%".contains(c);
+    if !argument.is_empty() && argument.chars().all(plain) {
+        argument.to_owned()
+    } else {
+        format!("'{}'", argument.replace('\'', r"'\''"))
+    }
+}
+
+/// The command line of this process, for provenance: the program's bare name and its arguments.
+pub fn command_line() -> String {
+    let arguments = std::env::args_os()
+        .skip(1)
+        .map(|a| shell_word(&a.to_string_lossy()));
+    std::iter::once("peelnet".to_owned())
+        .chain(arguments)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!("1024x768".parse(), Ok(Size([1024, 768])));
+        assert_eq!("1X1".parse(), Ok(Size([1, 1])));
+        assert_eq!(
+            "1024x768".parse::<Size>().map(|s| s.to_string()),
+            Ok("1024x768".to_owned())
+        );
+        for bad in [
+            "",
+            "12",
+            "0x5",
+            "5x0",
+            "x",
+            "-1x5",
+            "1.5x2",
+            "1x2x3",
+            "99999999999x1",
+        ] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn view_counts() {
+        assert_eq!("all".parse(), Ok(ViewCount::All));
+        assert_eq!("3".parse(), Ok(ViewCount::First(3)));
+        for bad in ["", "0", "-1", "some", "ALL"] {
+            assert!(bad.parse::<ViewCount>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn fractions_and_positive_numbers() {
+        assert_eq!(fraction("1"), Ok(1.0));
+        assert_eq!(fraction("0.25"), Ok(0.25));
+        for bad in ["0", "-0.1", "1.01", "NaN", "inf", "x"] {
+            assert!(fraction(bad).is_err(), "{bad}");
+        }
+        assert_eq!(positive("1e-4"), Ok(1e-4));
+        for bad in ["0", "-1", "NaN", "inf", ""] {
+            assert!(positive(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn shell_words() {
+        assert_eq!(shell_word("a/b.toml"), "a/b.toml");
+        assert_eq!(shell_word("a b"), "'a b'");
+        assert_eq!(shell_word("it's"), r"'it'\''s'");
+        assert_eq!(shell_word(""), "''");
+    }
+}

@@ -1,0 +1,20 @@
+//! Constants that keep results finite, each with its reason. Their shader twins are compared by a test.
+
+/// The smallest weight a learned transmittance may become: `2⁻¹⁴`, the smallest normal half float.
+///
+/// The thesis's network may answer with zero or below, and then the sum of weights of a pixel is zero or
+/// negative: its "black artifacts". With this floor the sum is positive as soon as one fragment has α > 0, and a
+/// 16-bit target can still hold it.
+pub const WEIGHT_FLOOR: f32 = 1.0 / 16384.0;
+
+/// The largest opacity that absorbance is computed from: `1 − 2⁻²⁴`, the largest `f32` below one.
+pub const ALPHA_CEILING: f32 = 1.0 - 1.0 / 16_777_216.0;
+
+/// The divisor's floor in the resolve of weighted methods.
+///
+/// `2⁻²⁴` is the smallest positive half float: a sum of weights that a 16-bit target can tell from zero is never
+/// changed by the floor, and zero over the floor stays zero.
+pub const SUM_FLOOR: f32 = 1.0 / 16_777_216.0;
+
+/// The largest finite half float, where 16-bit accumulators end.
+pub const HALF_MAX: f32 = 65504.0;

@@ -1,0 +1,347 @@
+//! Parquet: one file for each part, row groups of 2²⁰ rows, pages without dictionary, compressed with snappy.
+//!
+//! A dictionary makes the writer hash every value of columns that hardly repeat; without it, snappy still turns a
+//! constant column into next to nothing. The columns of a row group are encoded into memory independently, on
+//! several threads, and appended in order, so that the threads do not change the bytes.
+
+use std::fs::File;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bytes::Bytes;
+use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
+use parquet::column::reader::ColumnReader;
+use parquet::column::writer::{ColumnCloseResult, ColumnWriter, get_column_writer};
+use parquet::errors::ParquetError;
+use parquet::file::properties::{
+    EnabledStatistics, WriterProperties, WriterPropertiesPtr, WriterVersion,
+};
+use parquet::file::reader::FileReader;
+use parquet::file::serialized_reader::SerializedFileReader;
+use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
+use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
+
+use super::csv::check_names;
+use super::{PartSink, PartSource};
+use crate::batch::FragmentBatch;
+use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice};
+use crate::error::DatasetError;
+use crate::hashed_file::HashedFile;
+use crate::manifest::FileEntry;
+use crate::writer::ROW_GROUP_ROWS;
+
+/// Rows of a page: 512 KiB of values, small enough for the caches.
+const PAGE_ROWS: usize = 1 << 17;
+
+fn schema() -> TypePtr {
+    let fields = Column::ALL
+        .into_iter()
+        .map(|column| {
+            let (physical, logical) = match column.kind() {
+                ColumnKind::F32 => (PhysicalType::FLOAT, None),
+                ColumnKind::U32 => (PhysicalType::INT32, Some(LogicalType::integer(32, false))),
+            };
+            let field = Type::primitive_type_builder(column.name(), physical)
+                .with_repetition(Repetition::REQUIRED)
+                .with_logical_type(logical)
+                .build()
+                .expect("a plain field is valid");
+            Arc::new(field)
+        })
+        .collect();
+    Arc::new(
+        Type::group_type_builder("fragments")
+            .with_fields(fields)
+            .build()
+            .expect("a flat group is valid"),
+    )
+}
+
+fn properties() -> WriterPropertiesPtr {
+    Arc::new(
+        WriterProperties::builder()
+            .set_writer_version(WriterVersion::PARQUET_1_0)
+            .set_created_by("peelnet".to_owned())
+            .set_compression(Compression::SNAPPY)
+            .set_dictionary_enabled(false)
+            .set_statistics_enabled(EnabledStatistics::None)
+            .set_data_page_row_count_limit(PAGE_ROWS)
+            .set_write_batch_size(PAGE_ROWS)
+            .set_max_row_group_row_count(Some(ROW_GROUP_ROWS))
+            .set_offset_index_disabled(true)
+            .build(),
+    )
+}
+
+/// Writes a part as Parquet.
+pub(super) struct ParquetSink {
+    path: PathBuf,
+    name: String,
+    writer: SerializedFileWriter<HashedFile>,
+    /// Rows that do not fill a row group yet.
+    pending: FragmentBatch,
+    row_groups: Vec<u64>,
+    threads: usize,
+}
+
+impl ParquetSink {
+    pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
+        let name = format!("{stem}.parquet");
+        let path = folder.join(&name);
+        let file = HashedFile::create(&path).map_err(DatasetError::io(&path, "create"))?;
+        let writer = SerializedFileWriter::new(file, schema(), properties())
+            .map_err(|e| write_error(&path, e))?;
+        Ok(Self {
+            path,
+            name,
+            writer,
+            pending: FragmentBatch::default(),
+            row_groups: Vec::new(),
+            threads: threads.max(1),
+        })
+    }
+
+    /// Encodes and appends one row group.
+    fn row_group(&mut self, rows: &FragmentBatch, range: Range<usize>) -> Result<(), DatasetError> {
+        let descriptors = self.writer.schema_descr().columns().to_vec();
+        let properties = self.writer.properties().clone();
+        let next = std::sync::atomic::AtomicUsize::new(0);
+        // Columns are taken from a common counter: they cost very different times.
+        let encode_some = || {
+            let mut done = Vec::new();
+            loop {
+                let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                let Some(&column) = Column::ALL.get(k) else {
+                    return done;
+                };
+                let values = rows.column(column).range(range.clone());
+                done.push((k, encode(&descriptors[k], &properties, values)));
+            }
+        };
+        let mut encoded: Vec<_> = std::thread::scope(|scope| {
+            let others: Vec<_> = (1..self.threads)
+                .map(|_| scope.spawn(encode_some))
+                .collect();
+            let mut encoded = encode_some();
+            for other in others {
+                encoded.extend(
+                    other
+                        .join()
+                        .unwrap_or_else(|e| std::panic::resume_unwind(e)),
+                );
+            }
+            encoded
+        });
+        encoded.sort_by_key(|(k, _)| *k);
+        let append = || -> Result<(), ParquetError> {
+            let mut group = self.writer.next_row_group()?;
+            for (_, column) in encoded {
+                let (bytes, close) = column?;
+                group.append_column(&bytes, close)?;
+            }
+            group.close().map(|_| ())
+        };
+        append().map_err(|e| write_error(&self.path, e))?;
+        self.row_groups.push(range.len() as u64);
+        Ok(())
+    }
+}
+
+/// Encodes one column chunk into memory.
+fn encode(
+    descriptor: &ColumnDescPtr,
+    properties: &WriterPropertiesPtr,
+    values: ColumnSlice<'_>,
+) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
+    let mut sink = TrackedWrite::new(Vec::with_capacity(values.len()));
+    let pages = Box::new(SerializedPageWriter::new(&mut sink));
+    let mut writer = get_column_writer(descriptor.clone(), properties.clone(), pages);
+    match (&mut writer, values) {
+        (ColumnWriter::FloatColumnWriter(w), ColumnSlice::F32(v)) => {
+            w.write_batch(v, None, None)?;
+        }
+        (ColumnWriter::Int32ColumnWriter(w), ColumnSlice::U32(v)) => {
+            // Parquet stores unsigned integers as the signed ones with the same bits.
+            let mut signed = Vec::with_capacity(PAGE_ROWS);
+            for chunk in v.chunks(PAGE_ROWS) {
+                signed.clear();
+                signed.extend(chunk.iter().map(|&x| x.cast_signed()));
+                w.write_batch(&signed, None, None)?;
+            }
+        }
+        _ => unreachable!("the schema is made from the columns' types"),
+    }
+    let close = writer.close()?;
+    Ok((Bytes::from(sink.into_inner()?), close))
+}
+
+fn write_error(path: &Path, error: ParquetError) -> DatasetError {
+    match error {
+        ParquetError::External(inner) => match inner.downcast::<std::io::Error>() {
+            Ok(source) => DatasetError::io(path, "write")(*source),
+            Err(other) => DatasetError::io(path, "write")(std::io::Error::other(other)),
+        },
+        other => DatasetError::io(path, "write")(std::io::Error::other(other)),
+    }
+}
+
+impl PartSink for ParquetSink {
+    fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
+        // Row groups always have the same number of rows, however the rows come; full ones are encoded from where
+        // they lie.
+        let mut start = 0;
+        while start < rows.len() {
+            let wanted = ROW_GROUP_ROWS - self.pending.len();
+            let count = wanted.min(rows.len() - start);
+            if count == ROW_GROUP_ROWS {
+                self.row_group(rows, start..start + count)?;
+            } else {
+                self.pending.extend_from(rows, start..start + count);
+                if self.pending.len() == ROW_GROUP_ROWS {
+                    let mut full = std::mem::take(&mut self.pending);
+                    self.row_group(&full, 0..ROW_GROUP_ROWS)?;
+                    full.clear();
+                    self.pending = full;
+                }
+            }
+            start += count;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
+        let rest = std::mem::take(&mut self.pending);
+        if !rest.is_empty() {
+            self.row_group(&rest, 0..rest.len())?;
+        }
+        drop(rest);
+        // Writes the footer and empties the buffers.
+        let file = self
+            .writer
+            .into_inner()
+            .map_err(|e| write_error(&self.path, e))?;
+        let (bytes, sha256) = file.finish();
+        let file = FileEntry {
+            name: self.name,
+            bytes,
+            sha256,
+        };
+        Ok((self.row_groups, vec![file]))
+    }
+}
+
+/// Reads a part from Parquet, only the pages of the asked columns.
+pub(super) struct ParquetSource {
+    path: PathBuf,
+    file: SerializedFileReader<File>,
+    columns: Vec<Column>,
+    next_group: usize,
+    /// Readers of the current row group, parallel to `columns`.
+    readers: Vec<ColumnReader>,
+    /// Rows left in the current row group.
+    left: usize,
+    signed: Vec<i32>,
+}
+
+impl ParquetSource {
+    pub(super) fn open(files: &[PathBuf], columns: &[Column]) -> Result<Self, DatasetError> {
+        let path = files[0].clone();
+        let file = File::open(&path).map_err(DatasetError::io(&path, "open"))?;
+        let file = SerializedFileReader::new(file).map_err(|e| read_error(&path, &e))?;
+        let found = file.metadata().file_metadata().schema_descr().columns();
+        let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
+        check_names(&path, "schema", &names)?;
+        for (descriptor, column) in found.iter().zip(Column::ALL) {
+            let expected = match column.kind() {
+                ColumnKind::F32 => PhysicalType::FLOAT,
+                ColumnKind::U32 => PhysicalType::INT32,
+            };
+            if descriptor.physical_type() != expected || descriptor.max_def_level() != 0 {
+                return Err(DatasetError::format(
+                    &path,
+                    format!(
+                        "column {column} is {} (definition level {}), expected a required {expected}",
+                        descriptor.physical_type(),
+                        descriptor.max_def_level()
+                    ),
+                ));
+            }
+        }
+        Ok(Self {
+            path,
+            file,
+            columns: columns.to_vec(),
+            next_group: 0,
+            readers: Vec::new(),
+            left: 0,
+            signed: Vec::new(),
+        })
+    }
+
+    /// Moves to the next row group; false at the end.
+    fn advance(&mut self) -> Result<bool, DatasetError> {
+        if self.next_group == self.file.num_row_groups() {
+            return Ok(false);
+        }
+        let group = self
+            .file
+            .get_row_group(self.next_group)
+            .map_err(|e| read_error(&self.path, &e))?;
+        self.left = usize::try_from(group.metadata().num_rows()).map_err(|_| {
+            DatasetError::format(&self.path, "a row group has a negative number of rows")
+        })?;
+        self.readers = self
+            .columns
+            .iter()
+            .map(|c| group.get_column_reader(c.index()))
+            .collect::<Result<_, _>>()
+            .map_err(|e| read_error(&self.path, &e))?;
+        self.next_group += 1;
+        Ok(true)
+    }
+}
+
+fn read_error(path: &Path, error: &ParquetError) -> DatasetError {
+    DatasetError::format(
+        path,
+        format!("not a readable Parquet file: {error}; write the dataset again"),
+    )
+}
+
+impl PartSource for ParquetSource {
+    fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError> {
+        while self.left == 0 {
+            if !self.advance()? {
+                return Ok(0);
+            }
+        }
+        let count = self.left.min(max);
+        for (reader, &column) in self.readers.iter_mut().zip(&self.columns) {
+            let read = match (reader, rows.column_mut(column)) {
+                (ColumnReader::FloatColumnReader(r), ColumnMut::F32(v)) => {
+                    r.read_records(count, None, None, v)
+                }
+                (ColumnReader::Int32ColumnReader(r), ColumnMut::U32(v)) => {
+                    self.signed.clear();
+                    let read = r.read_records(count, None, None, &mut self.signed);
+                    v.extend(self.signed.iter().map(|x| x.cast_unsigned()));
+                    read
+                }
+                _ => unreachable!("the types were compared when the file was opened"),
+            };
+            let (read, _, _) = read.map_err(|e| read_error(&self.path, &e))?;
+            if read != count {
+                return Err(DatasetError::format(
+                    &self.path,
+                    format!(
+                        "column {column} ends {} rows early; write the dataset again",
+                        count - read
+                    ),
+                ));
+            }
+        }
+        self.left -= count;
+        Ok(count)
+    }
+}

@@ -1,0 +1,310 @@
+//! `manifest.json`: what a dataset is made of and where it comes from.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::column::{Column, ColumnKind};
+use crate::error::DatasetError;
+use crate::formats::Format;
+use crate::hashed_file::hex;
+use crate::shard::Shard;
+
+/// The version of the manifest's and the columns' layout that this crate writes and reads.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// The manifest's file name.
+pub(crate) const FILE_NAME: &str = "manifest.json";
+
+/// The whole manifest. The file is its JSON, with these names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`SCHEMA_VERSION`] of the writer.
+    pub schema: u32,
+    /// Version of the program that wrote it.
+    pub tool_version: String,
+    /// The command line that wrote it.
+    pub command: String,
+    /// Format of all parts.
+    pub format: Format,
+    /// Names and types of the columns, in order.
+    pub columns: Vec<ColumnEntry>,
+    /// Seed of sampling and augmentation.
+    pub seed: u64,
+    /// The GPU adapter that peeled.
+    pub adapter: String,
+    /// How it peeled: `sbuffer`, `dual` or `single`.
+    pub peel: String,
+    /// Fraction of the pixels that was kept, 0 … 1.
+    pub pixels_fraction: f64,
+    /// Number of varied copies of each scene beside the scene itself.
+    pub augment: u32,
+    /// The scenes of the whole dataset, also when this is a shard.
+    pub scenes: Vec<SceneEntry>,
+    /// Number of work items of the whole dataset.
+    pub work_items: u32,
+    /// Which shard this is; absent in a whole dataset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
+    /// Total rows.
+    pub rows: u64,
+    /// Total pixels that hold at least one row.
+    pub pixels: u64,
+    /// Total fragments that peeling left out (a pass limit, or coplanar ones).
+    pub lost_fragments: u64,
+    /// Total pairs of neighbouring fragments at the same depth.
+    pub coplanar_ties: u64,
+    /// Hash over (part index, sha256 of each file): the same for the same rows in the same format, however they
+    /// were sharded.
+    pub hash: String,
+    /// One entry for each work item, by index.
+    pub parts: Vec<Part>,
+}
+
+/// Name and type of a column.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ColumnEntry {
+    /// The column's name.
+    pub name: String,
+    /// The values' type.
+    #[serde(rename = "type")]
+    pub kind: ColumnKind,
+}
+
+/// A scene that was peeled.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SceneEntry {
+    /// The scene's name.
+    pub name: String,
+    /// The scene file, as given on the command line.
+    pub file: String,
+    /// Hash over the scene file and every file it reads.
+    pub sha256: String,
+    /// Whether the scene must not be trained on.
+    pub held_out: bool,
+}
+
+/// A view's camera, in the scene file's terms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CameraInfo {
+    /// Eye, scene units.
+    pub position: [f32; 3],
+    /// Point looked at, scene units.
+    pub target: [f32; 3],
+    /// Up direction.
+    pub up: [f32; 3],
+    /// Vertical field of view, degrees.
+    pub fov_y_degrees: f32,
+    /// Near clip distance, scene units.
+    pub near: f32,
+    /// Far clip distance, scene units.
+    pub far: f32,
+}
+
+/// A work item's rows: one view of one copy of one scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// Index of the work item: the rows' `view` value.
+    pub index: u32,
+    /// Index into [`Manifest::scenes`].
+    pub scene: u32,
+    /// 0 for the scene itself, then its varied copies.
+    pub copy: u32,
+    /// The view's number in the scene file.
+    pub view: u32,
+    /// The view's camera.
+    pub camera: CameraInfo,
+    /// Image width, pixels.
+    pub width: u32,
+    /// Image height, pixels.
+    pub height: u32,
+    /// Rows of the part.
+    pub rows: u64,
+    /// Pixels that hold at least one row.
+    pub pixels: u64,
+    /// Fragments that peeling left out.
+    pub lost_fragments: u64,
+    /// Pairs of neighbouring fragments at the same depth.
+    pub coplanar_ties: u64,
+    /// Rows of each row group (Parquet), or the part's rows as one group.
+    pub row_groups: Vec<u64>,
+    /// The part's files: one, or one for each column in the columns' order (NPY).
+    pub files: Vec<FileEntry>,
+}
+
+/// A file of a part.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileEntry {
+    /// Name inside the dataset's folder.
+    pub name: String,
+    /// Length in bytes.
+    pub bytes: u64,
+    /// Hexadecimal sha256 of the contents.
+    pub sha256: String,
+}
+
+impl Manifest {
+    /// Reads and checks the manifest of a folder.
+    pub(crate) fn read(folder: &Path) -> Result<Self, DatasetError> {
+        let path = folder.join(FILE_NAME);
+        let bytes = std::fs::read(&path).map_err(|source| {
+            if source.kind() == std::io::ErrorKind::NotFound && folder.is_dir() {
+                DatasetError::NoManifest {
+                    path: folder.to_owned(),
+                }
+            } else {
+                DatasetError::io(&path, "read")(source)
+            }
+        })?;
+        let wrong = |reason: String| DatasetError::Manifest {
+            path: path.clone(),
+            reason,
+        };
+        // The version first: another version's fields are bound to look wrong.
+        let value: serde_json::Value =
+            serde_json::from_slice(&bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
+        match value.get("schema").and_then(serde_json::Value::as_u64) {
+            None => return Err(wrong("the field `schema` is missing".to_owned())),
+            Some(found) if found != u64::from(SCHEMA_VERSION) => {
+                return Err(DatasetError::Schema { path, found });
+            }
+            Some(_) => {}
+        }
+        // From the text again, so that the message has the line.
+        let manifest: Self =
+            serde_json::from_slice(&bytes).map_err(|e| wrong(format!("wrong manifest: {e}")))?;
+        manifest.check().map_err(wrong)?;
+        Ok(manifest)
+    }
+
+    /// What the types cannot say.
+    fn check(&self) -> Result<(), String> {
+        if self.columns != columns() {
+            let names: Vec<_> = self.columns.iter().map(|c| c.name.as_str()).collect();
+            return Err(format!(
+                "the columns are {names:?}, expected {:?} in this order",
+                Column::ALL.map(Column::name)
+            ));
+        }
+        let files_expected = self.format.files_of_a_part();
+        let mut rows = 0u64;
+        for (k, part) in self.parts.iter().enumerate() {
+            if k > 0 && self.parts[k - 1].index >= part.index {
+                return Err(format!("parts[{k}]: the indices do not ascend"));
+            }
+            if part.index >= self.work_items {
+                return Err(format!(
+                    "parts[{k}]: index {} but there are {} work items",
+                    part.index, self.work_items
+                ));
+            }
+            if part.scene as usize >= self.scenes.len() {
+                return Err(format!("parts[{k}]: scene {} is not listed", part.scene));
+            }
+            if part.files.len() != files_expected {
+                return Err(format!(
+                    "parts[{k}]: {} files, a part in format {} has {files_expected}",
+                    part.files.len(),
+                    self.format
+                ));
+            }
+            // File names come from outside: they must not lead out of the folder.
+            if let Some(file) = part
+                .files
+                .iter()
+                .find(|f| f.name.is_empty() || f.name.contains(['/', '\\']) || f.name == "..")
+            {
+                return Err(format!(
+                    "parts[{k}]: {:?} is not a plain file name",
+                    file.name
+                ));
+            }
+            let grouped = part
+                .row_groups
+                .iter()
+                .try_fold(0u64, |a, &g| a.checked_add(g));
+            if grouped != Some(part.rows) {
+                return Err(format!(
+                    "parts[{k}]: the row groups do not add up to {} rows",
+                    part.rows
+                ));
+            }
+            rows = rows.saturating_add(part.rows);
+        }
+        if rows != self.rows {
+            return Err(format!("`rows` is {} but the parts hold {rows}", self.rows));
+        }
+        let missing = self.missing_items();
+        if let Some(first) = missing.first() {
+            return Err(format!(
+                "{} work items have no part, the first is {first}",
+                missing.len()
+            ));
+        }
+        if self.hash != hash_of_parts(&self.parts) {
+            return Err("`hash` does not fit the files' hashes".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Work items that should have a part here but have none.
+    pub(crate) fn missing_items(&self) -> Vec<u32> {
+        let present: std::collections::BTreeSet<u32> = self.parts.iter().map(|p| p.index).collect();
+        (0..self.work_items)
+            .filter(|&k| self.shard.is_none_or(|s| s.contains(k)) && !present.contains(&k))
+            .collect()
+    }
+
+    /// Recomputes the totals and the hash from the parts.
+    pub(crate) fn total(&mut self) {
+        self.parts.sort_by_key(|p| p.index);
+        self.rows = self.parts.iter().map(|p| p.rows).sum();
+        self.pixels = self.parts.iter().map(|p| p.pixels).sum();
+        self.lost_fragments = self.parts.iter().map(|p| p.lost_fragments).sum();
+        self.coplanar_ties = self.parts.iter().map(|p| p.coplanar_ties).sum();
+        self.hash = hash_of_parts(&self.parts);
+    }
+
+    /// The JSON text of the file.
+    pub(crate) fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("a manifest has string keys and finite numbers only");
+        text.push('\n');
+        text
+    }
+
+    /// Rows of each scene, by name: for a training run's provenance.
+    pub fn rows_by_scene(&self) -> BTreeMap<&str, u64> {
+        let mut rows = BTreeMap::new();
+        for part in &self.parts {
+            *rows
+                .entry(self.scenes[part.scene as usize].name.as_str())
+                .or_default() += part.rows;
+        }
+        rows
+    }
+}
+
+/// The columns of every dataset of this schema.
+pub(crate) fn columns() -> Vec<ColumnEntry> {
+    Column::ALL
+        .iter()
+        .map(|c| ColumnEntry {
+            name: c.name().to_owned(),
+            kind: c.kind(),
+        })
+        .collect()
+}
+
+/// The dataset's hash: sha256 over one line `index sha256` for each file, by part and then by column.
+fn hash_of_parts(parts: &[Part]) -> String {
+    let mut hasher = Sha256::new();
+    for part in parts {
+        for file in &part.files {
+            hasher.update(format!("{} {}\n", part.index, file.sha256));
+        }
+    }
+    hex(&hasher.finalize())
+}

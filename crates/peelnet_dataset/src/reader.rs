@@ -1,0 +1,421 @@
+//! Opening a dataset and reading its rows.
+
+use std::collections::VecDeque;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::batch::FragmentBatch;
+use crate::column::{Column, ColumnData, ColumnMut, ColumnSlice};
+use crate::error::DatasetError;
+use crate::formats::{Format, PartSource};
+use crate::hashed_file::hash_file;
+use crate::manifest::{self, Manifest, Part};
+use crate::shard::Shard;
+use crate::validate::check_column;
+
+/// Rows that are read and checked at once.
+const CHUNK_ROWS: usize = 1 << 16;
+
+/// A dataset that was opened: one folder, or all shards of one.
+#[derive(Clone, Debug)]
+pub struct Dataset {
+    path: PathBuf,
+    manifest: Manifest,
+    /// Folder of each part, parallel to `manifest.parts`.
+    folders: Vec<PathBuf>,
+}
+
+impl Dataset {
+    /// Opens a dataset's folder, or a folder that holds all `shard-I-of-N` folders of one. Checks the manifest and
+    /// that every file is there with its right length; [`Dataset::verify`] checks the contents.
+    ///
+    /// # Errors
+    /// If the manifest is missing or wrong, a file is missing or has another length, shards are missing, or shards
+    /// come from different runs.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, DatasetError> {
+        let path = path.as_ref();
+        let dataset = if path.join(manifest::FILE_NAME).exists() {
+            let manifest = Manifest::read(path)?;
+            Self {
+                path: path.to_owned(),
+                folders: vec![path.to_owned(); manifest.parts.len()],
+                manifest,
+            }
+        } else {
+            Self::open_shards(path)?
+        };
+        dataset.check_sizes()?;
+        Ok(dataset)
+    }
+
+    fn open_shards(path: &Path) -> Result<Self, DatasetError> {
+        let mut shards: Vec<Shard> = fs::read_dir(path)
+            .map_err(DatasetError::io(path, "open the dataset's folder"))?
+            .filter_map(|entry| Shard::from_folder(entry.ok()?.file_name().to_str()?))
+            .collect();
+        shards.sort();
+        let Some(&Shard { of, .. }) = shards.first() else {
+            return Err(DatasetError::NoManifest {
+                path: path.to_owned(),
+            });
+        };
+        if shards.iter().any(|s| s.of != of) {
+            return Err(DatasetError::Mixed {
+                path: path.to_owned(),
+                reason: "it holds shards of datasets with different numbers of shards",
+            });
+        }
+        let mut manifests: Vec<(PathBuf, Manifest)> = Vec::new();
+        let mut missing = Vec::new();
+        for index in 1..=of {
+            let shard = Shard { index, of };
+            let folder = path.join(shard.folder());
+            match Manifest::read(&folder) {
+                Ok(manifest) => manifests.push((folder, manifest)),
+                // Not written yet, or still being written: the same mend.
+                Err(DatasetError::NoManifest { .. }) => missing.push(shard.to_string()),
+                Err(_) if !folder.exists() => missing.push(shard.to_string()),
+                Err(other) => return Err(other),
+            }
+        }
+        if !missing.is_empty() {
+            return Err(DatasetError::MissingShards {
+                path: path.to_owned(),
+                missing,
+                of,
+            });
+        }
+        for (k, (folder, manifest)) in manifests.iter().enumerate() {
+            let expected = Shard {
+                index: k as u32 + 1,
+                of,
+            };
+            let (other, first) = &manifests[0];
+            let differs = [
+                ("number (it was renamed)", manifest.shard != Some(expected)),
+                ("tool version", manifest.tool_version != first.tool_version),
+                ("format", manifest.format != first.format),
+                ("seed", manifest.seed != first.seed),
+                ("peeling method", manifest.peel != first.peel),
+                (
+                    "fraction of pixels",
+                    manifest.pixels_fraction != first.pixels_fraction,
+                ),
+                ("number of copies", manifest.augment != first.augment),
+                ("list of scenes", manifest.scenes != first.scenes),
+                (
+                    "number of work items",
+                    manifest.work_items != first.work_items,
+                ),
+            ];
+            if let Some((field, _)) = differs.into_iter().find(|(_, differs)| *differs) {
+                return Err(DatasetError::ShardsDiffer {
+                    path: folder.clone(),
+                    other: other.clone(),
+                    field,
+                });
+            }
+        }
+        let mut parts: Vec<(Part, PathBuf)> = Vec::new();
+        let mut whole = manifests[0].1.clone();
+        for (folder, manifest) in manifests {
+            if !whole.adapter.split("; ").any(|a| a == manifest.adapter) {
+                whole.adapter = format!("{}; {}", whole.adapter, manifest.adapter);
+            }
+            parts.extend(manifest.parts.into_iter().map(|p| (p, folder.clone())));
+        }
+        parts.sort_by_key(|(part, _)| part.index);
+        let folders;
+        (whole.parts, folders) = parts.into_iter().unzip();
+        whole.shard = None;
+        whole.total();
+        Ok(Self {
+            path: path.to_owned(),
+            manifest: whole,
+            folders,
+        })
+    }
+
+    fn check_sizes(&self) -> Result<(), DatasetError> {
+        for (part, folder) in self.manifest.parts.iter().zip(&self.folders) {
+            for file in &part.files {
+                let path = folder.join(&file.name);
+                let found = fs::metadata(&path)
+                    .map_err(DatasetError::io(&path, "find a file of the manifest"))?
+                    .len();
+                if found != file.bytes {
+                    return Err(DatasetError::changed(
+                        &path,
+                        format!("{found} bytes where the manifest says {}", file.bytes),
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Recomputes the sha256 of every file.
+    ///
+    /// # Errors
+    /// [`DatasetError::Changed`] names the first file that differs from the manifest.
+    pub fn verify(&self) -> Result<(), DatasetError> {
+        for (part, folder) in self.manifest.parts.iter().zip(&self.folders) {
+            for file in &part.files {
+                let path = folder.join(&file.name);
+                let (_, found) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
+                if found != file.sha256 {
+                    return Err(DatasetError::changed(
+                        &path,
+                        format!("sha256 {found} where the manifest says {}", file.sha256),
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The folder that was opened.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The manifest; of shards, the manifest that the whole dataset would have (adapters that differ are listed).
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> u64 {
+        self.manifest.rows
+    }
+
+    /// The dataset's hash: the same for the same rows in the same format, sharded or not.
+    pub fn hash(&self) -> &str {
+        &self.manifest.hash
+    }
+
+    /// Whether a part belongs to a scene that must not be trained on.
+    pub fn is_held_out(&self, part: &Part) -> bool {
+        self.manifest.scenes[part.scene as usize].held_out
+    }
+
+    /// All rows in order, as batches of whole pixels with about `rows_per_batch` rows (more where a single pixel has
+    /// more). Memory does not grow with the dataset.
+    pub fn batches(&self, rows_per_batch: usize) -> Batches<'_> {
+        self.batches_where(rows_per_batch, |_| true)
+    }
+
+    /// As [`Dataset::batches`], of the parts that the filter keeps.
+    pub fn batches_where(
+        &self,
+        rows_per_batch: usize,
+        mut keep: impl FnMut(&Part) -> bool,
+    ) -> Batches<'_> {
+        let parts = (0..self.manifest.parts.len())
+            .filter(|&k| keep(&self.manifest.parts[k]))
+            .collect();
+        Batches {
+            dataset: self,
+            rows_per_batch: rows_per_batch.max(1),
+            parts,
+            current: None,
+            held_back: FragmentBatch::default(),
+            failed: false,
+        }
+    }
+
+    /// Reads columns into memory, in the order asked for. Parquet and NPY read these columns only.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a value is out of its column's range.
+    pub fn read_columns(&self, columns: &[Column]) -> Result<Vec<ColumnData>, DatasetError> {
+        self.read_columns_where(columns, |_| true)
+    }
+
+    /// As [`Dataset::read_columns`], of the parts that the filter keeps.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a value is out of its column's range.
+    pub fn read_columns_where(
+        &self,
+        columns: &[Column],
+        mut keep: impl FnMut(&Part) -> bool,
+    ) -> Result<Vec<ColumnData>, DatasetError> {
+        if columns.is_empty() {
+            return Ok(Vec::new());
+        }
+        let parts: Vec<usize> = (0..self.manifest.parts.len())
+            .filter(|&k| keep(&self.manifest.parts[k]))
+            .collect();
+        let rows: u64 = parts.iter().map(|&k| self.manifest.parts[k].rows).sum();
+        let rows = usize::try_from(rows).map_err(|_| DatasetError::Usage {
+            path: self.path.clone(),
+            reason: format!("{rows} rows do not fit into memory"),
+        })?;
+        let mut sorted = columns.to_vec();
+        sorted.sort();
+        sorted.dedup();
+        let mut table = FragmentBatch::default();
+        for &column in &sorted {
+            match table.column_mut(column) {
+                ColumnMut::F32(v) => v.reserve_exact(rows),
+                ColumnMut::U32(v) => v.reserve_exact(rows),
+            }
+        }
+        for k in parts {
+            let mut part = OpenPart::open(self, k, &sorted)?;
+            while part.read(CHUNK_ROWS, &mut table)? > 0 {}
+        }
+        // Moved out of the table, copied only where a column was asked for twice.
+        let mut data: Vec<ColumnData> = Vec::with_capacity(columns.len());
+        for (k, &column) in columns.iter().enumerate() {
+            data.push(match columns[..k].iter().position(|&c| c == column) {
+                Some(before) => data[before].clone(),
+                None => match table.column_mut(column) {
+                    ColumnMut::F32(v) => ColumnData::F32(std::mem::take(v)),
+                    ColumnMut::U32(v) => ColumnData::U32(std::mem::take(v)),
+                },
+            });
+        }
+        Ok(data)
+    }
+}
+
+/// A part that is being read: checks the values and counts the rows.
+struct OpenPart {
+    index: u32,
+    expected: u64,
+    path: PathBuf,
+    /// Path of each column, for messages.
+    files: Vec<PathBuf>,
+    columns: Vec<Column>,
+    source: Box<dyn PartSource>,
+    rows: u64,
+}
+
+impl OpenPart {
+    fn open(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
+        let part = &dataset.manifest.parts[k];
+        let files: Vec<PathBuf> = part
+            .files
+            .iter()
+            .map(|f| dataset.folders[k].join(&f.name))
+            .collect();
+        Ok(Self {
+            index: part.index,
+            expected: part.rows,
+            path: files[0].clone(),
+            source: dataset.manifest.format.source(&files, columns)?,
+            files: match dataset.manifest.format {
+                Format::Npy => files,
+                Format::Csv | Format::Parquet => vec![files[0].clone(); Column::ALL.len()],
+            },
+            columns: columns.to_vec(),
+            rows: 0,
+        })
+    }
+
+    /// Appends up to `max` rows and says how many; 0 at the end.
+    fn read(&mut self, max: usize, table: &mut FragmentBatch) -> Result<usize, DatasetError> {
+        let before = self.columns.first().map_or(0, |&c| table.column(c).len());
+        let count = self.source.read(max, table)?;
+        for &column in &self.columns {
+            let values = table.column(column);
+            check_column(
+                &self.files[column.index()],
+                column,
+                values.range(before..values.len()),
+                self.rows,
+                self.index,
+            )?;
+        }
+        self.rows += count as u64;
+        if (count == 0 && self.rows < self.expected) || self.rows > self.expected {
+            return Err(DatasetError::changed(
+                &self.path,
+                format!(
+                    "{} rows where the manifest says {}",
+                    self.rows, self.expected
+                ),
+            ));
+        }
+        Ok(count)
+    }
+}
+
+/// Streams a dataset's rows, see [`Dataset::batches`]. Ends after the first error.
+pub struct Batches<'a> {
+    dataset: &'a Dataset,
+    rows_per_batch: usize,
+    parts: VecDeque<usize>,
+    current: Option<OpenPart>,
+    /// Rows of the last pixel that was read, which may go on.
+    held_back: FragmentBatch,
+    failed: bool,
+}
+
+impl Batches<'_> {
+    fn next_batch(&mut self) -> Result<Option<FragmentBatch>, DatasetError> {
+        let mut batch = std::mem::take(&mut self.held_back);
+        loop {
+            let part = match &mut self.current {
+                Some(part) => part,
+                None => match self.parts.pop_front() {
+                    Some(k) => self
+                        .current
+                        .insert(OpenPart::open(self.dataset, k, &Column::ALL)?),
+                    None => return Ok((!batch.is_empty()).then_some(batch)),
+                },
+            };
+            let wanted = self
+                .rows_per_batch
+                .saturating_sub(batch.len())
+                .clamp(1, CHUNK_ROWS);
+            if part.read(wanted, &mut batch)? == 0 {
+                // Parts are views: a pixel never goes on in the next one.
+                self.current = None;
+                if batch.len() >= self.rows_per_batch {
+                    return Ok(Some(batch));
+                }
+                continue;
+            }
+            if batch.len() < self.rows_per_batch {
+                continue;
+            }
+            // The last pixel may go on behind the rows that were read.
+            let mut end = batch.len() - 1;
+            while end > 0 && batch.same_pixel(end - 1, end) {
+                end -= 1;
+            }
+            if end > 0 {
+                self.held_back.extend_from(&batch, end..batch.len());
+                batch.truncate(end);
+                return Ok(Some(batch));
+            }
+            // A single pixel fills the batch: read on until it ends.
+        }
+    }
+}
+
+impl Iterator for Batches<'_> {
+    type Item = Result<FragmentBatch, DatasetError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let next = self.next_batch().transpose();
+        self.failed = matches!(next, Some(Err(_)));
+        next
+    }
+}
+
+impl ColumnSlice<'_> {
+    /// An owned copy.
+    pub fn to_data(self) -> ColumnData {
+        match self {
+            Self::F32(v) => ColumnData::F32(v.to_vec()),
+            Self::U32(v) => ColumnData::U32(v.to_vec()),
+        }
+    }
+}

@@ -1,0 +1,371 @@
+//! What `peelnet inspect` says about a dataset: counts, ranges, histograms, and whether the rows agree with one
+//! another.
+
+use serde::{Deserialize, Serialize};
+
+use crate::batch::FragmentBatch;
+use crate::column::{Column, ColumnSlice};
+use crate::error::DatasetError;
+use crate::manifest::Manifest;
+use crate::reader::Dataset;
+
+/// Violations that are listed; the rest is counted only.
+const LISTED: usize = 20;
+/// Bins of the histogram of α.
+const ALPHA_BINS: usize = 20;
+
+/// A dataset in figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Hash of the dataset.
+    pub hash: String,
+    /// Number of rows, that is fragments.
+    pub rows: u64,
+    /// Number of pixels with at least one fragment.
+    pub pixels: u64,
+    /// Fragments that peeling left out.
+    pub lost_fragments: u64,
+    /// Pairs of neighbouring fragments at the same depth.
+    pub coplanar_ties: u64,
+    /// Rows of each scene.
+    pub scenes: Vec<SceneRows>,
+    /// Smallest and largest value of each column; empty without rows.
+    pub columns: Vec<ColumnRange>,
+    /// Pixels by their number of fragments, in bins 1, 2, 3–4, 5–8, 9–16, … up to the largest.
+    pub fragments_per_pixel: Vec<Bin>,
+    /// Rows by α, in bins of 0.05; the last one includes 1.
+    pub alpha: Vec<Bin>,
+    /// The checks of the sums.
+    pub checks: Vec<Check>,
+    /// The first violations of any check.
+    pub violations: Vec<Violation>,
+    /// Parts of which the sums cannot be recomputed, because peeling left fragments out.
+    pub parts_not_checked: u64,
+}
+
+/// Rows of one scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SceneRows {
+    /// The scene's name.
+    pub name: String,
+    /// Whether it must not be trained on.
+    pub held_out: bool,
+    /// Its rows, of all views and copies.
+    pub rows: u64,
+}
+
+/// Range of a column's values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ColumnRange {
+    /// The column's name.
+    pub name: String,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+/// A bin of a histogram.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bin {
+    /// Lower bound, included.
+    pub from: f64,
+    /// Upper bound: included for counts of fragments, not included for α (but for the last bin).
+    pub to: f64,
+    /// Number of pixels or rows.
+    pub count: u64,
+}
+
+/// One property of the rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// Its name.
+    pub name: String,
+    /// The property and its tolerance, as a formula.
+    pub formula: String,
+    /// The largest deviation found.
+    pub worst: f64,
+    /// The largest ratio of a deviation to its tolerance; 1 or less is a pass.
+    pub worst_ratio: f64,
+    /// How many rows violate it.
+    pub violations: u64,
+}
+
+/// A row that violates a check.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Violation {
+    /// The part's first file.
+    pub file: String,
+    /// Row in the part, counted from 1.
+    pub row: u64,
+    /// The check.
+    pub check: String,
+    /// The value found.
+    pub found: f64,
+    /// The value recomputed from the other rows.
+    pub expected: f64,
+    /// The deviation that was allowed.
+    pub tolerance: f64,
+}
+
+impl Summary {
+    /// Reads the whole dataset once.
+    ///
+    /// # Errors
+    /// If a file cannot be read or a value is out of range. Rows that contradict one another are no error but
+    /// [`Summary::violations`].
+    pub fn of(dataset: &Dataset) -> Result<Self, DatasetError> {
+        let mut work = Work::new(dataset.manifest());
+        for part in &dataset.manifest().parts {
+            let mut row = 1;
+            let lossy = part.lost_fragments > 0;
+            work.summary.parts_not_checked += u64::from(lossy);
+            for batch in dataset.batches_where(1 << 16, |p| p.index == part.index) {
+                let batch = batch?;
+                work.add_ranges(&batch);
+                for pixel in batch.pixels() {
+                    work.add_pixel(&batch, pixel, &part.files[0].name, row, lossy);
+                }
+                row += batch.len() as u64;
+            }
+        }
+        Ok(work.finish())
+    }
+
+    /// Whether no check was violated.
+    pub fn passes(&self) -> bool {
+        self.checks.iter().all(|c| c.violations == 0)
+    }
+}
+
+/// Tolerance of Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err
+/// by at most one unit roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit
+/// roundoff of 1.
+pub fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
+    n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (sum + 1.0)
+}
+
+const TRANSMITTANCE: usize = 0;
+const ALPHA_SUM: usize = 1;
+const COUNT: usize = 2;
+const LAYER: usize = 3;
+const DEPTH: usize = 4;
+
+struct Work {
+    summary: Summary,
+    ranges: Vec<(f64, f64)>,
+    alpha: [u64; ALPHA_BINS],
+    /// Pixels with up to 2^k fragments.
+    counts: Vec<u64>,
+}
+
+impl Work {
+    fn new(manifest: &Manifest) -> Self {
+        let check = |name: &str, formula: &str| Check {
+            name: name.to_owned(),
+            formula: formula.to_owned(),
+            worst: 0.0,
+            worst_ratio: 0.0,
+            violations: 0,
+        };
+        let by_scene = |k: usize| {
+            manifest
+                .parts
+                .iter()
+                .filter(|p| p.scene as usize == k)
+                .map(|p| p.rows)
+                .sum()
+        };
+        Self {
+            summary: Summary {
+                hash: manifest.hash.clone(),
+                rows: 0,
+                pixels: 0,
+                lost_fragments: manifest.lost_fragments,
+                coplanar_ties: manifest.coplanar_ties,
+                scenes: manifest
+                    .scenes
+                    .iter()
+                    .enumerate()
+                    .map(|(k, s)| SceneRows {
+                        name: s.name.clone(),
+                        held_out: s.held_out,
+                        rows: by_scene(k),
+                    })
+                    .collect(),
+                columns: Vec::new(),
+                fragments_per_pixel: Vec::new(),
+                alpha: Vec::new(),
+                checks: vec![
+                    check("transmittance", "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
+                    check("alpha_sum", "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
+                    check("fragment_count", "fragment_count = rows of the pixel"),
+                    check("layer", "layer = 0, 1, … n − 1"),
+                    check("linear_depth", "z_i ≥ z_{i−1}"),
+                ],
+                violations: Vec::new(),
+                parts_not_checked: 0,
+            },
+            ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); Column::ALL.len()],
+            alpha: [0; ALPHA_BINS],
+            counts: Vec::new(),
+        }
+    }
+
+    fn add_ranges(&mut self, batch: &FragmentBatch) {
+        for (column, range) in Column::ALL.into_iter().zip(&mut self.ranges) {
+            let (low, high) = match batch.column(column) {
+                ColumnSlice::F32(v) => {
+                    let empty = (f32::INFINITY, f32::NEG_INFINITY);
+                    let (a, b) = v.iter().fold(empty, |(a, b), &x| (a.min(x), b.max(x)));
+                    (f64::from(a), f64::from(b))
+                }
+                ColumnSlice::U32(v) => {
+                    let (a, b) = v
+                        .iter()
+                        .fold((u32::MAX, 0), |(a, b), &x| (a.min(x), b.max(x)));
+                    (f64::from(a), f64::from(b))
+                }
+            };
+            *range = (range.0.min(low), range.1.max(high));
+        }
+        for &v in &batch.one_minus_alpha {
+            let bin = (1.0 - f64::from(v)) * ALPHA_BINS as f64;
+            self.alpha[(bin as usize).min(ALPHA_BINS - 1)] += 1;
+        }
+    }
+
+    /// Checks the rows of one pixel. `first_row` is the number of the batch's first row.
+    fn add_pixel(
+        &mut self,
+        batch: &FragmentBatch,
+        pixel: std::ops::Range<usize>,
+        file: &str,
+        first_row: u64,
+        lossy: bool,
+    ) {
+        let n = pixel.len();
+        self.summary.rows += n as u64;
+        self.summary.pixels += 1;
+        let bin = n.next_power_of_two().ilog2() as usize;
+        if self.counts.len() <= bin {
+            self.counts.resize(bin + 1, 0);
+        }
+        self.counts[bin] += 1;
+
+        let alpha_sum: f64 = batch.one_minus_alpha[pixel.clone()]
+            .iter()
+            .map(|&v| 1.0 - f64::from(v))
+            .sum();
+        let mut transmittance = 1.0f64;
+        for (rank, i) in pixel.clone().enumerate() {
+            let row = first_row + i as u64;
+            if !lossy {
+                self.check(
+                    TRANSMITTANCE,
+                    (file, row),
+                    f64::from(batch.transmittance[i]),
+                    transmittance,
+                    peelnet_core::tolerance::transmittance(n),
+                );
+                self.check(
+                    ALPHA_SUM,
+                    (file, row),
+                    f64::from(batch.alpha_sum[i]),
+                    alpha_sum,
+                    alpha_sum_tolerance(n, alpha_sum),
+                );
+                self.check(
+                    COUNT,
+                    (file, row),
+                    f64::from(batch.fragment_count[i]),
+                    n as f64,
+                    0.0,
+                );
+                self.check(
+                    LAYER,
+                    (file, row),
+                    f64::from(batch.layer[i]),
+                    rank as f64,
+                    0.0,
+                );
+            }
+            if rank > 0 {
+                let before = f64::from(batch.linear_depth[i - 1]);
+                let depth = f64::from(batch.linear_depth[i]);
+                self.check(DEPTH, (file, row), depth, depth.max(before), 0.0);
+            }
+            transmittance *= f64::from(batch.one_minus_alpha[i]);
+        }
+    }
+
+    fn check(
+        &mut self,
+        check: usize,
+        (file, row): (&str, u64),
+        found: f64,
+        expected: f64,
+        tolerance: f64,
+    ) {
+        let check = &mut self.summary.checks[check];
+        let deviation = (found - expected).abs();
+        check.worst = check.worst.max(deviation);
+        if deviation > 0.0 {
+            // An exact property has no tolerance to relate to: its ratio is the deviation in units of one.
+            let unit = if tolerance > 0.0 { tolerance } else { 1.0 };
+            check.worst_ratio = check.worst_ratio.max(deviation / unit);
+        }
+        if deviation > tolerance {
+            check.violations += 1;
+            if self.summary.violations.len() < LISTED {
+                self.summary.violations.push(Violation {
+                    file: file.to_owned(),
+                    row,
+                    check: check.name.clone(),
+                    found,
+                    expected,
+                    tolerance,
+                });
+            }
+        }
+    }
+
+    fn finish(mut self) -> Summary {
+        if self.summary.rows > 0 {
+            self.summary.columns = Column::ALL
+                .into_iter()
+                .zip(self.ranges)
+                .map(|(column, (min, max))| ColumnRange {
+                    name: column.name().to_owned(),
+                    min,
+                    max,
+                })
+                .collect();
+        }
+        self.summary.fragments_per_pixel = self
+            .counts
+            .iter()
+            .enumerate()
+            .map(|(k, &count)| Bin {
+                from: if k == 0 {
+                    1.0
+                } else {
+                    f64::from(1u32 << (k - 1)) + 1.0
+                },
+                to: f64::from(1u32 << k),
+                count,
+            })
+            .collect();
+        self.summary.alpha = self
+            .alpha
+            .iter()
+            .enumerate()
+            .map(|(k, &count)| Bin {
+                from: k as f64 / ALPHA_BINS as f64,
+                to: (k + 1) as f64 / ALPHA_BINS as f64,
+                count,
+            })
+            .collect();
+        self.summary
+    }
+}

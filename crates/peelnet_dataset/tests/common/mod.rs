@@ -1,0 +1,182 @@
+//! Datasets with known contents for the tests.
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "each test file uses a part of this, and a failing test may panic"
+)]
+
+use std::path::Path;
+
+use peelnet_dataset::*;
+
+/// A small generator (Knuth's MMIX constants, upper bits).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u32 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 32) as u32
+    }
+
+    /// Uniform in 0 … 1 (1 not included).
+    pub fn unit(&mut self) -> f32 {
+        (self.next() >> 8) as f32 / 16_777_216.0
+    }
+}
+
+/// Rows of a view as peeling gives them: whole pixels, sums that agree, a few colours and alphas.
+pub fn view(index: u32, pixels: u32, seed: u64) -> FragmentBatch {
+    let mut random = Random(seed ^ (u64::from(index) << 32));
+    let mut rows = FragmentBatch::default();
+    let palette: Vec<[f32; 4]> = (0..16)
+        .map(|_| [random.unit(), random.unit(), random.unit(), random.unit()])
+        .collect();
+    for p in 0..pixels {
+        let n = 1 + random.next() % 12;
+        let first = rows.len();
+        let (mut depth, mut t, mut sum) = (0.5f32, 1.0f32, 0.0f32);
+        for layer in 0..n {
+            depth += random.unit();
+            let [r, g, b, alpha] = palette[(random.next() % 16) as usize];
+            sum += alpha;
+            rows.one_minus_alpha.push(1.0 - alpha);
+            rows.linear_depth.push(depth);
+            rows.fragment_count.push(n);
+            rows.transmittance.push(t);
+            rows.view.push(index);
+            rows.x.push(p % 640);
+            rows.y.push(p / 640);
+            rows.layer.push(layer);
+            rows.r.push(r);
+            rows.g.push(g);
+            rows.b.push(b);
+            rows.near.push(0.1);
+            rows.far.push(100.0);
+            t *= 1.0 - alpha;
+        }
+        rows.alpha_sum.resize(first + n as usize, sum);
+    }
+    rows
+}
+
+pub fn camera() -> CameraInfo {
+    CameraInfo {
+        position: [0.0, 0.1, 6.0],
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        fov_y_degrees: 45.0,
+        near: 0.1,
+        far: 100.0,
+    }
+}
+
+/// Two scenes of two views each.
+pub fn header(format: Format, shard: Option<Shard>) -> Header {
+    let scene = |name: &str, held_out| SceneEntry {
+        name: name.to_owned(),
+        file: format!("scenes/{name}.toml"),
+        sha256: "ab".repeat(32),
+        held_out,
+    };
+    Header {
+        format,
+        seed: 7,
+        adapter: "test".to_owned(),
+        tool_version: "0.1.0".to_owned(),
+        command: "peelnet extract".to_owned(),
+        peel: "sbuffer".to_owned(),
+        pixels_fraction: 1.0,
+        augment: 0,
+        scenes: vec![scene("cups", false), scene("smoke in a box", true)],
+        work_items: 4,
+        shard,
+    }
+}
+
+pub fn info(index: u32) -> PartInfo {
+    PartInfo {
+        index,
+        scene: index / 2,
+        copy: 0,
+        view: index % 2,
+        camera: camera(),
+        width: 640,
+        height: 480,
+    }
+}
+
+/// Pixels of work item `index`: the last one has none.
+pub fn pixels(index: u32) -> u32 {
+    [700, 301, 1500, 0][index as usize]
+}
+
+/// Writes the test dataset in batches of so many rows.
+pub fn write(
+    folder: &Path,
+    format: Format,
+    shard: Option<Shard>,
+    threads: usize,
+    batch_rows: usize,
+) -> Result<Manifest, DatasetError> {
+    let writer = DatasetWriter::create(folder, header(format, shard))?.with_threads(threads);
+    // Backwards: the order of the parts is by index, not by time.
+    for index in (0..4)
+        .rev()
+        .filter(|&k| shard.is_none_or(|s| s.contains(k)))
+    {
+        let mut part = writer.begin(info(index))?;
+        let rows = view(index, pixels(index), 1);
+        for start in (0..rows.len()).step_by(batch_rows) {
+            let mut piece = FragmentBatch::default();
+            piece.extend_from(&rows, start..rows.len().min(start + batch_rows));
+            part.write(&piece)?;
+        }
+        part.finish(PartCounts::default())?;
+    }
+    writer.finish()
+}
+
+/// All rows that [`write`] writes, in order.
+pub fn all_rows() -> FragmentBatch {
+    let mut all = FragmentBatch::default();
+    for index in 0..4 {
+        let rows = view(index, pixels(index), 1);
+        all.extend_from(&rows, 0..rows.len());
+    }
+    all
+}
+
+/// Names and contents of a folder's files, sorted, with those of its folders.
+pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut all = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        if entry.file_type().unwrap().is_dir() {
+            all.push((format!("{name}/"), Vec::new()));
+            all.extend(
+                contents(&entry.path())
+                    .into_iter()
+                    .map(|(n, c)| (format!("{name}/{n}"), c)),
+            );
+        } else {
+            all.push((name, std::fs::read(entry.path()).unwrap()));
+        }
+    }
+    all.sort();
+    all
+}
+
+/// Bit patterns, so that −0 and 0 differ.
+pub fn bits(rows: &FragmentBatch) -> Vec<Vec<u32>> {
+    Column::ALL
+        .iter()
+        .map(|&c| match rows.column(c) {
+            ColumnSlice::F32(v) => v.iter().map(|x| x.to_bits()).collect(),
+            ColumnSlice::U32(v) => v.to_vec(),
+        })
+        .collect()
+}

@@ -1,0 +1,244 @@
+//! What is written comes back, with the same bytes however it was written.
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+mod common;
+
+use common::*;
+use peelnet_dataset::*;
+
+#[test]
+fn rows_come_back_bit_for_bit() {
+    for format in Format::ALL {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = write(folder.path(), format, None, 2, 333).unwrap();
+        let dataset = Dataset::open(folder.path()).unwrap();
+        assert_eq!(dataset.manifest(), &manifest);
+        dataset.verify().unwrap();
+        let expected = all_rows();
+        assert_eq!(dataset.rows(), expected.len() as u64);
+        assert_eq!(manifest.pixels, 2501);
+        for rows_per_batch in [1, 7, 1000, usize::MAX] {
+            let mut found = FragmentBatch::default();
+            for batch in dataset.batches(rows_per_batch) {
+                let batch = batch.unwrap();
+                // Whole pixels: all rows that say n are there.
+                for pixel in batch.pixels() {
+                    assert_eq!(batch.fragment_count[pixel.start] as usize, pixel.len());
+                }
+                if rows_per_batch == 1000 {
+                    assert!(batch.len() <= 1000 + 12);
+                }
+                found.extend_from(&batch, 0..batch.len());
+            }
+            assert_eq!(bits(&found), bits(&expected), "{format} {rows_per_batch}");
+        }
+        let wanted = [
+            Column::Far,
+            Column::View,
+            Column::Transmittance,
+            Column::View,
+        ];
+        let columns = dataset.read_columns(&wanted).unwrap();
+        for (column, data) in wanted.into_iter().zip(&columns) {
+            assert_eq!(
+                data.as_slice(),
+                expected.column(column),
+                "{format} {column}"
+            );
+        }
+        let trained = dataset
+            .read_columns_where(&[Column::View], |p| !dataset.is_held_out(p))
+            .unwrap();
+        assert!(trained[0].as_u32().unwrap().iter().all(|&v| v < 2));
+        assert!(dataset.read_columns(&[]).unwrap().is_empty());
+    }
+}
+
+#[test]
+fn threads_and_batches_do_not_change_the_bytes() {
+    for format in Format::ALL {
+        let reference = tempfile::tempdir().unwrap();
+        write(reference.path(), format, None, 1, usize::MAX / 2).unwrap();
+        let reference = contents(reference.path());
+        for (threads, batch) in [(1, 1), (2, 100), (3, 5000), (16, usize::MAX / 2)] {
+            let folder = tempfile::tempdir().unwrap();
+            write(folder.path(), format, None, threads, batch).unwrap();
+            assert!(
+                contents(folder.path()) == reference,
+                "{format}, {threads} threads, batches of {batch}"
+            );
+        }
+    }
+}
+
+/// More rows than a row group and than a buffer of text, so that the threads have work.
+#[test]
+fn large_parts_are_the_same_with_any_threads() {
+    let rows = view(0, 200_000, 3);
+    assert!(rows.len() > ROW_GROUP_ROWS);
+    for format in Format::ALL {
+        let hashes: Vec<Manifest> = [(1, rows.len()), (2, 100_001), (4, rows.len())]
+            .into_iter()
+            .map(|(threads, batch_rows)| {
+                let folder = tempfile::tempdir().unwrap();
+                let mut header = header(format, None);
+                header.work_items = 1;
+                let writer = DatasetWriter::create(folder.path(), header)
+                    .unwrap()
+                    .with_threads(threads);
+                let mut part = writer.begin(info(0)).unwrap();
+                for start in (0..rows.len()).step_by(batch_rows) {
+                    let mut piece = FragmentBatch::default();
+                    piece.extend_from(&rows, start..rows.len().min(start + batch_rows));
+                    part.write(&piece).unwrap();
+                }
+                part.finish(PartCounts::default()).unwrap();
+                let manifest = writer.finish().unwrap();
+                let dataset = Dataset::open(folder.path()).unwrap();
+                let depth = dataset.read_columns(&[Column::LinearDepth]).unwrap();
+                assert!(depth[0].as_f32().unwrap() == rows.linear_depth);
+                if format == Format::Parquet {
+                    let first = ROW_GROUP_ROWS as u64;
+                    let groups = vec![first, rows.len() as u64 - first];
+                    assert_eq!(manifest.parts[0].row_groups, groups);
+                }
+                manifest
+            })
+            .collect();
+        assert_eq!(hashes[0], hashes[1]);
+        assert_eq!(hashes[0], hashes[2]);
+    }
+}
+
+#[test]
+fn shards_merge_to_the_whole() {
+    for format in Format::ALL {
+        let whole = tempfile::tempdir().unwrap();
+        write(whole.path(), format, None, 1, 1000).unwrap();
+        let whole = Dataset::open(whole.path()).unwrap();
+        for of in [1, 3, 5] {
+            let folder = tempfile::tempdir().unwrap();
+            for index in (1..=of).rev() {
+                let shard = Shard::new(index, of).unwrap();
+                if index < of {
+                    let message = Dataset::open(folder.path()).unwrap_err().to_string();
+                    assert!(message.contains(&format!("1/{of}")), "{message}");
+                }
+                write(folder.path(), format, Some(shard), 2, 500).unwrap();
+                assert!(folder.path().join(shard.folder()).is_dir());
+            }
+            let merged = Dataset::open(folder.path()).unwrap();
+            assert_eq!(merged.manifest(), whole.manifest());
+            assert_eq!(merged.hash(), whole.hash());
+            let columns = [Column::LinearDepth, Column::View];
+            assert_eq!(
+                merged.read_columns(&columns).unwrap(),
+                whole.read_columns(&columns).unwrap()
+            );
+            let rows: Vec<_> = merged.batches(usize::MAX).map(Result::unwrap).collect();
+            assert_eq!(bits(&rows[0]), bits(&all_rows()));
+        }
+    }
+}
+
+#[test]
+fn csv_is_the_shortest_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let writer = DatasetWriter::create(
+        folder.path(),
+        Header {
+            work_items: 1,
+            ..header(Format::Csv, None)
+        },
+    )
+    .unwrap();
+    let mut part = writer.begin(info(0)).unwrap();
+    let mut rows = view(0, 1, 1);
+    rows.truncate(1);
+    rows.one_minus_alpha[0] = 0.1;
+    rows.linear_depth[0] = 16_777_216.0;
+    rows.alpha_sum[0] = 0.9;
+    rows.fragment_count[0] = 1;
+    rows.r[0] = 1e-7;
+    rows.g[0] = -0.0;
+    rows.b[0] = 1.0 / 3.0;
+    part.write(&rows).unwrap();
+    part.finish(PartCounts::default()).unwrap();
+    let manifest = writer.finish().unwrap();
+    let text = std::fs::read_to_string(folder.path().join(&manifest.parts[0].files[0].name));
+    assert_eq!(
+        text.unwrap(),
+        "one_minus_alpha,linear_depth,alpha_sum,fragment_count,transmittance,view,x,y,layer,r,g,b,near,far\n\
+         0.1,16777216.0,0.9,1,1.0,0,0,0,0,1e-7,-0.0,0.33333334,0.1,100.0\n"
+    );
+    assert_eq!(
+        manifest.parts[0].files[0].name,
+        "fragments-00000-cups-v0.csv"
+    );
+}
+
+#[test]
+fn npy_arrays_are_plain_numpy() {
+    use ndarray_npy::ReadNpyExt;
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), Format::Npy, None, 2, 1000).unwrap();
+    let name = "fragments-00002-smoke-in-a-box-v0";
+    let open = |column: &str| {
+        std::fs::File::open(folder.path().join(format!("{name}.{column}.npy"))).unwrap()
+    };
+    let rows = view(2, pixels(2), 1);
+    let depth = ndarray::Array1::<f32>::read_npy(open("linear_depth")).unwrap();
+    assert_eq!(depth.to_vec(), rows.linear_depth);
+    let x = ndarray::Array1::<u32>::read_npy(open("x")).unwrap();
+    assert_eq!(x.to_vec(), rows.x);
+}
+
+#[test]
+fn sums_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), Format::Parquet, None, 2, 1000).unwrap();
+    let dataset = Dataset::open(folder.path()).unwrap();
+    let summary = Summary::of(&dataset).unwrap();
+    assert!(summary.passes(), "{:?}", summary.violations);
+    assert_eq!(summary.rows, dataset.rows());
+    assert_eq!(summary.pixels, dataset.manifest().pixels);
+    let total = |bins: &[summary::Bin]| bins.iter().map(|b| b.count).sum::<u64>();
+    assert_eq!(total(&summary.alpha), summary.rows);
+    assert_eq!(total(&summary.fragments_per_pixel), summary.pixels);
+    assert_eq!(summary.fragments_per_pixel.last().unwrap().to, 16.0);
+    assert_eq!(summary.scenes[1].rows, view(2, 1500, 1).len() as u64);
+
+    // Each kind of contradiction is found, in the row where it is.
+    type Spoil = fn(&mut FragmentBatch, usize);
+    let spoils: [(&str, Spoil); 5] = [
+        ("transmittance", |rows, i| {
+            rows.transmittance[i] = (rows.transmittance[i] - 0.001).max(0.0);
+        }),
+        ("alpha_sum", |rows, i| rows.alpha_sum[i] += 0.001),
+        ("fragment_count", |rows, i| rows.fragment_count[i] += 1),
+        ("layer", |rows, i| rows.layer[i] += 1),
+        ("linear_depth", |rows, i| rows.linear_depth[i] = 1e-3),
+    ];
+    for (name, spoil) in spoils {
+        let folder = tempfile::tempdir().unwrap();
+        let mut header = header(Format::Npy, None);
+        header.work_items = 1;
+        let writer = DatasetWriter::create(folder.path(), header).unwrap();
+        let mut part = writer.begin(info(0)).unwrap();
+        let mut rows = view(0, 50, 1);
+        let i = (0..rows.len())
+            .find(|&i| rows.layer[i] == 1 && rows.transmittance[i] > 0.1)
+            .unwrap();
+        spoil(&mut rows, i);
+        part.write(&rows).unwrap();
+        part.finish(PartCounts::default()).unwrap();
+        writer.finish().unwrap();
+        let summary = Summary::of(&Dataset::open(folder.path()).unwrap()).unwrap();
+        let found: Vec<_> = summary
+            .violations
+            .iter()
+            .map(|v| (v.check.as_str(), v.row))
+            .collect();
+        assert_eq!(found, [(name, i as u64 + 1)]);
+    }
+}

@@ -1,0 +1,158 @@
+//! Draws every view of a scene exactly and with each method, and measures the differences.
+
+use crate::{EvalError, Row, metrics};
+use peelnet_gpu::Gpu;
+use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, Renderer};
+use peelnet_scene::Scene;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The method that judges all others.
+pub const EXACT: &str = "abuffer";
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct Plan<'a> {
+    /// Width and height of every frame, pixels.
+    pub size: [u32; 2],
+    /// Methods beside the exact one; the exact one may be among them.
+    pub methods: &'a [MethodSpec],
+    /// Weights for the learned methods among them, found by recipe.
+    pub learned: &'a [LearnedWeight],
+    /// Where view 0 of every method is saved as `<scene>-<method>.png`.
+    pub images: Option<&'a Path>,
+}
+
+/// File name of a method's picture of a scene.
+pub fn image_name(scene: &str, method: &str) -> String {
+    // Knobs bring ':' and '=' into the name, which some file systems refuse.
+    let plain = |text: &str| -> String {
+        text.chars()
+            .map(|c| {
+                if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.') {
+                    c
+                } else {
+                    '_'
+                }
+            })
+            .collect()
+    };
+    format!("{}-{}.png", plain(scene), plain(method))
+}
+
+/// Compares every method of the plan on every view of a scene; the exact method's own rows come first.
+///
+/// `drawn` is called after every frame, with the method's name.
+///
+/// # Errors
+/// If a method cannot draw or a picture cannot be written; [`EvalError::Interrupted`] once `stop` is set.
+pub fn compare(
+    gpu: &Gpu,
+    scene: &Scene,
+    plan: &Plan<'_>,
+    stop: &AtomicBool,
+    drawn: &mut dyn FnMut(&str),
+) -> Result<Vec<Row>, EvalError> {
+    let failed = |method: &str| {
+        let (scene, method) = (scene.name.clone(), method.to_owned());
+        move |source| EvalError::Render {
+            scene,
+            method,
+            source,
+        }
+    };
+    if let Some(folder) = plan.images {
+        std::fs::create_dir_all(folder).map_err(EvalError::io(folder, "create the folder"))?;
+    }
+    let renderer = Renderer::new(gpu, scene).map_err(failed("upload"))?;
+    let exact_method: MethodSpec = EXACT.parse().map_err(failed(EXACT))?;
+    let others = plan.methods.iter().filter(|m| m.to_string() != EXACT);
+    let mut exact: Vec<Image> = Vec::with_capacity(scene.views.len());
+    let mut rows = Vec::new();
+    for method in std::iter::once(&exact_method).chain(others) {
+        let name = method.to_string();
+        let learned = plan
+            .learned
+            .iter()
+            .find(|l| l.recipe.method_name() == method.name());
+        let mut prepared = renderer
+            .prepare(method, plan.size, learned)
+            .map_err(failed(&name))?;
+        for (view, camera) in scene.views.iter().enumerate() {
+            if stop.load(Ordering::Relaxed) {
+                return Err(EvalError::Interrupted);
+            }
+            let frame = renderer
+                .draw(&mut prepared, camera)
+                .map_err(failed(&name))?;
+            if let (0, Some(folder)) = (view, plan.images) {
+                frame
+                    .image
+                    .save(&folder.join(image_name(&scene.name, &name)))
+                    .map_err(failed(&name))?;
+            }
+            let against = exact.get(view).unwrap_or(&frame.image);
+            let differences = metrics::differences(&against.pixels, &frame.image.pixels)?;
+            rows.push(row(gpu, scene, &name, view, &frame, differences));
+            // The exact method comes first, so its images are there for all others.
+            if exact.len() == view {
+                exact.push(frame.image);
+            }
+            drawn(&name);
+        }
+    }
+    // Only the exact method knows the fragments of a view for certain.
+    for k in 0..rows.len() {
+        let view = rows[k].view as usize;
+        (rows[k].fragments, rows[k].max_layers) = (rows[view].fragments, rows[view].max_layers);
+    }
+    Ok(rows)
+}
+
+fn row(
+    gpu: &Gpu,
+    scene: &Scene,
+    method: &str,
+    view: usize,
+    frame: &Frame,
+    d: metrics::Differences,
+) -> Row {
+    let micros: f64 = frame.times.iter().map(|t| t.micros).sum();
+    Row {
+        method: method.to_owned(),
+        scene: scene.name.clone(),
+        view: u32::try_from(view).unwrap_or(u32::MAX),
+        width: frame.image.width,
+        height: frame.image.height,
+        fragments: frame.stats.fragments,
+        max_layers: frame.stats.max_layers,
+        mse_linear: d.mse_linear,
+        mse_linear_covered: d.mse_linear_covered,
+        mse255: d.mse255,
+        mse255_covered: d.mse255_covered,
+        psnr: d.psnr,
+        p99_error: d.p99_error,
+        max_error: d.max_error,
+        covered_pixels: d.covered_pixels,
+        dark_pixels: d.dark_pixels,
+        non_finite_pixels: d.non_finite_pixels,
+        time_ms: (micros > 0.0).then_some(micros / 1e3),
+        passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
+        bytes_per_pixel: frame.stats.bytes_per_pixel,
+        adapter: gpu.info.name.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::image_name;
+
+    #[test]
+    fn picture_names_are_plain() {
+        assert_eq!(
+            image_name("cups", "wboit-eq9:targets=f32"),
+            "cups-wboit-eq9_targets_f32.png"
+        );
+        assert_eq!(image_name("../x", "a"), ".._x-a.png");
+    }
+}

@@ -1,0 +1,64 @@
+use std::path::PathBuf;
+
+/// What can go wrong when methods are compared or a report is written.
+#[derive(Debug, thiserror::Error)]
+pub enum EvalError {
+    /// The file system refused.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was tried, as a verb: `write`, `create the folder`, …
+        action: &'static str,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A picture of the report could not be read or written.
+    #[error("{}: cannot {action} the picture: {source}", path.display())]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        action: &'static str,
+        /// The decoder's reason.
+        source: image::ImageError,
+    },
+    /// Drawing failed.
+    #[error("scene '{scene}', method '{method}': {source}")]
+    Render {
+        /// The scene's name.
+        scene: String,
+        /// The method's name.
+        method: String,
+        /// The renderer's reason.
+        source: peelnet_render::RenderError,
+    },
+    /// Two images that should be compared differ in size: a bug of the caller.
+    #[error(
+        "an image of {approximate} pixels was compared with one of {exact} pixels; draw both with the same size"
+    )]
+    Sizes {
+        /// Pixels of the exact image.
+        exact: usize,
+        /// Pixels of the other one.
+        approximate: usize,
+    },
+    /// The user asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl EvalError {
+    /// For `map_err` on file operations.
+    pub(crate) fn io(
+        path: impl Into<PathBuf>,
+        action: &'static str,
+    ) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io {
+            path,
+            action,
+            source,
+        }
+    }
+}

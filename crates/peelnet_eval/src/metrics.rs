@@ -1,0 +1,229 @@
+//! Differences between two images of the same view.
+//!
+//! Two scales. *Linear light*: the values themselves; ratios between methods use it. *Display-referred*: clamped to
+//! 0 … 1, sRGB-encoded (IEC 61966-2-1) and scaled to 0 … 255, but not rounded to whole numbers, as in the thesis's
+//! table. The three colour channels weigh the same, and coverage, the fourth component, is not compared.
+//!
+//! *Covered* pixels are those that hold at least one transparent fragment: coverage above 0 in the exact image.
+
+use crate::EvalError;
+
+/// The sRGB encoding of a linear value in 64 bits, clamped to 0 … 1 first. What is not a number becomes black, as on
+/// a screen. A test compares it with the renderer's, which encodes pictures in 32 bits.
+#[allow(clippy::manual_clamp, reason = "`clamp` would keep a NaN")]
+pub fn srgb_encode(linear: f32) -> f64 {
+    let v = f64::from(linear.max(0.0).min(1.0));
+    if v <= 0.003_130_8 {
+        12.92 * v
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// How much darker than the exact image a pixel must be in some channel, on the 0–255 scale, to count as an
+/// artefact: a quarter of the range, far beyond what a wrong weight in a smooth place does.
+pub const DARK: f64 = 64.0;
+
+/// All differences of one image from the exact one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Differences {
+    /// Mean squared error in linear light over all pixels and channels.
+    pub mse_linear: f64,
+    /// The same over covered pixels; `None` if no pixel is covered.
+    pub mse_linear_covered: Option<f64>,
+    /// Mean squared error on the 0–255 scale.
+    pub mse255: f64,
+    /// The same over covered pixels; `None` if no pixel is covered.
+    pub mse255_covered: Option<f64>,
+    /// Peak signal-to-noise ratio of `mse255`, dB; `None` for identical images.
+    pub psnr: Option<f64>,
+    /// 99th percentile (nearest rank) of the pixel error: the largest difference of the three channels, 0–255 scale.
+    pub p99_error: f64,
+    /// The same over covered pixels; `None` if no pixel is covered.
+    pub p99_error_covered: Option<f64>,
+    /// The largest pixel error, 0–255 scale.
+    pub max_error: f64,
+    /// Number of covered pixels.
+    pub covered_pixels: u64,
+    /// Pixels that are brighter than the exact image in no channel and darker by more than [`DARK`] in some channel.
+    pub dark_pixels: u64,
+    /// Pixels with a component that is not finite. Such a component enters every error as 0.
+    pub non_finite_pixels: u64,
+}
+
+/// Peak signal-to-noise ratio of an error on the 0–255 scale, dB; `None` where there is no error.
+pub fn psnr(mse255: f64) -> Option<f64> {
+    (mse255 > 0.0).then(|| 10.0 * (255.0 * 255.0 / mse255).log10())
+}
+
+/// Sums over a set of pixels.
+#[derive(Default)]
+struct Sums {
+    linear: f64,
+    display: f64,
+    pixel_errors: Vec<f64>,
+}
+
+impl Sums {
+    fn add(&mut self, linear: f64, display: f64, pixel_error: f64) {
+        self.linear += linear;
+        self.display += display;
+        self.pixel_errors.push(pixel_error);
+    }
+
+    fn mean(&self, sum: f64) -> f64 {
+        if self.pixel_errors.is_empty() {
+            0.0
+        } else {
+            sum / (3.0 * self.pixel_errors.len() as f64)
+        }
+    }
+
+    /// Nearest-rank percentile, `share` in 0 … 1.
+    fn percentile(&mut self, share: f64) -> f64 {
+        let n = self.pixel_errors.len();
+        if n == 0 {
+            return 0.0;
+        }
+        let rank = ((share * n as f64).ceil() as usize).clamp(1, n) - 1;
+        *self
+            .pixel_errors
+            .select_nth_unstable_by(rank, f64::total_cmp)
+            .1
+    }
+}
+
+/// Compares an image with the exact one, both linear RGB and coverage, row by row.
+///
+/// # Errors
+/// [`EvalError::Sizes`] if they differ in length.
+pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Differences, EvalError> {
+    if exact.len() != approximate.len() {
+        return Err(EvalError::Sizes {
+            exact: exact.len(),
+            approximate: approximate.len(),
+        });
+    }
+    let mut all = Sums::default();
+    let mut covered = Sums::default();
+    let mut result = Differences::default();
+    for (e, a) in exact.iter().zip(approximate) {
+        let (mut linear, mut display, mut pixel_error) = (0.0, 0.0, 0.0f64);
+        let (mut brightest, mut darkest) = (0.0f64, 0.0f64);
+        let mut finite = true;
+        for k in 0..3 {
+            finite &= a[k].is_finite();
+            let value = if a[k].is_finite() { a[k] } else { 0.0 };
+            linear += (f64::from(value) - f64::from(e[k])).powi(2);
+            let d = 255.0 * (srgb_encode(value) - srgb_encode(e[k]));
+            display += d * d;
+            pixel_error = pixel_error.max(d.abs());
+            brightest = brightest.max(d);
+            darkest = darkest.min(d);
+        }
+        result.non_finite_pixels += u64::from(!finite);
+        // Half a level of tolerance: rounding noise in one channel must not hide a black pixel.
+        result.dark_pixels += u64::from(brightest < 0.5 && darkest < -DARK);
+        all.add(linear, display, pixel_error);
+        if e[3] > 0.0 {
+            covered.add(linear, display, pixel_error);
+        }
+    }
+    result.mse_linear = all.mean(all.linear);
+    result.mse255 = all.mean(all.display);
+    result.psnr = psnr(result.mse255);
+    result.p99_error = all.percentile(0.99);
+    result.max_error = all.percentile(1.0);
+    result.covered_pixels = covered.pixel_errors.len() as u64;
+    if result.covered_pixels > 0 {
+        result.mse_linear_covered = Some(covered.mean(covered.linear));
+        result.mse255_covered = Some(covered.mean(covered.display));
+        result.p99_error_covered = Some(covered.percentile(0.99));
+    }
+    Ok(result)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    /// Values of the standard: the linear part, both ends, and 0.5 → 0.735 356 98.
+    #[test]
+    fn srgb_values() {
+        assert_eq!(srgb_encode(0.0), 0.0);
+        assert!((srgb_encode(1.0) - 1.0).abs() < 1e-12);
+        assert!((srgb_encode(0.002) - 0.025_84).abs() < 1e-9);
+        assert!((srgb_encode(0.5) - 0.735_356_983).abs() < 1e-8);
+        assert_eq!(srgb_encode(-3.0), 0.0);
+        assert_eq!(srgb_encode(7.0), srgb_encode(1.0));
+        assert_eq!(srgb_encode(f32::NAN), 0.0);
+    }
+
+    /// The measured encoding is the shown one. 1e-6: a dozen 32-bit roundings of values up to 1.055.
+    #[test]
+    fn pictures_are_encoded_alike() {
+        for k in -100..1200 {
+            let linear = k as f32 * 1e-3;
+            let shown = f64::from(peelnet_render::srgb_encode(linear));
+            assert!((shown - srgb_encode(linear)).abs() < 1e-6, "{linear}");
+        }
+    }
+
+    #[test]
+    fn equal_images_have_no_error() {
+        let image = [[0.2, 0.4, 0.6, 1.0], [0.0, 0.0, 0.0, 0.0]];
+        let d = differences(&image, &image).unwrap();
+        assert_eq!((d.mse_linear, d.mse255, d.max_error), (0.0, 0.0, 0.0));
+        assert_eq!((d.psnr, d.covered_pixels), (None, 1));
+    }
+
+    /// White against black in one channel of one of four pixels: the error is 255² / (4 · 3) on the display scale.
+    #[test]
+    fn one_wrong_channel() {
+        let exact = [
+            [1.0, 1.0, 1.0, 0.5],
+            [1.0, 1.0, 1.0, 0.0],
+            [1.0, 1.0, 1.0, 0.0],
+            [1.0, 1.0, 1.0, 0.0],
+        ];
+        let mut wrong = exact;
+        wrong[0][1] = 0.0;
+        let d = differences(&exact, &wrong).unwrap();
+        assert!((d.mse255 - 255.0 * 255.0 / 12.0).abs() < 1e-9);
+        assert!((d.mse255_covered.unwrap() - 255.0 * 255.0 / 3.0).abs() < 1e-9);
+        assert!((d.mse_linear - 1.0 / 12.0).abs() < 1e-12);
+        // 10·log10(12)
+        assert!((d.psnr.unwrap() - 10.791_812_460_476).abs() < 1e-9);
+        assert!((d.p99_error - 255.0).abs() < 1e-9);
+        assert_eq!(d.dark_pixels, 1);
+    }
+
+    #[test]
+    fn the_percentile_is_the_nearest_rank() {
+        let exact = vec![[0.0, 0.0, 0.0, 1.0]; 200];
+        let mut wrong = exact.clone();
+        // Two of 200 pixels are wrong: 1 %, just beyond the 99th percentile.
+        wrong[3][0] = 1.0;
+        wrong[77][0] = 1.0;
+        assert_eq!(differences(&exact, &wrong).unwrap().p99_error, 0.0);
+        wrong[78][0] = 1.0;
+        assert!(differences(&exact, &wrong).unwrap().p99_error > 254.9);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_counted_and_black() {
+        let exact = [[1.0, 1.0, 1.0, 1.0]];
+        let d = differences(&exact, &[[f32::NAN, f32::INFINITY, 1.0, 1.0]]).unwrap();
+        assert_eq!((d.non_finite_pixels, d.dark_pixels), (1, 1));
+        assert!((d.mse_linear - 2.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn no_covered_pixel() {
+        let exact = [[1.0, 1.0, 1.0, 0.0]];
+        let d = differences(&exact, &exact).unwrap();
+        assert_eq!(d.mse255_covered, None);
+        assert!(differences(&exact, &[]).is_err());
+    }
+}

@@ -1,0 +1,96 @@
+//! The files of a result: `results.json`, `table.md` and `report.html`.
+
+mod page;
+
+use crate::{EvalError, Machine, Row, findings::findings, table, table::Table, write_atomically};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A step of a run and how long it took.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// `extract`, `train`, `export`, `compare`, …
+    pub name: String,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// What it did, in figures.
+    pub note: String,
+}
+
+/// Everything a report tells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// What it was measured on.
+    pub machine: Machine,
+    /// The command line.
+    pub command: String,
+    /// The steps, in order.
+    pub stages: Vec<Stage>,
+    /// Settings that matter, as name and value.
+    pub settings: Vec<(String, String)>,
+    /// What the rows say, computed from them when the record is written.
+    pub findings: Vec<String>,
+    /// All rows.
+    pub rows: Vec<Row>,
+}
+
+/// What the page shows beside the record.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Attachments<'a> {
+    /// The folder with `<scene>-<method>.png`.
+    pub images: Option<&'a Path>,
+    /// The loss curve as SVG text.
+    pub loss_svg: Option<&'a str>,
+    /// The dataset's summary as plain text.
+    pub dataset_summary: Option<&'a str>,
+}
+
+impl Record {
+    /// A record of these rows, with its findings.
+    pub fn new(machine: Machine, command: String, rows: Vec<Row>) -> Self {
+        Self {
+            machine,
+            command,
+            stages: Vec::new(),
+            settings: Vec::new(),
+            findings: findings(&rows),
+            rows,
+        }
+    }
+
+    /// Writes `results.json`, `table.md` and `report.html` into a folder.
+    ///
+    /// # Errors
+    /// If a file cannot be written or a picture cannot be read.
+    pub fn write(&self, folder: &Path, attachments: &Attachments<'_>) -> Result<(), EvalError> {
+        let mut json = serde_json::to_vec_pretty(self)
+            .expect("a record has string keys only, and floats serialise always");
+        json.push(b'\n');
+        write_atomically(&folder.join("results.json"), &json)?;
+        write_atomically(&folder.join("table.md"), self.markdown().as_bytes())?;
+        let page = page::page(self, attachments)?;
+        write_atomically(&folder.join("report.html"), page.as_bytes())
+    }
+
+    /// `table.md`: the table like the thesis's, all methods, and the findings.
+    pub fn markdown(&self) -> String {
+        let t = Table::of(&self.rows);
+        let (headings, cells) = t.all_methods();
+        let findings: String = self.findings.iter().map(|f| format!("- {f}\n")).collect();
+        format!(
+            "# Weighted and learned weighted blending against the exact image\n\n{EXPLANATION}\n\n{}\n## Findings\n\n{findings}\n\
+             ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
+             Measured on {} ({}) with `{}`.\n",
+            table::markdown(&t.headings(), &t.cells()),
+            table::markdown(&headings, &cells),
+            self.machine.adapter,
+            self.machine.cpu,
+            self.command,
+        )
+    }
+}
+
+/// What the figures of the table are.
+const EXPLANATION: &str = "Mean squared error against the exact image (`abuffer`), sRGB-encoded, 0–255 scale, not \
+quantised, whole frame, mean over the views. The thesis's meshes and camera are unknown: its absolute figures do not \
+compare with these, the ratios do. At α = 0.85 and with random alphas it reports artifacts and no figures.";

@@ -1,0 +1,51 @@
+use serde::{Deserialize, Serialize};
+
+/// One method on one view of one scene: a row of `results.json`.
+///
+/// Errors are against the exact image of the same view, see [`crate::metrics`]. A value that was not measured is
+/// `null`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The method's name with its knobs.
+    pub method: String,
+    /// The scene's name.
+    pub scene: String,
+    /// The view's number.
+    pub view: u32,
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// Transparent fragments of the view.
+    pub fragments: Option<u64>,
+    /// The most fragments of one pixel.
+    pub max_layers: Option<u32>,
+    /// Linear light, whole frame.
+    pub mse_linear: f64,
+    /// Linear light, covered pixels.
+    pub mse_linear_covered: Option<f64>,
+    /// Display-referred, 0–255, whole frame.
+    pub mse255: f64,
+    /// Display-referred, 0–255, covered pixels.
+    pub mse255_covered: Option<f64>,
+    /// dB; `null` for identical images.
+    pub psnr: Option<f64>,
+    /// 99th percentile of the pixel error, 0–255.
+    pub p99_error: f64,
+    /// The largest pixel error, 0–255.
+    pub max_error: f64,
+    /// Pixels that hold a transparent fragment.
+    pub covered_pixels: u64,
+    /// Pixels far darker than the exact ones, see [`crate::metrics::DARK`].
+    pub dark_pixels: u64,
+    /// Pixels with a component that is not finite.
+    pub non_finite_pixels: u64,
+    /// GPU time of one frame, milliseconds: a single frame, no benchmark.
+    pub time_ms: Option<f64>,
+    /// Geometry and full-screen passes.
+    pub passes: u32,
+    /// Bytes of the method's own targets and storage, per pixel.
+    pub bytes_per_pixel: f64,
+    /// The adapter that drew it.
+    pub adapter: String,
+}

@@ -1,0 +1,194 @@
+//! Which adapters there are, and which one is used.
+
+use crate::GpuError;
+use serde::Serialize;
+use std::{convert::Infallible, str::FromStr};
+
+/// How to get a driver where there is none.
+pub const INSTALL_HINT: &str = "on Debian or Ubuntu run: sudo apt-get install -y mesa-vulkan-drivers libvulkan1 \
+     (Mesa lavapipe, a software rasteriser); elsewhere install your GPU vendor's Vulkan driver";
+
+/// Which adapter to use.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum AdapterRequest {
+    /// The fastest kind: discrete before integrated before virtual before software.
+    #[default]
+    Auto,
+    /// A software rasteriser such as Mesa lavapipe.
+    Software,
+    /// The first adapter whose name contains this text, whatever its case.
+    Named(String),
+}
+
+impl FromStr for AdapterRequest {
+    type Err = Infallible;
+
+    fn from_str(s: &str) -> Result<Self, Infallible> {
+        Ok(match s {
+            "auto" => Self::Auto,
+            "software" => Self::Software,
+            name => Self::Named(name.to_owned()),
+        })
+    }
+}
+
+/// An optional feature: what uses it and what its absence costs.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OptionalFeature {
+    /// WebGPU's name of it.
+    pub name: &'static str,
+    /// What we use it for and what happens without it.
+    pub without: &'static str,
+    #[serde(skip)]
+    flag: wgpu::Features,
+}
+
+impl OptionalFeature {
+    /// The wgpu flag.
+    pub const fn flag(&self) -> wgpu::Features {
+        self.flag
+    }
+}
+
+/// Every optional feature that a device is opened with where it exists.
+pub const OPTIONAL_FEATURES: &[OptionalFeature] = &[
+    OptionalFeature {
+        name: "float32-blendable",
+        without: "dual depth peeling and 32-bit blending targets are unavailable; use sbuffer or single peeling and 16-bit targets",
+        flag: wgpu::Features::FLOAT32_BLENDABLE,
+    },
+    OptionalFeature {
+        name: "timestamp-query",
+        without: "GPU time per pass is not reported; whole-frame times come from the clock",
+        flag: wgpu::Features::TIMESTAMP_QUERY,
+    },
+    OptionalFeature {
+        name: "shader-f16",
+        without: "functions exported with --precision f16 cannot be verified here",
+        flag: wgpu::Features::SHADER_F16,
+    },
+];
+
+/// One adapter, as `peelnet doctor` shows it.
+#[derive(Clone, Debug, Serialize)]
+pub struct AdapterReport {
+    /// Name the driver gives.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `software` or `other`.
+    pub kind: &'static str,
+    /// `vulkan`, `metal`, …
+    pub backend: String,
+    /// Driver name and version.
+    pub driver: String,
+    /// Optional features it has.
+    pub features: Vec<&'static str>,
+    /// Optional features it lacks, with what that costs.
+    pub missing: Vec<OptionalFeature>,
+    /// Largest storage binding in bytes: bounds the fragments of one tile.
+    pub max_storage_binding: u64,
+    /// Largest texture side in pixels.
+    pub max_texture_side: u32,
+    /// Whether [`AdapterRequest::Auto`] picks it.
+    pub chosen: bool,
+    /// Why it is chosen or not.
+    pub why: &'static str,
+}
+
+/// Word for an adapter's kind.
+pub const fn kind_name(kind: wgpu::DeviceType) -> &'static str {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => "discrete",
+        wgpu::DeviceType::IntegratedGpu => "integrated",
+        wgpu::DeviceType::VirtualGpu => "virtual",
+        wgpu::DeviceType::Cpu => "software",
+        wgpu::DeviceType::Other => "other",
+    }
+}
+
+const fn rank(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+/// All adapters, best first.
+pub(crate) fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        // wgpu validates by itself; the distribution's Vulkan layers are often too old for its SPIR-V.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    (instance, adapters)
+}
+
+/// Picks an adapter from the list.
+pub(crate) fn pick(
+    adapters: Vec<wgpu::Adapter>,
+    request: &AdapterRequest,
+) -> Result<wgpu::Adapter, GpuError> {
+    if adapters.is_empty() {
+        return Err(GpuError::NoAdapter);
+    }
+    let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
+    let (wanted, found) = match request {
+        AdapterRequest::Auto => ("auto", adapters.into_iter().next()),
+        AdapterRequest::Software => (
+            "software",
+            adapters
+                .into_iter()
+                .find(|a| a.get_info().device_type == wgpu::DeviceType::Cpu),
+        ),
+        AdapterRequest::Named(name) => (
+            name.as_str(),
+            adapters.into_iter().find(|a| {
+                a.get_info()
+                    .name
+                    .to_lowercase()
+                    .contains(&name.to_lowercase())
+            }),
+        ),
+    };
+    found.ok_or_else(|| GpuError::NoSuchAdapter {
+        wanted: wanted.to_owned(),
+        available: names.join(", "),
+    })
+}
+
+/// What `peelnet doctor` prints. Empty where no driver is installed.
+pub fn report() -> Vec<AdapterReport> {
+    let (_instance, adapters) = enumerate();
+    adapters
+        .iter()
+        .enumerate()
+        .map(|(i, adapter)| {
+            let info = adapter.get_info();
+            let (has, lacks): (Vec<OptionalFeature>, Vec<OptionalFeature>) = OPTIONAL_FEATURES
+                .iter()
+                .copied()
+                .partition(|f| adapter.features().contains(f.flag));
+            AdapterReport {
+                name: info.name,
+                kind: kind_name(info.device_type),
+                backend: info.backend.to_string(),
+                driver: format!("{} {}", info.driver, info.driver_info),
+                features: has.iter().map(|f| f.name).collect(),
+                missing: lacks,
+                max_storage_binding: adapter.limits().max_storage_buffer_binding_size,
+                max_texture_side: adapter.limits().max_texture_dimension_2d,
+                chosen: i == 0,
+                why: match (i, info.device_type) {
+                    (0, wgpu::DeviceType::Cpu) => "the only kind there is: software rasteriser",
+                    (0, _) => "first in the order discrete, integrated, virtual, other, software",
+                    _ => "comes later in the order discrete, integrated, virtual, other, software",
+                },
+            }
+        })
+        .collect()
+}

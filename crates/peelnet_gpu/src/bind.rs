@@ -1,0 +1,108 @@
+//! A bind group and its layout from one list, so that the two cannot disagree.
+
+use crate::Gpu;
+
+/// One resource; its place in the list is its binding number.
+#[derive(Clone, Copy, Debug)]
+pub enum Bind<'a> {
+    /// A uniform buffer.
+    Uniform(&'a wgpu::Buffer),
+    /// A storage buffer that shaders only read.
+    Read(&'a wgpu::Buffer),
+    /// A storage buffer that shaders write.
+    Write(&'a wgpu::Buffer),
+    /// A colour texture read by `textureLoad`.
+    Texture(&'a wgpu::TextureView),
+    /// An unsigned integer texture read by `textureLoad`.
+    Uint(&'a wgpu::TextureView),
+    /// A depth texture read by `textureLoad`.
+    Depth(&'a wgpu::TextureView),
+    /// A write-only storage texture of format RGBA32F.
+    Store(&'a wgpu::TextureView),
+}
+
+/// A layout with one group that fits it.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// For pipelines.
+    pub layout: wgpu::BindGroupLayout,
+    /// For passes.
+    pub group: wgpu::BindGroup,
+}
+
+impl Gpu {
+    /// Builds a bind group whose entries are visible to the stages given.
+    pub fn bind(&self, label: &str, stages: wgpu::ShaderStages, entries: &[Bind<'_>]) -> Bound {
+        let layout_entries: Vec<_> = entries
+            .iter()
+            .zip(0..)
+            .map(|(bind, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                // Vertex shaders may not write storage in portable WebGPU.
+                visibility: match bind {
+                    Bind::Write(_) | Bind::Store(_) => stages & !wgpu::ShaderStages::VERTEX,
+                    _ => stages,
+                },
+                ty: bind.kind(),
+                count: None,
+            })
+            .collect();
+        let layout = self
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(label),
+                entries: &layout_entries,
+            });
+        let group_entries: Vec<_> = entries
+            .iter()
+            .zip(0..)
+            .map(|(bind, binding)| wgpu::BindGroupEntry {
+                binding,
+                resource: bind.resource(),
+            })
+            .collect();
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(label),
+            layout: &layout,
+            entries: &group_entries,
+        });
+        Bound { layout, group }
+    }
+}
+
+impl Bind<'_> {
+    fn kind(&self) -> wgpu::BindingType {
+        let buffer = |ty| wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let texture = |sample_type| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        match self {
+            Self::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
+            Self::Read(_) => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            Self::Write(_) => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+            Self::Texture(_) => texture(wgpu::TextureSampleType::Float { filterable: false }),
+            Self::Uint(_) => texture(wgpu::TextureSampleType::Uint),
+            Self::Depth(_) => texture(wgpu::TextureSampleType::Depth),
+            Self::Store(_) => wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: wgpu::TextureFormat::Rgba32Float,
+                view_dimension: wgpu::TextureViewDimension::D2,
+            },
+        }
+    }
+
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Uniform(b) | Self::Read(b) | Self::Write(b) => b.as_entire_binding(),
+            Self::Texture(v) | Self::Uint(v) | Self::Depth(v) | Self::Store(v) => {
+                wgpu::BindingResource::TextureView(v)
+            }
+        }
+    }
+}

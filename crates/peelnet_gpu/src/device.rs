@@ -1,0 +1,235 @@
+use crate::{
+    AdapterRequest, GpuError,
+    adapter::{self, OPTIONAL_FEATURES},
+};
+use std::sync::{Arc, Mutex};
+
+/// An open device. Cheap to share by reference; one per test or command.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Who made it.
+    pub info: wgpu::AdapterInfo,
+    /// The limits the device was opened with: the adapter's own.
+    pub limits: wgpu::Limits,
+    first_error: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens the adapter that `request` names, with every optional feature it has.
+    ///
+    /// # Errors
+    /// No driver, no such adapter, or a driver that gives no device.
+    pub fn new(request: &AdapterRequest) -> Result<Self, GpuError> {
+        let (_instance, adapters) = adapter::enumerate();
+        let adapter = adapter::pick(adapters, request)?;
+        let info = adapter.get_info();
+        let features = OPTIONAL_FEATURES
+            .iter()
+            .fold(wgpu::Features::empty(), |all, f| all | f.flag())
+            & adapter.features();
+        let limits = adapter.limits();
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("peelnet"),
+            required_features: features,
+            required_limits: limits.clone(),
+            ..Default::default()
+        }))
+        .map_err(|source| GpuError::Device {
+            adapter: info.name.clone(),
+            source,
+        })?;
+        // wgpu's default is to panic. The first error is kept instead and becomes the error of the next read-back.
+        let first_error = Arc::new(Mutex::new(None));
+        let sink = Arc::clone(&first_error);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let mut slot = sink
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            slot.get_or_insert(error.to_string());
+        }));
+        Ok(Self {
+            device,
+            queue,
+            info,
+            limits,
+            first_error,
+        })
+    }
+
+    /// Whether an optional feature is there.
+    pub fn has(&self, feature: wgpu::Features) -> bool {
+        self.device.features().contains(feature)
+    }
+
+    /// Fails with a clear message where an optional feature is missing.
+    ///
+    /// # Errors
+    /// [`GpuError::MissingFeature`], with `mend` as the way out.
+    pub fn need(
+        &self,
+        feature: wgpu::Features,
+        name: &'static str,
+        what: &str,
+        mend: &'static str,
+    ) -> Result<(), GpuError> {
+        if self.has(feature) {
+            return Ok(());
+        }
+        Err(GpuError::MissingFeature {
+            what: what.to_owned(),
+            feature: name,
+            adapter: self.info.name.clone(),
+            mend,
+        })
+    }
+
+    /// The error that wgpu reported since the last call, if any.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] with wgpu's text.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let error = self
+            .first_error
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .take();
+        error.map_or(Ok(()), |text| Err(GpuError::Validation(text)))
+    }
+
+    /// A buffer that shaders can read and write and that can be copied both ways.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the largest storage binding.
+    pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
+        let limit = self
+            .limits
+            .max_storage_buffer_binding_size
+            .min(self.limits.max_buffer_size);
+        // A zero-size binding is an error, and an empty frame is not.
+        let size = bytes.max(16).next_multiple_of(4);
+        if size > limit {
+            return Err(GpuError::TooLarge {
+                what: label.to_owned(),
+                needed: size,
+                limit,
+                adapter: self.info.name.clone(),
+                mend: "draw a smaller frame or use an adapter with larger storage bindings",
+            });
+        }
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// A buffer with data in it.
+    pub fn upload<T: bytemuck::NoUninit>(
+        &self,
+        label: &str,
+        data: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: (bytes.len().max(16) as u64).next_multiple_of(4),
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        if !bytes.is_empty() {
+            self.queue.write_buffer(&buffer, 0, bytes);
+        }
+        buffer
+    }
+
+    /// A 2-D texture that can be drawn to, read by shaders and copied from.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the adapter's largest side.
+    pub fn texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        [width, height]: [u32; 2],
+        extra: wgpu::TextureUsages,
+    ) -> Result<wgpu::TextureView, GpuError> {
+        let side = width.max(height);
+        let limit = self.limits.max_texture_dimension_2d;
+        if side > limit {
+            return Err(GpuError::TooLarge {
+                what: format!("a frame {width}×{height} pixels large (side given in pixels)"),
+                needed: u64::from(side),
+                limit: u64::from(limit),
+                adapter: self.info.name.clone(),
+                mend: "draw a smaller frame",
+            });
+        }
+        Ok(self
+            .device
+            .create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC
+                    | extra,
+                view_formats: &[],
+            })
+            .create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+
+    /// Compiles WGSL text.
+    pub fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
+        self.device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(label),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            })
+    }
+
+    /// A compute pipeline with one entry point, `main`.
+    pub fn compute(
+        &self,
+        label: &str,
+        wgsl: &str,
+        layouts: &[&wgpu::BindGroupLayout],
+    ) -> wgpu::ComputePipeline {
+        let module = self.shader(label, wgsl);
+        self.device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(label),
+                layout: Some(&self.layout(layouts)),
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
+    }
+
+    /// A pipeline layout from bind-group layouts.
+    pub fn layout(&self, layouts: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
+        let layouts: Vec<_> = layouts.iter().map(|l| Some(*l)).collect();
+        self.device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: &layouts,
+                immediate_size: 0,
+            })
+    }
+}

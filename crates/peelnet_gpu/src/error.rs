@@ -1,0 +1,60 @@
+/// What can go wrong between us and a GPU.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No driver offers any adapter.
+    #[error(
+        "no GPU adapter: no Vulkan driver is installed; {hint}",
+        hint = crate::adapter::INSTALL_HINT
+    )]
+    NoAdapter,
+    /// The adapter that was asked for is not there.
+    #[error(
+        "no adapter matches '{wanted}'; there are: {available}. Choose one with --adapter, or leave the flag out"
+    )]
+    NoSuchAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// Names of the adapters there are.
+        available: String,
+    },
+    /// The adapter refused to open a device.
+    #[error("adapter '{adapter}' gave no device: {source}")]
+    Device {
+        /// Adapter name.
+        adapter: String,
+        /// wgpu's reason.
+        source: wgpu::RequestDeviceError,
+    },
+    /// Something needs an optional feature that the adapter lacks.
+    #[error("{what} needs {feature}, which adapter '{adapter}' does not have; {mend}")]
+    MissingFeature {
+        /// Who needs it.
+        what: String,
+        /// The feature's name.
+        feature: &'static str,
+        /// Adapter name.
+        adapter: String,
+        /// What to do instead.
+        mend: &'static str,
+    },
+    /// A buffer or texture beyond the adapter's limits.
+    #[error("{what} needs {needed} bytes but adapter '{adapter}' allows {limit}; {mend}")]
+    TooLarge {
+        /// What was to be made.
+        what: String,
+        /// Bytes it needs.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+        /// Adapter name.
+        adapter: String,
+        /// What to do instead.
+        mend: &'static str,
+    },
+    /// The device stopped answering.
+    #[error("the GPU device was lost or did not answer: {0}; run again, or use --adapter software")]
+    Lost(String),
+    /// wgpu refused a command: a bug in this project, never the user's fault.
+    #[error("the GPU refused a command (this is a bug in peelnet): {0}")]
+    Validation(String),
+}

@@ -1,0 +1,135 @@
+//! What can be wrong with a model file.
+
+use std::io;
+use std::path::PathBuf;
+
+use peelnet_core::mlp::ShapeError;
+
+use crate::metadata::{FORMAT_VERSION, Output, Recipe};
+
+/// An error of loading or saving a model.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelError {
+    /// The file system refused.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        action: &'static str,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// The file, or the model that was to be saved, is not a usable model.
+    #[error("{}: {problem}", path.display())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: Problem,
+    },
+}
+
+/// What is wrong with a model.
+#[derive(Debug, thiserror::Error)]
+pub enum Problem {
+    /// Not a safetensors file, or a truncated one.
+    #[error(
+        "not a readable safetensors file ({0}): it was cut off or is something else; train or copy the model again"
+    )]
+    NotSafetensors(String),
+    /// A safetensors file of another program.
+    #[error(
+        "no `peelnet` entry in the metadata: the file is not a peelnet model; give one that `peelnet train` wrote"
+    )]
+    NotOurs,
+    /// Another version of the format.
+    #[error(
+        "model format {0}, but this program reads format {FORMAT_VERSION}; train again with this version"
+    )]
+    Version(u64),
+    /// The metadata cannot be understood.
+    #[error("metadata: {0}; train again with this version")]
+    Metadata(String),
+    /// A metadata number that no arithmetic can use.
+    #[error("metadata: {field} is {value}, it must be {allowed}; train again")]
+    Value {
+        /// Where it stands.
+        field: String,
+        /// The number as text.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A tensor is missing.
+    #[error(
+        "tensor {0:?} is missing; the tensors must be layers.0.weight, layers.0.bias, layers.1.weight, …"
+    )]
+    MissingTensor(String),
+    /// A tensor that is not a layer.
+    #[error(
+        "tensor {0:?} belongs to no layer; the tensors must be layers.0.weight, layers.0.bias, layers.1.weight, …"
+    )]
+    UnknownTensor(String),
+    /// A tensor of the wrong type or shape.
+    #[error("tensor {name:?} is {found}, expected {expected}")]
+    Tensor {
+        /// The tensor.
+        name: String,
+        /// Type and shape found.
+        found: String,
+        /// Type and shape expected.
+        expected: String,
+    },
+    /// Layers that do not fit one another.
+    #[error("the network's shapes are wrong: {0}")]
+    Shape(#[from] ShapeError),
+    /// A weight that is not a number.
+    #[error(
+        "tensor {name:?}: value {index} is {value}, all weights must be finite; the training diverged, train again with a lower rate"
+    )]
+    NotFinite {
+        /// The tensor.
+        name: String,
+        /// Position of the value.
+        index: usize,
+        /// The value as text.
+        value: String,
+    },
+    /// The network does not take the inputs that the metadata lists.
+    #[error("the network takes {network} inputs but the metadata lists {listed}")]
+    InputCount {
+        /// Inputs of the first layer.
+        network: usize,
+        /// Entries of the metadata.
+        listed: usize,
+    },
+    /// The model was made for other features.
+    #[error("made for other features: recipe {recipe} takes {expected}, the model lists ({}); train again with this version", found.join(", "))]
+    Features {
+        /// The model's recipe.
+        recipe: Recipe,
+        /// The inputs it should have.
+        expected: String,
+        /// The inputs it lists.
+        found: Vec<String>,
+    },
+    /// An output that the recipe does not have.
+    #[error("recipe {recipe} does not predict {output}")]
+    OutputKind {
+        /// The model's recipe.
+        recipe: Recipe,
+        /// The output it lists.
+        output: Output,
+    },
+    /// The network does not have as many outputs as the output parametrisation.
+    #[error("the network gives {network} outputs where {output} has {expected}")]
+    OutputCount {
+        /// Outputs of the last layer.
+        network: usize,
+        /// The output parametrisation.
+        output: Output,
+        /// Its number of values.
+        expected: usize,
+    },
+}

@@ -1,0 +1,232 @@
+//! The model as safetensors bytes, and files of them.
+
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::Path;
+
+use peelnet_core::mlp::{Activation, Layer, Mlp};
+use safetensors::tensor::TensorView;
+use safetensors::{Dtype, SafeTensors};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::error::{ModelError, Problem};
+use crate::metadata::{FORMAT_VERSION, Metadata};
+use crate::model::Model;
+
+/// The entry of the safetensors metadata that holds ours. It is the only one, because the format keeps its metadata
+/// in no particular order and the bytes must not vary.
+const KEY: &str = "peelnet";
+
+/// The metadata's JSON: [`Metadata`] with the network's activations beside it.
+#[derive(Serialize)]
+struct Stored<'a> {
+    mlp: Activations,
+    #[serde(flatten)]
+    meta: &'a Metadata,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Activations {
+    /// `3-10-8-1`: for readers; the tensors' shapes decide.
+    topology: String,
+    hidden: Activation,
+    output: Activation,
+}
+
+pub(crate) fn encode(model: &Model) -> Result<Vec<u8>, Problem> {
+    model.check()?;
+    let stored = Stored {
+        mlp: Activations {
+            topology: model.mlp.topology(),
+            hidden: model.mlp.hidden,
+            output: model.mlp.output,
+        },
+        meta: &model.meta,
+    };
+    let json = serde_json::to_string(&stored).map_err(|e| Problem::Metadata(e.to_string()))?;
+    let mut tensors: Vec<(String, Vec<usize>, Vec<u8>)> = Vec::new();
+    for (i, layer) in model.mlp.layers.iter().enumerate() {
+        let shape = vec![layer.outputs, layer.inputs];
+        tensors.push((weight(i), shape, to_bytes(&layer.weights)));
+        tensors.push((bias(i), vec![layer.outputs], to_bytes(&layer.bias)));
+    }
+    let views = tensors
+        .iter()
+        .map(|(name, shape, bytes)| {
+            TensorView::new(Dtype::F32, shape.clone(), bytes).map(|view| (name.as_str(), view))
+        })
+        .collect::<Result<Vec<_>, _>>();
+    let metadata = HashMap::from([(KEY.to_owned(), json)]);
+    views
+        .and_then(|views| safetensors::serialize(views, Some(metadata)))
+        .map_err(|e| Problem::NotSafetensors(e.to_string()))
+}
+
+pub(crate) fn decode(bytes: &[u8]) -> Result<Model, Problem> {
+    let broken = |e: safetensors::SafeTensorError| Problem::NotSafetensors(e.to_string());
+    let (_, header) = SafeTensors::read_metadata(bytes).map_err(broken)?;
+    let tensors = SafeTensors::deserialize(bytes).map_err(broken)?;
+    let json = header
+        .metadata()
+        .as_ref()
+        .and_then(|m| m.get(KEY))
+        .ok_or(Problem::NotOurs)?;
+    let (meta, activations) = read_metadata(json)?;
+    let layers = read_layers(&tensors)?;
+    let mlp = Mlp::new(layers, activations.hidden, activations.output)?;
+    let model = Model { mlp, meta };
+    model.check()?;
+    Ok(model)
+}
+
+fn read_metadata(json: &str) -> Result<(Metadata, Activations), Problem> {
+    let wrong = |e: serde_json::Error| Problem::Metadata(e.to_string());
+    let mut value: serde_json::Value = serde_json::from_str(json).map_err(wrong)?;
+    // The version first: another version's fields are bound to look wrong.
+    match value
+        .get("format_version")
+        .and_then(serde_json::Value::as_u64)
+    {
+        Some(version) if version == u64::from(FORMAT_VERSION) => {}
+        Some(version) => return Err(Problem::Version(version)),
+        None => return Err(Problem::Metadata("missing field `format_version`".into())),
+    }
+    let activations = value
+        .get_mut("mlp")
+        .map(serde_json::Value::take)
+        .ok_or_else(|| Problem::Metadata("missing field `mlp`".into()))?;
+    let activations = serde_json::from_value(activations).map_err(wrong)?;
+    let meta = serde_json::from_value(value).map_err(wrong)?;
+    Ok((meta, activations))
+}
+
+fn read_layers(tensors: &SafeTensors<'_>) -> Result<Vec<Layer>, Problem> {
+    let names = tensors.names();
+    let layers = names
+        .iter()
+        .filter_map(|n| n.strip_prefix("layers.")?.split_once('.')?.0.parse().ok())
+        .map(|i: usize| i.saturating_add(1))
+        .max()
+        .unwrap_or(0)
+        // More layers than tensors means that some are missing; no need to look for all of them.
+        .min(names.len() + 1);
+    if let Some(unknown) = names
+        .iter()
+        .filter(|n| !(0..layers).any(|i| **n == weight(i) || **n == bias(i)))
+        .min()
+    {
+        return Err(Problem::UnknownTensor((*unknown).to_owned()));
+    }
+    if layers == 0 {
+        return Err(Problem::MissingTensor(weight(0)));
+    }
+    (0..layers)
+        .map(|i| {
+            let (shape, weights) = read_tensor(tensors, &weight(i), 2)?;
+            let (bias_shape, bias_values) = read_tensor(tensors, &bias(i), 1)?;
+            if bias_shape[0] != shape[0] {
+                return Err(Problem::Tensor {
+                    name: bias(i),
+                    found: format!("F32 {bias_shape:?}"),
+                    expected: format!("F32 [{}], one for each row of {}", shape[0], weight(i)),
+                });
+            }
+            Ok(Layer {
+                outputs: shape[0],
+                inputs: shape[1],
+                weights,
+                bias: bias_values,
+            })
+        })
+        .collect()
+}
+
+/// Shape and values of a tensor with so many dimensions, none of which is 0.
+fn read_tensor(
+    tensors: &SafeTensors<'_>,
+    name: &str,
+    dimensions: usize,
+) -> Result<(Vec<usize>, Vec<f32>), Problem> {
+    let tensor = tensors
+        .tensor(name)
+        .map_err(|_| Problem::MissingTensor(name.to_owned()))?;
+    let shape = tensor.shape().to_vec();
+    if tensor.dtype() != Dtype::F32 || shape.len() != dimensions || shape.contains(&0) {
+        return Err(Problem::Tensor {
+            name: name.to_owned(),
+            found: format!("{:?} {shape:?}", tensor.dtype()),
+            expected: if dimensions == 2 {
+                "F32 [outputs, inputs]".to_owned()
+            } else {
+                "F32 [outputs]".to_owned()
+            },
+        });
+    }
+    let values = tensor
+        .data()
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        .collect();
+    Ok((shape, values))
+}
+
+fn weight(layer: usize) -> String {
+    format!("layers.{layer}.weight")
+}
+
+fn bias(layer: usize) -> String {
+    format!("layers.{layer}.bias")
+}
+
+fn to_bytes(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+/// Hexadecimal sha256.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes)
+        .iter()
+        .map(|b| format!("{b:02x}"))
+        .collect()
+}
+
+pub(crate) fn load(path: &Path) -> Result<Model, ModelError> {
+    let bytes = std::fs::read(path).map_err(|source| ModelError::Io {
+        path: path.to_owned(),
+        action: "read the model",
+        source,
+    })?;
+    Model::from_bytes(&bytes, path)
+}
+
+pub(crate) fn save(model: &Model, path: &Path) -> Result<(), ModelError> {
+    let bytes = encode(model).map_err(|problem| ModelError::Invalid {
+        path: path.to_owned(),
+        problem,
+    })?;
+    let io = |source| ModelError::Io {
+        path: path.to_owned(),
+        action: "write the model",
+        source,
+    };
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    // Temporary files are private by default; a model is not more secret than any other output.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o644));
+    }
+    let mut file = builder
+        .prefix(".peelnet-model-")
+        .tempfile_in(folder)
+        .map_err(io)?;
+    file.write_all(&bytes).map_err(io)?;
+    file.persist(path).map_err(|e| io(e.error))?;
+    Ok(())
+}

@@ -1,0 +1,358 @@
+//! What a model knows about itself.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::str::FromStr;
+
+use peelnet_core::guards::WEIGHT_FLOOR;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Problem;
+
+/// The version of the file's layout that this crate writes and reads.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// How a network is built: its inputs, output and use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Recipe {
+    /// Papakostas's network: z, Σα and n to T, 3-10-8-1.
+    Thesis,
+    /// Five features of the other fragments' absorbance, anchored share, 5-8-1.
+    Small,
+    /// The same with separate ends, 5-8-8-1.
+    Medium,
+    /// A network that corrects the moment estimate, separate ends.
+    Large,
+    /// Tsopouridis et al. 2024: seven inputs to T, 7-32-16-1.
+    Nmt,
+    /// Tsopouridis et al. 2024: ten inputs to the tail's colour, 10-32-16-3.
+    Dfaoit,
+}
+
+impl Recipe {
+    /// All recipes.
+    pub const ALL: [Self; 6] = [
+        Self::Thesis,
+        Self::Small,
+        Self::Medium,
+        Self::Large,
+        Self::Nmt,
+        Self::Dfaoit,
+    ];
+
+    /// The name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Thesis => "thesis",
+            Self::Small => "small",
+            Self::Medium => "medium",
+            Self::Large => "large",
+            Self::Nmt => "nmt",
+            Self::Dfaoit => "dfaoit",
+        }
+    }
+
+    /// The name of the rendering method that uses such a model.
+    pub const fn method_name(self) -> &'static str {
+        match self {
+            Self::Thesis => "deep-thesis",
+            Self::Small => "deep-small",
+            Self::Medium => "deep-medium",
+            Self::Large => "deep-large",
+            Self::Nmt => "nmt",
+            Self::Dfaoit => "dfaoit",
+        }
+    }
+
+    /// The names of the inputs, in order, where this version computes them; they are also the names of the exported
+    /// function's parameters. `None` for a recipe of which only the number of inputs is fixed.
+    pub const fn input_names(self) -> Option<&'static [&'static str]> {
+        match self {
+            Self::Thesis => Some(&["linear_depth", "alpha_sum", "fragment_count"]),
+            Self::Small | Self::Medium => Some(&[
+                "log_absorbance",
+                "depth_fraction",
+                "mean_fraction",
+                "depth_deviation",
+                "skewness",
+            ]),
+            Self::Large | Self::Nmt | Self::Dfaoit => None,
+        }
+    }
+
+    /// The number of inputs, where the recipe fixes it.
+    pub const fn input_count(self) -> Option<usize> {
+        match self {
+            Self::Thesis => Some(3),
+            Self::Small | Self::Medium => Some(5),
+            Self::Nmt => Some(7),
+            Self::Dfaoit => Some(10),
+            Self::Large => None,
+        }
+    }
+
+    /// Whether a network of this recipe may predict `output`.
+    pub const fn predicts(self, output: Output) -> bool {
+        match self {
+            Self::Thesis | Self::Nmt => matches!(output, Output::Transmittance),
+            Self::Small => matches!(output, Output::AnchoredShare),
+            Self::Medium | Self::Large => matches!(output, Output::AnchoredShareSeparateEnds),
+            Self::Dfaoit => matches!(output, Output::TailColor),
+        }
+    }
+}
+
+impl fmt::Display for Recipe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Recipe {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|r| r.name() == text)
+            .ok_or_else(|| {
+                format!(
+                    "recipe {text:?}: expected one of {}",
+                    Self::ALL.map(Self::name).join(", ")
+                )
+            })
+    }
+}
+
+/// What the network's output means, and how it is kept in range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Output {
+    /// T_i, kept in [`WEIGHT_FLOOR`] … 1.
+    Transmittance,
+    /// The share of the other fragments' absorbance that lies in front, kept in 0 … 1; 0 for the nearest fragment
+    /// and 1 for the farthest, whatever the network says.
+    AnchoredShare,
+    /// The same, where the nearest and the farthest fragment accumulate apart.
+    AnchoredShareSeparateEnds,
+    /// Linear RGB of the fragments behind the exact ones, kept in 0 … 1.
+    TailColor,
+}
+
+impl Output {
+    /// The name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Transmittance => "transmittance",
+            Self::AnchoredShare => "anchored-share",
+            Self::AnchoredShareSeparateEnds => "anchored-share-separate-ends",
+            Self::TailColor => "tail-color",
+        }
+    }
+
+    /// The number of values.
+    pub const fn count(self) -> usize {
+        match self {
+            Self::TailColor => 3,
+            _ => 1,
+        }
+    }
+
+    /// The smallest and the largest value after the guard.
+    pub const fn range(self) -> (f32, f32) {
+        match self {
+            Self::Transmittance => (WEIGHT_FLOOR, 1.0),
+            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::TailColor => (0.0, 1.0),
+        }
+    }
+
+    /// Keeps one value of the network in range; NaN becomes the smallest value.
+    pub fn guard(self, value: f32) -> f32 {
+        let (low, high) = self.range();
+        value.max(low).min(high)
+    }
+
+    /// As [`Output::guard`], in 64 bits.
+    pub fn guard_f64(self, value: f64) -> f64 {
+        let (low, high) = self.range();
+        value.max(f64::from(low)).min(f64::from(high))
+    }
+}
+
+impl fmt::Display for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// An input of the network: `normalised = (raw − offset) · scale`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Input {
+    /// The feature's name, an identifier.
+    pub name: String,
+    /// The raw feature's unit, such as `scene units` or `1`.
+    pub unit: String,
+    /// Subtracted from the raw feature.
+    pub offset: f32,
+    /// Multiplies the difference.
+    pub scale: f32,
+    /// Smallest raw value seen in training.
+    pub min: f32,
+    /// Largest raw value seen in training.
+    pub max: f32,
+}
+
+impl Input {
+    /// The normalised value of a raw one.
+    pub fn normalise(&self, raw: f32) -> f32 {
+        (raw - self.offset) * self.scale
+    }
+
+    /// As [`Input::normalise`], in 64 bits.
+    pub fn normalise_f64(&self, raw: f64) -> f64 {
+        (raw - f64::from(self.offset)) * f64::from(self.scale)
+    }
+}
+
+/// The dataset that a model was trained on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DatasetRef {
+    /// The dataset's hash; of several datasets, their hashes joined by `+`.
+    pub hash: String,
+    /// Number of rows.
+    pub rows: u64,
+    /// Names of the scenes that were trained on.
+    pub scenes: Vec<String>,
+}
+
+/// Final losses of each subset, where it was not empty.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Losses {
+    /// On the rows that gave gradients.
+    pub train: Option<f64>,
+    /// On the rows that choices were made by.
+    pub validation: Option<f64>,
+    /// On the rows that are only reported.
+    pub test: Option<f64>,
+}
+
+/// Everything about a model but its weights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Metadata {
+    /// [`FORMAT_VERSION`] of the writer.
+    pub format_version: u32,
+    /// Version of the program that trained.
+    pub tool_version: String,
+    /// How the network is built.
+    pub recipe: Recipe,
+    /// The inputs, in order.
+    pub inputs: Vec<Input>,
+    /// What the output means.
+    pub output: Output,
+    /// Seed of initial weights, order and split.
+    pub seed: u64,
+    /// What it was trained on; absent in a network that was made by hand.
+    pub dataset: Option<DatasetRef>,
+    /// Epochs that led to these weights.
+    pub epochs: u32,
+    /// Final losses.
+    pub losses: Losses,
+    /// Error on scenes that were not trained on: mean |T̂ − T| over the fragments, by scene.
+    pub held_out: BTreeMap<String, f64>,
+    /// The training configuration, as the trainer wrote it.
+    pub config: serde_json::Value,
+}
+
+impl Metadata {
+    /// Checks what the types cannot say.
+    pub(crate) fn check(&self) -> Result<(), Problem> {
+        if self.format_version != FORMAT_VERSION {
+            return Err(Problem::Version(self.format_version.into()));
+        }
+        let finite = |field: String, value: f64| {
+            if value.is_finite() {
+                return Ok(());
+            }
+            Err(Problem::Value {
+                field,
+                value: value.to_string(),
+                allowed: "a finite number",
+            })
+        };
+        for input in &self.inputs {
+            let field = |name: &str| format!("{name} of input {:?}", input.name);
+            finite(field("offset"), input.offset.into())?;
+            finite(field("scale"), input.scale.into())?;
+            finite(field("min"), input.min.into())?;
+            finite(field("max"), input.max.into())?;
+            if input.scale == 0.0 {
+                return Err(Problem::Value {
+                    field: field("scale"),
+                    value: "0".to_owned(),
+                    allowed: "other than 0",
+                });
+            }
+            if input.min > input.max {
+                return Err(Problem::Value {
+                    field: field("min"),
+                    value: input.min.to_string(),
+                    allowed: "at most max",
+                });
+            }
+        }
+        for (name, loss) in [
+            ("train", self.losses.train),
+            ("validation", self.losses.validation),
+            ("test", self.losses.test),
+        ] {
+            finite(format!("the {name} loss"), loss.unwrap_or(0.0))?;
+        }
+        for (scene, &error) in &self.held_out {
+            finite(format!("the held-out error of {scene:?}"), error)?;
+        }
+        self.check_features()?;
+        if !self.recipe.predicts(self.output) {
+            return Err(Problem::OutputKind {
+                recipe: self.recipe,
+                output: self.output,
+            });
+        }
+        Ok(())
+    }
+
+    fn check_features(&self) -> Result<(), Problem> {
+        let found: Vec<&str> = self.inputs.iter().map(|i| i.name.as_str()).collect();
+        let wrong = |expected: String| Problem::Features {
+            recipe: self.recipe,
+            expected,
+            found: found.iter().map(|&n| n.to_owned()).collect(),
+        };
+        if let Some(expected) = self.recipe.input_names() {
+            if found != expected {
+                return Err(wrong(format!("({})", expected.join(", "))));
+            }
+        } else if let Some(count) = self.recipe.input_count()
+            && found.len() != count
+        {
+            return Err(wrong(format!("{count} inputs")));
+        }
+        // The names become parameters of a function.
+        let distinct: BTreeSet<&str> = found.iter().copied().collect();
+        if found.is_empty() || distinct.len() != found.len() || !found.iter().all(|n| identifier(n))
+        {
+            return Err(wrong(
+                "one or more different names of letters, digits and underscores".to_owned(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a name can be a parameter in every shader language.
+fn identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && !name.contains("__")
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}

@@ -1,0 +1,140 @@
+//! A network and its metadata, and how it answers.
+
+use std::path::Path;
+
+use peelnet_core::mlp::{Layer, Mlp};
+
+use crate::error::{ModelError, Problem};
+use crate::file;
+use crate::metadata::Metadata;
+
+/// A trained network that knows its features.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// The network; its inputs are normalised.
+    pub mlp: Mlp,
+    /// Everything else.
+    pub meta: Metadata,
+}
+
+impl Model {
+    /// Loads a model file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
+        file::load(path.as_ref())
+    }
+
+    /// Reads a model from the bytes of a file; `path` only serves messages.
+    ///
+    /// # Errors
+    /// As [`Model::load`].
+    pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self, ModelError> {
+        file::decode(bytes).map_err(|problem| ModelError::Invalid {
+            path: path.as_ref().to_owned(),
+            problem,
+        })
+    }
+
+    /// Writes the model to a file, which holds the whole model afterwards or is as it was before.
+    ///
+    /// # Errors
+    /// If [`Model::check`] refuses the model or the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ModelError> {
+        file::save(self, path.as_ref())
+    }
+
+    /// The bytes of the model's file: the same for the same model.
+    ///
+    /// # Errors
+    /// If [`Model::check`] refuses the model.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Problem> {
+        file::encode(self)
+    }
+
+    /// Hexadecimal sha256 of the model's file.
+    ///
+    /// # Errors
+    /// If [`Model::check`] refuses the model.
+    pub fn hash(&self) -> Result<String, Problem> {
+        Ok(file::sha256(&self.to_bytes()?))
+    }
+
+    /// Whether the model can be used: its layers fit one another, the metadata and the recipe, and all numbers are
+    /// finite.
+    ///
+    /// # Errors
+    /// The first [`Problem`] found.
+    pub fn check(&self) -> Result<(), Problem> {
+        self.meta.check()?;
+        // The fields are public: what `Mlp::new` checked once may have changed.
+        Mlp::new(self.mlp.layers.clone(), self.mlp.hidden, self.mlp.output)?;
+        for (i, layer) in self.mlp.layers.iter().enumerate() {
+            let Layer { weights, bias, .. } = layer;
+            for (part, values) in [("weight", weights), ("bias", bias)] {
+                if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+                    return Err(Problem::NotFinite {
+                        name: format!("layers.{i}.{part}"),
+                        index,
+                        value: values[index].to_string(),
+                    });
+                }
+            }
+        }
+        if self.mlp.inputs() != self.meta.inputs.len() {
+            return Err(Problem::InputCount {
+                network: self.mlp.inputs(),
+                listed: self.meta.inputs.len(),
+            });
+        }
+        if self.mlp.outputs() != self.meta.output.count() {
+            return Err(Problem::OutputCount {
+                network: self.mlp.outputs(),
+                output: self.meta.output,
+                expected: self.meta.output.count(),
+            });
+        }
+        Ok(())
+    }
+
+    /// The prediction for raw features in scene units: normalises, runs the network, guards the outputs.
+    ///
+    /// # Panics
+    /// If the number of features is not that of the model's inputs.
+    pub fn forward_raw(&self, raw_inputs: &[f32]) -> Vec<f32> {
+        assert_eq!(raw_inputs.len(), self.meta.inputs.len(), "model inputs");
+        let normalised: Vec<f32> = self
+            .meta
+            .inputs
+            .iter()
+            .zip(raw_inputs)
+            .map(|(input, &raw)| input.normalise(raw))
+            .collect();
+        let mut outputs = self.mlp.forward(&normalised);
+        for value in &mut outputs {
+            *value = self.meta.output.guard(*value);
+        }
+        outputs
+    }
+
+    /// As [`Model::forward_raw`], in 64 bits: the judge of every other evaluation.
+    ///
+    /// # Panics
+    /// If the number of features is not that of the model's inputs.
+    pub fn forward_raw_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
+        assert_eq!(raw_inputs.len(), self.meta.inputs.len(), "model inputs");
+        let normalised: Vec<f64> = self
+            .meta
+            .inputs
+            .iter()
+            .zip(raw_inputs)
+            .map(|(input, &raw)| input.normalise_f64(raw))
+            .collect();
+        let mut outputs = self.mlp.forward_f64(&normalised);
+        for value in &mut outputs {
+            *value = self.meta.output.guard_f64(*value);
+        }
+        outputs
+    }
+}

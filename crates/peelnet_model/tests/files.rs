@@ -1,0 +1,370 @@
+//! Models survive their file, and every bad file gives one error that says what is wrong.
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use std::collections::{BTreeMap, HashMap};
+
+use peelnet_core::guards::WEIGHT_FLOOR;
+use peelnet_core::mlp::{Activation, Layer, Mlp};
+use peelnet_model::*;
+use safetensors::tensor::TensorView;
+use safetensors::{Dtype, SafeTensors};
+
+/// The thesis's topology with weights that have all bits in use.
+fn model() -> Model {
+    let mut state = 1u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / 16_777_216.0 - 0.5
+    };
+    let sizes = [3, 10, 8, 1];
+    let layers = sizes
+        .windows(2)
+        .map(|s| Layer {
+            inputs: s[0],
+            outputs: s[1],
+            weights: (0..s[0] * s[1]).map(|_| random()).collect(),
+            bias: (0..s[1]).map(|_| random()).collect(),
+        })
+        .collect();
+    let input = |name: &str, unit: &str, offset, scale, max| Input {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        offset,
+        scale,
+        min: 0.1,
+        max,
+    };
+    Model {
+        mlp: Mlp::new(layers, Activation::Relu, Activation::Identity).unwrap(),
+        meta: Metadata {
+            format_version: FORMAT_VERSION,
+            tool_version: "0.1.0".to_owned(),
+            recipe: Recipe::Thesis,
+            inputs: vec![
+                input("linear_depth", "scene units", 5.7, 1.0 / 3.0, 9.3),
+                input("alpha_sum", "1", 4.1, 0.3, 11.0),
+                input("fragment_count", "1", 8.0, 0.123_456_79, 34.0),
+            ],
+            output: Output::Transmittance,
+            seed: u64::MAX,
+            dataset: Some(DatasetRef {
+                hash: "cd".repeat(32),
+                rows: 1_544_955,
+                scenes: vec!["sixteen-050".to_owned()],
+            }),
+            epochs: 150,
+            losses: Losses {
+                train: Some(0.1 + 0.2),
+                validation: None,
+                test: Some(1.0 / 3.0),
+            },
+            held_out: BTreeMap::from([("cups".to_owned(), 2.0 / 3.0e5)]),
+            config: serde_json::json!({ "lr": 1e-4, "batch": 128, "a": null }),
+        },
+    }
+}
+
+#[test]
+fn a_model_survives_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.safetensors");
+    let model = model();
+    model.save(&path).unwrap();
+    let loaded = Model::load(&path).unwrap();
+    assert_eq!(loaded, model);
+    // The same model, the same bytes: also after a round trip, and over an older file.
+    let bytes = std::fs::read(&path).unwrap();
+    loaded.save(&path).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), bytes);
+    assert_eq!(loaded.hash().unwrap(), model.hash().unwrap());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    let mut other = model;
+    other.mlp.layers[2].bias[0] += 1.0;
+    assert_ne!(other.hash().unwrap(), loaded.hash().unwrap());
+}
+
+#[test]
+fn the_file_is_a_state_dict() {
+    let bytes = model().to_bytes().unwrap();
+    let tensors = SafeTensors::deserialize(&bytes).unwrap();
+    let mut names = tensors.names();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        [
+            "layers.0.bias",
+            "layers.0.weight",
+            "layers.1.bias",
+            "layers.1.weight",
+            "layers.2.bias",
+            "layers.2.weight"
+        ]
+    );
+    assert_eq!(tensors.tensor("layers.0.weight").unwrap().shape(), [10, 3]);
+    let (_, header) = SafeTensors::read_metadata(&bytes).unwrap();
+    let json = &header.metadata().as_ref().unwrap()["peelnet"];
+    let value: serde_json::Value = serde_json::from_str(json).unwrap();
+    assert_eq!(value["mlp"]["topology"], "3-10-8-1");
+    assert_eq!(value["mlp"]["hidden"], "relu");
+    assert_eq!(value["recipe"], "thesis");
+    assert_eq!(value["output"], "transmittance");
+    assert_eq!(value["inputs"][0]["name"], "linear_depth");
+}
+
+#[test]
+fn raw_features_are_normalised_and_outputs_guarded() {
+    let mut model = model();
+    // One layer that passes the first input on.
+    model.mlp = Mlp::new(
+        vec![Layer {
+            inputs: 3,
+            outputs: 1,
+            weights: vec![1.0, 0.0, 0.0],
+            bias: vec![0.0],
+        }],
+        Activation::Relu,
+        Activation::Identity,
+    )
+    .unwrap();
+    model.meta.inputs[0].offset = 2.0;
+    model.meta.inputs[0].scale = 0.25;
+    model.check().unwrap();
+    for (raw, expected) in [
+        (4.0, 0.5),
+        (6.0, 1.0),
+        (60.0, 1.0),
+        (2.0, WEIGHT_FLOOR),
+        (-9.0, WEIGHT_FLOOR),
+    ] {
+        assert_eq!(model.forward_raw(&[raw, 1.0, 1.0]), [expected]);
+        assert_eq!(
+            model.forward_raw_f64(&[raw.into(), 1.0, 1.0]),
+            [f64::from(expected)]
+        );
+    }
+    assert_eq!(model.forward_raw(&[f32::NAN, 1.0, 1.0]), [WEIGHT_FLOOR]);
+}
+
+fn message(bytes: &[u8]) -> String {
+    let error = Model::from_bytes(bytes, "m.safetensors").unwrap_err();
+    let text = error.to_string();
+    assert!(text.starts_with("m.safetensors: "), "{text}");
+    text
+}
+
+type Tensors = BTreeMap<String, (Dtype, Vec<usize>, Vec<u8>)>;
+
+/// The good model's file with some tensors and the metadata's JSON changed.
+fn spoilt(tensors: impl Fn(&mut Tensors), json: impl Fn(&mut serde_json::Value)) -> Vec<u8> {
+    let bytes = model().to_bytes().unwrap();
+    let (_, header) = SafeTensors::read_metadata(&bytes).unwrap();
+    let mut value = serde_json::from_str(&header.metadata().as_ref().unwrap()["peelnet"]).unwrap();
+    json(&mut value);
+    let mut all: Tensors = SafeTensors::deserialize(&bytes)
+        .unwrap()
+        .tensors()
+        .into_iter()
+        .map(|(name, t)| (name, (t.dtype(), t.shape().to_vec(), t.data().to_vec())))
+        .collect();
+    tensors(&mut all);
+    let views = all.iter().map(|(name, (dtype, shape, data))| {
+        (
+            name.clone(),
+            TensorView::new(*dtype, shape.clone(), data).unwrap(),
+        )
+    });
+    let metadata = HashMap::from([("peelnet".to_owned(), value.to_string())]);
+    safetensors::serialize(views, Some(metadata)).unwrap()
+}
+
+#[test]
+fn bad_tensors() {
+    let f32s = |n: usize| vec![0u8; 4 * n];
+    type Spoil = Box<dyn Fn(&mut Tensors)>;
+    let spoils: Vec<(Spoil, &[&str])> = vec![
+        (
+            Box::new(|t| {
+                t.remove("layers.1.bias");
+            }),
+            &["layers.1.bias", "missing"],
+        ),
+        (
+            Box::new(|t| {
+                t.retain(|name, _| !name.starts_with("layers.1"));
+            }),
+            &["layers.1.weight", "missing"],
+        ),
+        (Box::new(Tensors::clear), &["layers.0.weight", "missing"]),
+        (
+            Box::new(move |t| {
+                t.insert("extra".into(), (Dtype::F32, vec![1], f32s(1)));
+            }),
+            &["extra", "no layer"],
+        ),
+        (
+            Box::new(move |t| {
+                t.insert(
+                    "layers.99999999999.bias".into(),
+                    (Dtype::F32, vec![1], f32s(1)),
+                );
+            }),
+            &["layers.99999999999.bias", "no layer"],
+        ),
+        (
+            Box::new(|t| t.get_mut("layers.0.weight").unwrap().1 = vec![3, 10]),
+            &["layers.0.bias", "F32 [10]", "F32 [3]"],
+        ),
+        (
+            Box::new(|t| t.get_mut("layers.0.weight").unwrap().1 = vec![30]),
+            &["layers.0.weight", "F32 [30]", "[outputs, inputs]"],
+        ),
+        (
+            Box::new(|t| t.get_mut("layers.2.bias").unwrap().0 = Dtype::I32),
+            &["layers.2.bias", "I32", "F32"],
+        ),
+        (
+            Box::new(move |t| {
+                t.insert("layers.1.weight".into(), (Dtype::F32, vec![8, 9], f32s(72)));
+            }),
+            &["layer 1 takes 9 inputs", "gives 10"],
+        ),
+        (
+            Box::new(move |t| {
+                t.insert(
+                    "layers.0.weight".into(),
+                    (Dtype::F32, vec![10, 4], f32s(40)),
+                );
+            }),
+            &["takes 4 inputs", "lists 3"],
+        ),
+        (
+            Box::new(move |t| {
+                t.insert("layers.2.weight".into(), (Dtype::F32, vec![2, 8], f32s(16)));
+                t.insert("layers.2.bias".into(), (Dtype::F32, vec![2], f32s(2)));
+            }),
+            &["gives 2 outputs", "transmittance has 1"],
+        ),
+        (
+            Box::new(|t| {
+                t.get_mut("layers.1.weight").unwrap().2[12..16]
+                    .copy_from_slice(&f32::NAN.to_le_bytes());
+            }),
+            &["layers.1.weight", "value 3 is NaN", "finite"],
+        ),
+    ];
+    for (spoil, words) in spoils {
+        let text = message(&spoilt(spoil, |_| ()));
+        for word in words {
+            assert!(text.contains(word), "{word:?} is not in: {text}");
+        }
+    }
+}
+
+#[test]
+fn bad_metadata() {
+    type Spoil = fn(&mut serde_json::Value);
+    let spoils: [(Spoil, &[&str]); 11] = [
+        (
+            |v| v["format_version"] = 2.into(),
+            &["format 2", "format 1"],
+        ),
+        (
+            |v| {
+                v.as_object_mut().unwrap().remove("format_version");
+            },
+            &["missing field `format_version`"],
+        ),
+        (
+            |v| {
+                v.as_object_mut().unwrap().remove("seed");
+            },
+            &["missing field `seed`"],
+        ),
+        (
+            |v| {
+                v.as_object_mut().unwrap().remove("mlp");
+            },
+            &["missing field `mlp`"],
+        ),
+        (|v| v["recipe"] = "tiny".into(), &["tiny", "thesis"]),
+        (|v| v["mlp"]["hidden"] = "tanh".into(), &["tanh", "relu"]),
+        (
+            |v| v["inputs"][1]["name"] = "sum_of_alphas".into(),
+            &["other features", "sum_of_alphas", "alpha_sum"],
+        ),
+        (
+            |v| v["recipe"] = "small".into(),
+            &["other features", "recipe small", "log_absorbance"],
+        ),
+        (
+            |v| v["output"] = "tail-color".into(),
+            &["recipe thesis", "tail-color"],
+        ),
+        (
+            |v| v["inputs"][2]["scale"] = serde_json::Value::Null,
+            &["null", "f32"],
+        ),
+        (
+            |v| v["inputs"][2]["scale"] = 0.into(),
+            &["scale of input \"fragment_count\" is 0"],
+        ),
+    ];
+    for (spoil, words) in spoils {
+        let text = message(&spoilt(|_| (), spoil));
+        for word in words {
+            assert!(text.contains(word), "{word:?} is not in: {text}");
+        }
+    }
+}
+
+#[test]
+fn files_that_are_no_models() {
+    let good = model().to_bytes().unwrap();
+    for cut in [0, 7, 8, 100, good.len() - 1] {
+        assert!(message(&good[..cut]).contains("not a readable safetensors file"));
+    }
+    assert!(message(b"GIF89a is not a model either").contains("not a readable safetensors"));
+    let data = [0u8; 4];
+    let foreign = [("w", TensorView::new(Dtype::F32, vec![1], &data).unwrap())];
+    let foreign = safetensors::serialize(foreign, None).unwrap();
+    assert!(message(&foreign).contains("not a peelnet model"));
+    let text = Model::load("nowhere/m.safetensors")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        text.contains("nowhere/m.safetensors") && text.contains("read"),
+        "{text}"
+    );
+}
+
+#[test]
+fn nothing_is_written_that_could_not_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.safetensors");
+    let mut bad = model();
+    bad.mlp.layers[0].weights[0] = f32::INFINITY;
+    let text = bad.save(&path).unwrap_err().to_string();
+    assert!(text.contains("layers.0.weight"), "{text}");
+    let mut bad = model();
+    bad.meta.losses.test = Some(f64::NAN);
+    let text = bad.save(&path).unwrap_err().to_string();
+    assert!(text.contains("test loss is NaN"), "{text}");
+    let mut bad = model();
+    bad.meta.inputs[0].min = 10.0;
+    assert!(
+        bad.save(&path)
+            .unwrap_err()
+            .to_string()
+            .contains("at most max")
+    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+
+    // An unwritable place, for every user: a file where a folder should be, a folder where the file should be.
+    std::fs::write(&path, "x").unwrap();
+    let text = model().save(path.join("m")).unwrap_err().to_string();
+    assert!(text.contains("cannot write the model"), "{text}");
+    let taken = folder.path().join("folder");
+    std::fs::create_dir(&taken).unwrap();
+    assert!(model().save(&taken).is_err());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+}

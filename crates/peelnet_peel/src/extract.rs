@@ -1,0 +1,342 @@
+//! The extraction itself: items in order, the GPU on one thread, rows and files on another.
+
+use crate::{
+    PeelError,
+    harvest::{Harvest, Harvester, Peel},
+    items::{Item, Views, items},
+    rows::{RawTile, RowCounts, ViewConstants, append_rows},
+};
+use peelnet_dataset::{
+    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, PartCounts, PartInfo,
+    SceneEntry, Shard,
+};
+use peelnet_gpu::Gpu;
+use peelnet_render::scene::PixelSample;
+use peelnet_scene::{Camera, Scene};
+use std::{
+    path::PathBuf,
+    sync::{
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
+    },
+    time::Instant,
+};
+
+/// Fragments of one tile unless told otherwise: 100 MB of GPU storage and as much for the copy of it.
+const DEFAULT_BUDGET: u64 = 4 << 20;
+
+/// Rows handed to the writer at a time.
+const ROWS_AT_A_TIME: usize = 1 << 18;
+
+/// What to extract, and where to.
+#[derive(Clone, Debug)]
+pub struct ExtractOptions {
+    /// Folder of the dataset.
+    pub out: PathBuf,
+    /// Frame width and height in pixels.
+    pub size: [u32; 2],
+    /// Views of each scene.
+    pub views: Views,
+    /// File format.
+    pub format: Format,
+    /// How fragments are found.
+    pub peel: Peel,
+    /// Cap on peeling passes; what lies beyond is counted as lost.
+    pub max_passes: Option<u32>,
+    /// Fraction of pixels to keep, 0 … 1.
+    pub pixels: f64,
+    /// Varied copies of each scene.
+    pub augment: u32,
+    /// Seed of the pixel sample and of the copies.
+    pub seed: u64,
+    /// The part of the items to do.
+    pub shard: Option<Shard>,
+    /// The command line, for the manifest.
+    pub command: String,
+    /// Fragments of one tile; memory grows with it.
+    pub budget: Option<u64>,
+}
+
+/// How far an extraction is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Items done.
+    pub items_done: u32,
+    /// Items to do.
+    pub items: u32,
+    /// Rows found so far.
+    pub rows: u64,
+    /// Seconds since the start.
+    pub seconds: f64,
+}
+
+/// What an extraction did.
+#[derive(Clone, Debug)]
+pub struct ExtractReport {
+    /// The finished manifest.
+    pub manifest: Manifest,
+    /// GPU time of all passes, microseconds (0 without timestamps).
+    pub gpu_micros: f64,
+    /// Clock time of everything, microseconds.
+    pub wall_micros: f64,
+    /// Fragments that peeling left out.
+    pub lost: u64,
+    /// Neighbours of equal depth.
+    pub coplanar: u64,
+    /// Tiles drawn.
+    pub tiles: u64,
+}
+
+/// What the GPU's side spent.
+#[derive(Default)]
+struct Effort {
+    gpu_micros: f64,
+    tiles: u64,
+}
+
+enum Message {
+    Begin(PartInfo, ViewConstants),
+    Tile(RawTile),
+    End,
+}
+
+/// Peels the scenes and writes the dataset. Nothing appears in the folder before everything is done.
+///
+/// # Errors
+/// Scenes that lack views or share a name, a fraction outside 0 … 1, an adapter's limits, a folder that cannot be
+/// written, or [`PeelError::Interrupted`] when `stop` becomes true.
+pub fn extract(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<ExtractReport, PeelError> {
+    let start = Instant::now();
+    if !(options.pixels > 0.0 && options.pixels <= 1.0) {
+        return Err(PeelError::Usage(format!(
+            "--pixels {}: the fraction of pixels must lie above 0 and at most 1",
+            options.pixels
+        )));
+    }
+    let all = items(scenes, options.views, options.augment)?;
+    if all.is_empty() {
+        return Err(PeelError::Usage("no scene to extract".into()));
+    }
+    let mine: Vec<Item> = all
+        .iter()
+        .copied()
+        .filter(|i| options.shard.is_none_or(|s| s.contains(i.index)))
+        .collect();
+    let writer = DatasetWriter::create(
+        &options.out,
+        Header {
+            format: options.format,
+            seed: options.seed,
+            adapter: gpu.info.name.clone(),
+            tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+            command: options.command.clone(),
+            peel: options.peel.to_string(),
+            pixels_fraction: options.pixels,
+            augment: options.augment,
+            scenes: scenes.iter().map(scene_entry).collect(),
+            work_items: all.len() as u32,
+            shard: options.shard,
+        },
+    )?;
+    let mut effort = Effort::default();
+    let counts = std::thread::scope(|scope| {
+        let (send, receive) = sync_channel(1);
+        let (give_back, take) = channel();
+        let writer = &writer;
+        let writing = scope.spawn(move || write(writer, &receive, &give_back));
+        let peeled = peel(
+            gpu,
+            scenes,
+            options,
+            &mine,
+            stop,
+            progress,
+            &send,
+            &take,
+            &mut effort,
+        );
+        // Without a sender the writer comes to its end.
+        drop(send);
+        let written = writing
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        // Whichever side failed first made the other one stop with `Interrupted`: tell the real reason.
+        match (written, peeled) {
+            (Err(PeelError::Interrupted) | Ok(_), Err(e)) | (Err(e), _) => Err(e),
+            (Ok(counts), Ok(())) => Ok(counts),
+        }
+    })?;
+    let manifest = writer.finish()?;
+    Ok(ExtractReport {
+        manifest,
+        gpu_micros: effort.gpu_micros,
+        wall_micros: start.elapsed().as_secs_f64() * 1e6,
+        lost: counts.lost,
+        coplanar: counts.coplanar,
+        tiles: effort.tiles,
+    })
+}
+
+/// The GPU's side: every item's tiles into the channel.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "one call site, and a struct of references would only rename them"
+)]
+fn peel(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+    mine: &[Item],
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+    send: &SyncSender<Message>,
+    take: &Receiver<RawTile>,
+    effort: &mut Effort,
+) -> Result<(), PeelError> {
+    let start = Instant::now();
+    let deliver = |message| send.send(message).map_err(|_| PeelError::Interrupted);
+    let threshold = peelnet_core::hash::sample_threshold(options.pixels);
+    let mut state = Progress {
+        items: mine.len() as u32,
+        ..Default::default()
+    };
+    progress(&state);
+    let mut current: Option<((u32, u32), Scene, Harvester<'_>)> = None;
+    for item in mine {
+        let key = (item.scene, item.copy);
+        if current.as_ref().is_none_or(|(k, ..)| *k != key) {
+            // The old scene's buffers go before the new one's come.
+            drop(current.take());
+            let scene = scenes[item.scene as usize].varied(options.seed, item.copy);
+            let harvester = Harvester::new(
+                gpu,
+                &scene,
+                options.size,
+                options.peel,
+                options.pixels < 1.0,
+                Some(options.budget.unwrap_or(DEFAULT_BUDGET)),
+            )?;
+            current = Some((key, scene, harvester));
+        }
+        let Some((_, scene, harvester)) = &mut current else {
+            continue;
+        };
+        let camera = &scene.views[item.view as usize];
+        let info = PartInfo {
+            index: item.index,
+            scene: item.scene,
+            copy: item.copy,
+            view: item.view,
+            camera: camera_info(camera),
+            width: options.size[0],
+            height: options.size[1],
+        };
+        let constants = ViewConstants {
+            view: item.index,
+            width: options.size[0],
+            near: camera.near,
+            far: camera.far,
+        };
+        deliver(Message::Begin(info, constants))?;
+        // The hash takes 32 bits of seed; both halves count.
+        let sample = PixelSample {
+            seed: (options.seed ^ (options.seed >> 32)) as u32,
+            view: item.index,
+            threshold,
+        };
+        let Harvest {
+            fragments,
+            tiles,
+            gpu_micros,
+            ..
+        } = harvester.harvest(
+            camera,
+            sample,
+            options.max_passes,
+            || take.try_recv().unwrap_or_default(),
+            |tile| {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(PeelError::Interrupted);
+                }
+                deliver(Message::Tile(tile))
+            },
+        )?;
+        deliver(Message::End)?;
+        effort.gpu_micros += gpu_micros;
+        effort.tiles += u64::from(tiles);
+        state.items_done += 1;
+        state.rows += fragments;
+        state.seconds = start.elapsed().as_secs_f64();
+        progress(&state);
+        if stop.load(Ordering::Relaxed) {
+            return Err(PeelError::Interrupted);
+        }
+    }
+    Ok(())
+}
+
+/// The files' side: tiles from the channel to rows of parts.
+fn write(
+    writer: &DatasetWriter,
+    receive: &Receiver<Message>,
+    give_back: &Sender<RawTile>,
+) -> Result<RowCounts, PeelError> {
+    let mut total = RowCounts::default();
+    let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
+    while let Ok(Message::Begin(info, constants)) = receive.recv() {
+        let mut part = writer.begin(info)?;
+        let mut counts = RowCounts::default();
+        loop {
+            match receive.recv() {
+                Ok(Message::Tile(tile)) => {
+                    let found =
+                        append_rows(&tile, constants, &mut batch, ROWS_AT_A_TIME, |rows| {
+                            part.write(rows)
+                        })?;
+                    counts.rows += found.rows;
+                    counts.lost += found.lost;
+                    counts.coplanar += found.coplanar;
+                    // Nobody may be left to use it again; then it is freed.
+                    let _ = give_back.send(tile);
+                }
+                Ok(_) => break,
+                // The other side ended early: the part is abandoned with the whole dataset.
+                Err(_) => return Err(PeelError::Interrupted),
+            }
+        }
+        part.finish(PartCounts {
+            lost_fragments: counts.lost,
+            coplanar_ties: counts.coplanar,
+        })?;
+        total.rows += counts.rows;
+        total.lost += counts.lost;
+        total.coplanar += counts.coplanar;
+    }
+    Ok(total)
+}
+
+fn scene_entry(scene: &Scene) -> SceneEntry {
+    SceneEntry {
+        name: scene.name.clone(),
+        file: scene.source.display().to_string(),
+        sha256: scene.hash.clone(),
+        held_out: scene.held_out,
+    }
+}
+
+fn camera_info(camera: &Camera) -> CameraInfo {
+    CameraInfo {
+        position: camera.position.to_array(),
+        target: camera.target.to_array(),
+        up: camera.up.to_array(),
+        fov_y_degrees: camera.fov_y_degrees,
+        near: camera.near,
+        far: camera.far,
+    }
+}

@@ -1,0 +1,300 @@
+//! Finds all fragments of a view, tile by tile, in one of three ways that leave the same runs in storage.
+
+use crate::{PeelError, rows::RawTile};
+use bytemuck::{Pod, Zeroable};
+use peelnet_gpu::{
+    Gpu,
+    bind::{Bind, Bound},
+    record::Recorder,
+    wgpu,
+};
+use peelnet_render::{
+    passes::{
+        dual::DualPeel,
+        sbuffer::{SBuffer, Tile},
+        single::SinglePeel,
+    },
+    scene::{FrameTargets, GeometryPipelines, PixelSample, SceneBuffers},
+};
+use peelnet_scene::{Camera, Scene};
+use std::{fmt, str::FromStr};
+
+/// How fragments are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Peel {
+    /// Count, prefix sum, exact store, sort per pixel.
+    #[default]
+    SBuffer,
+    /// Dual depth peeling: two layers a pass. Loses coplanar fragments, and says how many.
+    Dual,
+    /// Front to back, one layer a pass.
+    Single,
+}
+
+impl FromStr for Peel {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        match s {
+            "sbuffer" => Ok(Self::SBuffer),
+            "dual" => Ok(Self::Dual),
+            "single" => Ok(Self::Single),
+            _ => Err(format!("'{s}' is not one of sbuffer, dual, single")),
+        }
+    }
+}
+
+impl fmt::Display for Peel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::SBuffer => "sbuffer",
+            Self::Dual => "dual",
+            Self::Single => "single",
+        })
+    }
+}
+
+/// Layout of `Step` in `peel/collect_dual.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Step {
+    pass_index: u32,
+    width: u32,
+    pad: [u32; 2],
+}
+
+#[derive(Debug)]
+enum Peeler {
+    SBuffer,
+    Dual(DualPeel),
+    Single(SinglePeel),
+}
+
+/// Kernels that put peeled layers into runs; made anew when storage grows.
+#[derive(Debug)]
+struct Collector {
+    pipeline: wgpu::ComputePipeline,
+    groups: [Bound; 2],
+}
+
+/// A scene made ready for peeling at one frame size.
+#[derive(Debug)]
+pub struct Harvester<'g> {
+    gpu: &'g Gpu,
+    scene: SceneBuffers,
+    frame: FrameTargets,
+    opaque: Option<GeometryPipelines>,
+    sbuffer: SBuffer,
+    peeler: Peeler,
+    collector: Option<Collector>,
+    step: wgpu::Buffer,
+}
+
+/// What was found in one view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Harvest {
+    /// Fragments of the view.
+    pub fragments: u64,
+    /// Fragments of its fullest pixel.
+    pub max_layers: u32,
+    /// Tiles it took.
+    pub tiles: u32,
+    /// GPU time of all passes, microseconds; 0 without timestamps.
+    pub gpu_micros: f64,
+}
+
+impl<'g> Harvester<'g> {
+    /// Uploads a scene. `sampled` if views will be given a real [`PixelSample`]; `budget` bounds a tile's fragments.
+    ///
+    /// # Errors
+    /// A scene or frame beyond the adapter's limits, or a feature it lacks.
+    pub fn new(
+        gpu: &'g Gpu,
+        scene: &Scene,
+        size: [u32; 2],
+        peel: Peel,
+        sampled: bool,
+        budget: Option<u64>,
+    ) -> Result<Self, PeelError> {
+        let features: &[&str] = if sampled { &["sampled"] } else { &[] };
+        let scene = SceneBuffers::new(gpu, scene)?;
+        let frame = scene.targets(gpu, size)?;
+        let peeler = match peel {
+            Peel::SBuffer => Peeler::SBuffer,
+            Peel::Dual => Peeler::Dual(DualPeel::new(gpu, &scene, &frame, features)?),
+            Peel::Single => Peeler::Single(SinglePeel::new(gpu, &scene, &frame, features)?),
+        };
+        Ok(Self {
+            opaque: scene.opaque_pipelines(gpu, &frame)?,
+            sbuffer: SBuffer::new(gpu, &scene, &frame, budget, features)?,
+            step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
+            collector: None,
+            gpu,
+            scene,
+            frame,
+            peeler,
+        })
+    }
+
+    /// Finds a view's fragments and hands each tile over. `next` gives an empty tile to fill (so that memory is used
+    /// again), `ready` takes the full one and may end the harvest by an error.
+    ///
+    /// # Errors
+    /// A lost device, a pixel beyond the budget, or what `ready` returns.
+    pub fn harvest(
+        &mut self,
+        camera: &Camera,
+        sample: PixelSample,
+        max_passes: Option<u32>,
+        mut next: impl FnMut() -> RawTile,
+        mut ready: impl FnMut(RawTile) -> Result<(), PeelError>,
+    ) -> Result<Harvest, PeelError> {
+        let gpu = self.gpu;
+        self.scene.set_view(gpu, camera, self.frame.size, sample);
+        let mut recorder = Recorder::new(gpu, true);
+        self.scene
+            .draw_background(&mut recorder, &self.frame, self.opaque.as_ref());
+        let found = self
+            .sbuffer
+            .count
+            .run(&mut recorder, &self.scene, &self.frame)?;
+        let (tiles, grown) = self
+            .sbuffer
+            .plan(gpu, &self.scene, &self.frame, found.total)?;
+        if grown {
+            self.collector = self.collector()?;
+        }
+        for tile in &tiles {
+            match &self.peeler {
+                Peeler::SBuffer => {
+                    self.sbuffer
+                        .store_and_sort(&mut recorder, &self.scene, &self.frame, tile);
+                }
+                Peeler::Dual(_) | Peeler::Single(_) => {
+                    self.peel(&mut recorder, tile, found.most, max_passes);
+                }
+            }
+            recorder.submit();
+            let mut raw = next();
+            self.read(tile, &mut raw)?;
+            if !raw.depths.is_empty() {
+                ready(raw)?;
+            }
+        }
+        let times = recorder.finish()?;
+        Ok(Harvest {
+            fragments: found.total,
+            max_layers: found.most,
+            tiles: tiles.len() as u32,
+            gpu_micros: times.iter().map(|t| t.micros).sum(),
+        })
+    }
+
+    /// Peels the whole frame and keeps what lies in `tile`.
+    fn peel(&self, recorder: &mut Recorder<'_>, tile: &Tile, layers: u32, cap: Option<u32>) {
+        let (Some(collector), Some(storage)) = (&self.collector, self.sbuffer.storage()) else {
+            return;
+        };
+        let queue = &self.gpu.queue;
+        queue.write_buffer(self.sbuffer.tile_buffer(), 0, bytemuck::bytes_of(tile));
+        // A depth of 0 marks a slot that no pass fills.
+        recorder.encoder().clear_buffer(&storage.depths, 0, None);
+        let passes = match &self.peeler {
+            Peeler::Dual(dual) => {
+                dual.init(recorder, &self.scene, &self.frame);
+                layers.div_ceil(2)
+            }
+            Peeler::Single(single) => {
+                single.init(recorder);
+                layers
+            }
+            Peeler::SBuffer => 0,
+        };
+        for pass_index in 0..passes.min(cap.unwrap_or(u32::MAX)) {
+            match &self.peeler {
+                Peeler::Dual(dual) => dual.peel(recorder, &self.scene, &self.frame, pass_index),
+                Peeler::Single(single) => {
+                    single.peel(recorder, &self.scene, &self.frame, pass_index);
+                }
+                Peeler::SBuffer => {}
+            }
+            let step = Step {
+                pass_index,
+                width: self.frame.size[0],
+                pad: [0; 2],
+            };
+            queue.write_buffer(&self.step, 0, bytemuck::bytes_of(&step));
+            {
+                let mut pass = recorder.compute("collect");
+                pass.set_pipeline(&collector.pipeline);
+                pass.set_bind_group(0, &collector.groups[(pass_index % 2) as usize].group, &[]);
+                let [x, y] = tile.dispatch();
+                pass.dispatch_workgroups(x, y, 1);
+            }
+            // The step's uniform is written at submission: one submission a pass.
+            recorder.submit();
+        }
+    }
+
+    fn collector(&self) -> Result<Option<Collector>, PeelError> {
+        let Some(storage) = self.sbuffer.storage() else {
+            return Ok(None);
+        };
+        let common = [
+            Bind::Uniform(self.sbuffer.tile_buffer()),
+            Bind::Uniform(&self.step),
+            Bind::Read(&self.sbuffer.count.offsets),
+            Bind::Write(&storage.depths),
+            Bind::Write(&storage.colors),
+        ];
+        let bound = |textures: &[Bind<'_>]| {
+            let entries = [&common, textures].concat();
+            self.gpu
+                .bind("collect", wgpu::ShaderStages::COMPUTE, &entries)
+        };
+        let (shader, groups) = match &self.peeler {
+            Peeler::SBuffer => return Ok(None),
+            Peeler::Dual(dual) => (
+                "peel::collect_dual",
+                [0, 1].map(|from: usize| {
+                    bound(&[
+                        Bind::Texture(&dual.ranges[from]),
+                        Bind::Texture(&dual.front),
+                        Bind::Texture(&dual.back),
+                    ])
+                }),
+            ),
+            Peeler::Single(single) => (
+                "peel::collect_single",
+                [0, 1].map(|from: usize| {
+                    bound(&[
+                        Bind::Uint(&single.keys[1 - from]),
+                        Bind::Texture(&single.layer),
+                    ])
+                }),
+            ),
+        };
+        let wgsl = peelnet_shaders::link(shader, &[], &[])?;
+        Ok(Some(Collector {
+            pipeline: self.gpu.compute(shader, &wgsl, &[&groups[0].layout]),
+            groups,
+        }))
+    }
+
+    /// Reads a tile's runs back.
+    fn read(&self, tile: &Tile, raw: &mut RawTile) -> Result<(), PeelError> {
+        let gpu = self.gpu;
+        raw.first_pixel = tile.begin;
+        let pixels = u64::from(tile.begin) * 4..u64::from(tile.end) * 4 + 4;
+        gpu.read_into(&self.sbuffer.count.offsets, pixels, &mut raw.offsets)?;
+        for offset in &mut raw.offsets {
+            *offset -= tile.base;
+        }
+        let fragments = u64::from(raw.offsets.last().copied().unwrap_or(0));
+        if let Some(storage) = self.sbuffer.storage() {
+            gpu.read_into(&storage.depths, 0..fragments * 4, &mut raw.depths)?;
+            gpu.read_into(&storage.colors, 0..fragments * 16, &mut raw.colors)?;
+        }
+        Ok(())
+    }
+}

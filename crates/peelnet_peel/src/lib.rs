@@ -1,0 +1,18 @@
+//! Peels scenes on the GPU and writes every fragment to a dataset.
+//!
+//! A scene, a varied copy of it and a view make a work item ([`items`]); work items are independent, so shards take
+//! them in turn. For each, [`harvest::Harvester`] finds all fragments in one of three ways — S-buffer, dual or single
+//! peeling — which leave the same thing in GPU storage: per pixel a run of fragments, front to back. A second thread
+//! turns runs into rows ([`rows`]) and writes them while the GPU works on the next tile. Memory is bounded by the
+//! tile's budget, whatever the number of views or fragments.
+
+mod error;
+mod extract;
+pub mod harvest;
+pub mod items;
+pub mod rows;
+
+pub use error::PeelError;
+pub use extract::{ExtractOptions, ExtractReport, Progress, extract};
+pub use harvest::Peel;
+pub use items::Views;

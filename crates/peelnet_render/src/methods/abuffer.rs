@@ -1,0 +1,92 @@
+//! `abuffer`: every fragment stored, sorted and composited (S-buffer, Vasilakis & Fudos 2012).
+
+use super::{Build, Compositor, DrawContext, FrameStats};
+use crate::{
+    RenderError,
+    passes::sbuffer::{BYTES_PER_FRAGMENT, SBuffer},
+};
+use peelnet_gpu::{
+    bind::{Bind, Bound},
+    wgpu,
+};
+
+#[derive(Debug)]
+struct ABuffer {
+    sbuffer: SBuffer,
+    composite: wgpu::ComputePipeline,
+    group: Option<Bound>,
+}
+
+pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let sbuffer = SBuffer::new(b.gpu, b.scene, b.frame, b.spec.count("budget")?, &[])?;
+    // Storage is sized by the first frame; the layout does not depend on it, so any buffer stands in for it here.
+    let layout = group(b.gpu, &sbuffer, &sbuffer.count.counts, b.frame).layout;
+    let wgsl = peelnet_shaders::link("methods::abuffer::composite", &[], &[])?;
+    Ok(Box::new(ABuffer {
+        composite: b.gpu.compute("composite", &wgsl, &[&layout]),
+        group: None,
+        sbuffer,
+    }))
+}
+
+fn group(
+    gpu: &peelnet_gpu::Gpu,
+    sbuffer: &SBuffer,
+    colors: &wgpu::Buffer,
+    frame: &crate::scene::FrameTargets,
+) -> Bound {
+    gpu.bind(
+        "composite",
+        wgpu::ShaderStages::COMPUTE,
+        &[
+            Bind::Uniform(sbuffer.tile_buffer()),
+            Bind::Read(&sbuffer.count.offsets),
+            Bind::Read(colors),
+            Bind::Texture(&frame.background),
+            Bind::Store(&frame.image),
+        ],
+    )
+}
+
+impl Compositor for ABuffer {
+    fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
+        let gpu = cx.recorder.gpu();
+        let found = self.sbuffer.count.run(cx.recorder, cx.scene, cx.frame)?;
+        let (tiles, grown) = self.sbuffer.plan(gpu, cx.scene, cx.frame, found.total)?;
+        if grown || self.group.is_none() {
+            let colors = self
+                .sbuffer
+                .storage()
+                .map_or(&self.sbuffer.count.counts, |s| &s.colors);
+            self.group = Some(group(gpu, &self.sbuffer, colors, cx.frame));
+        }
+        for tile in &tiles {
+            self.sbuffer
+                .store_and_sort(cx.recorder, cx.scene, cx.frame, tile);
+            let mut pass = cx.recorder.compute("composite");
+            pass.set_pipeline(&self.composite);
+            pass.set_bind_group(0, self.group.as_ref().map(|g| &g.group), &[]);
+            let [x, y] = tile.dispatch();
+            pass.dispatch_workgroups(x, y, 1);
+            drop(pass);
+            // The tile's uniform is written at submission: one submission a tile.
+            cx.recorder.submit();
+        }
+        let pixels = f64::from(cx.frame.pixels());
+        let stored = if tiles.len() > 1 {
+            crate::passes::sbuffer::FragmentStorage::limit(gpu, None).min(found.total)
+        } else {
+            found.total
+        };
+        Ok(FrameStats {
+            fragments: Some(found.total),
+            max_layers: Some(found.most),
+            lost: 0,
+            tiles: tiles.len() as u32,
+            geometry_passes: 1 + tiles.len() as u32,
+            fullscreen_passes: 3 + 2 * tiles.len() as u32,
+            // Count, offset and the unwritten attachment; then the fragments.
+            bytes_per_pixel: 9.0 + (stored * BYTES_PER_FRAGMENT) as f64 / pixels,
+        })
+    }
+}

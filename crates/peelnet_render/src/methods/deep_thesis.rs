@@ -1,0 +1,54 @@
+//! `deep-thesis`: eq 6 with the weight of the thesis's network (Papakostas 2022), drawn with the exported text itself.
+
+use super::{
+    Build, Compositor,
+    commutative::{self, Blend, Gather, Plan, Target},
+    weighted::{SUMS, TRANSMITTANCE},
+};
+use crate::RenderError;
+
+pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let learned = b
+        .learned
+        .ok_or_else(|| RenderError::NeedsModel(b.spec.to_string()))?;
+    let method = learned.recipe.method_name();
+    if method != b.spec.name() {
+        return Err(RenderError::Knob {
+            method: b.spec.to_string(),
+            message: format!(
+                "the model given was trained for method {method}; use that method, or another model"
+            ),
+        });
+    }
+    let statistics = Target {
+        label: "statistics",
+        channels: 2,
+        blend: Blend::Add,
+    };
+    commutative::build(
+        b,
+        &Plan {
+            targets: &[SUMS, TRANSMITTANCE, statistics],
+            passes: &[
+                Gather {
+                    label: "statistics",
+                    shader: "methods::deep_thesis::statistics",
+                    features: &[],
+                    extra: &[],
+                    writes: &[2],
+                    reads: &[],
+                },
+                Gather {
+                    label: "gather",
+                    shader: "methods::deep_thesis::gather",
+                    features: &[],
+                    extra: &[("learned::weight", &learned.wgsl)],
+                    writes: &[0, 1],
+                    reads: &[2],
+                },
+            ],
+            resolve: "methods::wboit::resolve",
+            resolve_reads: &[0, 1],
+        },
+    )
+}

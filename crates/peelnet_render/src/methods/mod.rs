@@ -1,0 +1,377 @@
+//! Every method by name: one file each behind [`Compositor`].
+//!
+//! [`MethodSpec`] is a parsed name with its knobs; [`METHODS`] is the list that names, help texts, benchmarks and
+//! tests are made from. Adding a method is one file here, one shader folder, and one line of that list.
+
+pub mod abuffer;
+mod commutative;
+mod deep_thesis;
+pub mod depth_peel;
+pub mod dual_peel;
+mod weighted;
+
+use crate::{
+    LearnedWeight, RenderError,
+    scene::{FrameTargets, SceneBuffers},
+};
+use peelnet_core::weights::Weight;
+use peelnet_gpu::{Gpu, record::Recorder};
+use std::{collections::BTreeMap, fmt, str::FromStr};
+
+/// What a method reports of one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameStats {
+    /// Transparent fragments of the frame, where the method counts them.
+    pub fragments: Option<u64>,
+    /// Fragments of the fullest pixel, where the method counts them.
+    pub max_layers: Option<u32>,
+    /// Fragments that the method did not composite: coplanar ones in dual peeling, those beyond a cap on passes.
+    pub lost: u64,
+    /// Tiles that the frame was drawn in.
+    pub tiles: u32,
+    /// Passes over the transparent geometry.
+    pub geometry_passes: u32,
+    /// Passes over the pixels.
+    pub fullscreen_passes: u32,
+    /// Bytes that the method allocates a pixel, beyond colour target and `C_0`; storage per fragment included.
+    pub bytes_per_pixel: f64,
+}
+
+/// What a compositor draws with.
+#[derive(Debug)]
+pub struct DrawContext<'a, 'g> {
+    /// Records and measures passes.
+    pub recorder: &'a mut Recorder<'g>,
+    /// The scene.
+    pub scene: &'a SceneBuffers,
+    /// `C_0` and the image to write.
+    pub frame: &'a FrameTargets,
+    /// Whether to count what statistics need and compositing does not.
+    pub counting: bool,
+}
+
+/// A method made ready for one scene and frame size.
+pub trait Compositor: fmt::Debug {
+    /// Composites the transparent fragments over `C_0` into the frame's image.
+    ///
+    /// # Errors
+    /// A lost device, or a frame beyond the adapter's limits.
+    fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError>;
+}
+
+/// A method of the list.
+#[derive(Clone, Copy, Debug)]
+pub struct MethodEntry {
+    /// Its name.
+    pub name: &'static str,
+    /// One line for help texts.
+    pub about: &'static str,
+    /// Names of its knobs, with the values they take.
+    pub knobs: &'static [(&'static str, &'static str)],
+    /// Whether it draws with a trained network.
+    pub learned: bool,
+    /// Whether it is exact by definition.
+    pub exact: bool,
+    build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
+}
+
+/// What a method is built from.
+pub(crate) struct Build<'a> {
+    pub gpu: &'a Gpu,
+    pub scene: &'a SceneBuffers,
+    pub frame: &'a FrameTargets,
+    pub spec: &'a MethodSpec,
+    pub learned: Option<&'a LearnedWeight>,
+}
+
+const TARGETS: (&str, &str) = ("targets", "f16 (default) or f32");
+const PASSES: (&str, &str) = ("passes", "a cap on the number of peeling passes");
+
+macro_rules! wboit {
+    ($name:literal, $weight:expr, $about:literal, [$($knob:expr),*]) => {
+        MethodEntry {
+            name: $name,
+            about: $about,
+            knobs: &[TARGETS $(, $knob)*],
+            learned: false,
+            exact: false,
+            build: |b| weighted::wboit(b, $weight),
+        }
+    };
+}
+
+/// Every method there is.
+pub const METHODS: &[MethodEntry] = &[
+    MethodEntry {
+        name: "abuffer",
+        about: "exact: S-buffer, every fragment stored and sorted",
+        knobs: &[("budget", "fragments that one tile may hold")],
+        learned: false,
+        exact: true,
+        build: abuffer::build,
+    },
+    MethodEntry {
+        name: "depth-peel",
+        about: "exact: front to back, one layer a pass",
+        knobs: &[PASSES],
+        learned: false,
+        exact: true,
+        build: depth_peel::build,
+    },
+    MethodEntry {
+        name: "dual-peel",
+        about: "exact but for coplanar fragments: both ends, two layers a pass",
+        knobs: &[PASSES],
+        learned: false,
+        exact: true,
+        build: dual_peel::build,
+    },
+    MethodEntry {
+        name: "weighted-sum",
+        about: "Meshkin 2007",
+        knobs: &[TARGETS],
+        learned: false,
+        exact: false,
+        build: weighted::sum,
+    },
+    MethodEntry {
+        name: "weighted-average",
+        about: "Bavoil & Myers 2008",
+        knobs: &[TARGETS],
+        learned: false,
+        exact: false,
+        build: weighted::average,
+    },
+    MethodEntry {
+        name: "blended",
+        about: "McGuire & Bavoil 2013, eq 5",
+        knobs: &[TARGETS],
+        learned: false,
+        exact: false,
+        build: weighted::blended,
+    },
+    wboit!(
+        "wboit-eq7",
+        |_| Ok(Weight::Eq7),
+        "McGuire & Bavoil 2013, eq 6 with weight 7",
+        []
+    ),
+    wboit!(
+        "wboit-eq8",
+        |_| Ok(Weight::Eq8),
+        "McGuire & Bavoil 2013, eq 6 with weight 8",
+        []
+    ),
+    wboit!(
+        "wboit-eq9",
+        |_| Ok(Weight::Eq9),
+        "McGuire & Bavoil 2013, eq 6 with weight 9",
+        []
+    ),
+    wboit!(
+        "wboit-eq10",
+        |s| Ok(Weight::Eq10 {
+            factor: s.number("factor", 3e3)?
+        }),
+        "McGuire & Bavoil 2013, eq 6 with weight 10",
+        [("factor", "largest weight, 3e3 by default")]
+    ),
+    wboit!(
+        "wboit-papakostas",
+        |_| Ok(Weight::Papakostas),
+        "eq 6 with the weight of Papakostas 2022",
+        []
+    ),
+    wboit!(
+        "wboit-inverse-power",
+        |s| Ok(Weight::InversePower {
+            k: s.number("k", 2.0)?.round().clamp(0.0, 16.0) as u32,
+            epsilon: s.number("epsilon", 5.0)?
+        }),
+        "eq 6 with (z + epsilon)^-k",
+        [
+            ("k", "a whole exponent, 2 by default"),
+            ("epsilon", "offset in scene units, 5 by default")
+        ]
+    ),
+    MethodEntry {
+        name: "deep-thesis",
+        about: "Papakostas 2022: eq 6 with a network's weight",
+        knobs: &[TARGETS],
+        learned: true,
+        exact: false,
+        build: deep_thesis::build,
+    },
+];
+
+/// A method's name with its knobs, such as `wboit-eq10:factor=3e4,targets=f32`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct MethodSpec {
+    name: &'static str,
+    knobs: BTreeMap<String, String>,
+}
+
+impl MethodSpec {
+    /// Every method that draws without a model, with default knobs.
+    pub fn all() -> Vec<Self> {
+        METHODS
+            .iter()
+            .filter(|m| !m.learned)
+            .map(|m| Self {
+                name: m.name,
+                knobs: BTreeMap::new(),
+            })
+            .collect()
+    }
+
+    /// The method's name without knobs.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Whether it draws with a trained network.
+    pub fn needs_model(&self) -> bool {
+        self.entry().learned
+    }
+
+    /// Its entry in the list.
+    pub fn entry(&self) -> &'static MethodEntry {
+        // Parsing found the name in the list.
+        METHODS
+            .iter()
+            .find(|m| m.name == self.name)
+            .unwrap_or(&METHODS[0])
+    }
+
+    /// A knob that is a finite number.
+    pub(crate) fn number(&self, knob: &str, default: f32) -> Result<f32, RenderError> {
+        let Some(text) = self.knobs.get(knob) else {
+            return Ok(default);
+        };
+        text.parse()
+            .ok()
+            .filter(|x: &f32| x.is_finite())
+            .ok_or_else(|| self.bad(&format!("{knob} must be a number, not '{text}'")))
+    }
+
+    /// A knob that is a positive whole number.
+    pub(crate) fn count(&self, knob: &str) -> Result<Option<u64>, RenderError> {
+        let Some(text) = self.knobs.get(knob) else {
+            return Ok(None);
+        };
+        match text.parse() {
+            Ok(n) if n > 0 => Ok(Some(n)),
+            _ => Err(self.bad(&format!(
+                "{knob} must be a positive whole number, not '{text}'"
+            ))),
+        }
+    }
+
+    /// Whether 32-bit targets are asked for.
+    pub(crate) fn full_precision(&self) -> Result<bool, RenderError> {
+        match self.knobs.get("targets").map(String::as_str) {
+            None | Some("f16") => Ok(false),
+            Some("f32") => Ok(true),
+            Some(other) => Err(self.bad(&format!("targets must be f16 or f32, not '{other}'"))),
+        }
+    }
+
+    fn bad(&self, message: &str) -> RenderError {
+        RenderError::Knob {
+            method: self.name.to_owned(),
+            message: message.to_owned(),
+        }
+    }
+}
+
+impl FromStr for MethodSpec {
+    type Err = RenderError;
+
+    fn from_str(text: &str) -> Result<Self, RenderError> {
+        let (name, rest) = text.split_once(':').unwrap_or((text, ""));
+        let Some(entry) = METHODS.iter().find(|m| m.name == name) else {
+            return Err(RenderError::UnknownMethod {
+                name: name.to_owned(),
+                known: METHODS
+                    .iter()
+                    .map(|m| m.name)
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            });
+        };
+        let mut spec = Self {
+            name: entry.name,
+            knobs: BTreeMap::new(),
+        };
+        for pair in rest.split(',').filter(|p| !p.is_empty()) {
+            let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
+            if !entry.knobs.iter().any(|(k, _)| *k == key) {
+                let known: Vec<_> = entry
+                    .knobs
+                    .iter()
+                    .map(|(k, v)| format!("{k} ({v})"))
+                    .collect();
+                return Err(spec.bad(&format!(
+                    "there is no knob '{key}'; there are: {}",
+                    known.join(", ")
+                )));
+            }
+            spec.knobs.insert(key.to_owned(), value.to_owned());
+        }
+        Ok(spec)
+    }
+}
+
+impl fmt::Display for MethodSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)?;
+        for (i, (key, value)) in self.knobs.iter().enumerate() {
+            write!(f, "{}{key}={value}", if i == 0 { ':' } else { ',' })?;
+        }
+        Ok(())
+    }
+}
+
+/// Makes a method ready.
+pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    (b.spec.entry().build)(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_knobs_round_trip() {
+        for text in [
+            "abuffer",
+            "wboit-eq10:factor=3e4,targets=f32",
+            "deep-thesis:targets=f32",
+        ] {
+            assert_eq!(
+                text.parse::<MethodSpec>().expect("parses").to_string(),
+                text
+            );
+        }
+    }
+
+    #[test]
+    fn unknown_names_and_knobs_are_refused_with_what_there_is() {
+        let e = "wbiot".parse::<MethodSpec>().expect_err("typo");
+        assert!(e.to_string().contains("wboit-eq9"), "{e}");
+        let e = "abuffer:targets=f32"
+            .parse::<MethodSpec>()
+            .expect_err("no such knob");
+        assert!(e.to_string().contains("budget"), "{e}");
+        let spec: MethodSpec = "depth-peel:passes=0".parse().expect("parses");
+        assert!(spec.count("passes").is_err());
+    }
+
+    #[test]
+    fn names_are_unique() {
+        let mut names: Vec<_> = METHODS.iter().map(|m| m.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), METHODS.len());
+    }
+}

@@ -1,0 +1,105 @@
+//! `weighted-sum`, `weighted-average`, `blended` and `wboit-*`: one geometry pass each.
+
+use super::{
+    Build, Compositor, MethodSpec,
+    commutative::{self, Blend, Gather, Plan, Target},
+};
+use crate::RenderError;
+use peelnet_core::weights::Weight;
+
+/// `Σ C w` and `Σ α w`.
+pub(super) const SUMS: Target = Target {
+    label: "sums",
+    channels: 4,
+    blend: Blend::Add,
+};
+
+/// `T_∞`.
+pub(super) const TRANSMITTANCE: Target = Target {
+    label: "transmittance",
+    channels: 1,
+    blend: Blend::Transmit,
+};
+
+const fn gather(shader: &'static str, writes: &'static [usize]) -> Gather<'static> {
+    Gather {
+        label: "gather",
+        shader,
+        features: &[],
+        extra: &[],
+        writes,
+        reads: &[],
+    }
+}
+
+pub(super) fn sum(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    commutative::build(
+        b,
+        &Plan {
+            targets: &[SUMS],
+            passes: &[gather("methods::weighted_sum::gather", &[0])],
+            resolve: "methods::weighted_sum::resolve",
+            resolve_reads: &[0],
+        },
+    )
+}
+
+pub(super) fn average(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let count = Target {
+        label: "fragment count",
+        channels: 1,
+        blend: Blend::Add,
+    };
+    commutative::build(
+        b,
+        &Plan {
+            targets: &[SUMS, count],
+            passes: &[gather("methods::weighted_average::gather", &[0, 1])],
+            resolve: "methods::weighted_average::resolve",
+            resolve_reads: &[0, 1],
+        },
+    )
+}
+
+pub(super) fn blended(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    commutative::build(
+        b,
+        &Plan {
+            targets: &[SUMS, TRANSMITTANCE],
+            passes: &[gather("methods::blended::gather", &[0, 1])],
+            resolve: "methods::wboit::resolve",
+            resolve_reads: &[0, 1],
+        },
+    )
+}
+
+pub(super) fn wboit(
+    b: &Build<'_>,
+    weight: fn(&MethodSpec) -> Result<Weight, RenderError>,
+) -> Result<Box<dyn Compositor>, RenderError> {
+    let weight = weight(b.spec)?;
+    let (mut factor, mut power, mut offset) = (0.0, 0, 0.0);
+    match weight {
+        Weight::Eq10 { factor: f } => factor = f,
+        Weight::InversePower { k, epsilon } => (power, offset) = (k, epsilon),
+        _ => {}
+    }
+    // `{:?}` prints a float with a point or exponent, and as the shortest text that reads back the same.
+    let parameters = format!(
+        "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
+    );
+    let feature = weight.name().replace('-', "_");
+    commutative::build(
+        b,
+        &Plan {
+            targets: &[SUMS, TRANSMITTANCE],
+            passes: &[Gather {
+                features: &[&feature],
+                extra: &[("parameters", &parameters)],
+                ..gather("methods::wboit::gather", &[0, 1])
+            }],
+            resolve: "methods::wboit::resolve",
+            resolve_reads: &[0, 1],
+        },
+    )
+}

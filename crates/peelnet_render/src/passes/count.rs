@@ -1,0 +1,211 @@
+//! How many fragments each pixel has, and the prefix sum of that.
+
+use crate::{
+    RenderError,
+    scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
+};
+use peelnet_gpu::{
+    Gpu,
+    bind::{Bind, Bound},
+    record::Recorder,
+    wgpu,
+};
+
+/// Pixels of one block of the prefix sum; `BLOCK` in `peel/scan_blocks.wgsl`.
+const BLOCK: u32 = 256;
+
+/// What the count pass found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FragmentCount {
+    /// Fragments in the frame.
+    pub total: u64,
+    /// Fragments in the fullest pixel.
+    pub most: u32,
+}
+
+/// The count pass and the three kernels of the prefix sum.
+#[derive(Debug)]
+pub struct CountPass {
+    /// Fragments per pixel, row-major; the S-buffer's second pass counts it down to zero.
+    pub counts: wgpu::Buffer,
+    /// First fragment of each pixel; one entry more than pixels, the last one the total.
+    pub offsets: wgpu::Buffer,
+    total: wgpu::Buffer,
+    // A pass needs an attachment; nothing is written to this one.
+    attachment: wgpu::TextureView,
+    pipelines: GeometryPipelines,
+    group: Bound,
+    kernels: [(&'static str, wgpu::ComputePipeline, Bound, [u32; 2]); 3],
+}
+
+impl CountPass {
+    /// Builds the pass for a frame. `features` may hold `sampled`.
+    ///
+    /// # Errors
+    /// A frame whose counters exceed a storage binding, or a shader that does not link.
+    pub fn new(
+        gpu: &Gpu,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        features: &[&str],
+    ) -> Result<Self, RenderError> {
+        let pixels = frame.pixels();
+        let counts = gpu.storage("fragment counts", u64::from(pixels) * 4)?;
+        let offsets = gpu.storage("fragment offsets", u64::from(pixels) * 4 + 4)?;
+        let blocks_count = pixels.div_ceil(BLOCK);
+        let blocks = gpu.storage("prefix-sum blocks", u64::from(blocks_count) * 8)?;
+        let total = gpu.storage("fragment total", 8)?;
+        let format = wgpu::TextureFormat::R8Unorm;
+        let attachment = gpu.texture(
+            "no attachment",
+            format,
+            frame.size,
+            wgpu::TextureUsages::empty(),
+        )?;
+        let group = gpu.bind(
+            "count",
+            wgpu::ShaderStages::FRAGMENT,
+            &[Bind::Write(&counts)],
+        );
+        let pipelines = scene.pipelines(
+            gpu,
+            frame,
+            Surfaces::Transparent,
+            &GeometryPass {
+                label: "count",
+                shader: "peel::count",
+                features,
+                extra: &[],
+                group: Some(&group.layout),
+                targets: &[unwritten(format)],
+                depth: None,
+            },
+        )?;
+        let groups = groups_2d(blocks_count);
+        let extent = gpu.upload(
+            "extent",
+            &[pixels, blocks_count, groups[0], 0],
+            wgpu::BufferUsages::UNIFORM,
+        );
+        let kernel = |name: &'static str, entries: &[Bind<'_>], groups| {
+            let bound = gpu.bind(name, wgpu::ShaderStages::COMPUTE, entries);
+            let wgsl = peelnet_shaders::link(name, &[], &[])?;
+            let pipeline = gpu.compute(name, &wgsl, &[&bound.layout]);
+            Ok::<_, RenderError>((name, pipeline, bound, groups))
+        };
+        let kernels = [
+            kernel(
+                "peel::scan_blocks",
+                &[
+                    Bind::Uniform(&extent),
+                    Bind::Read(&counts),
+                    Bind::Write(&blocks),
+                ],
+                groups,
+            )?,
+            kernel(
+                "peel::scan_top",
+                &[
+                    Bind::Uniform(&extent),
+                    Bind::Write(&blocks),
+                    Bind::Write(&total),
+                ],
+                [1, 1],
+            )?,
+            kernel(
+                "peel::scan_pixels",
+                &[
+                    Bind::Uniform(&extent),
+                    Bind::Read(&counts),
+                    Bind::Read(&blocks),
+                    Bind::Write(&offsets),
+                ],
+                groups,
+            )?,
+        ];
+        Ok(Self {
+            counts,
+            offsets,
+            total,
+            attachment,
+            pipelines,
+            group,
+            kernels,
+        })
+    }
+
+    /// Counts a frame and reads the total back.
+    ///
+    /// # Errors
+    /// A lost device, or more fragments than 32-bit offsets can count.
+    pub fn run(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+    ) -> Result<FragmentCount, RenderError> {
+        recorder.encoder().clear_buffer(&self.counts, 0, None);
+        {
+            let mut pass =
+                recorder.render("count", &[unwritten_attachment(&self.attachment)], None);
+            pass.set_bind_group(1, &self.group.group, &[]);
+            scene.draw(&mut pass, frame, Surfaces::Transparent, &self.pipelines);
+        }
+        for (name, pipeline, bound, groups) in &self.kernels {
+            let mut pass = recorder.compute(name);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &bound.group, &[]);
+            pass.dispatch_workgroups(groups[0], groups[1], 1);
+        }
+        recorder.submit();
+        let found: Vec<u32> = recorder.gpu().read(&self.total, 0..8)?;
+        let (total, most) = (found[0], found[1]);
+        // The 32-bit sum may have wrapped only if the fullest pixel times the pixels can reach 2³².
+        if u64::from(most) * u64::from(frame.pixels()) > u64::from(u32::MAX) {
+            let counts: Vec<u32> = recorder
+                .gpu()
+                .read(&self.counts, 0..u64::from(frame.pixels()) * 4)?;
+            let sum: u64 = counts.iter().map(|&c| u64::from(c)).sum();
+            if sum > u64::from(u32::MAX) {
+                return Err(RenderError::TooManyFragments(sum));
+            }
+        }
+        Ok(FragmentCount {
+            total: u64::from(total),
+            most,
+        })
+    }
+
+    /// A bind group and attachment for passes that write storage only.
+    pub(crate) fn attachment(&self) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+        unwritten_attachment(&self.attachment)
+    }
+}
+
+/// Workgroups of 64 threads over `items`, as a 2-D dispatch: one dimension holds at most 65,535 groups.
+pub fn groups_2d(items: u32) -> [u32; 2] {
+    let groups = items.div_ceil(64).max(1);
+    let x = groups.min(32_768);
+    [x, groups.div_ceil(x)]
+}
+
+/// A colour target that nothing is written to.
+pub(crate) fn unwritten(format: wgpu::TextureFormat) -> Option<wgpu::ColorTargetState> {
+    Some(wgpu::ColorTargetState {
+        format,
+        blend: None,
+        write_mask: wgpu::ColorWrites::empty(),
+    })
+}
+
+fn unwritten_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            store: wgpu::StoreOp::Discard,
+        },
+    })
+}

@@ -1,0 +1,74 @@
+//! A pass over every pixel, without geometry.
+
+use crate::RenderError;
+use peelnet_gpu::{
+    Gpu,
+    bind::{Bind, Bound},
+    record::Recorder,
+    wgpu,
+};
+
+/// A pipeline that covers the frame, with its bind group.
+#[derive(Debug)]
+pub struct FullscreenPass {
+    label: String,
+    pipeline: wgpu::RenderPipeline,
+    group: Bound,
+}
+
+impl FullscreenPass {
+    /// Builds the pass; `entries` are the bindings of group 0 in order.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn new(
+        gpu: &Gpu,
+        shader: &str,
+        features: &[&str],
+        entries: &[Bind<'_>],
+        targets: &[Option<wgpu::ColorTargetState>],
+    ) -> Result<Self, RenderError> {
+        let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
+        let module = gpu.shader(shader, &peelnet_shaders::link(shader, features, &[])?);
+        let pipeline = gpu
+            .device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(shader),
+                layout: Some(&gpu.layout(&[&group.layout])),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex_main"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: None,
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment_main"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets,
+                }),
+                multiview_mask: None,
+                cache: None,
+            });
+        Ok(Self {
+            label: shader.to_owned(),
+            pipeline,
+            group,
+        })
+    }
+
+    /// Records the pass.
+    pub fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    ) {
+        let mut pass = recorder.render(&self.label, colors, None);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

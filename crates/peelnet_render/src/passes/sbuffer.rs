@@ -1,0 +1,346 @@
+//! The S-buffer (Vasilakis & Fudos 2012): every fragment of a tile, in storage of exactly the right size, sorted.
+//!
+//! Storage is bounded: a frame whose fragments exceed the budget is worked off in tiles, runs of row-major pixels
+//! whose fragments fit. Nothing is dropped.
+
+use crate::{
+    RenderError,
+    passes::count::{CountPass, groups_2d, unwritten},
+    scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
+};
+use bytemuck::{Pod, Zeroable};
+use peelnet_gpu::{
+    Gpu,
+    bind::{Bind, Bound},
+    record::Recorder,
+    wgpu,
+};
+
+/// Bytes of one fragment in storage: depth, triangle, colour with alpha.
+pub const BYTES_PER_FRAGMENT: u64 = 4 + 4 + 16;
+
+/// Layout of `Tile` in `peel/tile.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable, PartialEq, Eq)]
+pub struct Tile {
+    /// First pixel.
+    pub begin: u32,
+    /// One past the last pixel.
+    pub end: u32,
+    /// Offset of the first pixel's first fragment in the whole frame.
+    pub base: u32,
+    groups: u32,
+}
+
+impl Tile {
+    /// A tile over the pixels `begin..end`, whose first fragment is the frame's fragment `base`.
+    pub fn new(begin: u32, end: u32, base: u32) -> Self {
+        Self {
+            begin,
+            end,
+            base,
+            groups: groups_2d(end - begin)[0],
+        }
+    }
+
+    /// Workgroups of 64 over its pixels.
+    pub fn dispatch(&self) -> [u32; 2] {
+        groups_2d(self.end - self.begin)
+    }
+
+    /// The smallest rectangle of whole rows (or the part of one row) that holds the tile: x, y, width, height.
+    fn scissor(&self, width: u32) -> [u32; 4] {
+        let (first, last) = (self.begin / width, (self.end - 1) / width);
+        if first == last {
+            [self.begin % width, first, self.end - self.begin, 1]
+        } else {
+            [0, first, width, last - first + 1]
+        }
+    }
+}
+
+/// Cuts a frame into tiles of at most `capacity` fragments. `offsets` has one entry more than the frame has pixels.
+///
+/// Tiles are whole rows where a row fits, else runs inside one row.
+///
+/// # Errors
+/// [`RenderError::PixelOverBudget`] where a single pixel does not fit.
+pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, RenderError> {
+    let pixels = offsets.len() as u32 - 1;
+    let load = |begin: u32, end: u32| u64::from(offsets[end as usize] - offsets[begin as usize]);
+    let mut tiles = Vec::new();
+    let mut begin = 0;
+    while begin < pixels {
+        // Grow by rows, then (if not even one row fits) by pixels.
+        let mut end = begin;
+        if begin % width == 0 {
+            while end < pixels && load(begin, end + width) <= capacity {
+                end += width;
+            }
+        }
+        if end == begin {
+            let row_end = (begin / width + 1) * width;
+            while end < row_end && load(begin, end + 1) <= capacity {
+                end += 1;
+            }
+        }
+        if end == begin {
+            return Err(RenderError::PixelOverBudget {
+                fragments: load(begin, begin + 1),
+                capacity,
+            });
+        }
+        tiles.push(Tile::new(begin, end, offsets[begin as usize]));
+        begin = end;
+    }
+    Ok(tiles)
+}
+
+/// Storage for a tile's fragments, grown to what tiles need.
+#[derive(Debug)]
+pub struct FragmentStorage {
+    /// Linear depth of each fragment.
+    pub depths: wgpu::Buffer,
+    /// Triangle of each fragment.
+    pub triangles: wgpu::Buffer,
+    /// Un-premultiplied radiance and alpha of each fragment.
+    pub colors: wgpu::Buffer,
+    capacity: u64,
+}
+
+impl FragmentStorage {
+    /// Storage for `fragments` fragments.
+    ///
+    /// # Errors
+    /// More than a storage binding holds.
+    pub fn new(gpu: &Gpu, fragments: u64) -> Result<Self, RenderError> {
+        Ok(Self {
+            depths: gpu.storage("fragment depths", fragments * 4)?,
+            triangles: gpu.storage("fragment triangles", fragments * 4)?,
+            colors: gpu.storage("fragment colours", fragments * 16)?,
+            capacity: fragments,
+        })
+    }
+
+    /// Fragments that one tile may hold on this adapter: bounded by the largest binding and by `budget`.
+    pub fn limit(gpu: &Gpu, budget: Option<u64>) -> u64 {
+        let binding = gpu
+            .limits
+            .max_storage_buffer_binding_size
+            .min(gpu.limits.max_buffer_size)
+            / 16;
+        budget.map_or(binding, |b| b.clamp(1, binding))
+    }
+}
+
+/// Store and sort, for one tile at a time.
+#[derive(Debug)]
+pub struct SBuffer {
+    /// Counts and offsets of the frame.
+    pub count: CountPass,
+    store: Option<Kernels>,
+    tile: wgpu::Buffer,
+    features: Vec<String>,
+    limit: u64,
+}
+
+#[derive(Debug)]
+struct Kernels {
+    storage: FragmentStorage,
+    store: GeometryPipelines,
+    store_group: Bound,
+    sort: wgpu::ComputePipeline,
+    sort_group: Bound,
+}
+
+impl SBuffer {
+    /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`.
+    ///
+    /// # Errors
+    /// See [`CountPass::new`].
+    pub fn new(
+        gpu: &Gpu,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        budget: Option<u64>,
+        features: &[&str],
+    ) -> Result<Self, RenderError> {
+        Ok(Self {
+            count: CountPass::new(gpu, scene, frame, features)?,
+            store: None,
+            tile: gpu.upload("tile", &[Tile::zeroed()], wgpu::BufferUsages::UNIFORM),
+            features: features.iter().map(|&f| f.to_owned()).collect(),
+            limit: FragmentStorage::limit(gpu, budget),
+        })
+    }
+
+    /// Uniform that holds the tile being worked on.
+    pub const fn tile_buffer(&self) -> &wgpu::Buffer {
+        &self.tile
+    }
+
+    /// Fragment storage, once [`Self::plan`] has made it.
+    pub fn storage(&self) -> Option<&FragmentStorage> {
+        self.store.as_ref().map(|k| &k.storage)
+    }
+
+    /// Decides the tiles of a counted frame and makes storage for the largest; tells whether storage was made anew.
+    ///
+    /// # Errors
+    /// A pixel that does not fit, or a lost device.
+    pub fn plan(
+        &mut self,
+        gpu: &Gpu,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        total: u64,
+    ) -> Result<(Vec<Tile>, bool), RenderError> {
+        let pixels = frame.pixels();
+        let (tiles, largest) = if total <= self.limit {
+            (vec![Tile::new(0, pixels, 0)], total)
+        } else {
+            let offsets: Vec<u32> = gpu.read(&self.count.offsets, 0..u64::from(pixels) * 4 + 4)?;
+            let tiles = tiles(&offsets, frame.size[0], self.limit)?;
+            (tiles, self.limit)
+        };
+        let grown = self.storage().is_none_or(|s| s.capacity < largest);
+        if grown {
+            // The old storage goes first, so that both are never held at once.
+            self.store = None;
+            self.store = Some(self.kernels(gpu, scene, frame, largest)?);
+        }
+        Ok((tiles, grown))
+    }
+
+    fn kernels(
+        &self,
+        gpu: &Gpu,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        fragments: u64,
+    ) -> Result<Kernels, RenderError> {
+        let storage = FragmentStorage::new(gpu, fragments)?;
+        let store_group = gpu.bind(
+            "store",
+            wgpu::ShaderStages::FRAGMENT,
+            &[
+                Bind::Write(&self.count.counts),
+                Bind::Read(&self.count.offsets),
+                Bind::Write(&storage.depths),
+                Bind::Write(&storage.triangles),
+                Bind::Write(&storage.colors),
+                Bind::Uniform(&self.tile),
+            ],
+        );
+        let features: Vec<_> = self.features.iter().map(String::as_str).collect();
+        let store = scene.pipelines(
+            gpu,
+            frame,
+            Surfaces::Transparent,
+            &GeometryPass {
+                label: "store",
+                shader: "peel::store",
+                features: &features,
+                extra: &[],
+                group: Some(&store_group.layout),
+                targets: &[unwritten(wgpu::TextureFormat::R8Unorm)],
+                depth: None,
+            },
+        )?;
+        let sort_group = gpu.bind(
+            "sort",
+            wgpu::ShaderStages::COMPUTE,
+            &[
+                Bind::Uniform(&self.tile),
+                Bind::Read(&self.count.offsets),
+                Bind::Write(&storage.depths),
+                Bind::Write(&storage.triangles),
+                Bind::Write(&storage.colors),
+            ],
+        );
+        let sort = gpu.compute(
+            "peel::sort",
+            &peelnet_shaders::link("peel::sort", &[], &[])?,
+            &[&sort_group.layout],
+        );
+        Ok(Kernels {
+            storage,
+            store,
+            store_group,
+            sort,
+            sort_group,
+        })
+    }
+
+    /// Stores and sorts one tile's fragments. [`Self::plan`] must have been called for this frame.
+    pub fn store_and_sort(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        tile: &Tile,
+    ) {
+        let Some(kernels) = &self.store else {
+            return;
+        };
+        recorder
+            .gpu()
+            .queue
+            .write_buffer(&self.tile, 0, bytemuck::bytes_of(tile));
+        {
+            let mut pass = recorder.render("store", &[self.count.attachment()], None);
+            let [x, y, w, h] = tile.scissor(frame.size[0]);
+            pass.set_scissor_rect(x, y, w, h);
+            pass.set_bind_group(1, &kernels.store_group.group, &[]);
+            scene.draw(&mut pass, frame, Surfaces::Transparent, &kernels.store);
+        }
+        let mut pass = recorder.compute("sort");
+        pass.set_pipeline(&kernels.sort);
+        pass.set_bind_group(0, &kernels.sort_group.group, &[]);
+        let [x, y] = tile.dispatch();
+        pass.dispatch_workgroups(x, y, 1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offsets(counts: &[u32]) -> Vec<u32> {
+        let mut all = vec![0];
+        for c in counts {
+            all.push(all[all.len() - 1] + c);
+        }
+        all
+    }
+
+    #[test]
+    fn tiles_cover_every_pixel_once_and_fit() {
+        let counts: Vec<u32> = (0..60).map(|i| (i * 7) % 13).collect();
+        let offsets = offsets(&counts);
+        for capacity in [12, 20, 50, 100, 1000] {
+            let tiles = tiles(&offsets, 10, capacity).expect("fits");
+            let mut next = 0;
+            for t in &tiles {
+                assert_eq!((t.begin, t.base), (next, offsets[next as usize]));
+                assert!(u64::from(offsets[t.end as usize] - t.base) <= capacity);
+                // A tile is whole rows or lies inside one.
+                assert!((t.begin % 10 == 0 && t.end % 10 == 0) || t.begin / 10 == (t.end - 1) / 10);
+                next = t.end;
+            }
+            assert_eq!(next, 60);
+        }
+    }
+
+    #[test]
+    fn a_pixel_beyond_the_budget_is_an_error() {
+        let result = tiles(&offsets(&[1, 9, 1]), 3, 8);
+        assert!(matches!(
+            result,
+            Err(RenderError::PixelOverBudget {
+                fragments: 9,
+                capacity: 8
+            })
+        ));
+    }
+}

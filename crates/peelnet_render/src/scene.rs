@@ -1,0 +1,549 @@
+//! The scene on the GPU: corners in world space, materials, lights, and what to draw in which pass.
+
+use crate::RenderError;
+use bytemuck::{Pod, Zeroable};
+use peelnet_gpu::{
+    Gpu, GpuError,
+    bind::{Bind, Bound},
+    wgpu,
+};
+use peelnet_scene::{Camera, Lighting, Scene};
+use std::ops::Range;
+
+/// One corner of a triangle. Corners are not shared: `vertex_index / 3` is then the triangle's index in the scene's
+/// list, which portable WebGPU has no other way to learn.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Corner {
+    position: [f32; 3],
+    normal: [f32; 3],
+    material: u32,
+}
+
+/// Layout of `Material` in `scene/shade.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct MaterialData {
+    color: [f32; 4],
+    lighting: [f32; 4],
+}
+
+/// Layout of `Light` in `scene/shade.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct LightData {
+    position: [f32; 4],
+    color: [f32; 4],
+}
+
+/// Layout of `Camera` in `scene/camera.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct CameraUniform {
+    clip_from_world: [[f32; 4]; 4],
+    eye: [f32; 4],
+    frame: [u32; 4],
+    sample: [u32; 4],
+    depth_scale: [f32; 4],
+}
+
+/// Which pixels of a view are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelSample {
+    /// Seed of the hash.
+    pub seed: u32,
+    /// Number of the view, so that views sample different pixels.
+    pub view: u32,
+    /// Largest hash that is kept, see [`peelnet_core::hash::sample_threshold`].
+    pub threshold: u32,
+}
+
+impl PixelSample {
+    /// Keeps every pixel.
+    pub const ALL: Self = Self {
+        seed: 0,
+        view: 0,
+        threshold: u32::MAX,
+    };
+}
+
+/// A run of triangles that one pipeline draws.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct DrawRun {
+    vertices: Range<u32>,
+    culled: bool,
+}
+
+/// Which half of the scene a geometry pass draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surfaces {
+    /// Opaque objects.
+    Opaque,
+    /// Transparent ones.
+    Transparent,
+}
+
+/// A scene's buffers, the same for every view and method.
+#[derive(Debug)]
+pub struct SceneBuffers {
+    corners: wgpu::Buffer,
+    materials: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    camera: wgpu::Buffer,
+    light_count: u32,
+    opaque: Vec<DrawRun>,
+    transparent: Vec<DrawRun>,
+    /// Background radiance, linear RGB.
+    pub background: [f32; 3],
+}
+
+/// The frame's own targets: `C_0`, the opaque depth and the finished image.
+#[derive(Debug)]
+pub struct FrameTargets {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// `C_0`: the opaque image over the background, RGBA32F.
+    pub background: wgpu::TextureView,
+    /// Depth of the opaque image.
+    depth: Option<wgpu::TextureView>,
+    /// The finished image, RGBA32F.
+    pub image: wgpu::TextureView,
+    scene_group: Bound,
+    opaque_group: Bound,
+}
+
+impl FrameTargets {
+    /// Number of pixels.
+    pub const fn pixels(&self) -> u32 {
+        self.size[0] * self.size[1]
+    }
+}
+
+/// Pipelines of one geometry pass: one for two-sided surfaces, one that culls back faces where a material asks.
+#[derive(Debug)]
+pub struct GeometryPipelines {
+    two_sided: wgpu::RenderPipeline,
+    culled: Option<wgpu::RenderPipeline>,
+}
+
+/// What a geometry pass is made of.
+#[derive(Debug)]
+pub struct GeometryPass<'a> {
+    /// Label for messages and times.
+    pub label: &'a str,
+    /// Root module of the fragment shader.
+    pub shader: &'a str,
+    /// Features besides those that the scene calls for.
+    pub features: &'a [&'a str],
+    /// Modules that are not in the repository.
+    pub extra: &'a [(&'a str, &'a str)],
+    /// Layout of bind group 1.
+    pub group: Option<&'a wgpu::BindGroupLayout>,
+    /// Colour targets.
+    pub targets: &'a [Option<wgpu::ColorTargetState>],
+    /// Depth state.
+    pub depth: Option<wgpu::DepthStencilState>,
+}
+
+impl SceneBuffers {
+    /// Transforms the scene to world space and uploads it.
+    ///
+    /// # Errors
+    /// A scene larger than the adapter's largest buffer.
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
+        let triangles: usize = scene.objects.iter().map(|o| o.mesh.triangles.len()).sum();
+        let needed = triangles as u64 * 3 * size_of::<Corner>() as u64;
+        if needed > gpu.limits.max_buffer_size || triangles > (u32::MAX / 3) as usize {
+            return Err(RenderError::Gpu(GpuError::TooLarge {
+                what: format!("scene '{}' with {triangles} triangles", scene.name),
+                needed,
+                limit: gpu.limits.max_buffer_size,
+                adapter: gpu.info.name.clone(),
+                mend: "split the scene or simplify its meshes",
+            }));
+        }
+        let mut corners = Vec::with_capacity(triangles * 3);
+        let mut materials = Vec::new();
+        let (mut opaque, mut transparent) = (Vec::new(), Vec::new());
+        for object in &scene.objects {
+            let world = object.world_from_object;
+            let normal_matrix = glam::Mat3::from_mat4(world).inverse().transpose();
+            // A mirrored object turns its triangles inside out: turn them back, so that culling stays right.
+            let order = if glam::Mat3::from_mat4(world).determinant() < 0.0 {
+                [0, 2, 1]
+            } else {
+                [0, 1, 2]
+            };
+            for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+                let index = materials.len() as u32;
+                materials.push(MaterialData {
+                    color: [
+                        material.color[0],
+                        material.color[1],
+                        material.color[2],
+                        material.alpha,
+                    ],
+                    lighting: [
+                        f32::from(u8::from(
+                            material.lighting == Lighting::Phong && !scene.lights.is_empty(),
+                        )),
+                        material.specular,
+                        material.shininess,
+                        0.0,
+                    ],
+                });
+                let begin = corners.len() as u32;
+                for triangle in &object.mesh.triangles[part.triangles.clone()] {
+                    for k in order {
+                        let i = triangle[k] as usize;
+                        corners.push(Corner {
+                            position: world.transform_point3(object.mesh.positions[i]).to_array(),
+                            normal: (normal_matrix * object.mesh.normals[i])
+                                .normalize_or_zero()
+                                .to_array(),
+                            material: index,
+                        });
+                    }
+                }
+                let runs = if material.alpha >= 1.0 && !material.blend {
+                    &mut opaque
+                } else {
+                    &mut transparent
+                };
+                push_run(runs, begin..corners.len() as u32, !material.double_sided);
+            }
+        }
+        let lights: Vec<_> = scene
+            .lights
+            .iter()
+            .map(|l| LightData {
+                position: l.position.extend(1.0).to_array(),
+                color: [
+                    l.color[0] * l.intensity,
+                    l.color[1] * l.intensity,
+                    l.color[2] * l.intensity,
+                    0.0,
+                ],
+            })
+            .collect();
+        let storage = wgpu::BufferUsages::STORAGE;
+        // A binding may not be smaller than one element.
+        let at_least_one = |n: usize| n.max(1);
+        let mut light_data = lights.clone();
+        light_data.resize(at_least_one(lights.len()), LightData::zeroed());
+        materials.resize(at_least_one(materials.len()), MaterialData::zeroed());
+        Ok(Self {
+            corners: gpu.upload("corners", &corners, wgpu::BufferUsages::VERTEX),
+            materials: gpu.upload("materials", &materials, storage),
+            lights: gpu.upload("lights", &light_data, storage),
+            camera: gpu.upload(
+                "camera",
+                &[CameraUniform::zeroed()],
+                wgpu::BufferUsages::UNIFORM,
+            ),
+            light_count: lights.len() as u32,
+            opaque,
+            transparent,
+            background: scene.background,
+        })
+    }
+
+    /// Whether anything opaque can hide transparent fragments.
+    pub fn has_opaque(&self) -> bool {
+        !self.opaque.is_empty()
+    }
+
+    /// Makes the targets of a frame.
+    ///
+    /// # Errors
+    /// A frame without pixels, or larger than the adapter allows.
+    pub fn targets(&self, gpu: &Gpu, size: [u32; 2]) -> Result<FrameTargets, RenderError> {
+        if size[0] == 0 || size[1] == 0 {
+            return Err(RenderError::EmptyFrame {
+                width: size[0],
+                height: size[1],
+            });
+        }
+        let none = wgpu::TextureUsages::empty();
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let depth = if self.has_opaque() {
+            Some(gpu.texture(
+                "opaque depth",
+                wgpu::TextureFormat::Depth32Float,
+                size,
+                none,
+            )?)
+        } else {
+            None
+        };
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let mut entries = vec![
+            Bind::Uniform(&self.camera),
+            Bind::Read(&self.materials),
+            Bind::Read(&self.lights),
+        ];
+        let opaque_group = gpu.bind("opaque scene", stages, &entries);
+        if let Some(depth) = &depth {
+            entries.push(Bind::Depth(depth));
+        }
+        let scene_group = gpu.bind("scene", stages, &entries);
+        Ok(FrameTargets {
+            size,
+            background: gpu.texture("background", format, size, none)?,
+            image: gpu.texture("image", format, size, wgpu::TextureUsages::STORAGE_BINDING)?,
+            depth,
+            scene_group,
+            opaque_group,
+        })
+    }
+
+    /// Points the camera uniform at a view.
+    pub fn set_view(&self, gpu: &Gpu, camera: &Camera, size: [u32; 2], sample: PixelSample) {
+        let clip_from_world =
+            camera.clip_from_view(size[0] as f32 / size[1] as f32) * camera.view_from_world();
+        let uniform = CameraUniform {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            eye: camera.position.extend(1.0).to_array(),
+            frame: [size[0], size[1], self.light_count, sample.seed],
+            sample: [sample.view, sample.threshold, 0, 0],
+            depth_scale: [depth_scale(camera.far), 0.0, 0.0, 0.0],
+        };
+        gpu.queue
+            .write_buffer(&self.camera, 0, bytemuck::bytes_of(&uniform));
+    }
+
+    /// Builds a geometry pass's pipelines: the shared vertex shader, the pass's fragment shader, and the features
+    /// that this scene calls for.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn pipelines(
+        &self,
+        gpu: &Gpu,
+        frame: &FrameTargets,
+        surfaces: Surfaces,
+        pass: &GeometryPass<'_>,
+    ) -> Result<GeometryPipelines, RenderError> {
+        let mut features = pass.features.to_vec();
+        if surfaces == Surfaces::Transparent && self.has_opaque() {
+            features.push("opaque");
+        }
+        let vertex = gpu.shader(
+            "scene::vertex",
+            &peelnet_shaders::link("scene::vertex", &[], &[])?,
+        );
+        let fragment = gpu.shader(
+            pass.shader,
+            &peelnet_shaders::link(pass.shader, &features, pass.extra)?,
+        );
+        let (group, runs) = match surfaces {
+            Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
+            Surfaces::Transparent => (&frame.scene_group, &self.transparent),
+        };
+        let mut layouts = vec![&group.layout];
+        layouts.extend(pass.group);
+        let layout = gpu.layout(&layouts);
+        let build = |cull_mode| {
+            gpu.device
+                .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                    label: Some(pass.label),
+                    layout: Some(&layout),
+                    vertex: wgpu::VertexState {
+                        module: &vertex,
+                        entry_point: Some("vertex_main"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        buffers: &[Some(wgpu::VertexBufferLayout {
+                            array_stride: size_of::<Corner>() as u64,
+                            step_mode: wgpu::VertexStepMode::Vertex,
+                            attributes: &wgpu::vertex_attr_array![
+                                0 => Float32x3, 1 => Float32x3, 2 => Uint32
+                            ],
+                        })],
+                    },
+                    primitive: wgpu::PrimitiveState {
+                        cull_mode,
+                        ..Default::default()
+                    },
+                    depth_stencil: pass.depth.clone(),
+                    multisample: wgpu::MultisampleState::default(),
+                    fragment: Some(wgpu::FragmentState {
+                        module: &fragment,
+                        entry_point: Some("fragment_main"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        targets: pass.targets,
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                })
+        };
+        Ok(GeometryPipelines {
+            two_sided: build(None),
+            culled: runs
+                .iter()
+                .any(|r| r.culled)
+                .then(|| build(Some(wgpu::Face::Back))),
+        })
+    }
+
+    /// Draws one half of the scene, triangles in the order of the scene's list.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        frame: &FrameTargets,
+        surfaces: Surfaces,
+        pipelines: &GeometryPipelines,
+    ) {
+        let (group, runs) = match surfaces {
+            Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
+            Surfaces::Transparent => (&frame.scene_group, &self.transparent),
+        };
+        pass.set_bind_group(0, &group.group, &[]);
+        pass.set_vertex_buffer(0, self.corners.slice(..));
+        for run in runs {
+            let pipeline = match (&pipelines.culled, run.culled) {
+                (Some(culled), true) => culled,
+                _ => &pipelines.two_sided,
+            };
+            pass.set_pipeline(pipeline);
+            pass.draw(run.vertices.clone(), 0..1);
+        }
+    }
+
+    /// Draws opaque objects over the background colour into `C_0`.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn draw_background(
+        &self,
+        recorder: &mut peelnet_gpu::record::Recorder<'_>,
+        frame: &FrameTargets,
+        pipelines: Option<&GeometryPipelines>,
+    ) {
+        let [r, g, b] = self.background.map(f64::from);
+        let color = clear_color(&frame.background, [r, g, b, 1.0]);
+        let depth = frame
+            .depth
+            .as_ref()
+            .map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            });
+        let mut pass = recorder.render("background", &[color], depth);
+        if let Some(pipelines) = pipelines {
+            self.draw(&mut pass, frame, Surfaces::Opaque, pipelines);
+        }
+    }
+
+    /// The opaque pass's pipelines, where the scene has anything opaque.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn opaque_pipelines(
+        &self,
+        gpu: &Gpu,
+        frame: &FrameTargets,
+    ) -> Result<Option<GeometryPipelines>, RenderError> {
+        if !self.has_opaque() {
+            return Ok(None);
+        }
+        let pass = GeometryPass {
+            label: "opaque",
+            shader: "scene::opaque",
+            features: &[],
+            extra: &[],
+            group: None,
+            targets: &[Some(wgpu::TextureFormat::Rgba32Float.into())],
+            depth: Some(depth_state(true, wgpu::CompareFunction::Less)),
+        };
+        self.pipelines(gpu, frame, Surfaces::Opaque, &pass)
+            .map(Some)
+    }
+}
+
+/// The largest power of two that maps depths up to `far` below 1: multiplying by it loses no bit.
+fn depth_scale(far: f32) -> f32 {
+    (-(far.log2().floor() + 1.0)).exp2()
+}
+
+/// Appends a run, joining it with the one before where the same pipeline draws both.
+fn push_run(runs: &mut Vec<DrawRun>, vertices: Range<u32>, culled: bool) {
+    if vertices.is_empty() {
+        return;
+    }
+    match runs.last_mut() {
+        Some(last) if last.culled == culled && last.vertices.end == vertices.start => {
+            last.vertices.end = vertices.end;
+        }
+        _ => runs.push(DrawRun { vertices, culled }),
+    }
+}
+
+/// Depth test state on a 32-bit float target.
+pub(crate) fn depth_state(write: bool, compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: wgpu::TextureFormat::Depth32Float,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// A colour attachment that starts from one value.
+pub(crate) fn clear_color(
+    view: &wgpu::TextureView,
+    [r, g, b, a]: [f64; 4],
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    attachment(view, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }))
+}
+
+/// A colour attachment.
+pub(crate) fn attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load,
+            store: wgpu::StoreOp::Store,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_scale_is_the_next_power_of_two() {
+        for (far, scale) in [
+            (0.5, 1.0),
+            (0.9, 1.0),
+            (1.0, 0.5),
+            (100.0, 1.0 / 128.0),
+            (128.0, 1.0 / 256.0),
+        ] {
+            assert_eq!(depth_scale(far), scale, "{far}");
+            assert!(far * depth_scale(far) < 1.0);
+        }
+    }
+
+    #[test]
+    fn runs_join_where_they_can() {
+        let mut runs = Vec::new();
+        push_run(&mut runs, 0..3, false);
+        push_run(&mut runs, 3..9, false);
+        push_run(&mut runs, 9..12, true);
+        push_run(&mut runs, 12..12, true);
+        push_run(&mut runs, 15..18, true);
+        let vertices: Vec<_> = runs.iter().map(|r| r.vertices.clone()).collect();
+        assert_eq!(vertices, [0..9, 9..12, 15..18]);
+    }
+}

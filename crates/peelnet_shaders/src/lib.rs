@@ -1,0 +1,231 @@
+//! Links the WGSL of `shaders/` into one module, and checks it.
+//!
+//! Shaders are written as modules that `import` one another and switch parts with `@if(feature)`, so that a helper
+//! exists once and a pass contains only what its scene calls for. [`link`] turns a root module into plain WGSL text;
+//! it is the only place that knows the linker (WESL). Text that is not in the repository — an exported network, a
+//! method's constants — joins as an extra module. [`validate`] runs naga over the result.
+
+mod sources;
+
+pub use sources::SOURCES;
+
+use std::{
+    borrow::Cow,
+    collections::HashMap,
+    sync::{Mutex, PoisonError},
+};
+use wesl::{ModulePath, VirtualResolver, Wesl};
+
+/// Why a shader could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ShaderError {
+    /// A module path that cannot be parsed.
+    #[error("'{0}' is not a shader module path such as methods::wboit::gather")]
+    Path(String),
+    /// The linker refused.
+    #[error("linking shader {root} failed:\n{message}")]
+    Link {
+        /// The root module.
+        root: String,
+        /// The linker's message.
+        message: String,
+    },
+    /// naga refused the linked text.
+    #[error("shader {label} is not valid WGSL:\n{message}")]
+    Invalid {
+        /// Name of the shader.
+        label: String,
+        /// naga's message with source lines.
+        message: String,
+    },
+}
+
+/// Everything that decides a linked text.
+type LinkKey = (String, Vec<String>, Vec<(String, String)>);
+
+/// Links `root` (a path such as `methods::wboit::gather`) with the given features on and extra modules in place.
+///
+/// Linking is deterministic, so its results are kept for the life of the process.
+///
+/// # Errors
+/// An unknown module, a missing import, or WGSL that does not parse.
+pub fn link(root: &str, features: &[&str], extra: &[(&str, &str)]) -> Result<String, ShaderError> {
+    static LINKED: Mutex<Option<HashMap<LinkKey, String>>> = Mutex::new(None);
+    let key: LinkKey = (
+        root.to_owned(),
+        features.iter().map(|&f| f.to_owned()).collect(),
+        extra
+            .iter()
+            .map(|&(p, t)| (p.to_owned(), t.to_owned()))
+            .collect(),
+    );
+    if let Some(text) = LINKED
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .get_or_insert_default()
+        .get(&key)
+    {
+        return Ok(text.clone());
+    }
+    let text = link_uncached(root, features, extra)?;
+    LINKED
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .get_or_insert_default()
+        .insert(key, text.clone());
+    Ok(text)
+}
+
+fn link_uncached(
+    root: &str,
+    features: &[&str],
+    extra: &[(&str, &str)],
+) -> Result<String, ShaderError> {
+    let mut resolver = VirtualResolver::new();
+    for (path, text) in SOURCES.iter().chain(extra) {
+        resolver.add_module(module_path(path)?, Cow::Borrowed(text));
+    }
+    let mut linker = Wesl::new_barebones().set_custom_resolver(resolver);
+    let mut options = wesl::CompileOptions {
+        validate: false,
+        ..Default::default()
+    };
+    options.features.default = wesl::Feature::Disable;
+    for feature in features {
+        options
+            .features
+            .flags
+            .insert((*feature).to_owned(), wesl::Feature::Enable);
+    }
+    linker
+        .set_options(options)
+        .set_mangler(wesl::ManglerKind::Escape);
+    let text = linker
+        .compile(&module_path(root)?)
+        .map_err(|e| ShaderError::Link {
+            root: root.to_owned(),
+            message: e.to_string(),
+        })?
+        .to_string();
+    Ok(text)
+}
+
+fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
+    format!("package::{path}")
+        .parse()
+        .map_err(|_| ShaderError::Path(path.to_owned()))
+}
+
+/// Parses and validates WGSL with naga, with the portable capabilities and those given.
+///
+/// # Errors
+/// [`ShaderError::Invalid`] with the source lines naga points at.
+pub fn validate(
+    label: &str,
+    wgsl: &str,
+    capabilities: naga::valid::Capabilities,
+) -> Result<naga::Module, ShaderError> {
+    let invalid = |message: String| ShaderError::Invalid {
+        label: label.to_owned(),
+        message,
+    };
+    let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| invalid(e.emit_to_string(wgsl)))?;
+    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .map_err(|e| invalid(e.emit_to_string(wgsl)))?;
+    Ok(module)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stand-in for an exported network.
+    const LEARNED: &str = "fn peelnet_features(z: f32, s: vec2f) -> vec3f { return vec3f(z, s); }\n\
+        fn peelnet_weight(a: f32, b: f32, c: f32) -> f32 { return 1.0; }\n";
+    const PARAMETERS: &str =
+        "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\n";
+
+    /// Every root (a module with an entry point) links and validates in every feature it names; all failures are
+    /// reported at once.
+    #[test]
+    fn every_shader_links_and_validates() {
+        let mut failures = Vec::new();
+        let mut roots = 0;
+        for (path, text) in SOURCES {
+            if !["@vertex", "@fragment", "@compute"]
+                .iter()
+                .any(|s| text.contains(s))
+            {
+                continue;
+            }
+            roots += 1;
+            let variants: Vec<Vec<&str>> = if *path == "methods::wboit::gather" {
+                ["eq7", "eq8", "eq9", "eq10", "inverse_power", "papakostas"]
+                    .map(|w| vec![w, "opaque"])
+                    .to_vec()
+            } else {
+                vec![
+                    vec![],
+                    vec!["opaque"],
+                    vec!["sampled"],
+                    vec!["opaque", "sampled"],
+                ]
+            };
+            for features in variants {
+                let extra = [("learned::weight", LEARNED), ("parameters", PARAMETERS)];
+                let result = link(path, &features, &extra).and_then(|wgsl| {
+                    validate(path, &wgsl, naga::valid::Capabilities::empty()).map(drop)
+                });
+                if let Err(e) = result {
+                    failures.push(format!("{path} {features:?}: {e}"));
+                }
+            }
+        }
+        assert!(roots >= 20, "only {roots} shaders found");
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+
+    /// The table lists exactly the files of the folder, so that none is forgotten.
+    #[test]
+    fn the_table_is_complete() {
+        fn walk(dir: &std::path::Path, prefix: &str, out: &mut Vec<String>) {
+            for entry in std::fs::read_dir(dir).expect("shader folder") {
+                let entry = entry.expect("entry");
+                let name = entry.file_name().into_string().expect("utf-8");
+                if entry.path().is_dir() {
+                    walk(&entry.path(), &format!("{prefix}{name}::"), out);
+                } else if let Some(stem) = name.strip_suffix(".wgsl") {
+                    out.push(format!("{prefix}{stem}"));
+                }
+            }
+        }
+        let mut found = Vec::new();
+        walk(
+            std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders")),
+            "",
+            &mut found,
+        );
+        found.sort();
+        let mut listed: Vec<_> = SOURCES.iter().map(|(p, _)| (*p).to_owned()).collect();
+        listed.sort();
+        assert_eq!(found, listed);
+    }
+
+    #[test]
+    fn a_missing_import_is_named() {
+        let e = link("methods::deep_thesis::gather", &[], &[]).expect_err("no learned module");
+        assert!(e.to_string().contains("learned"), "{e}");
+    }
+
+    #[test]
+    fn features_switch_bindings_off() {
+        let plain = link("peel::count", &[], &[]).expect("links");
+        assert!(!plain.contains("opaque_depth"));
+        assert!(
+            link("peel::count", &["opaque"], &[])
+                .expect("links")
+                .contains("opaque_depth")
+        );
+    }
+}

@@ -1,0 +1,101 @@
+//! Adam (Kingma and Ba, 2015, algorithm 1) on the flat tensor of parameters.
+//!
+//! Ours instead of burn's, because burn's takes a module's tensors one by one: with six small tensors its operations,
+//! not their arithmetic, are a large part of a step of 128 rows.
+
+use burn::tensor::Tensor;
+
+use crate::config::Config;
+
+/// First and second moments and the number of steps taken.
+#[derive(Clone)]
+pub(crate) struct Adam {
+    pub(crate) first: Tensor<1>,
+    pub(crate) second: Tensor<1>,
+    pub(crate) steps: u64,
+}
+
+impl Adam {
+    pub(crate) fn new(parameters: &Tensor<1>) -> Self {
+        Self {
+            first: parameters.zeros_like(),
+            second: parameters.zeros_like(),
+            steps: 0,
+        }
+    }
+
+    /// One step with the given rate; returns the new state and the new parameters.
+    pub(crate) fn step(
+        self,
+        config: &Config,
+        rate: f64,
+        parameters: Tensor<1>,
+        gradient: Tensor<1>,
+    ) -> (Self, Tensor<1>) {
+        let Config {
+            beta1,
+            beta2,
+            epsilon,
+            ..
+        } = *config;
+        let steps = self.steps + 1;
+        // 1 − βᵗ; beyond 2³¹ steps both are 1 to the last bit.
+        let exponent = i32::try_from(steps).unwrap_or(i32::MAX);
+        let correction1 = 1.0 - beta1.powi(exponent);
+        let correction2 = 1.0 - beta2.powi(exponent);
+        let first = self.first * beta1 + gradient.clone() * (1.0 - beta1);
+        let second = self.second * beta2 + gradient.clone() * gradient * (1.0 - beta2);
+        let root = second.clone().sqrt() * (1.0 / correction2.sqrt()) + epsilon;
+        let parameters = parameters - first.clone() * (rate / correction1) / root;
+        (
+            Self {
+                first,
+                second,
+                steps,
+            },
+            parameters,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use burn::tensor::{Device, TensorData};
+    use peelnet_model::Recipe;
+
+    /// Against the algorithm written out in 64 bits. Each step rounds about ten operations on numbers below 1, and
+    /// moves the parameters by at most the rate: 100 steps stay within 100 · 10 · 2⁻²⁴ ≈ 6e-5.
+    #[test]
+    fn steps_follow_the_written_out_algorithm() {
+        let config = Config::for_recipe(Recipe::Thesis).unwrap();
+        let device = Device::flex();
+        let mut parameters = Tensor::<1>::from_data(TensorData::new(vec![0.5f32, -0.25], [2]), &device);
+        let mut adam = Adam::new(&parameters);
+        let (mut p, mut m, mut v) = ([0.5f64, -0.25], [0.0; 2], [0.0; 2]);
+        let rate = 1e-2;
+        for t in 1..=100 {
+            let gradient = [(t as f32 * 0.7).sin(), 1e-3 * (t as f32 * 0.3).cos()];
+            (adam, parameters) = adam.step(
+                &config,
+                rate,
+                parameters,
+                Tensor::from_data(TensorData::new(gradient.to_vec(), [2]), &device),
+            );
+            for i in 0..2 {
+                let g = f64::from(gradient[i]);
+                m[i] = config.beta1 * m[i] + (1.0 - config.beta1) * g;
+                v[i] = config.beta2 * v[i] + (1.0 - config.beta2) * g * g;
+                let m_hat = m[i] / (1.0 - config.beta1.powi(t));
+                let v_hat = v[i] / (1.0 - config.beta2.powi(t));
+                p[i] -= rate * m_hat / (v_hat.sqrt() + config.epsilon);
+            }
+        }
+        assert_eq!(adam.steps, 100);
+        let found: Vec<f32> = parameters.into_data().try_into_vec().unwrap();
+        for i in 0..2 {
+            assert!((f64::from(found[i]) - p[i]).abs() < 6e-5, "{found:?} against {p:?}");
+        }
+    }
+}

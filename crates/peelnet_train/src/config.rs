@@ -1,0 +1,192 @@
+//! Every hyper-parameter of a run.
+
+use peelnet_core::mlp::Activation;
+use peelnet_model::Recipe;
+use serde::{Deserialize, Serialize};
+
+use crate::error::TrainError;
+
+/// Everything that decides the weights, except the data. Saved in the model file and beside the checkpoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// What is trained: inputs, output form and loss.
+    pub recipe: Recipe,
+    /// Decides initial weights, split and order of rows.
+    pub seed: u64,
+    /// Widths of the hidden layers.
+    pub hidden: Vec<usize>,
+    /// After each hidden layer.
+    pub hidden_activation: Activation,
+    /// After the last layer.
+    pub output_activation: Activation,
+    /// Passes over the training rows.
+    pub epochs: u32,
+    /// Examples (fragments, or pixels where a recipe trains on whole pixels) per step of the optimiser.
+    pub batch: usize,
+    /// Examples evaluated at once: a batch is cut into chunks of this size, whatever the number of threads. The size
+    /// decides the order in which gradients are added, and so the last bits of the weights.
+    pub chunk: usize,
+    /// Adam's step size; the peak where a schedule changes it.
+    pub learning_rate: f64,
+    /// How the step size changes over a run.
+    pub schedule: Schedule,
+    /// Adam's decay of the first moment.
+    pub beta1: f64,
+    /// Adam's decay of the second moment.
+    pub beta2: f64,
+    /// Added to the root of the second moment.
+    pub epsilon: f64,
+    /// Share of the examples held out, in `[0, 1)`.
+    pub held_out: f64,
+    /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
+    pub patience: Option<u32>,
+}
+
+/// The learning rate over a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Schedule {
+    /// Always [`Config::learning_rate`].
+    Constant,
+    /// Half a cosine up from 1/25 of the rate over the first `warmup` of all steps, half a cosine down to 1e-5 of that
+    /// start (Smith and Topin, "Super-Convergence", 2018, in the usual cosine form).
+    OneCycle {
+        /// Share of the steps that rise, in `(0, 1)`.
+        warmup: f64,
+    },
+}
+
+impl Schedule {
+    /// The rate of step `step` (from 0) of `steps`.
+    pub(crate) fn rate(self, peak: f64, step: u64, steps: u64) -> f64 {
+        let Self::OneCycle { warmup } = self else {
+            return peak;
+        };
+        let start = peak / 25.0;
+        let end = start * 1e-5;
+        let at = step as f64 / (steps.max(2) - 1) as f64;
+        let (from, to, x) = if at < warmup {
+            (start, peak, at / warmup)
+        } else {
+            (peak, end, (at - warmup) / (1.0 - warmup))
+        };
+        to + (from - to) * 0.5 * (1.0 + (std::f64::consts::PI * x.min(1.0)).cos())
+    }
+}
+
+impl Config {
+    /// The published settings of a recipe.
+    ///
+    /// # Errors
+    /// [`TrainError::Recipe`] when the trainer does not know the recipe.
+    pub fn for_recipe(recipe: Recipe) -> Result<Self, TrainError> {
+        Ok(crate::recipe::definition(recipe)?.config)
+    }
+
+    /// # Errors
+    /// [`TrainError::Config`] names the first setting out of its range.
+    pub fn check(&self) -> Result<(), TrainError> {
+        let bad = |setting: &'static str, value: String, mend: &'static str| {
+            Err(TrainError::Config {
+                setting,
+                value,
+                mend,
+            })
+        };
+        if self.epochs == 0 {
+            return bad("epochs", "0".into(), "give at least 1");
+        }
+        if self.batch == 0 {
+            return bad("batch", "0".into(), "give at least 1");
+        }
+        if self.chunk == 0 {
+            return bad("chunk", "0".into(), "give at least 1");
+        }
+        if let Some(width) = self.hidden.iter().find(|&&w| w == 0 || w > 4096) {
+            return bad("hidden", width.to_string(), "give widths from 1 to 4096");
+        }
+        if !(self.learning_rate.is_finite() && self.learning_rate > 0.0) {
+            return bad(
+                "learning_rate",
+                self.learning_rate.to_string(),
+                "give a positive number",
+            );
+        }
+        for (setting, value) in [("beta1", self.beta1), ("beta2", self.beta2)] {
+            if !(0.0..1.0).contains(&value) {
+                return bad(setting, value.to_string(), "give a number from 0 to below 1");
+            }
+        }
+        if !(self.epsilon.is_finite() && self.epsilon > 0.0) {
+            return bad("epsilon", self.epsilon.to_string(), "give a positive number");
+        }
+        if !(0.0..1.0).contains(&self.held_out) {
+            return bad(
+                "held_out",
+                self.held_out.to_string(),
+                "give a share from 0 to below 1",
+            );
+        }
+        if self.patience == Some(0) {
+            return bad("patience", "0".into(), "give at least 1, or leave it out");
+        }
+        if let Schedule::OneCycle { warmup } = self.schedule
+            && !(warmup > 0.0 && warmup < 1.0)
+        {
+            return bad(
+                "schedule.warmup",
+                warmup.to_string(),
+                "give a share between 0 and 1",
+            );
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn one_cycle_starts_low_peaks_and_ends_near_zero() {
+        let cycle = Schedule::OneCycle { warmup: 0.3 };
+        assert_eq!(cycle.rate(1.0, 0, 1001), 0.04);
+        assert_eq!(cycle.rate(1.0, 300, 1001), 1.0);
+        assert!(cycle.rate(1.0, 1000, 1001) < 1e-6);
+        assert_eq!(Schedule::Constant.rate(0.5, 77, 100), 0.5);
+    }
+
+    #[test]
+    fn settings_out_of_range_are_named() {
+        let good = Config::for_recipe(Recipe::Thesis).unwrap();
+        good.check().unwrap();
+        type Spoil = fn(&mut Config);
+        let spoiled: [(&str, Spoil); 8] = [
+            ("epochs", |c| c.epochs = 0),
+            ("batch", |c| c.batch = 0),
+            ("chunk", |c| c.chunk = 0),
+            ("hidden", |c| c.hidden = vec![3, 0]),
+            ("learning_rate", |c| c.learning_rate = f64::NAN),
+            ("beta2", |c| c.beta2 = 1.0),
+            ("held_out", |c| c.held_out = 1.0),
+            ("patience", |c| c.patience = Some(0)),
+        ];
+        for (name, spoil) in spoiled {
+            let mut config = good.clone();
+            spoil(&mut config);
+            let message = config.check().unwrap_err().to_string();
+            assert!(message.contains(name), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_config_survives_json_and_unknown_keys_are_refused() {
+        let config = Config::for_recipe(Recipe::Thesis).unwrap();
+        let mut json = serde_json::to_value(&config).unwrap();
+        assert_eq!(serde_json::from_value::<Config>(json.clone()).unwrap(), config);
+        json["epoch"] = 3.into();
+        assert!(serde_json::from_value::<Config>(json).is_err());
+    }
+}

@@ -1,0 +1,172 @@
+//! The loss curve as a table and as a picture.
+
+use std::path::Path;
+
+use plotters::prelude::*;
+
+use crate::error::TrainError;
+use crate::files;
+use crate::report::EpochReport;
+
+/// The forms of a loss curve, chosen by the file's ending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveFormat {
+    /// Columns epoch, train_loss, test_loss, seconds, rows_per_s.
+    Csv,
+    /// Both losses over the epochs, logarithmic.
+    Svg,
+}
+
+impl CurveFormat {
+    /// # Errors
+    /// [`TrainError::CurveFormat`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self, TrainError> {
+        match path.extension().and_then(|e| e.to_str()) {
+            Some(e) if e.eq_ignore_ascii_case("csv") => Ok(Self::Csv),
+            Some(e) if e.eq_ignore_ascii_case("svg") => Ok(Self::Svg),
+            _ => Err(TrainError::CurveFormat(path.to_owned())),
+        }
+    }
+}
+
+/// Writes the history in the form that the ending asks for.
+///
+/// # Errors
+/// An unknown ending, or the file cannot be written.
+pub fn write_curve(path: &Path, history: &[EpochReport]) -> Result<(), TrainError> {
+    let bytes = match CurveFormat::of(path)? {
+        CurveFormat::Csv => csv(history),
+        CurveFormat::Svg => svg(history),
+    }
+    .map_err(|error| TrainError::Io {
+        path: path.to_owned(),
+        error: std::io::Error::other(error),
+    })?;
+    files::write(path, &bytes)
+}
+
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+fn csv(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["epoch", "train_loss", "test_loss", "seconds", "rows_per_s"])?;
+    for row in history {
+        table.write_record([
+            row.epoch.to_string(),
+            row.train_loss.to_string(),
+            row.test_loss.map_or(String::new(), |loss| loss.to_string()),
+            format!("{:.4}", row.seconds),
+            format!("{:.0}", row.rows_per_s),
+        ])?;
+    }
+    Ok(table.into_inner()?)
+}
+
+fn svg(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
+    // A logarithmic axis has no zero: a loss of zero is drawn at the lower edge.
+    let positive = || {
+        history
+            .iter()
+            .flat_map(|row| [Some(row.train_loss), row.test_loss])
+            .flatten()
+            .filter(|loss| *loss > 0.0)
+    };
+    let low = positive().fold(f64::INFINITY, f64::min);
+    let high = positive().fold(0.0, f64::max);
+    let (low, high) = if low.is_finite() {
+        (low / 1.2, high * 1.2)
+    } else {
+        (1e-9, 1.0)
+    };
+    let last = history.last().map_or(1, |row| row.epoch);
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (800, 480)).into_drawing_area();
+        area.fill(&WHITE)?;
+        let mut chart = ChartBuilder::on(&area)
+            .margin(16)
+            .x_label_area_size(40)
+            .y_label_area_size(72)
+            .caption("Loss", ("sans-serif", 20))
+            .build_cartesian_2d(1u32..last.max(2), (low..high).log_scale())?;
+        chart
+            .configure_mesh()
+            .x_desc("epoch")
+            .y_desc("mean loss")
+            .y_label_formatter(&|loss| format!("{loss:.1e}"))
+            .light_line_style(WHITE)
+            .draw()?;
+        let train = RGBColor(31, 119, 180);
+        let test = RGBColor(214, 39, 40);
+        let train_points = history.iter().map(|r| (r.epoch, r.train_loss.max(low)));
+        chart
+            .draw_series(LineSeries::new(train_points, train.stroke_width(2)))?
+            .label("training")
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], train.stroke_width(2)));
+        if history.iter().any(|r| r.test_loss.is_some()) {
+            let points = history
+                .iter()
+                .filter_map(|r| r.test_loss.map(|loss| (r.epoch, loss.max(low))));
+            chart
+                .draw_series(LineSeries::new(points, test.stroke_width(2)))?
+                .label("held out")
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], test.stroke_width(2)));
+        }
+        chart
+            .configure_series_labels()
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
+        area.present()?;
+    }
+    Ok(text.into_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn row(epoch: u32, train_loss: f64, test_loss: Option<f64>) -> EpochReport {
+        EpochReport {
+            epoch,
+            epochs: 3,
+            train_loss,
+            test_loss,
+            seconds: 0.5,
+            rows_per_s: 1234.5,
+            best: false,
+        }
+    }
+
+    #[test]
+    fn the_table_has_a_line_per_epoch() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new/curve.csv");
+        write_curve(&path, &[row(1, 0.25, Some(0.5)), row(2, 0.125, None)]).unwrap();
+        assert_eq!(
+            std::fs::read_to_string(path).unwrap(),
+            "epoch,train_loss,test_loss,seconds,rows_per_s\n1,0.25,0.5,0.5000,1234\n2,0.125,,0.5000,1234\n"
+        );
+    }
+
+    #[test]
+    fn the_picture_survives_no_epoch_one_epoch_and_zero_loss() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, history) in [
+            ("none.svg", vec![]),
+            ("one.SVG", vec![row(1, 0.1, Some(0.1))]),
+            ("zero.svg", vec![row(1, 0.0, None), row(2, 0.0, None)]),
+        ] {
+            let path = folder.path().join(name);
+            write_curve(&path, &history).unwrap();
+            assert!(std::fs::read_to_string(path).unwrap().ends_with("</svg>\n"));
+        }
+    }
+
+    #[test]
+    fn other_endings_are_refused() {
+        let error = write_curve(Path::new("curve.png"), &[]).unwrap_err();
+        assert_eq!(error.to_string(), "curve.png: a loss curve ends in .csv or .svg");
+    }
+}

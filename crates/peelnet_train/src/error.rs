@@ -1,0 +1,90 @@
+//! What can go wrong in training.
+
+use std::path::PathBuf;
+
+use peelnet_model::Recipe;
+
+/// Why training did not start or did not finish.
+#[derive(Debug, thiserror::Error)]
+pub enum TrainError {
+    /// The trainer has no definition for the recipe.
+    #[error("recipe {0:?} cannot be trained: only `thesis` is built in")]
+    Recipe(Recipe),
+    /// A hyper-parameter is out of its range.
+    #[error("setting `{setting}` is {value}: {mend}")]
+    Config {
+        /// Name of the field.
+        setting: &'static str,
+        /// What it was.
+        value: String,
+        /// What to do.
+        mend: &'static str,
+    },
+    /// The columns do not fit one another or the recipe.
+    #[error("{data}: {problem}")]
+    Columns {
+        /// Where the rows are from.
+        data: String,
+        /// What does not fit and what to do.
+        problem: String,
+    },
+    /// A value is not a number that training can use.
+    #[error(
+        "{data}: row {row}, column `{column}` is {value}; extract the dataset again or leave the row out"
+    )]
+    Value {
+        /// Where the rows are from.
+        data: String,
+        /// From 0, in the order of the columns.
+        row: usize,
+        /// The column.
+        column: String,
+        /// The value.
+        value: f32,
+    },
+    /// The dataset could not be read.
+    #[error(transparent)]
+    Dataset(#[from] peelnet_dataset::DatasetError),
+    /// A loss curve has an ending that is neither `.csv` nor `.svg`.
+    #[error("{}: a loss curve ends in .csv or .svg", .0.display())]
+    CurveFormat(PathBuf),
+    /// A file could not be read or written.
+    #[error("{}: {error}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// A checkpoint cannot be continued.
+    #[error("{}: {problem}", path.display())]
+    Checkpoint {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+    /// The model file could not be made or written.
+    #[error("{}: {error}", path.display())]
+    Model {
+        /// The file.
+        path: PathBuf,
+        /// What the model crate says.
+        error: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// The loss or a weight became infinite or not a number.
+    #[error(
+        "training diverged in epoch {epoch}: {what} is not finite; a lower learning rate than {learning_rate} may help{}",
+        kept.as_ref().map_or(String::new(), |p| format!("; the weights before it are in {}", p.display()))
+    )]
+    Diverged {
+        /// The epoch, from 1.
+        epoch: u32,
+        /// What was not finite.
+        what: &'static str,
+        /// The rate of the run.
+        learning_rate: f64,
+        /// The model file with the last good weights, where an epoch had been finished.
+        kept: Option<PathBuf>,
+    },
+}

@@ -1,0 +1,455 @@
+//! The loop over epochs and batches.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use burn::tensor::{Device, Tensor, TensorData};
+use peelnet_model::{Input, Losses, Metadata, Model};
+
+use crate::adam::Adam;
+use crate::checkpoint::{self, State};
+use crate::config::Config;
+use crate::curve::{CurveFormat, write_curve};
+use crate::device::Compute;
+use crate::error::TrainError;
+use crate::fragment_mse::FragmentMse;
+use crate::network::Shape;
+use crate::normalise::Normalisation;
+use crate::random::{Random, Stream};
+use crate::recipe::{self, Definition};
+use crate::report::{End, EpochReport, Outcome};
+use crate::split;
+use crate::task::{Part, Task};
+use crate::team::Team;
+use crate::training_data::TrainingData;
+
+/// What a run needs besides its configuration and data, without an effect on the weights.
+#[derive(Clone, Debug)]
+pub struct RunOptions<'a> {
+    /// The model file to write. The checkpoint folder lies beside it.
+    pub out: PathBuf,
+    /// Continue from the checkpoint folder. Without a checkpoint the run starts from the beginning, so that a script
+    /// can always ask for it.
+    pub resume: bool,
+    /// Loss curves to write, by ending .csv or .svg.
+    pub loss_curve: Vec<PathBuf>,
+    /// Set it from anywhere to end the run: the last whole epoch is saved.
+    pub stop: &'a AtomicBool,
+    /// Threads to use, all cores when none. The result does not depend on it.
+    pub threads: Option<NonZeroUsize>,
+    /// Where to compute.
+    pub compute: Compute,
+}
+
+impl<'a> RunOptions<'a> {
+    /// A fresh run on all cores without a loss curve.
+    pub fn new(out: impl Into<PathBuf>, stop: &'a AtomicBool) -> Self {
+        Self {
+            out: out.into(),
+            resume: false,
+            loss_curve: Vec::new(),
+            stop,
+            threads: None,
+            compute: Compute::default(),
+        }
+    }
+}
+
+/// A checkpoint is a few kilobytes, but an epoch of a small dataset takes a millisecond.
+const SAVE_EVERY: Duration = Duration::from_secs(5);
+
+/// Trains a network, writes the model file, the checkpoint folder and the loss curves, and returns the model.
+///
+/// `on_epoch` is called after every epoch.
+///
+/// # Errors
+/// Settings out of range, columns that do not fit, files that cannot be written, a checkpoint that belongs to another
+/// run, or [`TrainError::Diverged`] when a loss or a weight is no longer finite. Being asked to stop is not an error:
+/// see [`End::Interrupted`].
+pub fn train(
+    config: &Config,
+    data: &TrainingData,
+    options: &RunOptions<'_>,
+    on_epoch: impl FnMut(&EpochReport),
+) -> Result<Outcome, TrainError> {
+    config.check()?;
+    for path in &options.loss_curve {
+        CurveFormat::of(path)?;
+    }
+    let definition = recipe::definition(config.recipe)?;
+    data.check(definition.features)?;
+    let split = split::split(data.rows() as u32, config.held_out, config.seed);
+    let normalisation: Vec<Normalisation> = data
+        .inputs
+        .iter()
+        .map(|values| Normalisation::over(values, &split.train))
+        .collect();
+    let device = options.compute.device();
+    let mut task = FragmentMse::new(data, &normalisation, &split, &device);
+    let run = Run {
+        config,
+        definition: &definition,
+        normalisation: &normalisation,
+        data,
+        fingerprint: data.fingerprint(),
+        options,
+        device,
+        threads: options.compute.threads(options.threads),
+        shape: shape(config, &definition),
+        folder: checkpoint::folder(&options.out),
+    };
+    run.go(&mut task, on_epoch)
+}
+
+fn shape(config: &Config, definition: &Definition) -> Shape {
+    let widths = std::iter::once(definition.features.len())
+        .chain(config.hidden.iter().copied())
+        .chain([definition.outputs])
+        .collect();
+    Shape {
+        widths,
+        hidden: config.hidden_activation,
+        output: config.output_activation,
+    }
+}
+
+/// What does not change during a run.
+struct Run<'a> {
+    config: &'a Config,
+    definition: &'a Definition,
+    normalisation: &'a [Normalisation],
+    data: &'a TrainingData,
+    fingerprint: String,
+    options: &'a RunOptions<'a>,
+    device: Device,
+    threads: usize,
+    shape: Shape,
+    folder: PathBuf,
+}
+
+/// What an epoch changes. Cloning it copies references to tensors, not their values.
+#[derive(Clone)]
+struct Progress {
+    parameters: Tensor<1>,
+    adam: Adam,
+    best: Option<(u32, Tensor<1>)>,
+    history: Vec<EpochReport>,
+}
+
+/// What came of one pass over the training examples.
+enum Pass {
+    Done {
+        parameters: Tensor<1>,
+        adam: Adam,
+        train_loss: f64,
+        test_loss: Option<f64>,
+        seconds: f64,
+    },
+    Stopped,
+}
+
+impl Run<'_> {
+    fn go(&self, task: &mut dyn Task, mut on_epoch: impl FnMut(&EpochReport)) -> Result<Outcome, TrainError> {
+        let resumed = if self.options.resume {
+            State::load(&self.folder, self.config, &self.fingerprint, self.shape.parameters())?
+        } else {
+            None
+        };
+        let resumed_from = resumed.as_ref().map(|state| state.history.len() as u32);
+        let mut progress = match resumed {
+            Some(state) => self.restore(state),
+            None => {
+                let parameters = self.upload(self.shape.initial(self.config.seed));
+                Progress {
+                    adam: Adam::new(&parameters),
+                    parameters,
+                    best: None,
+                    history: Vec::new(),
+                }
+            }
+        };
+        let mut saved = Instant::now();
+        let end = loop {
+            let epoch = progress.history.len() as u32 + 1;
+            if let (Some(patience), Some((best, _))) = (self.config.patience, &progress.best)
+                && epoch - 1 - best >= patience
+            {
+                break End::StoppedEarly;
+            }
+            if epoch > self.config.epochs {
+                break End::Finished;
+            }
+            let Pass::Done {
+                parameters,
+                adam,
+                train_loss,
+                test_loss,
+                seconds,
+            } = self.epoch(epoch, task, &progress)
+            else {
+                break End::Interrupted;
+            };
+            if let Some(what) = self.not_finite(train_loss, test_loss, &parameters) {
+                return Err(self.diverged(epoch, what, &progress));
+            }
+            let score = test_loss.unwrap_or(train_loss);
+            let best = self.score(&progress).is_none_or(|lowest| score < lowest);
+            if best {
+                progress.best = Some((epoch, parameters.clone()));
+            }
+            progress.parameters = parameters;
+            progress.adam = adam;
+            let report = EpochReport {
+                epoch,
+                epochs: self.config.epochs,
+                train_loss,
+                test_loss,
+                seconds,
+                rows_per_s: task.examples(Part::Train) as f64 / seconds.max(f64::MIN_POSITIVE),
+                best,
+            };
+            on_epoch(&report);
+            progress.history.push(report);
+            if saved.elapsed() >= SAVE_EVERY {
+                self.save(&progress)?;
+                saved = Instant::now();
+            }
+        };
+        self.save(&progress)?;
+        for path in &self.options.loss_curve {
+            write_curve(path, &progress.history)?;
+        }
+        // Choosing the best epoch is what patience asks for; see the crate's documentation.
+        let chosen = match &progress.best {
+            Some((epoch, parameters)) if self.config.patience.is_some() => (*epoch, parameters),
+            _ => (progress.history.len() as u32, &progress.parameters),
+        };
+        let model = self.model(chosen.0, chosen.1, &progress.history, &self.options.out)?;
+        if end != End::Interrupted {
+            save_model(&model, &self.options.out)?;
+        }
+        Ok(Outcome {
+            model,
+            history: progress.history,
+            end,
+            model_epoch: chosen.0,
+            resumed_from,
+            checkpoint: self.folder.clone(),
+        })
+    }
+
+    /// One pass over the training examples and one over the held-out ones.
+    fn epoch(&self, epoch: u32, task: &mut dyn Task, start: &Progress) -> Pass {
+        let config = self.config;
+        let examples = task.examples(Part::Train);
+        let steps_per_epoch = examples.div_ceil(config.batch) as u64;
+        let steps = steps_per_epoch * u64::from(config.epochs);
+        let begin = Instant::now();
+        task.shuffle(&Random::new(config.seed, Stream::Order(epoch)).permutation(examples as u32));
+        Team::with(self.threads, &*task, &self.shape, config.chunk, |team| {
+            let mut parameters = start.parameters.clone();
+            let mut adam = start.adam.clone();
+            let count = self.shape.parameters();
+            let mut losses = Vec::with_capacity(steps_per_epoch as usize);
+            for first in (0..examples).step_by(config.batch) {
+                if self.options.stop.load(Ordering::Relaxed) {
+                    return Pass::Stopped;
+                }
+                let range = first..(first + config.batch).min(examples);
+                let scale = 1.0 / range.len() as f64;
+                let sum = team.gradient(&parameters, range);
+                losses.push(sum.clone().narrow(0, count, 1));
+                let gradient = sum.narrow(0, 0, count) * scale;
+                let rate = config.schedule.rate(config.learning_rate, adam.steps, steps);
+                (adam, parameters) = adam.step(config, rate, parameters, gradient);
+            }
+            let train_loss = total(losses) / examples as f64;
+            let seconds = begin.elapsed().as_secs_f64();
+            let test_loss = held_out_loss(team, &parameters);
+            Pass::Done {
+                train_loss,
+                test_loss,
+                seconds,
+                parameters,
+                adam,
+            }
+        })
+    }
+
+    fn score(&self, progress: &Progress) -> Option<f64> {
+        let (epoch, _) = progress.best.as_ref()?;
+        let row = &progress.history[*epoch as usize - 1];
+        Some(row.test_loss.unwrap_or(row.train_loss))
+    }
+
+    fn not_finite(&self, train_loss: f64, test_loss: Option<f64>, parameters: &Tensor<1>) -> Option<&'static str> {
+        if !train_loss.is_finite() {
+            Some("the training loss")
+        } else if test_loss.is_some_and(|loss| !loss.is_finite()) {
+            Some("the held-out loss")
+        } else if download(parameters).iter().any(|v| !v.is_finite()) {
+            Some("a weight")
+        } else {
+            None
+        }
+    }
+
+    /// Keeps what there is, then says what happened. The divergence is what the user must hear of, so a failure to save
+    /// only means that nothing is said to be kept.
+    fn diverged(&self, epoch: u32, what: &'static str, progress: &Progress) -> TrainError {
+        let saved = self.save(progress).is_ok();
+        for path in &self.options.loss_curve {
+            let _ = write_curve(path, &progress.history);
+        }
+        TrainError::Diverged {
+            epoch,
+            what,
+            learning_rate: self.config.learning_rate,
+            kept: (saved && !progress.history.is_empty()).then(|| self.folder.join("last.safetensors")),
+        }
+    }
+
+    fn upload(&self, values: Vec<f32>) -> Tensor<1> {
+        let n = values.len();
+        Tensor::from_data(TensorData::new(values, [n]), &self.device)
+    }
+
+    fn restore(&self, state: State) -> Progress {
+        Progress {
+            parameters: self.upload(state.parameters),
+            adam: Adam {
+                first: self.upload(state.first),
+                second: self.upload(state.second),
+                steps: state.steps,
+            },
+            best: state.best.map(|(epoch, values)| (epoch, self.upload(values))),
+            history: state.history,
+        }
+    }
+
+    /// Saves the state and the two model files made from it.
+    fn save(&self, progress: &Progress) -> Result<(), TrainError> {
+        State {
+            parameters: download(&progress.parameters),
+            first: download(&progress.adam.first),
+            second: download(&progress.adam.second),
+            steps: progress.adam.steps,
+            best: progress.best.as_ref().map(|(epoch, p)| (*epoch, download(p))),
+            history: progress.history.clone(),
+        }
+        .save(&self.folder, self.config, &self.fingerprint)?;
+        let last = (progress.history.len() as u32, &progress.parameters);
+        let best = progress.best.as_ref().map(|(epoch, p)| (*epoch, p));
+        if last.0 > 0 {
+            for (name, (epoch, parameters)) in [("last", Some(last)), ("best", best)]
+                .into_iter()
+                .filter_map(|(name, which)| which.map(|which| (name, which)))
+            {
+                let path = self.folder.join(name).with_extension("safetensors");
+                save_model(&self.model(epoch, parameters, &progress.history, &path)?, &path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The model with the parameters of `epoch`.
+    fn model(
+        &self,
+        epoch: u32,
+        parameters: &Tensor<1>,
+        history: &[EpochReport],
+        path: &Path,
+    ) -> Result<Model, TrainError> {
+        let failed = |error: Box<dyn std::error::Error + Send + Sync>| TrainError::Model {
+            path: path.to_owned(),
+            error,
+        };
+        let row = (epoch as usize).checked_sub(1).and_then(|i| history.get(i));
+        let held_out = row.and_then(|r| r.test_loss);
+        let chosen_by_it = self.config.patience.is_some();
+        let inputs = self
+            .definition
+            .features
+            .iter()
+            .zip(self.normalisation)
+            .map(|(feature, n)| Input {
+                name: feature.name.to_owned(),
+                unit: feature.unit.to_owned(),
+                offset: n.offset,
+                scale: n.scale,
+                min: n.min,
+                max: n.max,
+            })
+            .collect();
+        let mut mlp = self
+            .shape
+            .to_mlp(&download(parameters))
+            .map_err(|e| failed(Box::new(e)))?;
+        // See `Normalisation::over`: an input that never varied must not matter.
+        let first = &mut mlp.layers[0];
+        for row in first.weights.chunks_exact_mut(first.inputs) {
+            for (weight, n) in row.iter_mut().zip(self.normalisation) {
+                if n.constant {
+                    *weight = 0.0;
+                }
+            }
+        }
+        Ok(Model {
+            mlp,
+            meta: Metadata {
+                format_version: peelnet_model::FORMAT_VERSION,
+                tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+                recipe: self.config.recipe,
+                inputs,
+                output: self.definition.output,
+                seed: self.config.seed,
+                dataset: self.data.dataset.clone(),
+                epochs: epoch,
+                losses: Losses {
+                    train: row.map(|r| r.train_loss),
+                    validation: held_out.filter(|_| chosen_by_it),
+                    test: held_out.filter(|_| !chosen_by_it),
+                },
+                held_out: Default::default(),
+                config: serde_json::to_value(self.config).map_err(|e| failed(Box::new(e)))?,
+            },
+        })
+    }
+}
+
+/// Mean held-out loss; none when nothing is held out.
+fn held_out_loss(team: &Team<'_>, parameters: &Tensor<1>) -> Option<f64> {
+    let losses = team.losses(parameters, Part::Test);
+    let examples = team.examples(Part::Test);
+    (examples > 0).then(|| total(losses) / examples as f64)
+}
+
+fn save_model(model: &Model, path: &Path) -> Result<(), TrainError> {
+    if let Some(folder) = path.parent().filter(|p| *p != Path::new("")) {
+        std::fs::create_dir_all(folder).map_err(|error| TrainError::Io {
+            path: folder.to_owned(),
+            error,
+        })?;
+    }
+    model.save(path).map_err(|e| TrainError::Model {
+        path: path.to_owned(),
+        error: Box::new(e),
+    })
+}
+
+/// Reads scalars back in one transfer and adds them in 64 bits.
+fn total(losses: Vec<Tensor<1>>) -> f64 {
+    if losses.is_empty() {
+        return 0.0;
+    }
+    download(&Tensor::cat(losses, 0)).into_iter().map(f64::from).sum()
+}
+
+fn download(tensor: &Tensor<1>) -> Vec<f32> {
+    tensor
+        .to_data()
+        .try_into_vec()
+        .expect("parameters and losses are 32-bit floats")
+}

@@ -1,0 +1,27 @@
+// S-buffer: composites each sorted run front to back over C_0 (under-blending).
+import package::peel::tile::Tile;
+
+@group(0) @binding(0) var<uniform> tile: Tile;
+@group(0) @binding(1) var<storage, read> offsets: array<u32>;
+@group(0) @binding(2) var<storage, read> colors: array<vec4f>;
+@group(0) @binding(3) var background: texture_2d<f32>;
+@group(0) @binding(4) var image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let index = tile.begin + id.y * tile.groups * 64u + id.x;
+    if index >= tile.end {
+        return;
+    }
+    let width = textureDimensions(background).x;
+    let pixel = vec2u(index % width, index / width);
+    var color = vec3f(0.0);
+    var transmittance = 1.0;
+    for (var i = offsets[index] - tile.base; i < offsets[index + 1u] - tile.base; i++) {
+        let fragment = colors[i];
+        color += transmittance * (fragment.a * fragment.rgb);
+        transmittance *= 1.0 - fragment.a;
+    }
+    let behind = textureLoad(background, pixel, 0).rgb;
+    textureStore(image, pixel, vec4f(color + transmittance * behind, 1.0 - transmittance));
+}

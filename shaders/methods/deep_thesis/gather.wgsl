@@ -1,0 +1,25 @@
+// deep-thesis (Papakostas 2022), pass 2: eq 6 with the weight that the exported network gives.
+import package::learned::weight::{peelnet_weight, peelnet_features};
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@group(1) @binding(0) var statistics: texture_2d<f32>;
+
+struct Sums {
+    @location(0) color: vec4f,
+    // Blended multiplicatively: dst * (1 - src).
+    @location(1) alpha: f32,
+}
+
+@fragment
+fn fragment_main(surface: Surface) -> Sums {
+    if !visible(surface) {
+        discard;
+    }
+    let color = shade(surface);
+    let sums = textureLoad(statistics, vec2u(surface.position.xy), 0).xy;
+    let features = peelnet_features(surface.depth_linear, sums);
+    let weight = peelnet_weight(features.x, features.y, features.z);
+    return Sums(vec4f(color.rgb * color.a, color.a) * weight, color.a);
+}

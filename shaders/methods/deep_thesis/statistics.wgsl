@@ -1,0 +1,12 @@
+// deep-thesis, pass 1: sum alpha and the number of fragments.
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@fragment
+fn fragment_main(surface: Surface) -> @location(0) vec2f {
+    if !visible(surface) {
+        discard;
+    }
+    return vec2f(shade(surface).a, 1.0);
+}

@@ -1,0 +1,42 @@
+// Dual depth peeling: blends the two layers of one pass, the front one under, the back one over.
+import package::helpers::screen::screen_corner;
+
+// What was left before the pass, and what is left after it.
+@group(0) @binding(0) var before: texture_2d<f32>;
+@group(0) @binding(1) var after: texture_2d<f32>;
+@group(0) @binding(2) var front: texture_2d<f32>;
+@group(0) @binding(3) var back: texture_2d<f32>;
+@group(0) @binding(4) var<storage, read_write> found: array<atomic<u32>, 2>;
+
+struct Layers {
+    // Target 0 blends dst.a * src + dst, target 1 src + (1 - src.a) * dst; alpha becomes dst.a * (1 - src.a) in both.
+    @location(0) front: vec4f,
+    @location(1) back: vec4f,
+}
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> Layers {
+    let pixel = vec2u(position.xy);
+    let left = textureLoad(before, pixel, 0).xy;
+    if -left.x > left.y {
+        discard;
+    }
+    let next = textureLoad(after, pixel, 0).xy;
+    if -next.x <= next.y {
+        atomicStore(&found[0], 1u);
+    }
+    @if(counted) {
+        atomicAdd(&found[1], select(1u, 2u, left.y > -left.x));
+    }
+    let nearest = textureLoad(front, pixel, 0);
+    let farthest = textureLoad(back, pixel, 0);
+    return Layers(
+        vec4f(nearest.a * nearest.rgb, nearest.a),
+        vec4f(farthest.a * farthest.rgb, farthest.a),
+    );
+}

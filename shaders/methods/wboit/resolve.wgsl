@@ -1,0 +1,22 @@
+// Eq 6's resolve, shared by every method that accumulates (sum C w, sum alpha w) and T.
+import package::helpers::resolve::normalised;
+import package::helpers::screen::screen_corner;
+
+@group(0) @binding(0) var background: texture_2d<f32>;
+@group(0) @binding(1) var sums: texture_2d<f32>;
+@group(0) @binding(2) var transmittances: texture_2d<f32>;
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
+    return normalised(
+        textureLoad(sums, pixel, 0),
+        textureLoad(transmittances, pixel, 0).x,
+        textureLoad(background, pixel, 0).rgb,
+    );
+}

@@ -1,0 +1,66 @@
+// S-buffer: sorts each pixel's run by (linear depth, triangle), one thread a pixel.
+//
+// Shell sort (Shell 1959, gaps of Ciura 2001): in place, no recursion, insertion sort for the short runs that
+// almost all pixels have, and n^1.3 for the rest. Depths are positive, so comparing their bits compares them.
+import package::peel::tile::Tile;
+
+@group(0) @binding(0) var<uniform> tile: Tile;
+@group(0) @binding(1) var<storage, read> offsets: array<u32>;
+@group(0) @binding(2) var<storage, read_write> depths: array<f32>;
+@group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
+@group(0) @binding(4) var<storage, read_write> colors: array<vec4f>;
+
+fn next_gap(gap: u32) -> u32 {
+    if gap > 1750u { return u32(f32(gap) / 2.25); }
+    if gap > 701u { return 701u; }
+    if gap > 301u { return 301u; }
+    if gap > 132u { return 132u; }
+    if gap > 57u { return 57u; }
+    if gap > 23u { return 23u; }
+    if gap > 10u { return 10u; }
+    if gap > 4u { return 4u; }
+    if gap > 1u { return 1u; }
+    return 0u;
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = tile.begin + id.y * tile.groups * 64u + id.x;
+    if pixel >= tile.end {
+        return;
+    }
+    let begin = offsets[pixel] - tile.base;
+    let end = offsets[pixel + 1u] - tile.base;
+    var gap = next_gap(max(end - begin, 1u));
+    // A short run is nearly free by insertion alone.
+    if end - begin <= 24u {
+        gap = 1u;
+    }
+    while gap > 0u {
+        for (var i = begin + gap; i < end; i++) {
+            let depth = depths[i];
+            let triangle = triangles[i];
+            var j = i;
+            while j >= begin + gap {
+                let before = depths[j - gap];
+                if before < depth || (before == depth && triangles[j - gap] < triangle) {
+                    break;
+                }
+                j -= gap;
+            }
+            // Only a fragment out of place is moved, with its colour.
+            if j != i {
+                let color = colors[i];
+                for (var k = i; k > j; k -= gap) {
+                    depths[k] = depths[k - gap];
+                    triangles[k] = triangles[k - gap];
+                    colors[k] = colors[k - gap];
+                }
+                depths[j] = depth;
+                triangles[j] = triangle;
+                colors[j] = color;
+            }
+        }
+        gap = next_gap(gap);
+    }
+}

@@ -1,0 +1,30 @@
+// S-buffer, pass 2: every fragment into its pixel's own run of slots.
+import package::scene::camera::camera;
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+import package::peel::tile::Tile;
+
+@group(1) @binding(0) var<storage, read_write> counts: array<atomic<u32>>;
+@group(1) @binding(1) var<storage, read> offsets: array<u32>;
+@group(1) @binding(2) var<storage, read_write> depths: array<f32>;
+@group(1) @binding(3) var<storage, read_write> triangles: array<u32>;
+@group(1) @binding(4) var<storage, read_write> colors: array<vec4f>;
+@group(1) @binding(5) var<uniform> tile: Tile;
+
+@fragment
+fn fragment_main(surface: Surface) {
+    if !visible(surface) {
+        discard;
+    }
+    let pixel = vec2u(surface.position.xy);
+    let index = pixel.y * camera.frame.x + pixel.x;
+    if index < tile.begin || index >= tile.end {
+        discard;
+    }
+    // Counting down to zero gives every fragment of the pixel another slot and needs no second counter.
+    let slot = offsets[index] - tile.base + atomicSub(&counts[index], 1u) - 1u;
+    depths[slot] = surface.depth_linear;
+    triangles[slot] = surface.triangle;
+    colors[slot] = shade(surface);
+}

@@ -1,0 +1,11 @@
+// What the one vertex shader hands to every fragment shader.
+struct Surface {
+    @builtin(position) @invariant position: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    // Linear depth: distance along the view axis in scene units. The sort key everywhere.
+    @location(2) depth_linear: f32,
+    // Index in the scene's list of triangles, object by object: the tie rule.
+    @location(3) @interpolate(flat) triangle: u32,
+    @location(4) @interpolate(flat) material: u32,
+}

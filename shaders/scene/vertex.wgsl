@@ -1,0 +1,22 @@
+// The only vertex shader of scene geometry: every pass shares it, so that depth comes out bit-identical in all of them.
+import package::scene::camera::camera;
+import package::scene::surface::Surface;
+
+struct Corner {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) material: u32,
+}
+
+@vertex
+fn vertex_main(corner: Corner, @builtin(vertex_index) index: u32) -> Surface {
+    var out: Surface;
+    out.position = camera.clip_from_world * vec4f(corner.position, 1.0);
+    out.world = corner.position;
+    out.normal = corner.normal;
+    // A perspective projection puts the distance along the view axis into w.
+    out.depth_linear = out.position.w;
+    out.triangle = index / 3u;
+    out.material = corner.material;
+    return out;
+}

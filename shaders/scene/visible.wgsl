@@ -1,0 +1,25 @@
+// Whether a transparent fragment counts at all.
+import package::scene::camera::camera;
+import package::helpers::hash::pixel_hash;
+import package::scene::surface::Surface;
+
+@if(opaque) @group(0) @binding(3) var opaque_depth: texture_depth_2d;
+
+// False behind opaque geometry, and outside of the pixel sample where one is taken.
+//
+// The opaque depth is compared here and not by the fixed-function test, because storage writes of a fragment
+// shader happen before that test.
+fn visible(surface: Surface) -> bool {
+    let pixel = vec2u(surface.position.xy);
+    @if(sampled) {
+        if pixel_hash(camera.frame.w, camera.sample.x, pixel.x, pixel.y) > camera.sample.y {
+            return false;
+        }
+    }
+    @if(opaque) {
+        if surface.position.z >= textureLoad(opaque_depth, pixel, 0) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,128 @@
+//! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
+
+use glam::{Mat4, Vec3};
+use peelnet_core::{fragment::Fragment, scanline};
+use peelnet_gpu::{AdapterRequest, Gpu};
+use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
+use std::{path::PathBuf, sync::Arc};
+
+/// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
+/// get one.
+pub fn gpu() -> Gpu {
+    Gpu::new(&AdapterRequest::Software)
+        .or_else(|_| Gpu::new(&AdapterRequest::Auto))
+        .unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A camera at the origin that looks along −z with a square frame of 90°, so that a quad of half side `z` at depth
+/// `z` just fills it.
+pub fn camera() -> Camera {
+    Camera {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y_degrees: 90.0,
+        near: 0.01,
+        far: 2e4,
+    }
+}
+
+/// An unlit material.
+pub fn unlit(color: [f32; 3], alpha: f32) -> Material {
+    Material {
+        name: String::new(),
+        color,
+        alpha,
+        lighting: Lighting::Unlit,
+        specular: 0.0,
+        shininess: 1.0,
+        double_sided: true,
+        blend: true,
+    }
+}
+
+/// An object from triangles in world space.
+pub fn object(name: &str, corners: &[[Vec3; 3]], material: Material) -> Object {
+    let positions: Vec<Vec3> = corners.iter().flatten().copied().collect();
+    let mesh = Mesh {
+        normals: corners
+            .iter()
+            .flat_map(|[a, b, c]| [(*b - *a).cross(*c - *a).normalize_or(Vec3::Z); 3])
+            .collect(),
+        triangles: (0..corners.len() as u32)
+            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+            .collect(),
+        parts: vec![Part {
+            name: name.to_owned(),
+            triangles: 0..corners.len(),
+            material: material.clone(),
+        }],
+        positions,
+    };
+    Object {
+        name: name.to_owned(),
+        mesh: Arc::new(mesh),
+        world_from_object: Mat4::IDENTITY,
+        layer: 0,
+        materials: vec![material],
+    }
+}
+
+/// A quad facing the camera at depth `z` that covers the whole frame, and more.
+pub fn wall(z: f32, material: Material) -> Object {
+    let s = 1.5 * z;
+    let v = |x: f32, y: f32| Vec3::new(x * s, y * s, -z);
+    let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
+    object(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material)
+}
+
+/// A scene of these objects.
+pub fn scene(name: &str, background: [f32; 3], objects: Vec<Object>) -> Scene {
+    Scene {
+        name: name.to_owned(),
+        source: PathBuf::from(format!("{name} (made by a test)")),
+        hash: String::new(),
+        background,
+        views: vec![camera()],
+        lights: Vec::new(),
+        objects,
+        held_out: false,
+        warnings: Vec::new(),
+    }
+}
+
+/// Every pixel of it holds exactly these fragments.
+pub fn walls(fragments: &[Fragment], background: [f32; 3]) -> Scene {
+    scene(
+        "walls",
+        background,
+        fragments
+            .iter()
+            .map(|f| wall(f.depth, unlit(f.color, f.alpha)))
+            .collect(),
+    )
+}
+
+/// A scene's triangles in a view's clip space, in 64 bits, numbered as the renderer numbers them.
+pub fn clip_triangles(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<scanline::Triangle> {
+    let clip = camera
+        .clip_from_view(size[0] as f32 / size[1] as f32)
+        .as_dmat4()
+        * camera.view_from_world().as_dmat4();
+    let mut triangles = Vec::new();
+    for object in &scene.objects {
+        for triangle in &object.mesh.triangles {
+            let corners = triangle.map(|i| {
+                let world = object
+                    .world_from_object
+                    .transform_point3(object.mesh.positions[i as usize]);
+                (clip * world.as_dvec3().extend(1.0)).to_array()
+            });
+            triangles.push(scanline::Triangle {
+                clip: corners,
+                id: triangles.len() as u32,
+            });
+        }
+    }
+    triangles
+}

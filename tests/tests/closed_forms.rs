@@ -1,0 +1,192 @@
+//! Stacked walls whose every pixel holds known fragments × every method: the GPU against the CPU twin.
+
+use peelnet_core::{
+    fragment::{Fragment, worked_example},
+    methods::{blended, over, wboit, weighted_average, weighted_sum},
+    weights::Weight,
+};
+use peelnet_render::{MethodSpec, Renderer};
+use peelnet_tests::{gpu, walls};
+
+/// Relative rounding of a half float.
+const HALF: f32 = 1.0 / 2048.0;
+
+/// Bound for a method with 16-bit targets: every one of `n` additions and the stored T round once, values ≤ `peak`.
+fn half_bound(n: usize, peak: f32) -> f32 {
+    (n as f32 + 2.0) * HALF * peak
+}
+
+fn twin(spec: &MethodSpec, f: &[Fragment], c0: [f32; 3]) -> [f32; 3] {
+    match spec.name() {
+        "abuffer" | "depth-peel" | "dual-peel" => over::composite(f, c0),
+        "weighted-sum" => weighted_sum::composite(f, c0),
+        "weighted-average" => weighted_average::composite(f, c0),
+        "blended" => blended::composite(f, c0),
+        name => {
+            let weight = Weight::ALL
+                .into_iter()
+                .find(|w| name == format!("wboit-{}", w.name()))
+                .unwrap_or_else(|| panic!("method {name} has no twin in this test: add it"));
+            wboit::composite(f, c0, weight)
+        }
+    }
+}
+
+/// The window depth that the test camera gives to depth z.
+fn with_window_depth(mut f: Vec<Fragment>) -> Vec<Fragment> {
+    let camera = peelnet_tests::camera();
+    for f in &mut f {
+        let clip = camera.clip_from_view(1.0) * glam::Vec4::new(0.0, 0.0, -f.depth, 1.0);
+        f.window_depth = clip.z / clip.w;
+    }
+    f
+}
+
+fn cases() -> Vec<(&'static str, Vec<Fragment>)> {
+    let rainbow = |n: usize, alpha: f32| {
+        (0..n)
+            .map(|i| {
+                let t = i as f32 / n as f32;
+                Fragment::new(1.0 + 3.0 * t, alpha, [t, 1.0 - t, (7.0 * t).fract()])
+            })
+            .collect()
+    };
+    vec![
+        ("nothing", vec![]),
+        ("one", vec![Fragment::new(3.0, 0.5, [0.2, 0.4, 0.8])]),
+        ("worked example", worked_example().to_vec()),
+        ("reversed", worked_example().into_iter().rev().collect()),
+        ("alpha zero", vec![Fragment::new(2.0, 0.0, [1.0; 3])]),
+        (
+            "opaque in the middle",
+            vec![
+                Fragment::new(1.0, 0.25, [1.0, 0.0, 0.0]),
+                Fragment::new(2.0, 1.0, [0.0, 1.0, 0.0]),
+                Fragment::new(3.0, 0.5, [0.0, 0.0, 1.0]),
+            ],
+        ),
+        ("nine", rainbow(9, 0.3)),
+        ("forty", rainbow(40, 0.2)),
+    ]
+}
+
+#[test]
+fn every_method_agrees_with_its_twin() {
+    let gpu = gpu();
+    let c0 = [0.25, 0.5, 0.75];
+    for (case, fragments) in cases() {
+        let fragments = with_window_depth(fragments);
+        let scene = walls(&fragments, c0);
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        for spec in MethodSpec::all() {
+            let mut variants = vec![spec.clone()];
+            if spec.entry().knobs.iter().any(|(k, _)| *k == "targets") {
+                variants.push(format!("{spec}:targets=f32").parse().unwrap());
+            }
+            for spec in variants {
+                let mut prepared = renderer.prepare(&spec, [5, 3], None).unwrap();
+                let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+                let want = twin(&spec, &fragments, c0);
+                let bound = if spec.entry().exact {
+                    peelnet_core::tolerance::EXACT as f32
+                } else if spec.to_string().ends_with("f32") {
+                    // Shaders may contract or reorder; divisions and pow are allowed 2.5 and 16 units: 1e-4 is 800 units.
+                    1e-4
+                } else {
+                    // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
+                    half_bound(fragments.len(), 3.0)
+                };
+                for p in &frame.image.pixels {
+                    for k in 0..3 {
+                        assert!(
+                            (p[k] - want[k]).abs() <= bound,
+                            "{case}, {spec}: {p:?} instead of {want:?} (bound {bound})"
+                        );
+                    }
+                }
+                if fragments.is_empty() {
+                    assert_eq!(frame.image.pixels[7][..3], c0, "{spec} keeps C_0");
+                }
+                assert_eq!(frame.stats.lost, 0, "{case}, {spec}");
+            }
+        }
+    }
+}
+
+/// Peeling's known flaw and its remedy: of coplanar walls dual peeling keeps one of two an end and says so, while the
+/// S-buffer and single peeling keep all.
+#[test]
+fn coplanar_walls() {
+    let gpu = gpu();
+    let c0 = [1.0; 3];
+    let fragments: Vec<_> = (0..3)
+        .map(|i| {
+            let mut color = [0.0; 3];
+            color[i] = 1.0;
+            Fragment {
+                triangle: i as u32,
+                ..Fragment::new(2.0, 0.5, color)
+            }
+        })
+        .collect();
+    let scene = walls(&fragments, c0);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let want = over::composite(&fragments, c0);
+    for (name, lost) in [("abuffer", 0), ("depth-peel", 0), ("dual-peel", 2)] {
+        let spec: MethodSpec = name.parse().unwrap();
+        let mut prepared = renderer.prepare(&spec, [4, 4], None).unwrap();
+        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        assert_eq!(frame.stats.fragments, Some(48).filter(|_| true), "{name}");
+        assert_eq!(frame.stats.lost, lost * 16, "{name}");
+        if lost == 0 {
+            for k in 0..3 {
+                assert!((frame.image.pixels[5][k] - want[k]).abs() < 1e-6, "{name}");
+            }
+        }
+    }
+}
+
+/// A capped run leaves out what it did not reach, and counts it.
+#[test]
+fn a_capped_peel_counts_what_it_left_out() {
+    let gpu = gpu();
+    let fragments: Vec<_> = (1..=9)
+        .map(|i| Fragment::new(i as f32, 0.25, [0.5; 3]))
+        .collect();
+    let scene = walls(&fragments, [0.0; 3]);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    for (name, left) in [("depth-peel:passes=4", 5), ("dual-peel:passes=3", 3)] {
+        let spec: MethodSpec = name.parse().unwrap();
+        let mut prepared = renderer.prepare(&spec, [2, 2], None).unwrap();
+        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        assert_eq!(frame.stats.lost, left * 4, "{name}");
+    }
+}
+
+/// Opaque walls hide what is behind them, for every method.
+#[test]
+fn opaque_walls_hide() {
+    let gpu = gpu();
+    let mut opaque = peelnet_tests::unlit([0.1, 0.6, 0.3], 1.0);
+    opaque.blend = false;
+    let front = [Fragment::new(1.0, 0.5, [1.0, 0.0, 0.0])];
+    let mut scene = walls(&front, [0.0; 3]);
+    scene.objects.push(peelnet_tests::wall(2.0, opaque));
+    scene.objects.push(peelnet_tests::wall(
+        3.0,
+        peelnet_tests::unlit([0.0, 0.0, 1.0], 0.9),
+    ));
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let want = over::composite(&front, [0.1, 0.6, 0.3]);
+    for spec in MethodSpec::all() {
+        let mut prepared = renderer.prepare(&spec, [3, 3], None).unwrap();
+        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        for k in 0..3 {
+            let got = frame.image.pixels[4][k];
+            assert!(
+                (got - want[k]).abs() <= half_bound(1, 1.0),
+                "{spec}: {got} {want:?}"
+            );
+        }
+    }
+}
