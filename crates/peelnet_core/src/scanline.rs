@@ -63,8 +63,8 @@ pub fn rasterise(triangles: &[Triangle], width: usize, height: usize, offset: [f
     frame
 }
 
-/// Which pixels see the same number of fragments when the sample moves by `radius` pixels along both diagonals: the others lie on
-/// a silhouette for a rasteriser that snaps its corners to a grid no coarser than `radius`.
+/// Which pixels see the same triangles when the sample moves by `radius` pixels in any of eight directions: the others lie
+/// on an edge for a rasteriser that snaps its corners to a grid no coarser than `radius`.
 pub fn stable_pixels(
     triangles: &[Triangle],
     width: usize,
@@ -73,13 +73,28 @@ pub fn stable_pixels(
 ) -> Vec<bool> {
     let centre = rasterise(triangles, width, height, [0.0; 2]);
     let mut stable = vec![true; width * height];
-    for (dx, dy) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-        let moved = rasterise(triangles, width, height, [dx * radius, dy * radius]);
+    let ids = |pixel: &[Hit]| {
+        let mut ids: Vec<_> = pixel.iter().map(|h| h.id).collect();
+        ids.sort_unstable();
+        ids
+    };
+    for (dx, dy) in [
+        (1, 1),
+        (1, 0),
+        (1, -1),
+        (0, 1),
+        (0, -1),
+        (-1, 1),
+        (-1, 0),
+        (-1, -1),
+    ] {
+        let offset = [f64::from(dx) * radius, f64::from(dy) * radius];
+        let moved = rasterise(triangles, width, height, offset);
         for (s, (a, b)) in stable
             .iter_mut()
             .zip(centre.pixels.iter().zip(&moved.pixels))
         {
-            *s &= a.len() == b.len();
+            *s &= ids(a) == ids(b);
         }
     }
     stable

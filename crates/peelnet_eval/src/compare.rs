@@ -58,7 +58,7 @@ pub fn compare(
         move |source| EvalError::Render {
             scene,
             method,
-            source,
+            source: Box::new(source),
         }
     };
     if let Some(folder) = plan.images {

@@ -31,7 +31,7 @@ pub enum EvalError {
         /// The method's name.
         method: String,
         /// The renderer's reason.
-        source: peelnet_render::RenderError,
+        source: Box<peelnet_render::RenderError>,
     },
     /// Two images that should be compared differ in size: a bug of the caller.
     #[error(

@@ -153,7 +153,7 @@ mod tests {
     fn srgb_values() {
         assert_eq!(srgb_encode(0.0), 0.0);
         assert!((srgb_encode(1.0) - 1.0).abs() < 1e-12);
-        assert!((srgb_encode(0.002) - 0.025_84).abs() < 1e-9);
+        assert!((srgb_encode(1.0 / 512.0) - 0.025_234_375).abs() < 1e-9);
         assert!((srgb_encode(0.5) - 0.735_356_983).abs() < 1e-8);
         assert_eq!(srgb_encode(-3.0), 0.0);
         assert_eq!(srgb_encode(7.0), srgb_encode(1.0));

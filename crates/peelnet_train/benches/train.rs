@@ -15,6 +15,7 @@ fn rows() -> TrainingData {
         source: "synthetic".to_owned(),
         inputs: vec![column(7.0, 5.0), column(3.3, 2.0), column(12.1, 11.0)],
         target: column(0.5, 0.5),
+        held_out: None,
         dataset: None,
     }
 }

@@ -31,6 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         source: file.clone(),
         inputs: columns,
         target,
+        held_out: None,
         dataset: None,
     };
     let config = Config {

@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use peelnet_dataset::{Column, ColumnData, Dataset};
+use peelnet_dataset::{Column, ColumnData, Dataset, Split, Subset};
 use peelnet_model::{DatasetRef, Model, Recipe};
 
+use crate::config::Config;
 use crate::error::TrainError;
 use crate::recipe;
 use crate::training_data::TrainingData;
@@ -12,45 +13,61 @@ use crate::training_data::TrainingData;
 impl TrainingData {
     /// The rows of all scenes that are not held out, dataset after dataset.
     ///
+    /// Of these, the share [`Config::held_out`] is set aside by whole pixels: the fragments of a pixel have their sum
+    /// and count in common and say almost everything about one another.
+    ///
     /// # Errors
     /// A dataset that cannot be read, or a recipe that does not take columns as they are.
-    pub fn from_datasets(recipe: Recipe, datasets: &[Dataset]) -> Result<Self, TrainError> {
-        let columns = columns(recipe)?;
-        let mut inputs = vec![Vec::new(); columns.len() - 1];
+    pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
+        let mut columns = columns(config.recipe)?;
+        let features = columns.len() - 1;
+        columns.extend([Column::View, Column::X, Column::Y]);
+        let mut inputs = vec![Vec::new(); features];
         let mut target = Vec::new();
+        let mut held_out = Vec::new();
         let mut scenes = BTreeSet::new();
+        let split = Split::new(config.seed, 0.0, config.held_out)?;
         for dataset in datasets {
-            let data = dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
-            let targets = inputs.iter_mut().chain([&mut target]);
-            for (into, column) in targets.zip(data) {
+            let mut data = dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
+            let pixels = data.split_off(features + 1);
+            if let [view, x, y] = pixels.as_slice()
+                && let (Some(view), Some(x), Some(y)) = (view.as_u32(), x.as_u32(), y.as_u32())
+            {
+                held_out.extend(
+                    view.iter()
+                        .zip(x.iter().zip(y))
+                        .map(|(&view, (&x, &y))| split.pixel(view, x, y) == Subset::Test),
+                );
+            }
+            for (into, column) in inputs.iter_mut().chain([&mut target]).zip(data) {
                 match column {
                     ColumnData::F32(values) if into.is_empty() => *into = values,
                     ColumnData::F32(values) => into.extend(values),
-                    // Counts are far below 2²⁴, where 32-bit floats stop to hold every integer.
+                    // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
                     ColumnData::U32(values) => into.extend(values.iter().map(|&v| v as f32)),
                 }
             }
-            let scene_of = |part: &peelnet_dataset::Part| &dataset.manifest().scenes[part.scene as usize].name;
+            let manifest = dataset.manifest();
             scenes.extend(
-                dataset
-                    .manifest()
+                manifest
                     .parts
                     .iter()
                     .filter(|part| !dataset.is_held_out(part))
-                    .map(|part| scene_of(part).clone()),
+                    .map(|part| manifest.scenes[part.scene as usize].name.clone()),
             );
         }
-        let join = |texts: Vec<String>, with: &str| texts.join(with);
+        let paths: Vec<String> = datasets.iter().map(|d| d.path().display().to_string()).collect();
+        let hashes: Vec<&str> = datasets.iter().map(Dataset::hash).collect();
+        // A handful of pixels may all fall on one side: then the trainer draws rows.
+        let usable = held_out.contains(&false) && (config.held_out == 0.0 || held_out.contains(&true));
         Ok(Self {
-            source: join(
-                datasets.iter().map(|d| d.path().display().to_string()).collect(),
-                ", ",
-            ),
+            source: paths.join(", "),
             dataset: Some(DatasetRef {
-                hash: join(datasets.iter().map(|d| d.hash().to_owned()).collect(), "+"),
+                hash: hashes.join("+"),
                 rows: target.len() as u64,
                 scenes: scenes.into_iter().collect(),
             }),
+            held_out: usable.then_some(held_out),
             inputs,
             target,
         })

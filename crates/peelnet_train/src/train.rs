@@ -20,7 +20,7 @@ use crate::normalise::Normalisation;
 use crate::random::{Random, Stream};
 use crate::recipe::{self, Definition};
 use crate::report::{End, EpochReport, Outcome};
-use crate::split;
+use crate::split::Split;
 use crate::task::{Part, Task};
 use crate::team::Team;
 use crate::training_data::TrainingData;
@@ -78,9 +78,20 @@ pub fn train(
     for path in &options.loss_curve {
         CurveFormat::of(path)?;
     }
+    for path in options.loss_curve.iter().chain([&options.out]) {
+        if path.is_dir() {
+            return Err(TrainError::Io {
+                path: path.clone(),
+                error: std::io::ErrorKind::IsADirectory.into(),
+            });
+        }
+    }
     let definition = recipe::definition(config.recipe)?;
     data.check(definition.features)?;
-    let split = split::split(data.rows() as u32, config.held_out, config.seed);
+    let split = match &data.held_out {
+        Some(held_out) => Split::from_mask(held_out),
+        None => Split::random(data.rows() as u32, config.held_out, config.seed),
+    };
     let normalisation: Vec<Normalisation> = data
         .inputs
         .iter()
@@ -170,6 +181,11 @@ impl Run<'_> {
                 }
             }
         };
+        if resumed_from.is_none() {
+            self.clear()?;
+            // Also tells now, and not after the last epoch, that the folder cannot be written.
+            self.save(&progress)?;
+        }
         let mut saved = Instant::now();
         let end = loop {
             let epoch = progress.history.len() as u32 + 1;
@@ -276,6 +292,20 @@ impl Run<'_> {
                 adam,
             }
         })
+    }
+
+    /// Removes an earlier run's model files: they must not pass for this run's.
+    fn clear(&self) -> Result<(), TrainError> {
+        for name in ["last", "best"] {
+            let path = self.folder.join(name).with_extension("safetensors");
+            match std::fs::remove_file(&path) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(TrainError::Io { path, error });
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     fn score(&self, progress: &Progress) -> Option<f64> {

@@ -14,6 +14,9 @@ pub struct TrainingData {
     pub inputs: Vec<Vec<f32>>,
     /// What the network should answer.
     pub target: Vec<f32>,
+    /// Which rows are held out, as long as `target`. Without it, [`Config::held_out`](crate::Config::held_out) of the
+    /// rows are drawn from the seed.
+    pub held_out: Option<Vec<bool>>,
     /// Recorded in the model file.
     pub dataset: Option<DatasetRef>,
 }
@@ -62,6 +65,18 @@ impl TrainingData {
                 ));
             }
         }
+        if let Some(held_out) = &self.held_out {
+            if held_out.len() != self.rows() {
+                return columns(format!(
+                    "the split has {} rows, but the target has {}",
+                    held_out.len(),
+                    self.rows()
+                ));
+            }
+            if held_out.iter().all(|&row| row) {
+                return columns("every row is held out, none is left to train on; hold out a smaller share".into());
+            }
+        }
         let named = features.iter().map(|f| f.name).chain(["target"]);
         for (name, values) in named.zip(self.inputs.iter().chain([&self.target])) {
             if let Some(row) = values.iter().position(|v| !v.is_finite()) {
@@ -87,6 +102,9 @@ impl TrainingData {
             {
                 hash = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
             }
+        }
+        for &row in self.held_out.iter().flatten() {
+            hash = (hash ^ u64::from(row)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
         }
         format!("{hash:016x}")
     }

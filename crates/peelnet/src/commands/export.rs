@@ -3,7 +3,6 @@
 use super::Context;
 use crate::cli::{ExportArgs, Lang, Precision};
 use crate::failure::Failure;
-use clap::ValueEnum as _;
 use peelnet_model::Model;
 use serde_json::json;
 
@@ -53,6 +52,7 @@ fn not_yet(flag: &str, value: &impl clap::ValueEnum, there_is: &str) -> Failure 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::ValueEnum as _;
 
     #[test]
     fn what_is_missing_is_said_with_what_there_is() {

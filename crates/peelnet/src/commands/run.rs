@@ -3,7 +3,6 @@
 use super::{Context, extract, train};
 use crate::cli::RunArgs;
 use crate::failure::Failure;
-use crate::learned;
 use crate::parse::{Size, command_line};
 use crate::progress::{Progress, thousands};
 use crate::shipped;

@@ -1,0 +1,204 @@
+//! The three ways to peel against one another and against the 64-bit scan-line judge.
+
+use glam::Vec3;
+use peelnet_core::{hash, scanline, tolerance::UNIT_ROUNDOFF};
+use peelnet_gpu::Gpu;
+use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_render::scene::PixelSample;
+use peelnet_scene::{Object, Scene};
+use peelnet_tests::{clip_triangles, gpu, object, scene, unlit};
+
+const SIZE: [u32; 2] = [61, 47];
+
+/// Half the sub-pixel grid that WebGPU's adapters must at least have (1/16 pixel in Vulkan; 4 bits): corners move by
+/// at most this far, so a pixel whose fragments do not change under a shift this large is no silhouette.
+const SNAP: f64 = 1.0 / 16.0;
+
+/// Depth of a fragment moves with its position: pixels where the slope is steep see the snapping. Relative.
+const DEPTH_TOLERANCE: f64 = 2e-3;
+
+/// Random triangles, three to an object: a closed form is not needed where a judge is.
+fn soup(objects: usize, seed: u32) -> Scene {
+    let mut state = seed;
+    let mut random = move || {
+        state = hash::pcg(state.wrapping_add(0x9e37_79b9));
+        state as f32 / u32::MAX as f32
+    };
+    let objects: Vec<Object> = (0..objects)
+        .map(|i| {
+            let corners: Vec<[Vec3; 3]> = (0..3)
+                .map(|_| {
+                    [(); 3].map(|()| {
+                        let z = 2.0 + 30.0 * random();
+                        Vec3::new((random() * 2.4 - 1.2) * z, (random() * 2.4 - 1.2) * z, -z)
+                    })
+                })
+                .collect();
+            let color = [random(), random(), random()];
+            object(
+                &format!("soup {i}"),
+                &corners,
+                unlit(color, 0.05 + 0.9 * random()),
+            )
+        })
+        .collect();
+    scene("soup", [0.5; 3], objects)
+}
+
+/// One pixel: depths and colours, front to back; empty slots left out.
+type Pixel = Vec<(f32, [f32; 4])>;
+
+fn harvest(
+    gpu: &Gpu,
+    scene: &Scene,
+    peel: Peel,
+    budget: Option<u64>,
+    sample: Option<PixelSample>,
+) -> (Vec<Pixel>, u32) {
+    let mut harvester = Harvester::new(gpu, scene, SIZE, peel, sample.is_some(), budget).unwrap();
+    let mut pixels = vec![Pixel::new(); (SIZE[0] * SIZE[1]) as usize];
+    let found = harvester
+        .harvest(
+            &scene.views[0],
+            sample.unwrap_or(PixelSample::ALL),
+            None,
+            RawTile::default,
+            |tile| {
+                for (i, run) in tile.offsets.windows(2).enumerate() {
+                    for k in run[0] as usize..run[1] as usize {
+                        if tile.depths[k] > 0.0 {
+                            pixels[tile.first_pixel as usize + i]
+                                .push((tile.depths[k], tile.colors[k]));
+                        }
+                    }
+                }
+                Ok(())
+            },
+        )
+        .unwrap();
+    assert_eq!(
+        found.max_layers as usize,
+        pixels.iter().map(Vec::len).max().unwrap()
+    );
+    (pixels, found.tiles)
+}
+
+#[test]
+fn all_three_ways_find_the_same_fragments() {
+    let gpu = gpu();
+    for seed in 1..4 {
+        let scene = soup(40, seed);
+        let (sbuffer, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
+        assert!(sbuffer.iter().map(Vec::len).max() > Some(10));
+        for peel in [Peel::Dual, Peel::Single] {
+            assert!(
+                harvest(&gpu, &scene, peel, None, None).0 == sbuffer,
+                "{peel}, seed {seed}"
+            );
+        }
+    }
+}
+
+#[test]
+fn tiles_change_nothing() {
+    let gpu = gpu();
+    let scene = soup(40, 9);
+    for peel in [Peel::SBuffer, Peel::Dual, Peel::Single] {
+        let (whole, one) = harvest(&gpu, &scene, peel, None, None);
+        assert_eq!(one, 1);
+        let total: usize = whole.iter().map(Vec::len).sum();
+        // A third of the frame, and less than a row.
+        for budget in [total as u64 / 3, 150] {
+            let (tiled, tiles) = harvest(&gpu, &scene, peel, Some(budget), None);
+            assert!(tiles >= 3, "{tiles}");
+            assert!(tiled == whole, "{peel} with {tiles} tiles");
+        }
+    }
+}
+
+#[test]
+fn a_pixel_sample_keeps_whole_pixels_and_the_right_ones() {
+    let gpu = gpu();
+    let scene = soup(30, 5);
+    let sample = PixelSample {
+        seed: 77,
+        view: 3,
+        threshold: hash::sample_threshold(0.3),
+    };
+    let (whole, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
+    let (kept, _) = harvest(&gpu, &scene, Peel::SBuffer, None, Some(sample));
+    for (i, (w, k)) in (0..).zip(whole.iter().zip(&kept)) {
+        let (x, y) = (i % SIZE[0], i / SIZE[0]);
+        let inside = hash::pixel_hash(77, 3, x, y) <= sample.threshold;
+        assert!(if inside { w == k } else { k.is_empty() }, "pixel {x}, {y}");
+    }
+}
+
+#[test]
+fn the_judge_finds_the_same_fragments() {
+    let gpu = gpu();
+    for seed in 20..24 {
+        let scene = soup(30, seed);
+        let triangles = clip_triangles(&scene, &scene.views[0], SIZE);
+        let [w, h] = SIZE.map(|s| s as usize);
+        let judge = scanline::rasterise(&triangles, w, h, [0.0; 2]);
+        let stable = scanline::stable_pixels(&triangles, w, h, SNAP);
+        let (peeled, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
+        let (mut judged, mut fragments) = (0, 0);
+        for i in 0..w * h {
+            if !stable[i] {
+                continue;
+            }
+            judged += 1;
+            let (want, got) = (&judge.pixels[i], &peeled[i]);
+            assert_eq!(want.len(), got.len(), "pixel {i}, seed {seed}");
+            for (k, (want, (depth, color))) in want.iter().zip(got).enumerate() {
+                fragments += 1;
+                let off = (f64::from(*depth) / want.depth - 1.0).abs();
+                assert!(
+                    off <= DEPTH_TOLERANCE,
+                    "pixel {i}, layer {k}: {depth} for {}",
+                    want.depth
+                );
+                // Where neighbours are further apart than the tolerance their order is certain, and so is the colour.
+                let apart = |j: Option<&scanline::Hit>| {
+                    j.is_none_or(|o| (o.depth / want.depth - 1.0).abs() > 2.0 * DEPTH_TOLERANCE)
+                };
+                let before = k.checked_sub(1).and_then(|k| judge.pixels[i].get(k));
+                if apart(before) && apart(judge.pixels[i].get(k + 1)) {
+                    let material = &scene.objects[want.id as usize / 3].materials[0];
+                    assert_eq!(color[3], material.alpha);
+                    assert_eq!(color[..3], material.color);
+                }
+            }
+        }
+        assert!(
+            judged > w * h / 2,
+            "only {judged} pixels are no silhouettes"
+        );
+        assert!(
+            fragments > 3 * judged,
+            "{fragments} fragments in {judged} pixels"
+        );
+    }
+}
+
+/// Depth is the distance along the view axis, whatever the perspective: a wall has one depth everywhere.
+#[test]
+fn depth_is_linear() {
+    let gpu = gpu();
+    let scene = peelnet_tests::walls(
+        &[0.02, 1.0, 777.0, 1.5e4].map(|z| peelnet_core::fragment::Fragment::new(z, 0.5, [1.0; 3])),
+        [0.0; 3],
+    );
+    let (pixels, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
+    for p in &pixels {
+        for ((z, _), want) in p.iter().zip([0.02f32, 1.0, 777.0, 1.5e4]) {
+            // A dozen roundings lie between the scene's length and the interpolated one.
+            assert!(
+                (f64::from(*z) / f64::from(want) - 1.0).abs() < 16.0 * UNIT_ROUNDOFF,
+                "{z} {want}"
+            );
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
+
+use peelnet_core::{guards, hash, weights::Weight};
+use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
+use peelnet_tests::gpu;
+
+/// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input.
+fn evaluate(gpu: &Gpu, imports: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let root = format!(
+        "{imports}
+        @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
+        @group(0) @binding(1) var<storage, read_write> outputs: array<vec4f>;
+        @compute @workgroup_size(64)
+        fn main(@builtin(global_invocation_id) id: vec3u) {{
+            if id.x >= arrayLength(&inputs) {{ return; }}
+            let x = inputs[id.x];
+            var y = vec4f(0.0);
+            {body}
+            outputs[id.x] = y;
+        }}"
+    );
+    let wgsl = peelnet_shaders::link("driver", &[], &[("driver", &root)]).unwrap();
+    let input = gpu.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
+    let bytes = inputs.len() as u64 * 16;
+    let output = gpu.storage("outputs", bytes).unwrap();
+    let bound = gpu.bind(
+        "driver",
+        wgpu::ShaderStages::COMPUTE,
+        &[Bind::Read(&input), Bind::Write(&output)],
+    );
+    let pipeline = gpu.compute("driver", &wgsl, &[&bound.layout]);
+    let mut recorder = Recorder::new(gpu, false);
+    {
+        let mut pass = recorder.compute("driver");
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bound.group, &[]);
+        pass.dispatch_workgroups((inputs.len() as u32).div_ceil(64), 1, 1);
+    }
+    recorder.finish().unwrap();
+    gpu.read(&output, 0..bytes).unwrap()
+}
+
+#[test]
+fn weights() {
+    let gpu = gpu();
+    let inputs: Vec<[f32; 4]> = (0..4000)
+        .map(|i| {
+            let z = 10f32.powf(-2.0 + 7.0 * (i as f32 / 4000.0));
+            [z, (i % 97) as f32 / 96.0, (i % 89) as f32 / 88.0, 0.0]
+        })
+        .collect();
+    let calls = [
+        ("weight_eq7(x.x, x.y)", Weight::Eq7),
+        ("weight_eq8(x.x, x.y)", Weight::Eq8),
+        ("weight_eq9(x.x, x.y)", Weight::Eq9),
+        ("weight_eq10(x.z, x.y, 3e3)", Weight::Eq10 { factor: 3e3 }),
+        (
+            "weight_inverse_power(x.x, 2u, 5.0)",
+            Weight::InversePower { k: 2, epsilon: 5.0 },
+        ),
+        ("weight_papakostas(x.x, x.y)", Weight::Papakostas),
+    ];
+    for (call, weight) in calls {
+        let name = call.split('(').next().unwrap();
+        let imports = format!("import package::helpers::weights::{name};");
+        let got = evaluate(&gpu, &imports, &format!("y.x = {call};"), &inputs);
+        for (x, y) in inputs.iter().zip(&got) {
+            let want = weight.eval(x[0], x[1], x[2]);
+            // WGSL allows 2.5 units for each division; the sixth power multiplies its error by six.
+            let tolerance = 32.0 * f32::EPSILON * want.abs();
+            assert!(
+                (y[0] - want).abs() <= tolerance,
+                "{call} at {x:?}: {} for {want}",
+                y[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn pixel_hash() {
+    let gpu = gpu();
+    let inputs: Vec<[f32; 4]> = (0..512u32)
+        .map(|i| [7, i % 3, i, i * i].map(f32::from_bits))
+        .collect();
+    let got = evaluate(
+        &gpu,
+        "import package::helpers::hash::pixel_hash;",
+        "let b = bitcast<vec4u>(x); let h = pixel_hash(b.x, b.y, b.z, b.w); y = vec4f(f32(h >> 16u), f32(h & 0xffffu), 0.0, 0.0);",
+        &inputs,
+    );
+    for (x, y) in inputs.iter().zip(&got) {
+        let [a, b, c, d] = x.map(f32::to_bits);
+        let h = hash::pixel_hash(a, b, c, d);
+        assert_eq!([y[0], y[1]], [(h >> 16) as f32, (h & 0xffff) as f32]);
+    }
+}
+
+#[test]
+fn guards_are_the_same_numbers() {
+    let gpu = gpu();
+    let got = evaluate(
+        &gpu,
+        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX};",
+        "y = vec4f(SUM_FLOOR, HALF_MAX, 0.0, 0.0);",
+        &[[0.0; 4]],
+    );
+    assert_eq!(got[0][..2], [guards::SUM_FLOOR, guards::HALF_MAX]);
+}
