@@ -67,8 +67,11 @@ pub fn summary_text(summary: &Summary) -> String {
         };
         let _ = writeln!(
             t,
-            "  {:<16} {verdict}: {} (worst {:.2e}, {:.2} of the tolerance)",
-            check.name, check.formula, check.worst, check.worst_ratio
+            "  {:<16} {verdict}: {} (worst {}, {:.2} of the tolerance)",
+            check.name,
+            check.formula,
+            figure(check.worst),
+            check.worst_ratio
         );
     }
     if summary.parts_not_checked > 0 {

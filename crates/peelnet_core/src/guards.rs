@@ -18,3 +18,11 @@ pub const SUM_FLOOR: f32 = 1.0 / 16_777_216.0;
 
 /// The largest finite half float, where 16-bit accumulators end.
 pub const HALF_MAX: f32 = 65504.0;
+
+/// Raw inputs of a network are cut off at ± this before they are normalised: beyond any scene's lengths, and small
+/// enough that its product with any sensible scale is finite.
+pub const RAW_LIMIT: f32 = 1e18;
+
+/// Normalised inputs are cut off at ± this. Real data stay within tens of standard deviations; products of it with
+/// weights stay finite by twenty orders of magnitude, so that no finite input makes an exported function answer NaN.
+pub const INPUT_LIMIT: f32 = 1e4;

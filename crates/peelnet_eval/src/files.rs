@@ -14,7 +14,13 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), EvalError> {
         _ => Path::new("."),
     };
     std::fs::create_dir_all(folder).map_err(EvalError::io(folder, "create the folder"))?;
-    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(EvalError::io(path, "write"))?;
+    let mut builder = tempfile::Builder::new();
+    // Temporary files are private by default; a result has the permissions of any new file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder
+        .tempfile_in(folder)
+        .map_err(EvalError::io(path, "write"))?;
     file.write_all(bytes)
         .map_err(EvalError::io(path, "write"))?;
     file.persist(path)

@@ -1,1 +1,95 @@
-//! Placeholder.
+//! Bakes a trained network into one self-contained shader function, and proves that it is the same network.
+//!
+//! [`wgsl()`] writes the text: straight-line code on `vec4f` and `mat4x4f` literals, normalisation and guards inside, a
+//! header that tells where it comes from and how to wire it into another engine. [`verify()`] runs exactly that text on
+//! the GPU over random, extreme and self-test inputs and compares with the trainer's forward pass. [`export()`] does
+//! both and writes the file only if they agree. The renderer draws with the same text, so that what is measured is
+//! what is shipped.
+
+mod literal;
+mod verify;
+mod wgsl;
+
+pub use verify::{Verification, verify};
+pub use wgsl::{multiply_adds, wgsl};
+
+use peelnet_gpu::Gpu;
+use peelnet_model::Model;
+use std::path::{Path, PathBuf};
+
+/// How to export. Languages and precisions other than WGSL in 32 bits will add fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Options {}
+
+/// What can go wrong while exporting.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// A model that does not hold together.
+    #[error("the model cannot be exported: {0}")]
+    Model(#[from] peelnet_model::Problem),
+    /// An output that no shader function is defined for.
+    #[error(
+        "recipe {recipe} with output '{output}' has no shader function in this version; export a model of recipe thesis"
+    )]
+    Output {
+        /// The model's recipe.
+        recipe: String,
+        /// Its output parametrisation.
+        output: String,
+    },
+    /// The text is not valid or does not link: a bug here, or an edited text.
+    #[error(transparent)]
+    Shader(#[from] peelnet_shaders::ShaderError),
+    /// The GPU.
+    #[error(transparent)]
+    Gpu(#[from] peelnet_gpu::GpuError),
+    /// The text computes something else than the model.
+    #[error(
+        "the exported function differs from the model: inputs {inputs:?} give {found} instead of {expected} (allowed difference {tolerance:e}); nothing was written"
+    )]
+    Differs {
+        /// Raw inputs of the worst sample.
+        inputs: Vec<f32>,
+        /// What the GPU answered.
+        found: f32,
+        /// What the model answers in 64 bits.
+        expected: f64,
+        /// Allowed difference there.
+        tolerance: f64,
+    },
+    /// The file could not be written.
+    #[error("cannot write {path}: {source}")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: std::io::Error,
+    },
+}
+
+/// Exports a model, verifies the text on the GPU, and only then writes it, whole.
+///
+/// # Errors
+/// A model without a shader function, a text that differs from the model, or a file that cannot be written.
+pub fn export(
+    gpu: &Gpu,
+    model: &Model,
+    path: &Path,
+    options: &Options,
+) -> Result<Verification, ExportError> {
+    let text = wgsl(model, options)?;
+    let verification = verify(gpu, model, &text)?;
+    let failed = |source| ExportError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
+    std::io::Write::write_all(&mut file, text.as_bytes()).map_err(failed)?;
+    file.persist(path).map_err(|e| failed(e.error))?;
+    Ok(verification)
+}

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::str::FromStr;
 
-use peelnet_core::guards::WEIGHT_FLOOR;
+use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT, WEIGHT_FLOOR};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Problem;
@@ -186,7 +186,8 @@ impl fmt::Display for Output {
     }
 }
 
-/// An input of the network: `normalised = (raw − offset) · scale`.
+/// An input of the network: `normalised = (raw − offset) · scale`, both cut off far outside of real data
+/// ([`RAW_LIMIT`], [`INPUT_LIMIT`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
@@ -207,12 +208,15 @@ pub struct Input {
 impl Input {
     /// The normalised value of a raw one.
     pub fn normalise(&self, raw: f32) -> f32 {
-        (raw - self.offset) * self.scale
+        let raw = raw.clamp(-RAW_LIMIT, RAW_LIMIT);
+        ((raw - self.offset) * self.scale).clamp(-INPUT_LIMIT, INPUT_LIMIT)
     }
 
     /// As [`Input::normalise`], in 64 bits.
     pub fn normalise_f64(&self, raw: f64) -> f64 {
-        (raw - f64::from(self.offset)) * f64::from(self.scale)
+        let (raw_limit, limit) = (f64::from(RAW_LIMIT), f64::from(INPUT_LIMIT));
+        let raw = raw.clamp(-raw_limit, raw_limit);
+        ((raw - f64::from(self.offset)) * f64::from(self.scale)).clamp(-limit, limit)
     }
 }
 

@@ -23,7 +23,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|bytes| f32::from_le_bytes(*bytes))
         .collect();
     if rows == 0 || values.len() != 4 * rows {
-        return Err(format!("{file}: {} values are not four columns of {rows} rows", values.len()).into());
+        return Err(format!(
+            "{file}: {} values are not four columns of {rows} rows",
+            values.len()
+        )
+        .into());
     }
     let mut columns: Vec<Vec<f32>> = values.chunks_exact(rows).map(<[f32]>::to_vec).collect();
     let target = columns.pop().unwrap_or_default();

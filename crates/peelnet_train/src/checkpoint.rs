@@ -50,7 +50,12 @@ struct Header {
 const HISTORY: usize = 4;
 
 impl State {
-    pub(crate) fn save(&self, folder: &Path, config: &Config, data: &str) -> Result<(), TrainError> {
+    pub(crate) fn save(
+        &self,
+        folder: &Path,
+        config: &Config,
+        data: &str,
+    ) -> Result<(), TrainError> {
         let path = state_file(folder);
         let header = Header {
             version: VERSION,
@@ -60,7 +65,8 @@ impl State {
             epochs: self.history.len(),
             best_epoch: self.best.as_ref().map(|(epoch, _)| *epoch),
         };
-        let f32_bytes = |values: &[f32]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
+        let f32_bytes =
+            |values: &[f32]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
         let history: Vec<u8> = self
             .history
             .iter()
@@ -75,16 +81,41 @@ impl State {
             .flat_map(f64::to_le_bytes)
             .collect();
         let mut tensors = vec![
-            ("parameters", Dtype::F32, vec![self.parameters.len()], f32_bytes(&self.parameters)),
-            ("first_moment", Dtype::F32, vec![self.first.len()], f32_bytes(&self.first)),
-            ("second_moment", Dtype::F32, vec![self.second.len()], f32_bytes(&self.second)),
+            (
+                "parameters",
+                Dtype::F32,
+                vec![self.parameters.len()],
+                f32_bytes(&self.parameters),
+            ),
+            (
+                "first_moment",
+                Dtype::F32,
+                vec![self.first.len()],
+                f32_bytes(&self.first),
+            ),
+            (
+                "second_moment",
+                Dtype::F32,
+                vec![self.second.len()],
+                f32_bytes(&self.second),
+            ),
         ];
         // A tensor without elements is legal, but a reader may dislike it: the history of no epoch is left out.
         if !self.history.is_empty() {
-            tensors.push(("history", Dtype::F64, vec![self.history.len(), HISTORY], history));
+            tensors.push((
+                "history",
+                Dtype::F64,
+                vec![self.history.len(), HISTORY],
+                history,
+            ));
         }
         if let Some((_, best)) = &self.best {
-            tensors.push(("best_parameters", Dtype::F32, vec![best.len()], f32_bytes(best)));
+            tensors.push((
+                "best_parameters",
+                Dtype::F32,
+                vec![best.len()],
+                f32_bytes(best),
+            ));
         }
         let problem = |e: &dyn std::fmt::Display| TrainError::Checkpoint {
             path: path.clone(),
@@ -125,7 +156,8 @@ impl State {
 
     fn parse(bytes: &[u8], config: &Config, data: &str, parameters: usize) -> Result<Self, String> {
         const DAMAGED: &str = "delete the checkpoint folder, or train without --resume";
-        let damaged = |e: &dyn std::fmt::Display| format!("is not a whole checkpoint ({e}); {DAMAGED}");
+        let damaged =
+            |e: &dyn std::fmt::Display| format!("is not a whole checkpoint ({e}); {DAMAGED}");
         let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|e| damaged(&e))?;
         let header = metadata
             .metadata()
@@ -150,7 +182,8 @@ impl State {
         }
         if header.data != data {
             return Err(
-                "was made with other rows; give the same dataset, or train without --resume".to_owned(),
+                "was made with other rows; give the same dataset, or train without --resume"
+                    .to_owned(),
             );
         }
         let tensors = SafeTensors::deserialize(bytes).map_err(|e| damaged(&e))?;
@@ -169,7 +202,10 @@ impl State {
         if header.epochs > 0 {
             let tensor = tensors.tensor("history").map_err(|e| damaged(&e))?;
             if tensor.dtype() != Dtype::F64 || tensor.shape() != [header.epochs, HISTORY] {
-                return Err(damaged(&format!("`history` has shape {:?}", tensor.shape())));
+                return Err(damaged(&format!(
+                    "`history` has shape {:?}",
+                    tensor.shape()
+                )));
             }
             let values: Vec<f64> = tensor
                 .data()
@@ -222,7 +258,10 @@ fn difference(saved: &Config, asked: &Config) -> Option<String> {
     if saved == *asked {
         return None;
     }
-    let (a, b) = (serde_json::to_value(&saved).ok()?, serde_json::to_value(asked).ok()?);
+    let (a, b) = (
+        serde_json::to_value(&saved).ok()?,
+        serde_json::to_value(asked).ok()?,
+    );
     let name = a
         .as_object()?
         .iter()

@@ -110,10 +110,13 @@ fn svg(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
             chart
                 .draw_series(LineSeries::new(points, test.stroke_width(2)))?
                 .label("held out")
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], test.stroke_width(2)));
+                .legend(move |(x, y)| {
+                    PathElement::new([(x, y), (x + 20, y)], test.stroke_width(2))
+                });
         }
         chart
             .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.3))
             .draw()?;
@@ -167,6 +170,9 @@ mod tests {
     #[test]
     fn other_endings_are_refused() {
         let error = write_curve(Path::new("curve.png"), &[]).unwrap_err();
-        assert_eq!(error.to_string(), "curve.png: a loss curve ends in .csv or .svg");
+        assert_eq!(
+            error.to_string(),
+            "curve.png: a loss curve ends in .csv or .svg"
+        );
     }
 }

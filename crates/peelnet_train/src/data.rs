@@ -28,7 +28,8 @@ impl TrainingData {
         let mut scenes = BTreeSet::new();
         let split = Split::new(config.seed, 0.0, config.held_out)?;
         for dataset in datasets {
-            let mut data = dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
+            let mut data =
+                dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
             let pixels = data.split_off(features + 1);
             if let [view, x, y] = pixels.as_slice()
                 && let (Some(view), Some(x), Some(y)) = (view.as_u32(), x.as_u32(), y.as_u32())
@@ -56,10 +57,14 @@ impl TrainingData {
                     .map(|part| manifest.scenes[part.scene as usize].name.clone()),
             );
         }
-        let paths: Vec<String> = datasets.iter().map(|d| d.path().display().to_string()).collect();
+        let paths: Vec<String> = datasets
+            .iter()
+            .map(|d| d.path().display().to_string())
+            .collect();
         let hashes: Vec<&str> = datasets.iter().map(Dataset::hash).collect();
         // A handful of pixels may all fall on one side: then the trainer draws rows.
-        let usable = held_out.contains(&false) && (config.held_out == 0.0 || held_out.contains(&true));
+        let usable =
+            held_out.contains(&false) && (config.held_out == 0.0 || held_out.contains(&true));
         Ok(Self {
             source: paths.join(", "),
             dataset: Some(DatasetRef {
@@ -91,7 +96,10 @@ fn columns(recipe: Recipe) -> Result<Vec<Column>, TrainError> {
 ///
 /// # Errors
 /// A dataset that cannot be read, or a model whose inputs are not columns.
-pub fn held_out_errors(model: &Model, datasets: &[Dataset]) -> Result<BTreeMap<String, f64>, TrainError> {
+pub fn held_out_errors(
+    model: &Model,
+    datasets: &[Dataset],
+) -> Result<BTreeMap<String, f64>, TrainError> {
     let columns = columns(model.meta.recipe)?;
     let mut sums: BTreeMap<String, (f64, u64)> = BTreeMap::new();
     for dataset in datasets {
@@ -106,7 +114,9 @@ pub fn held_out_errors(model: &Model, datasets: &[Dataset]) -> Result<BTreeMap<S
                 ColumnData::F32(values) => values[row],
                 ColumnData::U32(values) => values[row] as f32,
             };
-            let (target, inputs) = data.split_last().expect("the target is always among the columns");
+            let (target, inputs) = data
+                .split_last()
+                .expect("the target is always among the columns");
             let mut raw = vec![0.0; inputs.len()];
             for row in 0..target.len() {
                 for (into, column) in raw.iter_mut().zip(inputs) {

@@ -20,7 +20,12 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(data: &TrainingData, normalisation: &[Normalisation], rows: &[u32], device: &Device) -> Self {
+    fn new(
+        data: &TrainingData,
+        normalisation: &[Normalisation],
+        rows: &[u32],
+        device: &Device,
+    ) -> Self {
         let n = rows.len();
         let inputs: Vec<f32> = normalisation
             .iter()
@@ -77,7 +82,8 @@ impl Task for FragmentMse {
     fn shuffle(&mut self, order: &[u32]) {
         // Row counts fit in 31 bits: checked with the data.
         let indices: Vec<i32> = order.iter().map(|&i| i as i32).collect();
-        let indices = Tensor::<1, Int>::from_data(TensorData::new(indices, [order.len()]), &self.device);
+        let indices =
+            Tensor::<1, Int>::from_data(TensorData::new(indices, [order.len()]), &self.device);
         self.shuffled.inputs = self.original.inputs.clone().select(1, indices.clone());
         self.shuffled.target = self.original.target.clone().select(1, indices);
     }

@@ -23,7 +23,9 @@ pub struct Shape {
 impl Shape {
     /// Number of weights and biases.
     pub fn parameters(&self) -> usize {
-        self.layers().map(|(inputs, outputs)| (inputs + 1) * outputs).sum()
+        self.layers()
+            .map(|(inputs, outputs)| (inputs + 1) * outputs)
+            .sum()
     }
 
     fn layers(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
@@ -172,14 +174,22 @@ mod tests {
             (2, Activation::Sigmoid, Activation::Sigmoid),
             (3, Activation::Relu, Activation::Relu),
         ] {
-            let shape = Shape { hidden, output, ..thesis() };
+            let shape = Shape {
+                hidden,
+                output,
+                ..thesis()
+            };
             let parameters = shape.initial(seed);
             let mlp = shape.to_mlp(&parameters).unwrap();
             let flat = Tensor::from_data(TensorData::new(parameters, [137]), &device);
             let n = 4096;
             let inputs = random_inputs(n, seed);
             let x = Tensor::from_data(TensorData::new(inputs.clone(), [3, n]), &device);
-            let y: Vec<f32> = Network::new(&shape, &flat).forward(x).into_data().try_into_vec().unwrap();
+            let y: Vec<f32> = Network::new(&shape, &flat)
+                .forward(x)
+                .into_data()
+                .try_into_vec()
+                .unwrap();
             for row in 0..n {
                 let input = [inputs[row], inputs[n + row], inputs[2 * n + row]];
                 let expected = mlp.forward(&input)[0];
@@ -227,12 +237,12 @@ mod tests {
                 .sum()
         };
         assert!((f64::from(gradient[137]) - loss_f64(0, 0.0)).abs() < 1e-5);
-        for index in 0..137 {
+        for (index, &found) in gradient[..137].iter().enumerate() {
             // The step is taken in 32 bits, which moves a parameter of size ½ by 2⁻⁸ ± 2⁻²⁵.
             let step = 1.0 / 256.0;
             let expected = (loss_f64(index, step) - loss_f64(index, -step)) / (2.0 * step);
-            let error = (f64::from(gradient[index]) - expected).abs();
-            assert!(error < 1e-3, "{index}: {} against {expected}", gradient[index]);
+            let error = (f64::from(found) - expected).abs();
+            assert!(error < 1e-3, "{index}: {found} against {expected}");
         }
     }
 
@@ -243,6 +253,12 @@ mod tests {
             ..thesis()
         };
         assert_eq!(shape.parameters(), 3);
-        assert_eq!(shape.to_mlp(&[1.0, 2.0, 3.0]).unwrap().forward(&[10.0, 100.0]), [213.0]);
+        assert_eq!(
+            shape
+                .to_mlp(&[1.0, 2.0, 3.0])
+                .unwrap()
+                .forward(&[10.0, 100.0]),
+            [213.0]
+        );
     }
 }

@@ -14,9 +14,9 @@ pub(crate) struct Normalisation {
 impl Normalisation {
     /// From the values at `rows`, in 64 bits and two passes: depths around 1e9 would lose their deviation otherwise.
     ///
-    /// A column counts as constant when its deviation is below half a unit in the last place of its mean (32-bit values
-    /// cannot hold such a deviation), or so small or large that its inverse is not a normal number. A constant column
-    /// trains as zero, and the model has zero weights for it: the network never saw it vary, so it must not react when
+    /// A column counts as constant when it has one value, or when its deviation is so small or large that the inverse is
+    /// not a normal number. Rounding the mean to 32 bits does no harm even where neighbouring values differ in the last
+    /// bit: it errs by no more than one deviation. A constant column trains as zero, and the model has zero weights for it: the network never saw it vary, so it must not react when
     /// it does. Its scale is 1, because a model file wants an invertible one.
     pub(crate) fn over(values: &[f32], rows: &[u32]) -> Self {
         let at = || rows.iter().map(|&row| values[row as usize]);
@@ -28,9 +28,7 @@ impl Normalisation {
             (low.min(v), high.max(v))
         });
         let scale = (1.0 / deviation) as f32;
-        let constant = min == max
-            || deviation <= mean.abs() * f64::from(f32::EPSILON) / 2.0
-            || !scale.is_normal();
+        let constant = min == max || !scale.is_normal();
         Self {
             offset: mean as f32,
             scale: if constant { 1.0 } else { scale },
@@ -86,6 +84,10 @@ mod tests {
         assert_eq!(n.offset, 0.0);
         // 1 / 3e38 is below the normal range.
         assert!(n.constant);
-        assert!(n.apply(&[-3e38, 3e38], &[0, 1]).iter().all(|v| v.is_finite()));
+        assert!(
+            n.apply(&[-3e38, 3e38], &[0, 1])
+                .iter()
+                .all(|v| v.is_finite())
+        );
     }
 }

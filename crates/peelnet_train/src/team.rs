@@ -100,7 +100,13 @@ impl<'a> Team<'a> {
         self.run(parameters, Wanted::Loss, part, 0..self.task.examples(part))
     }
 
-    fn run(&self, parameters: &Tensor<1>, wanted: Wanted, part: Part, range: Range<usize>) -> Vec<Tensor<1>> {
+    fn run(
+        &self,
+        parameters: &Tensor<1>,
+        wanted: Wanted,
+        part: Part,
+        range: Range<usize>,
+    ) -> Vec<Tensor<1>> {
         let chunks = range.len().div_ceil(self.chunk);
         let job = Arc::new(Job {
             parameters: parameters.clone(),

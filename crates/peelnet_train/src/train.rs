@@ -149,22 +149,28 @@ struct Progress {
     history: Vec<EpochReport>,
 }
 
-/// What came of one pass over the training examples.
-enum Pass {
-    Done {
-        parameters: Tensor<1>,
-        adam: Adam,
-        train_loss: f64,
-        test_loss: Option<f64>,
-        seconds: f64,
-    },
-    Stopped,
+/// What one epoch made.
+struct Pass {
+    parameters: Tensor<1>,
+    adam: Adam,
+    train_loss: f64,
+    test_loss: Option<f64>,
+    seconds: f64,
 }
 
 impl Run<'_> {
-    fn go(&self, task: &mut dyn Task, mut on_epoch: impl FnMut(&EpochReport)) -> Result<Outcome, TrainError> {
+    fn go(
+        &self,
+        task: &mut dyn Task,
+        mut on_epoch: impl FnMut(&EpochReport),
+    ) -> Result<Outcome, TrainError> {
         let resumed = if self.options.resume {
-            State::load(&self.folder, self.config, &self.fingerprint, self.shape.parameters())?
+            State::load(
+                &self.folder,
+                self.config,
+                &self.fingerprint,
+                self.shape.parameters(),
+            )?
         } else {
             None
         };
@@ -197,13 +203,13 @@ impl Run<'_> {
             if epoch > self.config.epochs {
                 break End::Finished;
             }
-            let Pass::Done {
+            let Some(Pass {
                 parameters,
                 adam,
                 train_loss,
                 test_loss,
                 seconds,
-            } = self.epoch(epoch, task, &progress)
+            }) = self.epoch(epoch, task, &progress)
             else {
                 break End::Interrupted;
             };
@@ -256,8 +262,8 @@ impl Run<'_> {
         })
     }
 
-    /// One pass over the training examples and one over the held-out ones.
-    fn epoch(&self, epoch: u32, task: &mut dyn Task, start: &Progress) -> Pass {
+    /// One pass over the training examples and one over the held-out ones; none when asked to stop.
+    fn epoch(&self, epoch: u32, task: &mut dyn Task, start: &Progress) -> Option<Pass> {
         let config = self.config;
         let examples = task.examples(Part::Train);
         let steps_per_epoch = examples.div_ceil(config.batch) as u64;
@@ -271,26 +277,28 @@ impl Run<'_> {
             let mut losses = Vec::with_capacity(steps_per_epoch as usize);
             for first in (0..examples).step_by(config.batch) {
                 if self.options.stop.load(Ordering::Relaxed) {
-                    return Pass::Stopped;
+                    return None;
                 }
                 let range = first..(first + config.batch).min(examples);
                 let scale = 1.0 / range.len() as f64;
                 let sum = team.gradient(&parameters, range);
                 losses.push(sum.clone().narrow(0, count, 1));
                 let gradient = sum.narrow(0, 0, count) * scale;
-                let rate = config.schedule.rate(config.learning_rate, adam.steps, steps);
+                let rate = config
+                    .schedule
+                    .rate(config.learning_rate, adam.steps, steps);
                 (adam, parameters) = adam.step(config, rate, parameters, gradient);
             }
             let train_loss = total(losses) / examples as f64;
             let seconds = begin.elapsed().as_secs_f64();
             let test_loss = held_out_loss(team, &parameters);
-            Pass::Done {
+            Some(Pass {
                 train_loss,
                 test_loss,
                 seconds,
                 parameters,
                 adam,
-            }
+            })
         })
     }
 
@@ -314,7 +322,12 @@ impl Run<'_> {
         Some(row.test_loss.unwrap_or(row.train_loss))
     }
 
-    fn not_finite(&self, train_loss: f64, test_loss: Option<f64>, parameters: &Tensor<1>) -> Option<&'static str> {
+    fn not_finite(
+        &self,
+        train_loss: f64,
+        test_loss: Option<f64>,
+        parameters: &Tensor<1>,
+    ) -> Option<&'static str> {
         if !train_loss.is_finite() {
             Some("the training loss")
         } else if test_loss.is_some_and(|loss| !loss.is_finite()) {
@@ -337,7 +350,8 @@ impl Run<'_> {
             epoch,
             what,
             learning_rate: self.config.learning_rate,
-            kept: (saved && !progress.history.is_empty()).then(|| self.folder.join("last.safetensors")),
+            kept: (saved && !progress.history.is_empty())
+                .then(|| self.folder.join("last.safetensors")),
         }
     }
 
@@ -354,7 +368,9 @@ impl Run<'_> {
                 second: self.upload(state.second),
                 steps: state.steps,
             },
-            best: state.best.map(|(epoch, values)| (epoch, self.upload(values))),
+            best: state
+                .best
+                .map(|(epoch, values)| (epoch, self.upload(values))),
             history: state.history,
         }
     }
@@ -366,7 +382,10 @@ impl Run<'_> {
             first: download(&progress.adam.first),
             second: download(&progress.adam.second),
             steps: progress.adam.steps,
-            best: progress.best.as_ref().map(|(epoch, p)| (*epoch, download(p))),
+            best: progress
+                .best
+                .as_ref()
+                .map(|(epoch, p)| (*epoch, download(p))),
             history: progress.history.clone(),
         }
         .save(&self.folder, self.config, &self.fingerprint)?;
@@ -378,7 +397,10 @@ impl Run<'_> {
                 .filter_map(|(name, which)| which.map(|which| (name, which)))
             {
                 let path = self.folder.join(name).with_extension("safetensors");
-                save_model(&self.model(epoch, parameters, &progress.history, &path)?, &path)?;
+                save_model(
+                    &self.model(epoch, parameters, &progress.history, &path)?,
+                    &path,
+                )?;
             }
         }
         Ok(())
@@ -474,7 +496,10 @@ fn total(losses: Vec<Tensor<1>>) -> f64 {
     if losses.is_empty() {
         return 0.0;
     }
-    download(&Tensor::cat(losses, 0)).into_iter().map(f64::from).sum()
+    download(&Tensor::cat(losses, 0))
+        .into_iter()
+        .map(f64::from)
+        .sum()
 }
 
 fn download(tensor: &Tensor<1>) -> Vec<f32> {

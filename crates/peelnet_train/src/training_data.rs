@@ -42,11 +42,15 @@ impl TrainingData {
                 "{} input columns, but the recipe takes {}: {}",
                 self.inputs.len(),
                 features.len(),
-                features.iter().map(|f| f.name).collect::<Vec<_>>().join(", ")
+                features
+                    .iter()
+                    .map(|f| f.name)
+                    .collect::<Vec<_>>()
+                    .join(", ")
             ));
         }
         if self.rows() == 0 {
-            return columns("no rows to train on; extract views with transparent objects in them".into());
+            return columns("no rows to train on: extract views with transparent objects in them, of scenes that are not held out".into());
         }
         if self.rows() > i32::MAX as usize {
             return columns(format!(
@@ -74,7 +78,10 @@ impl TrainingData {
                 ));
             }
             if held_out.iter().all(|&row| row) {
-                return columns("every row is held out, none is left to train on; hold out a smaller share".into());
+                return columns(
+                    "every row is held out, none is left to train on; hold out a smaller share"
+                        .into(),
+                );
             }
         }
         let named = features.iter().map(|f| f.name).chain(["target"]);
@@ -100,11 +107,15 @@ impl TrainingData {
                 .map(|v| u64::from(v.to_bits()))
                 .chain([column.len() as u64])
             {
-                hash = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
+                hash = (hash ^ word)
+                    .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                    .rotate_left(29);
             }
         }
         for &row in self.held_out.iter().flatten() {
-            hash = (hash ^ u64::from(row)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
+            hash = (hash ^ u64::from(row))
+                .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                .rotate_left(29);
         }
         format!("{hash:016x}")
     }

@@ -15,6 +15,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     }
     let model = Model::load(&args.model)?;
     let gpu = context.gpu()?;
+    super::create_folder_of(&args.out)?;
     let verification =
         peelnet_export::export(&gpu, &model, &args.out, &peelnet_export::Options::default())?;
     context.console.result(
@@ -34,7 +35,9 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
                 "lang": "wgsl",
                 "precision": "f32",
                 "adapter": gpu.info.name,
-                "verification": verification.to_string(),
+                "samples": verification.samples,
+                "worst_absolute": verification.worst_absolute,
+                "worst_relative_to_tolerance": verification.worst_relative_to_tolerance,
             })
         },
     )

@@ -56,6 +56,21 @@ impl Context<'_> {
     }
 }
 
+/// Creates the folder that a file is to be written into.
+fn create_folder_of(path: &Path) -> Result<(), Failure> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => {
+            std::fs::create_dir_all(folder).map_err(|e| {
+                Failure::Failed(format!(
+                    "{}: cannot create the folder: {e}",
+                    folder.display()
+                ))
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Runs the command that was parsed.
 ///
 /// # Errors

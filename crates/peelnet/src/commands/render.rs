@@ -29,14 +29,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     let mut prepared = renderer.prepare(&args.method, args.size.0, learned.as_ref())?;
     let frame = renderer.draw(&mut prepared, camera)?;
     context.check_interrupt()?;
-    if let Some(folder) = args.out.parent().filter(|p| !p.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|e| {
-            Failure::Failed(format!(
-                "{}: cannot create the folder: {e}",
-                folder.display()
-            ))
-        })?;
-    }
+    super::create_folder_of(&args.out)?;
     frame.image.save(&args.out)?;
     if frame.stats.lost > 0 {
         context.console.warn(format!(

@@ -2,15 +2,20 @@
 
 use super::Context;
 use crate::cli::TrainArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, one_line};
 use crate::progress::{Progress, short, thousands};
 use peelnet_dataset::Dataset;
-use peelnet_train::{Config, End, Outcome, RunOptions, TrainingData, held_out_errors, train};
+use peelnet_train::{
+    Config, CurveFormat, End, Outcome, RunOptions, TrainError, TrainingData, held_out_errors, train,
+};
 use serde_json::json;
 use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
     let config = config(args)?;
+    for path in &args.loss_curve {
+        CurveFormat::of(path).map_err(usage)?;
+    }
     let datasets = args
         .datasets
         .iter()
@@ -44,9 +49,14 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     )
 }
 
+/// An error that the flags cause.
+fn usage(error: TrainError) -> Failure {
+    Failure::Usage(one_line(&error))
+}
+
 /// The recipe's settings with those of the flags.
 fn config(args: &TrainArgs) -> Result<Config, Failure> {
-    let mut config = Config::for_recipe(args.recipe)?;
+    let mut config = Config::for_recipe(args.recipe).map_err(usage)?;
     config.seed = args.seed;
     config.epochs = args.epochs.unwrap_or(config.epochs);
     config.batch = args.batch.map_or(config.batch, |b| b as usize);
@@ -62,7 +72,7 @@ pub(super) fn fit(
     datasets: &[Dataset],
     options: &RunOptions<'_>,
 ) -> Result<Outcome, Failure> {
-    let data = TrainingData::from_datasets(config.recipe, datasets)?;
+    let data = TrainingData::from_datasets(config, datasets)?;
     context.console.message(format!(
         "training recipe {} on {} rows of {}, {} epochs",
         config.recipe,

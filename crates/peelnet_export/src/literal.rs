@@ -1,0 +1,53 @@
+//! Numbers as shader text.
+
+use std::fmt::Write as _;
+
+/// The shortest decimal text that reads back to the same bits, as a WGSL `f32` literal without suffix.
+pub(crate) fn float(x: f32) -> String {
+    ryu::Buffer::new().format_finite(x).to_owned()
+}
+
+/// `vec4f(a, b, c, d)`, padded with zeros.
+pub(crate) fn vec4(values: &[f32]) -> String {
+    let mut text = String::from("vec4f(");
+    for k in 0..4 {
+        let separator = if k == 0 { "" } else { ", " };
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "{separator}{}",
+            float(values.get(k).copied().unwrap_or(0.0))
+        );
+    }
+    text.push(')');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn literals_read_back() {
+        for x in [
+            0.0,
+            -0.0,
+            1.0,
+            -1.5,
+            1e-45,
+            3.402_823_5e38,
+            0.1,
+            1e18,
+            6.1e-5,
+        ] {
+            let text = float(x);
+            assert_eq!(
+                text.parse::<f32>().expect("a number").to_bits(),
+                f32::to_bits(x)
+            );
+            // WGSL reads a literal without point or exponent as an integer.
+            assert!(text.contains(['.', 'e']), "{text}");
+        }
+        assert_eq!(vec4(&[1.0, 2.5]), "vec4f(1.0, 2.5, 0.0, 0.0)");
+    }
+}

@@ -1,0 +1,339 @@
+//! The exported text, run on the GPU, against the trainer's forward pass.
+
+use crate::{ExportError, wgsl::self_test_inputs};
+use peelnet_core::{hash::pcg, mlp::Mlp, tolerance::EXPORT_F32};
+use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
+use peelnet_model::Model;
+use serde::Serialize;
+use std::fmt;
+
+/// Random inputs, drawn evenly from the range that training saw.
+const RANDOM: usize = 4096;
+
+/// Inputs that nobody should pass and somebody will.
+const EXTREMES: [f32; 9] = [
+    0.0,
+    1.0,
+    -1.0,
+    1e-30,
+    1e30,
+    -1e30,
+    f32::MAX,
+    f32::MIN_POSITIVE,
+    1e-45,
+];
+
+/// How well the exported function agrees with the model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Verification {
+    /// Inputs tried.
+    pub samples: usize,
+    /// Largest difference from the 64-bit forward pass.
+    pub worst_absolute: f64,
+    /// Largest difference as a multiple of what is allowed; at most 1.
+    pub worst_relative_to_tolerance: f64,
+}
+
+impl fmt::Display for Verification {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} inputs agree with the model, worst difference {:.1e} ({:.0} % of the tolerance)",
+            self.samples,
+            self.worst_absolute,
+            100.0 * self.worst_relative_to_tolerance
+        )
+    }
+}
+
+/// The size that rounding errors of the last layer are relative to: the largest of the answer's own size and
+/// `Σ|w||x| + |b|`. A dot product in floating point errs by a multiple of that sum, not of its possibly cancelled result
+/// (Higham, "Accuracy and Stability of Numerical Algorithms", 2002, §3.1).
+fn magnitude(mlp: &Mlp, normalised: &[f64]) -> f64 {
+    let mut x = normalised.to_vec();
+    let mut size = 0.0f64;
+    for (i, layer) in mlp.layers.iter().enumerate() {
+        let activation = if i + 1 == mlp.layers.len() {
+            mlp.output
+        } else {
+            mlp.hidden
+        };
+        let mut next = Vec::with_capacity(layer.outputs);
+        size = 0.0;
+        for (row, &b) in layer.weights.chunks_exact(layer.inputs).zip(&layer.bias) {
+            let terms = row.iter().zip(&x).map(|(&w, v)| f64::from(w) * v);
+            let (sum, absolute) = terms.fold((f64::from(b), f64::from(b).abs()), |(s, a), t| {
+                (s + t, a + t.abs())
+            });
+            size = size.max(absolute);
+            next.push(activation.apply_f64(sum));
+        }
+        x = next;
+    }
+    size
+}
+
+/// Runs `wgsl` on the GPU over random, extreme and self-test inputs and compares with [`Model::forward_raw_f64`].
+///
+/// # Errors
+/// [`ExportError::Differs`] with the worst input; a text that is not valid; a GPU that fails.
+pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, ExportError> {
+    peelnet_shaders::validate("exported network", wgsl, naga::valid::Capabilities::empty())?;
+    let samples = samples(model);
+    let outputs = evaluate(gpu, model, wgsl, &samples)?;
+    let mut result = Verification {
+        samples: samples.len(),
+        worst_absolute: 0.0,
+        worst_relative_to_tolerance: 0.0,
+    };
+    for (inputs, &found) in samples.iter().zip(&outputs) {
+        let raw: Vec<f64> = inputs.iter().map(|&x| f64::from(x)).collect();
+        let expected = model.forward_raw_f64(&raw)[0];
+        let normalised: Vec<f64> = model
+            .meta
+            .inputs
+            .iter()
+            .zip(&raw)
+            .map(|(i, &x)| i.normalise_f64(x))
+            .collect();
+        let tolerance = EXPORT_F32 * magnitude(&model.mlp, &normalised).max(expected.abs());
+        let difference = (f64::from(found) - expected).abs();
+        // A NaN compares false with everything: ask for agreement, not for disagreement.
+        let agrees = difference <= tolerance;
+        if !agrees {
+            return Err(ExportError::Differs {
+                inputs: inputs.clone(),
+                found,
+                expected,
+                tolerance,
+            });
+        }
+        result.worst_absolute = result.worst_absolute.max(difference);
+        if tolerance > 0.0 {
+            result.worst_relative_to_tolerance = result
+                .worst_relative_to_tolerance
+                .max(difference / tolerance);
+        }
+    }
+    Ok(result)
+}
+
+fn samples(model: &Model) -> Vec<Vec<f32>> {
+    let count = model.meta.inputs.len();
+    let mut all: Vec<Vec<f32>> = self_test_inputs(model).to_vec();
+    let mut state = 1u32;
+    let mut random = move || {
+        state = pcg(state.wrapping_add(0x9e37_79b9));
+        state as f32 / u32::MAX as f32
+    };
+    for _ in 0..RANDOM {
+        let sample = model
+            .meta
+            .inputs
+            .iter()
+            .map(|i| i.min + random() * (i.max - i.min))
+            .collect();
+        all.push(sample);
+    }
+    for extreme in EXTREMES {
+        all.push(vec![extreme; count]);
+        for k in 0..count {
+            let mut sample = self_test_inputs(model)[1].clone();
+            sample[k] = extreme;
+            all.push(sample);
+        }
+    }
+    all
+}
+
+/// Evaluates the exported function on the GPU.
+fn evaluate(
+    gpu: &Gpu,
+    model: &Model,
+    wgsl: &str,
+    samples: &[Vec<f32>],
+) -> Result<Vec<f32>, ExportError> {
+    let count = model.meta.inputs.len();
+    let arguments: Vec<_> = (0..count)
+        .map(|k| format!("inputs[id.x * {count}u + {k}u]"))
+        .collect();
+    let driver = format!(
+        "import package::learned::weight::peelnet_weight;
+        @group(0) @binding(0) var<storage, read> inputs: array<f32>;
+        @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;
+        @compute @workgroup_size(64)
+        fn main(@builtin(global_invocation_id) id: vec3u) {{
+            if id.x < arrayLength(&outputs) {{
+                outputs[id.x] = peelnet_weight({});
+            }}
+        }}",
+        arguments.join(", ")
+    );
+    let linked = peelnet_shaders::link(
+        "learned::driver",
+        &[],
+        &[("learned::driver", &driver), ("learned::weight", wgsl)],
+    )?;
+    let flat: Vec<f32> = samples.iter().flatten().copied().collect();
+    let inputs = gpu.upload("inputs", &flat, wgpu::BufferUsages::STORAGE);
+    let bytes = samples.len() as u64 * 4;
+    let outputs = gpu.storage("outputs", bytes)?;
+    let bound = gpu.bind(
+        "verification",
+        wgpu::ShaderStages::COMPUTE,
+        &[Bind::Read(&inputs), Bind::Write(&outputs)],
+    );
+    let pipeline = gpu.compute("verification", &linked, &[&bound.layout]);
+    let mut recorder = Recorder::new(gpu, false);
+    {
+        let mut pass = recorder.compute("verification");
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bound.group, &[]);
+        pass.dispatch_workgroups((samples.len() as u32).div_ceil(64), 1, 1);
+    }
+    recorder.finish()?;
+    Ok(gpu.read(&outputs, 0..bytes)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Options, export, wgsl};
+    use peelnet_core::mlp::{Activation, Layer};
+    use peelnet_gpu::AdapterRequest;
+    use peelnet_model::{DatasetRef, Input, Losses, Metadata, Output, Recipe};
+
+    /// A random network of the thesis's inputs with these hidden layers.
+    fn model(hidden: &[usize], seed: u32) -> Model {
+        let mut state = seed;
+        let mut random = move || {
+            state = pcg(state.wrapping_add(1));
+            state as f32 / u32::MAX as f32 * 2.0 - 1.0
+        };
+        let mut sizes = vec![3];
+        sizes.extend(hidden);
+        sizes.push(1);
+        let mut layers: Vec<_> = sizes
+            .windows(2)
+            .map(|s| Layer {
+                inputs: s[0],
+                outputs: s[1],
+                weights: (0..s[0] * s[1]).map(|_| random() / s[0] as f32).collect(),
+                bias: (0..s[1]).map(|_| random()).collect(),
+            })
+            .collect();
+        // In the middle of the guarded range, so that the guard does not hide a difference.
+        if let Some(last) = layers.last_mut() {
+            last.bias[0] = 0.5;
+            last.weights.iter_mut().for_each(|w| *w *= 0.2);
+        }
+        let input = |name: &str, offset, scale, min, max| Input {
+            name: name.into(),
+            unit: "1".into(),
+            offset,
+            scale,
+            min,
+            max,
+        };
+        Model {
+            mlp: Mlp::new(layers, Activation::Relu, Activation::Identity).expect("shapes fit"),
+            meta: Metadata {
+                format_version: peelnet_model::FORMAT_VERSION,
+                tool_version: "test".into(),
+                recipe: Recipe::Thesis,
+                inputs: vec![
+                    input("linear_depth", 6.0, 0.5, 0.1, 12.0),
+                    input("alpha_sum", 3.0, 0.3, 0.0, 9.0),
+                    input("fragment_count", 8.0, 0.125, 1.0, 34.0),
+                ],
+                output: Output::Transmittance,
+                seed: 0,
+                dataset: Some(DatasetRef {
+                    hash: "0".into(),
+                    rows: 1,
+                    scenes: vec!["sixteen".into()],
+                }),
+                epochs: 1,
+                losses: Losses::default(),
+                held_out: std::collections::BTreeMap::new(),
+                config: serde_json::Value::Null,
+            },
+        }
+    }
+
+    fn gpu() -> Gpu {
+        Gpu::new(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    #[test]
+    fn exports_agree_for_every_topology() {
+        let gpu = gpu();
+        for hidden in [&[10, 8][..], &[8], &[], &[32, 16], &[5, 3, 2]] {
+            let model = model(hidden, 7);
+            let text = wgsl(&model, &Options::default()).expect("exports");
+            assert_eq!(text, wgsl(&model, &Options::default()).expect("exports"));
+            let v = verify(&gpu, &model, &text).expect("agrees");
+            assert!(
+                v.samples > RANDOM && v.worst_relative_to_tolerance > 0.0,
+                "{v}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_changed_weight_is_found_and_nothing_is_written() {
+        let gpu = gpu();
+        let model = model(&[10, 8], 3);
+        let text = wgsl(&model, &Options::default()).expect("exports");
+        let mut other = model.clone();
+        other.mlp.layers[1].weights[3] += 0.01;
+        assert!(matches!(
+            verify(&gpu, &other, &text),
+            Err(ExportError::Differs { .. })
+        ));
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let path = folder.path().join("w.wgsl");
+        export(&gpu, &model, &path, &Options::default()).expect("exports");
+        assert_eq!(std::fs::read_to_string(&path).expect("reads"), text);
+        let missing = folder.path().join("none").join("w.wgsl");
+        assert!(matches!(
+            export(&gpu, &model, &missing, &Options::default()),
+            Err(ExportError::Write { .. })
+        ));
+    }
+
+    /// The header's vectors are what the model answers, to the bit.
+    #[test]
+    fn the_header_tells_what_a_user_needs() {
+        let model = model(&[10, 8], 5);
+        let text = wgsl(&model, &Options::default()).expect("exports");
+        for word in [
+            "3-10-8-1",
+            "118 multiply-adds",
+            "linear_depth in",
+            "rg16float",
+            "MIT OR Apache-2.0",
+        ] {
+            assert!(text.contains(word), "{word} in {text}");
+        }
+        let tests: Vec<_> = text.lines().filter(|l| l.contains("Self-test")).collect();
+        assert_eq!(tests.len(), 3);
+        for line in tests {
+            let (call, answer) = line.rsplit_once(" = ").expect("a vector");
+            let inputs: Vec<f32> = call[call.find('(').expect("open") + 1..call.len() - 1]
+                .split(", ")
+                .map(|x| x.parse().expect("a number"))
+                .collect();
+            let answer: f32 = answer.parse().expect("a number");
+            assert_eq!(answer.to_bits(), model.forward_raw(&inputs)[0].to_bits());
+        }
+    }
+
+    #[test]
+    fn other_outputs_are_refused() {
+        let mut model = model(&[4], 1);
+        model.meta.recipe = Recipe::Small;
+        model.meta.output = Output::AnchoredShare;
+        assert!(wgsl(&model, &Options::default()).is_err());
+    }
+}

@@ -1,0 +1,171 @@
+//! From a dataset on disk to columns, and a model's error on its held-out scenes.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use peelnet_dataset::{
+    CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo,
+    SceneEntry,
+};
+use peelnet_model::Recipe;
+use peelnet_train::{Config, RunOptions, TrainError, TrainingData, held_out_errors, train};
+
+const SIDE: u32 = 30;
+
+fn scene(name: &str, held_out: bool) -> SceneEntry {
+    SceneEntry {
+        name: name.to_owned(),
+        file: format!("{name}.toml"),
+        sha256: "0".repeat(64),
+        held_out,
+    }
+}
+
+/// A view of 30×30 pixels with three fragments of α = ½ each.
+fn view(index: u32) -> FragmentBatch {
+    let mut batch = FragmentBatch::default();
+    for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+        for layer in 0..3 {
+            batch.one_minus_alpha.push(0.5);
+            batch
+                .linear_depth
+                .push(1.0 + layer as f32 + x as f32 / 64.0);
+            batch.alpha_sum.push(1.5);
+            batch.fragment_count.push(3);
+            batch.transmittance.push(0.5f32.powi(layer as i32));
+            batch.view.push(index);
+            batch.x.push(x);
+            batch.y.push(y);
+            batch.layer.push(layer);
+            for channel in [&mut batch.r, &mut batch.g, &mut batch.b] {
+                channel.push(0.5);
+            }
+            batch.near.push(0.1);
+            batch.far.push(100.0);
+        }
+    }
+    batch
+}
+
+fn write(folder: &Path, scenes: Vec<SceneEntry>) -> Dataset {
+    let parts = scenes.len() as u32;
+    let writer = DatasetWriter::create(
+        folder,
+        Header {
+            format: Format::Npy,
+            seed: 1,
+            adapter: "none".to_owned(),
+            tool_version: "0".to_owned(),
+            command: "test".to_owned(),
+            peel: "sbuffer".to_owned(),
+            pixels_fraction: 1.0,
+            augment: 0,
+            scenes,
+            work_items: parts,
+            shard: None,
+        },
+    )
+    .unwrap();
+    for index in 0..parts {
+        let mut part = writer
+            .begin(PartInfo {
+                index,
+                scene: index,
+                copy: 0,
+                view: 0,
+                camera: CameraInfo {
+                    position: [0.0, 0.0, 6.0],
+                    target: [0.0; 3],
+                    up: [0.0, 1.0, 0.0],
+                    fov_y_degrees: 45.0,
+                    near: 0.1,
+                    far: 100.0,
+                },
+                width: SIDE,
+                height: SIDE,
+            })
+            .unwrap();
+        part.write(&view(index)).unwrap();
+        part.finish(PartCounts::default()).unwrap();
+    }
+    writer.finish().unwrap();
+    Dataset::open(folder).unwrap()
+}
+
+#[test]
+fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let a = write(
+        &folder.path().join("a"),
+        vec![scene("cups", false), scene("panes", true)],
+    );
+    let b = write(&folder.path().join("b"), vec![scene("smoke", false)]);
+    let config = Config {
+        epochs: 2,
+        ..Config::for_recipe(Recipe::Thesis).unwrap()
+    };
+    let datasets = [a, b];
+    let data = TrainingData::from_datasets(&config, &datasets).unwrap();
+    let rows = 2 * 3 * (SIDE * SIDE) as usize;
+    assert_eq!(data.rows(), rows);
+    assert_eq!(data.inputs[0][..3], [1.0, 2.0, 3.0]);
+    assert!(
+        data.inputs[1].iter().all(|&sum| sum == 1.5) && data.inputs[2].iter().all(|&n| n == 3.0)
+    );
+    assert_eq!(data.target[..4], [1.0, 0.5, 0.25, 1.0]);
+    let reference = data.dataset.clone().unwrap();
+    assert_eq!(reference.scenes, ["cups", "smoke"]);
+    assert_eq!(reference.rows, rows as u64);
+    assert_eq!(
+        reference.hash,
+        format!("{}+{}", datasets[0].hash(), datasets[1].hash())
+    );
+
+    let held_out = data.held_out.clone().unwrap();
+    assert!(
+        held_out
+            .chunks_exact(3)
+            .all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2])
+    );
+    // 900 pixels, the same in both parts because both are view 0: a third of them, within five standard deviations
+    // √(p(1−p)/900).
+    let share = held_out.iter().filter(|&&h| h).count() as f64 / rows as f64;
+    let deviation = (1.0 / 3.0 * 2.0 / 3.0 / 900.0f64).sqrt();
+    assert!((share - 1.0 / 3.0).abs() < 5.0 * deviation, "{share}");
+
+    let stop = AtomicBool::new(false);
+    let out = folder.path().join("net.safetensors");
+    let model = train(&config, &data, &RunOptions::new(&out, &stop), |_| {})
+        .unwrap()
+        .model;
+    let errors = held_out_errors(&model, &datasets).unwrap();
+    assert_eq!(errors.keys().collect::<Vec<_>>(), ["panes"]);
+    let batch = view(1);
+    let expected = (0..batch.len())
+        .map(|i| {
+            let answer = model.forward_raw(&[batch.linear_depth[i], 1.5, 3.0])[0];
+            f64::from(answer - batch.transmittance[i]).abs()
+        })
+        .sum::<f64>()
+        / batch.len() as f64;
+    assert_eq!(errors["panes"], expected);
+}
+
+#[test]
+fn a_dataset_of_held_out_scenes_only_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let datasets = [write(&folder.path().join("a"), vec![scene("panes", true)])];
+    let config = Config::for_recipe(Recipe::Thesis).unwrap();
+    let data = TrainingData::from_datasets(&config, &datasets).unwrap();
+    let stop = AtomicBool::new(false);
+    let options = RunOptions::new(folder.path().join("net.safetensors"), &stop);
+    let error = train(&config, &data, &options, |_| {}).unwrap_err();
+    let TrainError::Columns { data, problem } = &error else {
+        panic!("{error}");
+    };
+    assert!(
+        data.ends_with('a') && problem.contains("held out"),
+        "{error}"
+    );
+}

@@ -1,0 +1,89 @@
+use glam::{Mat4, Quat, Vec3};
+
+/// A perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Eye, scene units.
+    pub position: Vec3,
+    /// Point looked at, scene units.
+    pub target: Vec3,
+    /// Up direction, any length.
+    pub up: Vec3,
+    /// Vertical field of view, degrees.
+    pub fov_y_degrees: f32,
+    /// Near clip distance, scene units.
+    pub near: f32,
+    /// Far clip distance, scene units.
+    pub far: f32,
+}
+
+impl Camera {
+    /// World to view space: right-handed, looking along −z.
+    pub fn view_from_world(&self) -> Mat4 {
+        glam::camera::rh::view::look_at_mat4(self.position, self.target, self.up)
+    }
+
+    /// View to clip space: x right, y up, depth 0 at near to 1 at far. `aspect` is width over height.
+    pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
+        glam::camera::rh::proj::directx::perspective(
+            self.fov_y_degrees.to_radians(),
+            aspect,
+            self.near,
+            self.far,
+        )
+    }
+
+    /// The camera turned about `up` through the target.
+    pub fn orbited(&self, degrees: f32) -> Self {
+        if degrees == 0.0 {
+            return *self;
+        }
+        let turn = Quat::from_axis_angle(self.up.normalize_or(Vec3::Y), degrees.to_radians());
+        Self {
+            position: self.target + turn * (self.position - self.target),
+            ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec4;
+
+    #[test]
+    fn depth_runs_from_zero_to_one_and_w_is_linear_depth() {
+        let camera = Camera {
+            position: Vec3::new(0.0, 0.0, 6.0),
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            fov_y_degrees: 90.0,
+            near: 1.0,
+            far: 9.0,
+        };
+        let clip = camera.clip_from_view(2.0) * camera.view_from_world();
+        for (z, depth) in [(5.0, 0.0), (-3.0, 1.0)] {
+            let p = clip * Vec4::new(0.0, 0.0, z, 1.0);
+            assert!((p.z / p.w - depth).abs() < 1e-6);
+            assert!((p.w - (6.0 - z)).abs() < 1e-5);
+        }
+        // 90° at depth 6: y = 6 is the upper edge, x = 12 the right one for aspect 2.
+        let p = clip * Vec4::new(12.0, 6.0, 0.0, 1.0);
+        assert!((p.x / p.w - 1.0).abs() < 1e-6 && (p.y / p.w - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn an_orbit_keeps_distance_and_height() {
+        let camera = Camera {
+            position: Vec3::new(3.0, 2.0, 4.0),
+            target: Vec3::new(0.0, 1.0, 0.0),
+            up: Vec3::new(0.0, 7.0, 0.0),
+            fov_y_degrees: 45.0,
+            near: 0.1,
+            far: 10.0,
+        };
+        let turned = camera.orbited(90.0);
+        assert!((turned.position - Vec3::new(4.0, 2.0, -3.0)).length() < 1e-5);
+        assert_eq!(camera.orbited(0.0), camera);
+    }
+}

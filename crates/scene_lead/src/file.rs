@@ -1,0 +1,676 @@
+//! The scene file: TOML, strict. An unknown key is an error, because a misspelt one would otherwise be silently ignored.
+
+use crate::{
+    Camera, Light, Lighting, Material, Mesh, Object, Scene, SceneError,
+    obj::load_obj,
+    scatter::{Scatter, fixed_axes},
+    shapes::Shape,
+};
+use glam::{Mat4, Vec3};
+use serde::{Deserialize, Deserializer, de::Error as _};
+use sha2::{Digest, Sha256};
+use std::{
+    collections::HashMap,
+    fs,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawScene {
+    name: Option<String>,
+    #[serde(default)]
+    background: [f32; 3],
+    #[serde(default)]
+    held_out: bool,
+    camera: Option<RawCamera>,
+    #[serde(default)]
+    view: Vec<RawCamera>,
+    orbit: Option<RawOrbit>,
+    #[serde(default)]
+    light: Vec<RawLight>,
+    #[serde(default)]
+    object: Vec<RawObject>,
+    #[serde(default)]
+    scatter: OneOrMany<Scatter>,
+}
+
+/// `[scatter]` or `[[scatter]]`.
+#[derive(Debug)]
+struct OneOrMany<T>(Vec<T>);
+
+impl<T> Default for OneOrMany<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMany<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        // Through a value, so that the inner error and not "no variant matched" is told.
+        match toml::Value::deserialize(deserializer)? {
+            toml::Value::Array(list) => list
+                .into_iter()
+                .map(|v| T::deserialize(v).map_err(D::Error::custom))
+                .collect::<Result<_, _>>()
+                .map(Self),
+            one => T::deserialize(one)
+                .map_err(D::Error::custom)
+                .map(|one| Self(vec![one])),
+        }
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCamera {
+    position: [f32; 3],
+    target: [f32; 3],
+    #[serde(default = "up")]
+    up: [f32; 3],
+    #[serde(default = "fov")]
+    fov_y: f32,
+    near: f32,
+    far: f32,
+}
+
+const fn up() -> [f32; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+const fn fov() -> f32 {
+    45.0
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawOrbit {
+    views: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawLight {
+    position: [f32; 3],
+    #[serde(default = "white")]
+    color: [f32; 3],
+    #[serde(default = "one")]
+    intensity: f32,
+}
+
+const fn white() -> [f32; 3] {
+    [1.0; 3]
+}
+
+const fn one() -> f32 {
+    1.0
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawObject {
+    name: Option<String>,
+    mesh: MeshRef,
+    fit: Option<f32>,
+    #[serde(default = "one")]
+    scale: f32,
+    #[serde(default)]
+    rotate: [f32; 3],
+    #[serde(default)]
+    translate: [f32; 3],
+    #[serde(default)]
+    layer: u32,
+    #[serde(default)]
+    material: RawMaterial,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMaterial {
+    color: Option<[f32; 3]>,
+    alpha: Option<f32>,
+    lighting: Option<String>,
+    specular: Option<f32>,
+    shininess: Option<f32>,
+    double_sided: Option<bool>,
+    blend: Option<bool>,
+}
+
+/// A mesh in a scene file: a path, or a table with `shape = …`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshRef {
+    /// A file, relative to the scene file.
+    File(PathBuf),
+    /// A generated shape.
+    Shape(Shape),
+}
+
+impl<'de> Deserialize<'de> for MeshRef {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match toml::Value::deserialize(deserializer)? {
+            toml::Value::String(path) => Ok(Self::File(path.into())),
+            table @ toml::Value::Table(_) => Shape::deserialize(table)
+                .map(Self::Shape)
+                .map_err(|e| D::Error::custom(e.message())),
+            other => Err(D::Error::custom(format!(
+                "a mesh is a path or a table with shape = …, not {}",
+                other.type_str()
+            ))),
+        }
+    }
+}
+
+/// Loads meshes once each and keeps what was read for the hash.
+struct Loader<'a> {
+    path: &'a Path,
+    lighting: Lighting,
+    hasher: Sha256,
+    warnings: Vec<String>,
+    files: HashMap<PathBuf, Arc<Mesh>>,
+    shapes: Vec<(Shape, Arc<Mesh>)>,
+}
+
+impl Loader<'_> {
+    fn value(&self, field: &str, message: impl Into<String>) -> SceneError {
+        SceneError::Value {
+            path: self.path.to_owned(),
+            field: field.to_owned(),
+            message: message.into(),
+        }
+    }
+
+    fn mesh(&mut self, mesh: &MeshRef, field: &str) -> Result<Arc<Mesh>, SceneError> {
+        match mesh {
+            MeshRef::Shape(shape) => {
+                if let Some((_, mesh)) = self.shapes.iter().find(|(s, _)| s == shape) {
+                    return Ok(Arc::clone(mesh));
+                }
+                let built = shape
+                    .build(&Material::default_with(self.lighting))
+                    .map_err(|e| self.value(field, e))?;
+                let built = Arc::new(built);
+                self.shapes.push((shape.clone(), Arc::clone(&built)));
+                Ok(built)
+            }
+            MeshRef::File(name) => {
+                let file = self.path.parent().unwrap_or(Path::new(".")).join(name);
+                if let Some(mesh) = self.files.get(&file) {
+                    return Ok(Arc::clone(mesh));
+                }
+                let ending = file
+                    .extension()
+                    .and_then(|e| e.to_str())
+                    .unwrap_or_default()
+                    .to_lowercase();
+                if ending != "obj" {
+                    return Err(self.value(
+                        field,
+                        format!(
+                            "{} is not an .obj file; export the mesh as OBJ",
+                            file.display()
+                        ),
+                    ));
+                }
+                let loaded = load_obj(&file, self.lighting)?;
+                for read in &loaded.files {
+                    let bytes = fs::read(read).map_err(|source| SceneError::Read {
+                        path: read.clone(),
+                        source,
+                    })?;
+                    self.hasher.update(&bytes);
+                }
+                self.warnings.extend(loaded.warnings);
+                let mesh = Arc::new(loaded.mesh);
+                self.files.insert(file, Arc::clone(&mesh));
+                Ok(mesh)
+            }
+        }
+    }
+
+    fn lighting_word(
+        &self,
+        word: Option<&str>,
+        field: &str,
+    ) -> Result<Option<Lighting>, SceneError> {
+        match word {
+            None => Ok(None),
+            Some("unlit") => Ok(Some(Lighting::Unlit)),
+            Some("phong") => Ok(Some(Lighting::Phong)),
+            Some("pbr") => Err(self.value(
+                field,
+                "\"pbr\" is not drawn by this version; use \"phong\" or \"unlit\"",
+            )),
+            Some(other) => Err(self.value(
+                field,
+                format!("\"{other}\" is not one of \"unlit\", \"phong\""),
+            )),
+        }
+    }
+
+    fn material(
+        &self,
+        base: &Material,
+        raw: &RawMaterial,
+        field: &str,
+    ) -> Result<Material, SceneError> {
+        let at = |key: &str| format!("{field}.material.{key}");
+        let unit = |key: &str, x: f32| {
+            if (0.0..=1.0).contains(&x) {
+                Ok(x)
+            } else {
+                Err(self.value(&at(key), format!("{x} must lie in 0 … 1")))
+            }
+        };
+        let not_negative = |key: &str, x: f32| {
+            if x.is_finite() && x >= 0.0 {
+                Ok(x)
+            } else {
+                Err(self.value(&at(key), format!("{x} must be finite and not negative")))
+            }
+        };
+        if let Some(color) = raw.color {
+            for c in color {
+                not_negative("color", c)?;
+            }
+        }
+        Ok(Material {
+            name: base.name.clone(),
+            color: raw.color.unwrap_or(base.color),
+            alpha: raw.alpha.map_or(Ok(base.alpha), |a| unit("alpha", a))?,
+            lighting: self
+                .lighting_word(raw.lighting.as_deref(), &at("lighting"))?
+                .unwrap_or(base.lighting),
+            specular: raw
+                .specular
+                .map_or(Ok(base.specular), |x| not_negative("specular", x))?,
+            shininess: raw
+                .shininess
+                .map_or(Ok(base.shininess), |x| not_negative("shininess", x))?,
+            double_sided: raw.double_sided.unwrap_or(base.double_sided),
+            blend: raw.blend.unwrap_or(base.blend),
+        })
+    }
+
+    fn camera(&self, raw: &RawCamera, field: &str) -> Result<Camera, SceneError> {
+        let at = |key: &str| format!("{field}.{key}");
+        for (key, v) in [
+            ("position", raw.position),
+            ("target", raw.target),
+            ("up", raw.up),
+        ] {
+            if v.iter().any(|x| !x.is_finite()) {
+                return Err(self.value(&at(key), "must be finite"));
+            }
+        }
+        let (near, far) = (raw.near, raw.far);
+        if !(near > 0.0 && near < far && far.is_finite()) {
+            return Err(self.value(
+                &at("near"),
+                format!("near {near} must be positive and below far {far}"),
+            ));
+        }
+        if !(raw.fov_y > 0.0 && raw.fov_y < 180.0) {
+            return Err(self.value(
+                &at("fov_y"),
+                format!("{} must lie between 0 and 180 degrees", raw.fov_y),
+            ));
+        }
+        let camera = Camera {
+            position: raw.position.into(),
+            target: raw.target.into(),
+            up: raw.up.into(),
+            fov_y_degrees: raw.fov_y,
+            near,
+            far,
+        };
+        let forward = camera.target - camera.position;
+        if forward.length() == 0.0 {
+            return Err(self.value(&at("target"), "must differ from position"));
+        }
+        if forward
+            .normalize()
+            .cross(camera.up.normalize_or_zero())
+            .length()
+            < 1e-4
+        {
+            return Err(self.value(&at("up"), "must not be zero or along the line of sight"));
+        }
+        Ok(camera)
+    }
+}
+
+impl Scene {
+    /// Reads a scene file and everything it names.
+    ///
+    /// # Errors
+    /// The first thing wrong, with file, line or key, and the mend.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let text = fs::read_to_string(path).map_err(|source| SceneError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let raw: RawScene = toml::from_str(&text).map_err(|e| {
+            let line = e.span().map_or(1, |s| {
+                1 + text[..s.start.min(text.len())].matches('\n').count()
+            });
+            SceneError::Syntax {
+                path: path.to_owned(),
+                line,
+                message: e.message().trim().replace('\n', "; "),
+            }
+        })?;
+        let lighting = if raw.light.is_empty() {
+            Lighting::Unlit
+        } else {
+            Lighting::Phong
+        };
+        let mut hasher = Sha256::new();
+        hasher.update(text.as_bytes());
+        let mut loader = Loader {
+            path,
+            lighting,
+            hasher,
+            warnings: Vec::new(),
+            files: HashMap::new(),
+            shapes: Vec::new(),
+        };
+        let views = views(&loader, &raw)?;
+        let mut lights = Vec::new();
+        for (i, light) in raw.light.iter().enumerate() {
+            let numbers = light
+                .position
+                .iter()
+                .chain(&light.color)
+                .chain([&light.intensity]);
+            if numbers.into_iter().any(|x| !x.is_finite()) {
+                return Err(loader.value(&format!("light {}", i + 1), "must be finite"));
+            }
+            lights.push(Light {
+                position: light.position.into(),
+                color: light.color,
+                intensity: light.intensity,
+            });
+        }
+        if raw.background.iter().any(|c| !c.is_finite() || *c < 0.0) {
+            return Err(loader.value("background", "must be finite and not negative"));
+        }
+        let mut objects = Vec::new();
+        for (i, object) in raw.object.iter().enumerate() {
+            objects.push(place_object(&mut loader, object, i)?);
+        }
+        for (i, scatter) in raw.scatter.0.iter().enumerate() {
+            scatter_objects(&mut loader, scatter, i, views[0].position, &mut objects)?;
+        }
+        let name = raw.name.unwrap_or_else(|| {
+            path.file_stem()
+                .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
+        });
+        let hash = loader.hasher.finalize();
+        Ok(Self {
+            name,
+            source: path.to_owned(),
+            hash: hash.iter().map(|b| format!("{b:02x}")).collect(),
+            background: raw.background,
+            views,
+            lights,
+            objects,
+            held_out: raw.held_out,
+            warnings: loader.warnings,
+        })
+    }
+}
+
+fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, SceneError> {
+    let mut views = Vec::new();
+    match (&raw.camera, raw.view.as_slice()) {
+        (Some(_), [_, ..]) => {
+            return Err(loader.value("camera", "give either [camera] or [[view]], not both"));
+        }
+        (None, []) => {
+            return Err(loader.value("camera", "is missing: add a [camera] or some [[view]]"));
+        }
+        (Some(camera), []) => views.push(loader.camera(camera, "camera")?),
+        (None, list) => {
+            for (i, view) in list.iter().enumerate() {
+                views.push(loader.camera(view, &format!("view {}", i + 1))?);
+            }
+        }
+    }
+    if let Some(orbit) = &raw.orbit {
+        if views.len() > 1 {
+            return Err(loader.value(
+                "orbit",
+                "turns one camera: give [camera], not several [[view]]",
+            ));
+        }
+        if orbit.views == 0 || orbit.views > 10_000 {
+            return Err(loader.value(
+                "orbit.views",
+                format!("{} must lie in 1 … 10000", orbit.views),
+            ));
+        }
+        let first = views[0];
+        views = (0..orbit.views)
+            .map(|i| first.orbited(360.0 * i as f32 / orbit.views as f32))
+            .collect();
+    }
+    Ok(views)
+}
+
+fn place_object(
+    loader: &mut Loader<'_>,
+    raw: &RawObject,
+    index: usize,
+) -> Result<Object, SceneError> {
+    let field = format!("object {}", index + 1);
+    let mesh = loader.mesh(&raw.mesh, &format!("{field}.mesh"))?;
+    let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
+    if !(raw.scale.is_finite() && raw.scale != 0.0) {
+        return Err(loader.value(&format!("{field}.scale"), "must be finite and not 0"));
+    }
+    if !finite(&raw.rotate) || !finite(&raw.translate) {
+        return Err(loader.value(&field, "rotate and translate must be finite"));
+    }
+    let mut world = Mat4::from_translation(raw.translate.into())
+        * Mat4::from_quat(fixed_axes(raw.rotate))
+        * Mat4::from_scale(Vec3::splat(raw.scale));
+    if let Some(fit) = raw.fit {
+        if !(fit.is_finite() && fit > 0.0) {
+            return Err(loader.value(&format!("{field}.fit"), "must be a positive length"));
+        }
+        if let Some((lo, hi)) = mesh.bounds() {
+            let longest = (hi - lo).max_element();
+            if longest > 0.0 {
+                world = world
+                    * Mat4::from_scale(Vec3::splat(fit / longest))
+                    * Mat4::from_translation(-(lo + hi) / 2.0);
+            }
+        }
+    }
+    let materials = mesh
+        .parts
+        .iter()
+        .map(|p| loader.material(&p.material, &raw.material, &field))
+        .collect::<Result<_, _>>()?;
+    Ok(Object {
+        name: raw.name.clone().unwrap_or(field),
+        mesh,
+        world_from_object: world,
+        layer: raw.layer,
+        materials,
+    })
+}
+
+fn scatter_objects(
+    loader: &mut Loader<'_>,
+    scatter: &Scatter,
+    index: usize,
+    eye: Vec3,
+    objects: &mut Vec<Object>,
+) -> Result<(), SceneError> {
+    let field = format!("scatter {}", index + 1);
+    scatter
+        .check()
+        .map_err(|(key, message)| loader.value(&format!("{field}.{key}"), message))?;
+    let lighting =
+        loader.lighting_word(scatter.lighting.as_deref(), &format!("{field}.lighting"))?;
+    let mut meshes = Vec::new();
+    for mesh in scatter.mesh_list() {
+        meshes.push(loader.mesh(mesh, &format!("{field}.mesh"))?);
+    }
+    for (i, placed) in scatter.place(eye).into_iter().enumerate() {
+        let mesh = Arc::clone(&meshes[placed.mesh]);
+        let materials = mesh
+            .parts
+            .iter()
+            .map(|p| Material {
+                color: placed.color.unwrap_or(p.material.color),
+                alpha: placed.alpha.unwrap_or(p.material.alpha),
+                lighting: lighting.unwrap_or(p.material.lighting),
+                // An opacity drawn from a range may come out as 1 and still belongs with the others.
+                blend: placed.alpha.is_some(),
+                ..p.material.clone()
+            })
+            .collect();
+        objects.push(Object {
+            name: format!("{field}, {}", i + 1),
+            mesh,
+            world_from_object: placed.world_from_object,
+            layer: scatter.layer,
+            materials,
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CAMERA: &str =
+        "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100\n";
+
+    fn load(text: &str) -> Result<Scene, SceneError> {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let path = folder.path().join("s.toml");
+        fs::write(&path, text).expect("writes");
+        Scene::load(&path)
+    }
+
+    #[test]
+    fn transforms_apply_in_the_documented_order() {
+        let scene = load(&format!(
+            "{CAMERA}[[object]]\nmesh = {{ shape = 'box', size = [2, 4, 8] }}\nfit = 1.0\nscale = 2.0\nrotate = [90, 0, 0]\ntranslate = [0, 0, 5]\n"
+        ))
+        .expect("loads");
+        // fit: 0.25 × 0.5 × 1; scale: 0.5 × 1 × 2; turned about x: 0.5 × 2 × 1; moved by 5.
+        let o = &scene.objects[0];
+        let far = o
+            .mesh
+            .positions
+            .iter()
+            .map(|p| o.world_from_object.transform_point3(*p));
+        let (lo, hi) = far.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| {
+            (a.min(p), b.max(p))
+        });
+        assert!((lo - Vec3::new(-0.25, -1.0, 4.5)).length() < 1e-5, "{lo}");
+        assert!((hi - Vec3::new(0.25, 1.0, 5.5)).length() < 1e-5, "{hi}");
+    }
+
+    #[test]
+    fn orbit_lights_and_defaults() {
+        let scene = load(&format!(
+            "{CAMERA}[orbit]\nviews = 4\n[[light]]\nposition = [4, 6, 4]\n[[object]]\nmesh = {{ shape = 'sphere' }}\n[object.material]\nalpha = 0.5\n"
+        ))
+        .expect("loads");
+        assert_eq!((scene.name.as_str(), scene.views.len()), ("s", 4));
+        assert!((scene.views[1].position - Vec3::new(6.0, 0.0, 0.0)).length() < 1e-5);
+        let m = &scene.objects[0].materials[0];
+        assert_eq!(
+            (m.alpha, m.lighting, m.is_opaque()),
+            (0.5, Lighting::Phong, false)
+        );
+        assert_eq!(scene.hash.len(), 64);
+        assert!(scene.transparent_bounds().is_some());
+    }
+
+    /// Each bad scene gives one error that names the file, the line or key, and the mend.
+    #[test]
+    fn bad_scenes() {
+        let object = |text: &str| format!("{CAMERA}[[object]]\n{text}\n");
+        let box_with = |text: &str| object(&format!("mesh = {{ shape = 'box' }}\n{text}"));
+        for (text, words) in [
+            (format!("colour = 1\n{CAMERA}"), vec!["s.toml:1", "colour"]),
+            (box_with("scael = 2.0"), vec!["s.toml:8", "scael", "scale"]),
+            (
+                CAMERA.replace("near = 0.1", "near = 200"),
+                vec!["camera.near", "below far"],
+            ),
+            (
+                CAMERA.replace("near = 0.1", "near = 0"),
+                vec!["camera.near", "positive"],
+            ),
+            (
+                CAMERA.replace("[0, 0, 6]", "[0, 0, 0]"),
+                vec!["camera.target", "differ"],
+            ),
+            (
+                CAMERA.replace("[0, 0, 6]", "[0, 6, 0]"),
+                vec!["camera.up", "line of sight"],
+            ),
+            (
+                CAMERA.replace("[0, 0, 6]", "[0, nan, 6]"),
+                vec!["camera.position", "finite"],
+            ),
+            (
+                format!("{CAMERA}fov_y = 180.0"),
+                vec!["camera.fov_y", "180"],
+            ),
+            (String::new(), vec!["camera", "add a [camera]"]),
+            (
+                format!("{CAMERA}[orbit]\nviews = 0"),
+                vec!["orbit.views", "1"],
+            ),
+            (
+                box_with("[object.material]\nalpha = 1.5"),
+                vec!["object 1.material.alpha", "0 … 1"],
+            ),
+            (
+                box_with("[object.material]\nlighting = 'pbr'"),
+                vec!["lighting", "phong"],
+            ),
+            (box_with("scale = 0.0"), vec!["object 1.scale", "not 0"]),
+            (
+                object("mesh = { shape = 'sphere', raduis = 2 }"),
+                vec!["s.toml:7", "raduis", "radius"],
+            ),
+            (
+                object("mesh = { shape = 'sphere', radius = -2 }"),
+                vec!["object 1.mesh", "positive"],
+            ),
+            (
+                object("mesh = 'cow.fbx'"),
+                vec!["object 1.mesh", "export the mesh as OBJ"],
+            ),
+            (object("mesh = 'none.obj'"), vec!["none.obj", "cannot read"]),
+            (object("mesh = 7"), vec!["s.toml:7", "path or a table"]),
+            (
+                format!("{CAMERA}[scatter]\ncount = 1\nmin = [0,0,0]\nmax = [1,1,1]"),
+                vec!["scatter 1.mesh", "either"],
+            ),
+            (
+                format!(
+                    "{CAMERA}[scatter]\ncount = 1\nmesh = {{ shape = 'box' }}\nmin = [0,0,0]\nmax = [1,1,1]\nalpha = [0.5, 1.5]"
+                ),
+                vec!["scatter 1.alpha", "0 … 1"],
+            ),
+            ("name = \"x".to_owned(), vec!["s.toml:1"]),
+        ] {
+            let e = load(&text).expect_err(&text).to_string();
+            for word in words {
+                assert!(e.contains(word), "{text}\ngives: {e}\nwithout: {word}");
+            }
+        }
+    }
+}

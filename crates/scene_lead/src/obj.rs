@@ -1,0 +1,447 @@
+//! Wavefront OBJ and MTL files, through `tobj`.
+//!
+//! The parser's errors have no line numbers, and it takes NaN for a number. A first walk over the text checks what a
+//! user can get wrong — numbers, indices, faces — and names the line; then the parser does the rest.
+
+use crate::{Lighting, Material, Mesh, Part, SceneError, mesh::smooth_normals};
+use glam::Vec3;
+use std::{
+    cell::RefCell,
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// A mesh file's contents.
+#[derive(Clone, Debug)]
+pub struct LoadedObj {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// What was missing or mended.
+    pub warnings: Vec<String>,
+    /// Every file that was read, the OBJ first.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads an OBJ file and the MTL files it names.
+///
+/// Polygons are triangulated, missing or unusable normals computed, degenerate triangles left out with a warning. A
+/// missing MTL, or a name that no MTL has, is a warning and a default material.
+///
+/// # Errors
+/// A file that cannot be read, is empty or cut off, or holds numbers or indices that make no sense: with its line.
+pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError> {
+    let text = read_text(path)?;
+    let facts = check(path, &text)?;
+    let mut warnings = Vec::new();
+    let missing = RefCell::new(Vec::new());
+    let files = RefCell::new(vec![path.to_owned()]);
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        single_index: true,
+        ignore_points: true,
+        ignore_lines: true,
+    };
+    let (models, materials) = tobj::load_obj_buf(&mut text.as_bytes(), &options, |name| {
+        let file = folder.join(name);
+        match fs::read(&file) {
+            Ok(bytes) => {
+                files.borrow_mut().push(file);
+                tobj::load_mtl_buf(&mut bytes.as_slice())
+            }
+            Err(e) => {
+                missing.borrow_mut().push(format!(
+                    "{}: cannot read material file {} ({e}); default material used",
+                    path.display(),
+                    file.display()
+                ));
+                // An empty library: faces that name its materials get the default.
+                Ok((Vec::new(), Default::default()))
+            }
+        }
+    })
+    .map_err(|e| SceneError::Mesh {
+        path: path.to_owned(),
+        line: None,
+        message: format!("{e}; export the mesh again"),
+    })?;
+    warnings.extend(missing.into_inner());
+    let materials = materials.map_err(|e| SceneError::Mesh {
+        path: path.to_owned(),
+        line: None,
+        message: format!(
+            "its material file cannot be used: {e}; mend the MTL or remove the mtllib line"
+        ),
+    })?;
+    let known: BTreeSet<&str> = materials.iter().map(|m| m.name.as_str()).collect();
+    if warnings.is_empty() {
+        for name in facts
+            .materials
+            .iter()
+            .filter(|n| !known.contains(n.as_str()))
+        {
+            warnings.push(format!(
+                "{}: no material '{name}' in its MTL files; default material used",
+                path.display()
+            ));
+        }
+    }
+    let mut mesh = Mesh {
+        positions: Vec::new(),
+        normals: Vec::new(),
+        triangles: Vec::new(),
+        parts: Vec::new(),
+    };
+    let (mut degenerate, mut bad_normals) = (0usize, 0usize);
+    for model in &models {
+        let m = &model.mesh;
+        let vectors =
+            |flat: &[f32]| -> Vec<Vec3> { flat.chunks_exact(3).map(Vec3::from_slice).collect() };
+        let positions = vectors(&m.positions);
+        let mut triangles = Vec::with_capacity(m.indices.len() / 3);
+        for t in m.indices.chunks_exact(3) {
+            let t = [t[0], t[1], t[2]];
+            let [a, b, c] = t.map(|i| positions[i as usize]);
+            // Exactly zero, not small: a sliver is a triangle.
+            if (b - a).cross(c - a) == Vec3::ZERO {
+                degenerate += 1;
+            } else {
+                triangles.push(t);
+            }
+        }
+        let smooth = smooth_normals(&positions, &triangles);
+        let given = vectors(&m.normals);
+        let normals: Vec<Vec3> = if given.len() == positions.len() {
+            given
+                .iter()
+                .zip(&smooth)
+                .map(|(n, s)| {
+                    n.try_normalize().unwrap_or_else(|| {
+                        bad_normals += 1;
+                        *s
+                    })
+                })
+                .collect()
+        } else {
+            smooth
+        };
+        let base = mesh.positions.len() as u32;
+        let first = mesh.triangles.len();
+        mesh.positions.extend(positions);
+        mesh.normals.extend(normals);
+        mesh.triangles
+            .extend(triangles.iter().map(|t| t.map(|i| i + base)));
+        if mesh.triangles.len() > first {
+            mesh.parts.push(Part {
+                name: model.name.clone(),
+                triangles: first..mesh.triangles.len(),
+                material: m.material_id.and_then(|i| materials.get(i)).map_or_else(
+                    || Material::default_with(lighting),
+                    |m| material(m, lighting),
+                ),
+            });
+        }
+    }
+    if degenerate > 0 {
+        warnings.push(format!(
+            "{}: {degenerate} triangles without area left out",
+            path.display()
+        ));
+    }
+    if bad_normals > 0 {
+        warnings.push(format!(
+            "{}: {bad_normals} normals were zero or not finite and were computed from the triangles",
+            path.display()
+        ));
+    }
+    if mesh.triangles.is_empty() {
+        return Err(SceneError::Mesh {
+            path: path.to_owned(),
+            line: None,
+            message: "holds no triangle with an area; export the mesh again".into(),
+        });
+    }
+    Ok(LoadedObj {
+        mesh,
+        warnings,
+        files: files.into_inner(),
+    })
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    let bytes = fs::read(path).map_err(|source| SceneError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    String::from_utf8(bytes).map_err(|e| {
+        let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        SceneError::Mesh {
+            path: path.to_owned(),
+            line: Some(1 + good.iter().filter(|&&b| b == b'\n').count()),
+            message: "is not UTF-8 text; is it an OBJ file? Save it as plain text".into(),
+        }
+    })
+}
+
+struct Facts {
+    /// Names after `usemtl`.
+    materials: BTreeSet<String>,
+}
+
+/// Checks numbers, faces and indices, line by line.
+fn check(path: &Path, text: &str) -> Result<Facts, SceneError> {
+    let fail = |line: usize, message: String| SceneError::Mesh {
+        path: path.to_owned(),
+        line: Some(line),
+        message,
+    };
+    // Positive indices may point ahead, so the totals come first.
+    let total = |key: &str| {
+        text.lines()
+            .filter(|l| l.split_ascii_whitespace().next() == Some(key))
+            .count() as i64
+    };
+    let totals = [total("v"), total("vt"), total("vn")];
+    let mut seen = [0i64; 3];
+    let mut faces = 0;
+    let mut materials = BTreeSet::new();
+    for (i, line) in text.lines().enumerate() {
+        let number = i + 1;
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some(key @ ("v" | "vt" | "vn")) => {
+                let kind = ["v", "vt", "vn"]
+                    .iter()
+                    .position(|&k| k == key)
+                    .unwrap_or(0);
+                seen[kind] += 1;
+                if key == "vt" {
+                    continue;
+                }
+                let values: Vec<&str> = words.collect();
+                if values.len() < 3 {
+                    return Err(fail(
+                        number,
+                        format!(
+                            "'{key}' has {} numbers instead of 3; is the file cut off?",
+                            values.len()
+                        ),
+                    ));
+                }
+                for word in &values[..3] {
+                    match word.parse::<f32>() {
+                        // A normal that is no number can be computed anew; a position cannot.
+                        Ok(x) if x.is_finite() || key == "vn" => {}
+                        Ok(_) => {
+                            return Err(fail(
+                                number,
+                                format!(
+                                    "position '{word}' is not finite; repair the mesh and export it again"
+                                ),
+                            ));
+                        }
+                        Err(_) => {
+                            return Err(fail(
+                                number,
+                                format!("'{word}' is not a number; repair the line"),
+                            ));
+                        }
+                    }
+                }
+            }
+            Some("f") => {
+                faces += 1;
+                let corners: Vec<&str> = words.collect();
+                if corners.len() < 3 {
+                    return Err(fail(
+                        number,
+                        format!("a face of {} corners; is the file cut off?", corners.len()),
+                    ));
+                }
+                for corner in corners {
+                    for (kind, word) in corner.split('/').enumerate() {
+                        if word.is_empty() && kind == 1 {
+                            continue;
+                        }
+                        let index: i64 = word.parse().map_err(|_| {
+                            fail(
+                                number,
+                                format!("'{corner}' is not an index; repair the line"),
+                            )
+                        })?;
+                        let names = ["vertices", "texture coordinates", "normals"];
+                        let valid = kind < 3
+                            && ((1..=totals[kind]).contains(&index)
+                                || (-seen[kind]..0).contains(&index));
+                        if !valid {
+                            return Err(fail(
+                                number,
+                                format!(
+                                    "index {index} points at none of the {} {}; repair the face",
+                                    totals.get(kind).copied().unwrap_or(0),
+                                    names.get(kind).unwrap_or(&"fields of a corner")
+                                ),
+                            ));
+                        }
+                    }
+                }
+            }
+            Some("usemtl") => {
+                materials.insert(words.collect::<Vec<_>>().join(" "));
+            }
+            _ => {}
+        }
+    }
+    if faces == 0 {
+        return Err(SceneError::Mesh {
+            path: path.to_owned(),
+            line: None,
+            message: "holds no faces; is the file empty or cut off?".into(),
+        });
+    }
+    Ok(Facts { materials })
+}
+
+fn material(m: &tobj::Material, lighting: Lighting) -> Material {
+    let default = Material::default_with(lighting);
+    // `Tr` is the opposite of `d`; the parser leaves it to us.
+    let transparency = m
+        .unknown_param
+        .get("Tr")
+        .and_then(|t| t.trim().parse::<f32>().ok());
+    let alpha = m
+        .dissolve
+        .or(transparency.map(|t| 1.0 - t))
+        .unwrap_or(default.alpha);
+    Material {
+        name: m.name.clone(),
+        color: m.diffuse.unwrap_or(default.color),
+        alpha: if alpha.is_finite() {
+            alpha.clamp(0.0, 1.0)
+        } else {
+            1.0
+        },
+        specular: m
+            .specular
+            .map_or(default.specular, |s| (s[0] + s[1] + s[2]) / 3.0),
+        shininess: m.shininess.unwrap_or(default.shininess).max(1.0),
+        ..default
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(files: &[(&str, &[u8])]) -> Result<LoadedObj, SceneError> {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        for (name, bytes) in files {
+            fs::write(folder.path().join(name), bytes).expect("writes");
+        }
+        load_obj(&folder.path().join(files[0].0), Lighting::Unlit)
+    }
+
+    const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+    #[test]
+    fn polygons_negative_indices_groups_and_materials() {
+        let obj = format!(
+            "mtllib a.mtl\n{QUAD}g left\nusemtl glass\nf 1 2 3 4\ng right\nusemtl fog\nf -4 -3 -2\n"
+        );
+        let mtl = b"newmtl glass\nKd 0.25 0.5 1\nd 0.3\nnewmtl fog\nKd 1 1 1\nTr 0.9\n";
+        let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+        let m = &loaded.mesh;
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+        assert_eq!(loaded.files.len(), 2);
+        assert_eq!(m.triangles.len(), 3);
+        assert_eq!(m.parts.len(), 2);
+        assert_eq!(
+            (m.parts[0].name.as_str(), m.parts[0].material.alpha),
+            ("left", 0.3)
+        );
+        assert_eq!(m.parts[0].material.color, [0.25, 0.5, 1.0]);
+        assert!((m.parts[1].material.alpha - 0.1).abs() < 1e-6);
+        assert!(m.normals.iter().all(|n| *n == Vec3::Z));
+    }
+
+    #[test]
+    fn a_missing_mtl_is_survived() {
+        let obj = format!("mtllib gone.mtl\n{QUAD}usemtl glass\nf 1 2 3 4\n");
+        let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
+        assert_eq!(loaded.warnings.len(), 1);
+        assert!(
+            loaded.warnings[0].contains("gone.mtl"),
+            "{:?}",
+            loaded.warnings
+        );
+        assert_eq!(loaded.mesh.parts[0].material.color, [0.8; 3]);
+    }
+
+    #[test]
+    fn bad_normals_are_computed_and_flat_triangles_left_out() {
+        let obj =
+            format!("{QUAD}vn nan 0 0\nvn 0 0 0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
+        let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
+        assert_eq!(loaded.mesh.triangles.len(), 1);
+        assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
+        for n in &loaded.mesh.normals {
+            assert!((n.length() - 1.0).abs() < 1e-6);
+        }
+    }
+
+    /// Each bad file gives one error that names the file, the line and the mend.
+    #[test]
+    fn bad_files() {
+        let cases: [(&str, Vec<u8>, &str); 8] = [
+            (
+                "NaN position",
+                b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
+                "a.obj:2: position 'nan'",
+            ),
+            (
+                "word",
+                b"v 0 zero 0\nf 1 1 1\n".to_vec(),
+                "a.obj:1: 'zero' is not a number",
+            ),
+            (
+                "beyond",
+                format!("{QUAD}f 1 2 5\n").into_bytes(),
+                "a.obj:5: index 5 points at none of the 4 vertices",
+            ),
+            (
+                "zero",
+                format!("{QUAD}f 0 1 2\n").into_bytes(),
+                "a.obj:5: index 0",
+            ),
+            (
+                "too far back",
+                format!("{QUAD}f -1 -2 -5\n").into_bytes(),
+                "a.obj:5: index -5",
+            ),
+            ("empty", Vec::new(), "a.obj: holds no faces"),
+            (
+                "cut off",
+                format!("{QUAD}f 1 2").into_bytes(),
+                "a.obj:5: a face of 2 corners",
+            ),
+            (
+                "binary",
+                vec![b'v', b'\n', 0xff, 0xfe],
+                "a.obj:2: is not UTF-8",
+            ),
+        ];
+        for (name, bytes, expected) in cases {
+            let e = load(&[("a.obj", &bytes)]).expect_err(name).to_string();
+            assert!(e.contains(expected), "{name}: {e}");
+            assert!(
+                e.contains("repair") || e.contains('?'),
+                "{name} names no mend: {e}"
+            );
+        }
+        assert!(matches!(
+            load_obj(Path::new("no/such.obj"), Lighting::Unlit),
+            Err(SceneError::Read { .. })
+        ));
+    }
+}

@@ -1,0 +1,315 @@
+//! `[scatter]`: many objects at random places, from a seed.
+//!
+//! ```toml
+//! [[scatter]]                       # or one [scatter]
+//! count = 16
+//! seed = 3
+//! meshes = [{ shape = "bumpy", triangles = 11100 }, "meshes/cow.obj"]   # taken in turn; or mesh = …
+//! min = [-1, -1, -1]                # the box in which the objects' origins lie
+//! max = [1, 1, 1]
+//! grid = [4, 2, 2]                  # optional: its cells in turn, instead of anywhere in the box
+//! jitter = 0.5                      # of a cell; 1 is anywhere in the cell
+//! scale = [0.5, 0.8]                # or one number
+//! rotate = "random"                 # or [x, y, z] degrees, or "camera": faces the first view, as billboards do
+//! color = "random"                  # or [r, g, b]
+//! alpha = [0.05, 0.95]              # evenly between, or one number
+//! lighting = "unlit"
+//! layer = 0
+//! ```
+//!
+//! Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
+
+use crate::{file::MeshRef, random::Random};
+use glam::{Mat4, Quat, Vec3};
+use serde::Deserialize;
+
+/// The table in the scene file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scatter {
+    /// Number of objects.
+    pub count: usize,
+    /// Seed.
+    #[serde(default)]
+    pub seed: u64,
+    /// The mesh of every object,
+    pub mesh: Option<MeshRef>,
+    /// or several, taken in turn.
+    pub meshes: Option<Vec<MeshRef>>,
+    /// Lower corner of the box.
+    pub min: [f32; 3],
+    /// Upper corner of the box.
+    pub max: [f32; 3],
+    /// Cells along each axis.
+    pub grid: Option<[usize; 3]>,
+    /// Part of its cell in which an object may lie, around the cell's centre.
+    #[serde(default)]
+    pub jitter: f32,
+    /// Scale.
+    #[serde(default = "one")]
+    pub scale: NumberOrRange,
+    /// Rotation.
+    #[serde(default)]
+    pub rotate: Rotate,
+    /// Colour.
+    pub color: Option<ColorChoice>,
+    /// Opacity.
+    pub alpha: Option<NumberOrRange>,
+    /// As in a material.
+    pub lighting: Option<String>,
+    /// Layer of all objects.
+    #[serde(default)]
+    pub layer: u32,
+}
+
+const fn one() -> NumberOrRange {
+    NumberOrRange::Number(1.0)
+}
+
+/// A number, or a range to draw from.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a number or [low, high]")]
+pub enum NumberOrRange {
+    /// Always this.
+    Number(f32),
+    /// Evenly between.
+    Range([f32; 2]),
+}
+
+impl NumberOrRange {
+    fn draw(self, random: &mut Random) -> f32 {
+        match self {
+            Self::Number(x) => x,
+            Self::Range([low, high]) => random.between(low, high),
+        }
+    }
+
+    /// Both ends.
+    pub fn ends(self) -> [f32; 2] {
+        match self {
+            Self::Number(x) => [x, x],
+            Self::Range(r) => r,
+        }
+    }
+}
+
+/// How objects are turned.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected \"random\", \"camera\" or [x, y, z] degrees"
+)]
+pub enum Rotate {
+    /// `"random"` or `"camera"`.
+    Word(RotateWord),
+    /// About the fixed axes x, y, z in this order, degrees.
+    Degrees([f32; 3]),
+}
+
+impl Default for Rotate {
+    fn default() -> Self {
+        Self::Degrees([0.0; 3])
+    }
+}
+
+/// The words that [`Rotate`] knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RotateWord {
+    /// Every orientation alike.
+    Random,
+    /// +z towards the eye of the first view.
+    Camera,
+}
+
+/// How objects are coloured.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged, expecting = "expected \"random\" or [r, g, b]")]
+pub enum ColorChoice {
+    /// `"random"`.
+    Word(ColorWord),
+    /// Always this.
+    Color([f32; 3]),
+}
+
+/// The word that [`ColorChoice`] knows.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColorWord {
+    /// Every component evenly from 0 to 1.
+    Random,
+}
+
+/// One object of a scatter.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Placed {
+    pub mesh: usize,
+    pub world_from_object: Mat4,
+    pub color: Option<[f32; 3]>,
+    pub alpha: Option<f32>,
+}
+
+impl Scatter {
+    /// Checks what the types cannot say: the field and what is wrong.
+    pub(crate) fn check(&self) -> Result<(), (&'static str, String)> {
+        let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
+        if self.mesh.is_some() == self.meshes.is_some() {
+            return Err(("mesh", "give either mesh or meshes".into()));
+        }
+        if self.meshes.as_ref().is_some_and(Vec::is_empty) {
+            return Err(("meshes", "the list is empty; name at least one mesh".into()));
+        }
+        if !finite(&self.min) || !finite(&self.max) || (0..3).any(|k| self.min[k] > self.max[k]) {
+            return Err(("min", "min must be finite and nowhere above max".into()));
+        }
+        if self.grid.is_some_and(|g| g.contains(&0)) {
+            return Err((
+                "grid",
+                "a grid needs at least one cell along each axis".into(),
+            ));
+        }
+        if !(0.0..=1.0).contains(&self.jitter) {
+            return Err(("jitter", format!("{} must lie in 0 … 1", self.jitter)));
+        }
+        let [low, high] = self.scale.ends();
+        if !(low > 0.0 && low <= high && high.is_finite()) {
+            return Err(("scale", "must be positive, the lower end first".into()));
+        }
+        if let Some([low, high]) = self.alpha.map(NumberOrRange::ends)
+            && !(0.0 <= low && low <= high && high <= 1.0)
+        {
+            return Err(("alpha", "must lie in 0 … 1, the lower end first".into()));
+        }
+        Ok(())
+    }
+
+    /// The meshes to take in turn.
+    pub(crate) fn mesh_list(&self) -> &[MeshRef] {
+        match (&self.meshes, &self.mesh) {
+            (Some(list), _) => list,
+            (None, Some(one)) => std::slice::from_ref(one),
+            (None, None) => &[],
+        }
+    }
+
+    /// Draws the objects. `eye` is the first view's position.
+    pub(crate) fn place(&self, eye: Vec3) -> Vec<Placed> {
+        let mut random = Random::new(self.seed, &[0x5ca7]);
+        let (min, max) = (Vec3::from_array(self.min), Vec3::from_array(self.max));
+        let meshes = self.mesh_list().len().max(1);
+        (0..self.count)
+            .map(|i| {
+                let free = Vec3::new(random.unit(), random.unit(), random.unit());
+                let place = self.grid.map_or(free, |[nx, ny, nz]| {
+                    let cell = Vec3::new(
+                        (i % nx) as f32,
+                        (i / nx % ny) as f32,
+                        (i / (nx * ny) % nz) as f32,
+                    );
+                    let cells = Vec3::new(nx as f32, ny as f32, nz as f32);
+                    (cell + Vec3::splat(0.5) + (free - 0.5) * self.jitter) / cells
+                });
+                let position = min + place * (max - min);
+                let scale = self.scale.draw(&mut random);
+                // Drawn for every object, so that another rotation leaves the rest of the scene as it is.
+                let turn = random_rotation(&mut random);
+                let rotation = match &self.rotate {
+                    Rotate::Word(RotateWord::Random) => turn,
+                    Rotate::Word(RotateWord::Camera) => {
+                        Quat::from_rotation_arc(Vec3::Z, (eye - position).normalize_or(Vec3::Z))
+                    }
+                    Rotate::Degrees(d) => fixed_axes(*d),
+                };
+                let color = random.color();
+                let alpha = random.unit();
+                Placed {
+                    mesh: i % meshes,
+                    world_from_object: Mat4::from_scale_rotation_translation(
+                        Vec3::splat(scale),
+                        rotation,
+                        position,
+                    ),
+                    color: self.color.map(|c| match c {
+                        ColorChoice::Word(ColorWord::Random) => color,
+                        ColorChoice::Color(c) => c,
+                    }),
+                    alpha: self
+                        .alpha
+                        .map(NumberOrRange::ends)
+                        .map(|[low, high]| low + alpha * (high - low)),
+                }
+            })
+            .collect()
+    }
+}
+
+/// Rotation about the fixed axes x, y, z in this order.
+pub(crate) fn fixed_axes(degrees: [f32; 3]) -> Quat {
+    let [x, y, z] = degrees.map(f32::to_radians);
+    Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x)
+}
+
+/// Every orientation alike (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
+fn random_rotation(random: &mut Random) -> Quat {
+    let (u, v, w) = (random.unit(), random.unit(), random.unit());
+    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+    let (v, w) = (v * std::f32::consts::TAU, w * std::f32::consts::TAU);
+    Quat::from_xyzw(a * v.sin(), a * v.cos(), b * w.sin(), b * w.cos())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scatter(text: &str) -> Scatter {
+        toml::from_str(text).expect("parses")
+    }
+
+    #[test]
+    fn a_grid_fills_its_cells_and_a_seed_repeats() {
+        let text = "count = 8\nmesh = { shape = 'box' }\nmin = [0, 0, 0]\nmax = [2, 2, 2]\ngrid = [2, 2, 2]\njitter = 0.5\nalpha = [0.2, 0.4]\ncolor = 'random'";
+        let s = scatter(text);
+        s.check().expect("fine");
+        let placed = s.place(Vec3::ZERO);
+        assert_eq!(placed, scatter(text).place(Vec3::ZERO));
+        let mut cells: Vec<_> = placed
+            .iter()
+            .map(|p| {
+                p.world_from_object
+                    .w_axis
+                    .truncate()
+                    .floor()
+                    .to_array()
+                    .map(|x| x as i32)
+            })
+            .collect();
+        cells.sort_unstable();
+        cells.dedup();
+        assert_eq!(cells.len(), 8);
+        assert!(
+            placed
+                .iter()
+                .all(|p| (0.2..=0.4).contains(&p.alpha.expect("drawn")))
+        );
+    }
+
+    #[test]
+    fn billboards_face_the_eye() {
+        let s = scatter(
+            "count = 5\nmesh = { shape = 'quad' }\nmin = [-1, -1, -9]\nmax = [1, 1, -2]\nrotate = 'camera'",
+        );
+        let eye = Vec3::new(0.0, 0.5, 3.0);
+        for p in s.place(eye) {
+            let m = p.world_from_object;
+            let toward = (eye - m.w_axis.truncate()).normalize();
+            assert!(m.transform_vector3(Vec3::Z).dot(toward) > 0.9999);
+        }
+    }
+
+    #[test]
+    fn fixed_axes_turn_in_order() {
+        // x by 90° takes y to z, then z by 90° leaves z where it is.
+        let v = fixed_axes([90.0, 0.0, 90.0]) * Vec3::Y;
+        assert!((v - Vec3::Z).length() < 1e-6, "{v}");
+    }
+}

@@ -1,0 +1,81 @@
+use crate::{Camera, Material, Mesh};
+use glam::{Mat4, Vec3};
+use std::{path::PathBuf, sync::Arc};
+
+/// A point light without falloff.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Position, scene units.
+    pub position: Vec3,
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Multiplies the colour.
+    pub intensity: f32,
+}
+
+/// A mesh in its place.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Name, for messages.
+    pub name: String,
+    /// Its triangles, shared between objects that are alike.
+    pub mesh: Arc<Mesh>,
+    /// Object to world space.
+    pub world_from_object: Mat4,
+    /// Layer number; 0 where the file gives none.
+    pub layer: u32,
+    /// One for each part of the mesh.
+    pub materials: Vec<Material>,
+}
+
+/// Everything that is drawn.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name; rows and reports are told apart by it.
+    pub name: String,
+    /// The scene file.
+    pub source: PathBuf,
+    /// SHA-256 over the scene file and every file it reads, in order.
+    pub hash: String,
+    /// Background radiance, linear RGB.
+    pub background: [f32; 3],
+    /// Views, at least one.
+    pub views: Vec<Camera>,
+    /// Lights.
+    pub lights: Vec<Light>,
+    /// Objects, in the order that decides ties of depth.
+    pub objects: Vec<Object>,
+    /// Whether it must never be trained on.
+    pub held_out: bool,
+    /// What was noticed and mended while loading.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Number of triangles.
+    pub fn triangles(&self) -> usize {
+        self.objects.iter().map(|o| o.mesh.triangles.len()).sum()
+    }
+
+    /// The world-space box around all transparent parts; `None` where nothing is transparent.
+    pub fn transparent_bounds(&self) -> Option<(Vec3, Vec3)> {
+        let mut bounds: Option<(Vec3, Vec3)> = None;
+        for object in &self.objects {
+            for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+                if material.is_opaque() {
+                    continue;
+                }
+                for &i in object.mesh.triangles[part.triangles.clone()]
+                    .iter()
+                    .flatten()
+                {
+                    let p = object
+                        .world_from_object
+                        .transform_point3(object.mesh.positions[i as usize]);
+                    bounds = Some(bounds.map_or((p, p), |(lo, hi)| (lo.min(p), hi.max(p))));
+                }
+            }
+        }
+        bounds
+    }
+}
