@@ -213,7 +213,7 @@ fn scene_files(args: &RunArgs) -> Result<Vec<PathBuf>, Failure> {
         return Ok(args.scenes.clone());
     }
     let folder = shipped::scenes()?;
-    let family: Vec<PathBuf> = peelnet_scene::suite::scenes(&folder)
+    let family: Vec<PathBuf> = peelnet_scene::suite::scenes(&folder)?
         .into_iter()
         .filter(|path| in_family(path))
         .collect();
