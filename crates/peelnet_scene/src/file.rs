@@ -284,9 +284,17 @@ impl Loader<'_> {
             specular: raw
                 .specular
                 .map_or(Ok(base.specular), |x| not_negative("specular", x))?,
-            shininess: raw
-                .shininess
-                .map_or(Ok(base.shininess), |x| not_negative("shininess", x))?,
+            shininess: raw.shininess.map_or(Ok(base.shininess), |x| {
+                if x.is_finite() && x >= 1.0 {
+                    Ok(x)
+                } else {
+                    // pow(0, 0) is not defined in shaders.
+                    Err(self.value(
+                        &at("shininess"),
+                        format!("{x} must be finite and at least 1"),
+                    ))
+                }
+            })?,
             double_sided: raw.double_sided.unwrap_or(base.double_sided),
             blend: raw.blend.unwrap_or(base.blend),
         })
@@ -383,8 +391,14 @@ impl Scene {
                 .iter()
                 .chain(&light.color)
                 .chain([&light.intensity]);
-            if numbers.into_iter().any(|x| !x.is_finite()) {
-                return Err(loader.value(&format!("light {}", i + 1), "must be finite"));
+            if numbers.into_iter().any(|x| !x.is_finite())
+                || light.color.iter().any(|c| *c < 0.0)
+                || light.intensity < 0.0
+            {
+                return Err(loader.value(
+                    &format!("light {}", i + 1),
+                    "must be finite, colour and intensity not negative",
+                ));
             }
             lights.push(Light {
                 position: light.position.into(),

@@ -11,6 +11,7 @@ pub mod file;
 mod material;
 mod mesh;
 pub mod obj;
+mod polygons;
 mod random;
 pub mod scatter;
 mod scene;

@@ -1,13 +1,14 @@
 //! Wavefront OBJ and MTL files, through `tobj`.
 //!
-//! The parser's errors have no line numbers, and it takes NaN for a number. A first walk over the text checks what a
-//! user can get wrong — numbers, indices, faces — and names the line; then the parser does the rest.
+//! The parser's errors have no line numbers, it takes NaN for a number, panics on a short colour, and cuts every polygon
+//! as a fan. A first walk over the text checks what a user can get wrong — numbers, indices, faces, colours — and names
+//! the line; polygons are cut into triangles in the text; then the parser does the rest.
 
-use crate::{Lighting, Material, Mesh, Part, SceneError, mesh::smooth_normals};
-use glam::Vec3;
+use crate::{Lighting, Material, Mesh, Part, SceneError, polygons};
+use glam::{DVec3, Vec3};
 use std::{
     cell::RefCell,
-    collections::BTreeSet,
+    collections::{BTreeSet, HashMap},
     fs,
     path::{Path, PathBuf},
 };
@@ -31,10 +32,12 @@ pub struct LoadedObj {
 /// # Errors
 /// A file that cannot be read, is empty or cut off, or holds numbers or indices that make no sense: with its line.
 pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError> {
-    let text = read_text(path)?;
+    let text = plain(&read_text(path)?);
     let facts = check(path, &text)?;
+    let text = triangulated(&text);
     let mut warnings = Vec::new();
     let missing = RefCell::new(Vec::new());
+    let bad_library = RefCell::new(None);
     let files = RefCell::new(vec![path.to_owned()]);
     let folder = path.parent().unwrap_or(Path::new("."));
     let options = tobj::LoadOptions {
@@ -45,19 +48,34 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
     };
     let (models, materials) = tobj::load_obj_buf(&mut text.as_bytes(), &options, |name| {
         let file = folder.join(name);
-        match fs::read(&file) {
-            Ok(bytes) => {
-                files.borrow_mut().push(file);
-                tobj::load_mtl_buf(&mut bytes.as_slice())
+        // Whatever is wrong, the parser goes on with an empty library, and we tell afterwards.
+        let empty = Ok((Vec::new(), Default::default()));
+        match read_text(&file) {
+            Ok(text) => {
+                let text = plain(&text);
+                files.borrow_mut().push(file.clone());
+                match check_library(&file, &text) {
+                    Ok(textures) => {
+                        missing.borrow_mut().extend(textures);
+                        tobj::load_mtl_buf(&mut text.as_bytes())
+                    }
+                    Err(e) => {
+                        bad_library.borrow_mut().get_or_insert(e);
+                        empty
+                    }
+                }
             }
-            Err(e) => {
+            Err(SceneError::Read { source, .. }) => {
                 missing.borrow_mut().push(format!(
-                    "{}: cannot read material file {} ({e}); default material used",
+                    "{}: cannot read material file {} ({source}); default material used",
                     path.display(),
                     file.display()
                 ));
-                // An empty library: faces that name its materials get the default.
-                Ok((Vec::new(), Default::default()))
+                empty
+            }
+            Err(e) => {
+                bad_library.borrow_mut().get_or_insert(e);
+                empty
             }
         }
     })
@@ -66,6 +84,10 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
         line: None,
         message: format!("{e}; export the mesh again"),
     })?;
+    if let Some(e) = bad_library.into_inner() {
+        return Err(e);
+    }
+    let unreadable = missing.borrow().iter().any(|w| w.contains("cannot read"));
     warnings.extend(missing.into_inner());
     let materials = materials.map_err(|e| SceneError::Mesh {
         path: path.to_owned(),
@@ -75,7 +97,7 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
         ),
     })?;
     let known: BTreeSet<&str> = materials.iter().map(|m| m.name.as_str()).collect();
-    if warnings.is_empty() {
+    if !unreadable {
         for name in facts
             .materials
             .iter()
@@ -94,6 +116,7 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
         parts: Vec::new(),
     };
     let (mut degenerate, mut bad_normals) = (0usize, 0usize);
+    let areas = area_sums(&models);
     for model in &models {
         let m = &model.mesh;
         let vectors =
@@ -110,7 +133,14 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
                 triangles.push(t);
             }
         }
-        let smooth = smooth_normals(&positions, &triangles);
+        let smooth: Vec<Vec3> = positions
+            .iter()
+            .map(|p| {
+                areas
+                    .get(&place(*p))
+                    .map_or(Vec3::Z, |n| n.normalize_or(Vec3::Z))
+            })
+            .collect();
         let given = vectors(&m.normals);
         let normals: Vec<Vec3> = if given.len() == positions.len() {
             given
@@ -184,6 +214,136 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
     })
 }
 
+/// The text without comments and with continued lines joined; every line keeps its number.
+fn plain(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut owed = 0;
+    for line in text.lines() {
+        let line = line.split('#').next().unwrap_or("").trim();
+        if let Some(start) = line.strip_suffix('\\') {
+            out.push_str(start);
+            out.push(' ');
+            owed += 1;
+        } else {
+            // The parser splits some lines at blanks only.
+            out.extend(line.chars().map(|c| if c == '\t' { ' ' } else { c }));
+            out.extend(std::iter::repeat_n('\n', owed + 1));
+            owed = 0;
+        }
+    }
+    out
+}
+
+/// The text with every polygon cut into triangles. [`check`] has passed, so indices are in range.
+fn triangulated(text: &str) -> String {
+    let mut positions: Vec<DVec3> = Vec::new();
+    for line in text.lines() {
+        let mut words = line.split_ascii_whitespace();
+        if words.next() == Some("v") {
+            let mut number = || words.next().and_then(|w| w.parse().ok()).unwrap_or(0.0);
+            positions.push(DVec3::new(number(), number(), number()));
+        }
+    }
+    let mut out = String::with_capacity(text.len());
+    let mut seen = 0i64;
+    for line in text.lines() {
+        let mut words = line.split_ascii_whitespace();
+        let key = words.next();
+        seen += i64::from(key == Some("v"));
+        let corners: Vec<&str> = words.collect();
+        if key == Some("f") && corners.len() > 3 {
+            let places: Vec<DVec3> = corners
+                .iter()
+                .map(|c| {
+                    let index: i64 = c
+                        .split('/')
+                        .next()
+                        .and_then(|w| w.parse().ok())
+                        .unwrap_or(1);
+                    let index = if index < 0 { seen + index } else { index - 1 };
+                    positions.get(index as usize).copied().unwrap_or_default()
+                })
+                .collect();
+            for [a, b, c] in polygons::triangulate(&places) {
+                out.push_str(&format!("f {} {} {}\n", corners[a], corners[b], corners[c]));
+            }
+        } else {
+            out.push_str(line);
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// A position as a key; −0 and 0 are one place.
+fn place(p: Vec3) -> [u32; 3] {
+    p.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+/// The sum of the adjacent triangles' area vectors at every place of the file: groups and texture seams split corners,
+/// but not the surface.
+fn area_sums(models: &[tobj::Model]) -> HashMap<[u32; 3], Vec3> {
+    let mut sums: HashMap<[u32; 3], Vec3> = HashMap::new();
+    for model in models {
+        let m = &model.mesh;
+        for t in m.indices.chunks_exact(3) {
+            let [a, b, c] =
+                [t[0], t[1], t[2]].map(|i| Vec3::from_slice(&m.positions[3 * i as usize..]));
+            let area = (b - a).cross(c - a);
+            for p in [a, b, c] {
+                *sums.entry(place(p)).or_default() += area;
+            }
+        }
+    }
+    sums
+}
+
+/// Checks an MTL's numbers, line by line; returns warnings about what is not drawn.
+fn check_library(path: &Path, text: &str) -> Result<Vec<String>, SceneError> {
+    let mut textures = BTreeSet::new();
+    for (i, line) in text.lines().enumerate() {
+        let mut words = line.split_ascii_whitespace();
+        let Some(key) = words.next() else { continue };
+        let wanted = match key {
+            "Ka" | "Kd" | "Ks" | "Ke" => 3,
+            "d" | "Tr" | "Ns" | "Ni" => 1,
+            _ => {
+                if key.starts_with("map_") || matches!(key, "bump" | "norm" | "disp") {
+                    textures.insert(key.to_owned());
+                }
+                continue;
+            }
+        };
+        let fail = |message: String| SceneError::Mesh {
+            path: path.to_owned(),
+            line: Some(i + 1),
+            message: format!("{message}; repair the line"),
+        };
+        let numbers: Vec<f32> = words.map_while(|w| w.parse().ok()).collect();
+        if numbers.len() < wanted {
+            return Err(fail(format!(
+                "'{key}' needs {wanted} numbers, not '{line}'"
+            )));
+        }
+        if numbers.iter().any(|x| !x.is_finite()) {
+            return Err(fail(format!("'{line}' is not finite")));
+        }
+        if matches!(key, "d" | "Tr") && !(0.0..=1.0).contains(&numbers[0]) {
+            return Err(fail(format!("{key} {} must lie in 0 … 1", numbers[0])));
+        }
+    }
+    Ok(if textures.is_empty() {
+        Vec::new()
+    } else {
+        let names: Vec<_> = textures.into_iter().collect();
+        vec![format!(
+            "{}: {} not drawn by this version; plain colours are used",
+            path.display(),
+            names.join(", ")
+        )]
+    })
+}
+
 struct Facts {
     /// Names after `usemtl`.
     materials: BTreeSet<String>,
@@ -227,6 +387,12 @@ fn check(path: &Path, text: &str) -> Result<Facts, SceneError> {
                             "'{key}' has {} numbers instead of 3; is the file cut off?",
                             values.len()
                         ),
+                    ));
+                }
+                if key == "v" && values.len() == 4 && values[3].parse() == Ok(0.0f32) {
+                    return Err(fail(
+                        number,
+                        "a position with w = 0 lies at infinity; repair the line".into(),
                     ));
                 }
                 for word in &values[..3] {
@@ -363,6 +529,59 @@ mod tests {
         assert_eq!(m.parts[0].material.color, [0.25, 0.5, 1.0]);
         assert!((m.parts[1].material.alpha - 0.1).abs() < 1e-6);
         assert!(m.normals.iter().all(|n| *n == Vec3::Z));
+    }
+
+    /// An L-shaped face (concave), comments behind data, a continued line, and a texture that is not drawn.
+    #[test]
+    fn what_exporters_write() {
+        let obj = "mtllib\ta.mtl # library\nv 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\n";
+        let mtl = b"newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n";
+        let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+        let m = &loaded.mesh;
+        let area: f32 = m
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| m.positions[i as usize]);
+                (b - a).cross(c - a).z / 2.0
+            })
+            .sum();
+        assert_eq!((m.triangles.len(), area), (4, 3.0));
+        assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
+        assert_eq!(loaded.warnings.len(), 1);
+        assert!(
+            loaded.warnings[0].contains("map_Kd"),
+            "{:?}",
+            loaded.warnings
+        );
+    }
+
+    #[test]
+    fn bad_materials_name_their_line() {
+        let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
+        for (mtl, expected) in [
+            ("newmtl m\nKd 1 0\n", "a.mtl:2: 'Kd' needs 3 numbers"),
+            ("newmtl m\nd nan\n", "a.mtl:2: 'd nan' is not finite"),
+            ("newmtl m\n\nTr 1.5\n", "a.mtl:3: Tr 1.5 must lie in 0 … 1"),
+        ] {
+            let e = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())]).expect_err(mtl);
+            assert!(e.to_string().contains(expected), "{e}");
+        }
+    }
+
+    /// Corners that a texture seam splits keep one normal: the surface is smooth there.
+    #[test]
+    fn seams_do_not_split_normals() {
+        let obj =
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 4/2 2/2\n";
+        let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
+        let m = &loaded.mesh;
+        let at_origin: Vec<Vec3> = (0..m.positions.len())
+            .filter(|&i| m.positions[i] == Vec3::ZERO)
+            .map(|i| m.normals[i])
+            .collect();
+        assert_eq!(at_origin.len(), 2);
+        assert_eq!(at_origin[0], at_origin[1]);
     }
 
     #[test]

@@ -171,6 +171,16 @@ impl Scatter {
         if !(0.0..=1.0).contains(&self.jitter) {
             return Err(("jitter", format!("{} must lie in 0 … 1", self.jitter)));
         }
+        if let Some(ColorChoice::Color(c)) = self.color
+            && !(finite(&c) && c.iter().all(|x| *x >= 0.0))
+        {
+            return Err(("color", "must be finite and not negative".into()));
+        }
+        if let Rotate::Degrees(d) = &self.rotate
+            && !finite(d)
+        {
+            return Err(("rotate", "must be finite".into()));
+        }
         let [low, high] = self.scale.ends();
         if !(low > 0.0 && low <= high && high.is_finite()) {
             return Err(("scale", "must be positive, the lower end first".into()));

@@ -1,0 +1,129 @@
+//! `peelnet run` on a small scene of its own: every file that it promises, and figures that hold for any weights.
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const SCENE: &str = r#"
+name = "three-spheres"
+background = [1.0, 1.0, 1.0]
+
+[camera]
+position = [0, 0, 4]
+target = [0, 0, 0]
+up = [0, 1, 0]
+fov_y = 45.0
+near = 0.1
+far = 100.0
+
+[orbit]
+views = 2
+
+[[object]]
+mesh = { shape = "sphere" }
+translate = [0, 0, 0.4]
+[object.material]
+color = [0.9, 0.1, 0.1]
+alpha = 0.5
+lighting = "unlit"
+
+[[object]]
+mesh = { shape = "sphere" }
+translate = [0.3, 0.2, 0]
+[object.material]
+color = [0.1, 0.8, 0.1]
+alpha = 0.4
+lighting = "unlit"
+
+[[object]]
+mesh = { shape = "sphere" }
+translate = [-0.3, 0.1, -0.5]
+[object.material]
+color = [0.1, 0.2, 0.9]
+alpha = 0.7
+lighting = "unlit"
+"#;
+
+fn peelnet(line: &str, folder: &Path) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_peelnet"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{line}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+#[test]
+fn a_run_writes_everything_it_promises() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("s.toml"), SCENE).unwrap();
+    let output = peelnet(
+        "run s.toml --out o --size 64x48 --rows 4000 --epochs 2 --json",
+        dir.path(),
+    );
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let out = dir.path().join("o");
+    for name in [
+        "dataset/manifest.json",
+        "dataset-summary.json",
+        "dataset-summary.txt",
+        "loss.csv",
+        "loss.svg",
+        "model.safetensors",
+        "model.wgsl",
+        "images/three-spheres-abuffer.png",
+        "images/three-spheres-deep-thesis.png",
+        "table.md",
+        "results.json",
+        "report.html",
+    ] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    let written: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("results.json")).unwrap()).unwrap();
+    assert_eq!(written, answer, "--json prints what results.json holds");
+    let rows = answer["rows"].as_array().unwrap();
+    let of = |method: &str| {
+        rows.iter()
+            .filter(|r| r["method"] == method)
+            .collect::<Vec<_>>()
+    };
+    for method in ["abuffer", "deep-thesis", "wboit-papakostas", "wboit-eq9"] {
+        assert_eq!(of(method).len(), 2, "a row for each view of {method}");
+    }
+    for row in rows {
+        assert!(row["mse_linear"].as_f64().unwrap().is_finite(), "{row}");
+        assert_eq!(row["non_finite_pixels"], 0, "{row}");
+        assert!(row["fragments"].as_u64().unwrap() > 0, "{row}");
+    }
+    assert!(of("abuffer").iter().all(|r| r["mse255"] == 0.0));
+    assert!(
+        of("wboit-eq9")
+            .iter()
+            .all(|r| r["mse255"].as_f64().unwrap() > 0.0)
+    );
+
+    // The run's files are what the other commands take.
+    peelnet("inspect o/dataset -q", dir.path());
+    peelnet("inspect o/model.safetensors", dir.path());
+    peelnet("export o/model.safetensors --out again.wgsl", dir.path());
+    assert_eq!(
+        std::fs::read(out.join("model.wgsl")).unwrap(),
+        std::fs::read(dir.path().join("again.wgsl")).unwrap(),
+        "the same model gives the same text"
+    );
+    peelnet(
+        "render s.toml --method deep-thesis --model o/model.safetensors --size 64x48 --out again.png",
+        dir.path(),
+    );
+    assert_eq!(
+        std::fs::read(out.join("images/three-spheres-deep-thesis.png")).unwrap(),
+        std::fs::read(dir.path().join("again.png")).unwrap(),
+        "run and render draw the same picture"
+    );
+}
