@@ -1,0 +1,96 @@
+//! What documents say about the project, held against the project.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_owned()
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+#[test]
+fn every_crate_stands_in_the_architecture() {
+    let text = read("ARCHITECTURE.md");
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(
+            text.contains(&format!("| `{name}` |")),
+            "{name} is missing from ARCHITECTURE.md"
+        );
+    }
+}
+
+#[test]
+fn every_shader_stands_in_its_readme() {
+    let text = read("shaders/README.md");
+    for (path, _) in peelnet_shaders::SOURCES {
+        let mut parts: Vec<_> = path.split("::").collect();
+        let file = format!("{}.wgsl", parts.pop().unwrap());
+        let folder = format!("{}/", parts.join("/"));
+        let listed = text.contains(&file)
+            || text.contains(&folder)
+            || parts
+                .last()
+                .is_some_and(|f| text.contains(&format!("`{f}/`")));
+        assert!(listed, "{path} is missing from shaders/README.md");
+    }
+}
+
+#[test]
+fn every_shipped_scene_stands_in_its_readme() {
+    let text = read("data/README.md");
+    for entry in fs::read_dir(root().join("data/scenes")).unwrap() {
+        let file = entry.unwrap().file_name().into_string().unwrap();
+        let name = file.trim_end_matches(".toml");
+        let ranged = name.strip_prefix("sixteen-0").is_some();
+        assert!(
+            ranged || text.contains(&format!("`{name}`")),
+            "{name} is missing from data/README.md"
+        );
+    }
+}
+
+/// One version of wgpu and of naga in the tree.
+#[test]
+fn one_version_of_the_gpu_stack() {
+    let lock = read("Cargo.lock");
+    for name in ["wgpu", "wgpu-core", "wgpu-hal", "naga"] {
+        let count = lock.matches(&format!("name = \"{name}\"\n")).count();
+        assert_eq!(count, 1, "{name}");
+    }
+}
+
+/// Relative links in the documents lead somewhere.
+#[test]
+fn links_lead_somewhere() {
+    let mut documents = vec![
+        "README.md".to_owned(),
+        "ARCHITECTURE.md".into(),
+        "CONTRIBUTING.md".into(),
+    ];
+    for entry in fs::read_dir(root().join("docs")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if name.ends_with(".md") {
+            documents.push(format!("docs/{name}"));
+        }
+    }
+    for document in documents {
+        let text = read(&document);
+        let folder = root().join(&document).parent().unwrap().to_owned();
+        for target in text.split("](").skip(1).filter_map(|t| t.split(')').next()) {
+            if target.starts_with("http") || target.starts_with('#') {
+                continue;
+            }
+            let path = target.split('#').next().unwrap();
+            assert!(folder.join(path).exists(), "{document} links to {target}");
+        }
+    }
+}

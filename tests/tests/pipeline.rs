@@ -1,0 +1,307 @@
+//! Extraction to datasets, and drawing with an exported network: the ends of the pipeline against the CPU.
+
+use peelnet_core::{
+    fragment::{Fragment, worked_example},
+    hash::pcg,
+    methods::deep,
+    mlp::{Activation, Layer, Mlp},
+};
+use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
+use peelnet_gpu::Gpu;
+use peelnet_model::{FORMAT_VERSION, Input, Losses, Metadata, Model, Output, Recipe};
+use peelnet_peel::{ExtractOptions, Peel, Views, extract};
+use peelnet_render::{LearnedWeight, Renderer};
+use peelnet_scene::Scene;
+use peelnet_tests::{gpu, object, scene, unlit, walls};
+use std::{path::Path, sync::atomic::AtomicBool};
+
+fn options(out: &Path) -> ExtractOptions {
+    ExtractOptions {
+        out: out.to_owned(),
+        size: [40, 30],
+        views: Views::All,
+        format: Format::Parquet,
+        peel: Peel::SBuffer,
+        max_passes: None,
+        pixels: 1.0,
+        augment: 0,
+        seed: 5,
+        shard: None,
+        command: "test".into(),
+        budget: None,
+    }
+}
+
+fn run(gpu: &Gpu, scenes: &[Scene], options: &ExtractOptions) -> peelnet_peel::ExtractReport {
+    extract(gpu, scenes, options, &AtomicBool::new(false), &mut |_| {}).unwrap()
+}
+
+/// Two scenes of slanted panes, two views each.
+fn scenes() -> Vec<Scene> {
+    ["first", "second"]
+        .into_iter()
+        .zip(1..)
+        .map(|(name, seed)| {
+            let mut state = seed;
+            let mut random = move || {
+                state = pcg(state);
+                state as f32 / u32::MAX as f32
+            };
+            let objects = (0..12)
+                .map(|i| {
+                    let corners = [(); 3].map(|()| {
+                        let z = 2.0 + 8.0 * random();
+                        glam::Vec3::new((2.0 * random() - 1.0) * z, (2.0 * random() - 1.0) * z, -z)
+                    });
+                    let color = [random(), random(), random()];
+                    object(&format!("pane {i}"), &[corners], unlit(color, random()))
+                })
+                .collect();
+            let mut s = scene(name, [0.0; 3], objects);
+            let mut other = s.views[0];
+            other.position.x += 0.5;
+            s.views.push(other);
+            s
+        })
+        .collect()
+}
+
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut all: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.is_file() && p.extension().is_some_and(|e| e != "json"))
+        .map(|p| {
+            let name = p.file_name().unwrap().to_string_lossy().into_owned();
+            (name, std::fs::read(p).unwrap())
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+/// The worked example in every pixel: its rows are known.
+#[test]
+fn the_worked_example_as_rows() {
+    let gpu = gpu();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("d");
+    let report = run(
+        &gpu,
+        &[walls(&worked_example(), [0.0; 3])],
+        &ExtractOptions {
+            size: [3, 2],
+            ..options(&out)
+        },
+    );
+    assert_eq!(
+        (report.manifest.rows, report.lost, report.coplanar),
+        (24, 0, 0)
+    );
+    let dataset = Dataset::open(&out).unwrap();
+    let columns = dataset
+        .read_columns(&[Column::Transmittance, Column::LinearDepth, Column::AlphaSum])
+        .unwrap();
+    for pixel in columns[0].as_f32().unwrap().chunks(4) {
+        assert_eq!(pixel, [1.0, 0.5, 0.25, 0.125]);
+    }
+    for pixel in columns[1].as_f32().unwrap().chunks(4) {
+        for (z, want) in pixel.iter().zip([1.0f32, 2.0, 4.0, 8.0]) {
+            assert!((z - want).abs() <= 16.0 * f32::EPSILON * want);
+        }
+    }
+    assert!(columns[2].as_f32().unwrap().iter().all(|&s| s == 2.4));
+}
+
+/// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same.
+#[test]
+fn sums_hold_and_formats_and_peels_agree() {
+    let gpu = gpu();
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = None;
+    for (format, peel) in [
+        (Format::Parquet, Peel::SBuffer),
+        (Format::Csv, Peel::Dual),
+        (Format::Npy, Peel::Single),
+    ] {
+        let out = folder.path().join(format!("{format}-{peel}"));
+        let report = run(
+            &gpu,
+            &scenes(),
+            &ExtractOptions {
+                format,
+                peel,
+                augment: 1,
+                ..options(&out)
+            },
+        );
+        assert_eq!(report.manifest.parts.len(), 8);
+        let dataset = Dataset::open(&out).unwrap();
+        dataset.verify().unwrap();
+        let summary = Summary::of(&dataset).unwrap();
+        assert!(
+            summary.passes() && summary.rows > 1000,
+            "{:?}",
+            summary.violations
+        );
+        let rows = dataset.read_columns(&Column::ALL).unwrap();
+        match &first {
+            None => first = Some(rows),
+            Some(other) => assert!(&rows == other, "{format}, {peel}"),
+        }
+    }
+}
+
+/// The same seed gives the same bytes, and shards put together are the whole.
+#[test]
+fn extraction_repeats_and_shards_add_up() {
+    let gpu = gpu();
+    let folder = tempfile::tempdir().unwrap();
+    let sampled = |out: &Path, shard| ExtractOptions {
+        pixels: 0.5,
+        shard,
+        ..options(out)
+    };
+    let at = |name: &str| folder.path().join(name);
+    let whole = run(&gpu, &scenes(), &sampled(&at("a"), None)).manifest;
+    let again = run(&gpu, &scenes(), &sampled(&at("b"), None)).manifest;
+    assert_eq!(files(&at("a")), files(&at("b")));
+    assert_eq!(whole.hash, again.hash);
+    for i in [2, 1, 3] {
+        run(
+            &gpu,
+            &scenes(),
+            &sampled(&at("c"), Some(Shard::new(i, 3).unwrap())),
+        );
+    }
+    let merged = Dataset::open(at("c")).unwrap();
+    assert_eq!(merged.hash(), whole.hash);
+    assert_eq!(merged.rows(), whole.rows);
+}
+
+/// What is stopped leaves nothing behind.
+#[test]
+fn an_interrupted_extraction_leaves_nothing() {
+    let gpu = gpu();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("d");
+    let result = extract(
+        &gpu,
+        &scenes(),
+        &options(&out),
+        &AtomicBool::new(true),
+        &mut |_| {},
+    );
+    assert!(matches!(result, Err(peelnet_peel::PeelError::Interrupted)));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn requests_that_make_no_sense_are_refused() {
+    let gpu = gpu();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("d");
+    let refused = |scenes: &[Scene], options: &ExtractOptions| {
+        extract(&gpu, scenes, options, &AtomicBool::new(false), &mut |_| {})
+            .unwrap_err()
+            .to_string()
+    };
+    let all = scenes();
+    let many = ExtractOptions {
+        views: Views::First(3),
+        ..options(&out)
+    };
+    assert!(refused(&all, &many).contains("2 views, not 3"));
+    let twice = [all[0].clone(), all[0].clone()];
+    assert!(refused(&twice, &options(&out)).contains("rename one"));
+    let none = ExtractOptions {
+        pixels: 0.0,
+        ..options(&out)
+    };
+    assert!(refused(&all, &none).contains("above 0"));
+    assert!(!out.exists());
+}
+
+/// A small network with a known shape, random weights and the thesis's inputs.
+fn model() -> Model {
+    let mut state = 11;
+    let mut random = move || {
+        state = pcg(state);
+        (state as f32 / u32::MAX as f32 - 0.5) * 0.6
+    };
+    let layers = [(3, 10), (10, 8), (8, 1)]
+        .into_iter()
+        .map(|(inputs, outputs)| Layer {
+            inputs,
+            outputs,
+            weights: (0..inputs * outputs).map(|_| random()).collect(),
+            bias: vec![if outputs == 1 { 0.5 } else { 0.1 }; outputs],
+        })
+        .collect();
+    let input = |name: &str, offset, scale| Input {
+        name: name.into(),
+        unit: "1".into(),
+        offset,
+        scale,
+        min: 0.0,
+        max: 10.0,
+    };
+    Model {
+        mlp: Mlp::new(layers, Activation::Relu, Activation::Identity).unwrap(),
+        meta: Metadata {
+            format_version: FORMAT_VERSION,
+            tool_version: "test".into(),
+            recipe: Recipe::Thesis,
+            inputs: vec![
+                input("linear_depth", 4.0, 0.4),
+                input("alpha_sum", 2.0, 0.5),
+                input("fragment_count", 4.0, 0.3),
+            ],
+            output: Output::Transmittance,
+            seed: 0,
+            dataset: None,
+            epochs: 0,
+            losses: Losses::default(),
+            held_out: Default::default(),
+            config: serde_json::Value::Null,
+        },
+    }
+}
+
+/// `deep-thesis`, drawn with the exported text, is eq 6 with the model's weight.
+#[test]
+fn the_exported_network_draws_what_the_model_says() {
+    let gpu = gpu();
+    let model = model();
+    let wgsl = peelnet_export::wgsl(&model, &peelnet_export::Options::default()).unwrap();
+    let learned = LearnedWeight {
+        recipe: Recipe::Thesis,
+        wgsl,
+    };
+    let c0 = [0.3, 0.2, 0.1];
+    let spec = "deep-thesis:targets=f32".parse().unwrap();
+    let cases: [Vec<Fragment>; 3] = [
+        vec![],
+        worked_example().to_vec(),
+        (1..9)
+            .map(|i| Fragment::new(i as f32, 0.1 * i as f32, [0.1 * i as f32, 0.5, 0.9]))
+            .collect(),
+    ];
+    for fragments in cases {
+        let scene = walls(&fragments, c0);
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        assert!(renderer.prepare(&spec, [2, 2], None).is_err());
+        let mut prepared = renderer.prepare(&spec, [2, 2], Some(&learned)).unwrap();
+        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        let want = deep::composite(&fragments, c0, |f| {
+            model.forward_raw(&deep::thesis_inputs(f, &fragments))[0]
+        });
+        for p in &frame.image.pixels {
+            for k in 0..3 {
+                // The export's own bound, and a dozen roundings of the composite.
+                let bound = peelnet_core::tolerance::EXPORT_F32 as f32 * 4.0;
+                assert!((p[k] - want[k]).abs() <= bound, "{p:?} {want:?}");
+            }
+        }
+    }
+}
