@@ -1,5 +1,7 @@
 //! Stacked walls whose every pixel holds known fragments × every method: the GPU against the CPU twin.
 
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
 use peelnet_core::{
     fragment::{Fragment, worked_example},
     methods::{blended, over, wboit, weighted_average, weighted_sum},
@@ -136,11 +138,11 @@ fn coplanar_walls() {
         let spec: MethodSpec = name.parse().unwrap();
         let mut prepared = renderer.prepare(&spec, [4, 4], None).unwrap();
         let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
-        assert_eq!(frame.stats.fragments, Some(48).filter(|_| true), "{name}");
+        assert_eq!(frame.stats.fragments, Some(48), "{name}");
         assert_eq!(frame.stats.lost, lost * 16, "{name}");
         if lost == 0 {
-            for k in 0..3 {
-                assert!((frame.image.pixels[5][k] - want[k]).abs() < 1e-6, "{name}");
+            for (got, want) in frame.image.pixels[5].iter().zip(want) {
+                assert!((got - want).abs() < 1e-6, "{name}");
             }
         }
     }

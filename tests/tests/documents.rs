@@ -1,5 +1,7 @@
 //! What documents say about the project, held against the project.
 
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
 use std::{
     fs,
     path::{Path, PathBuf},

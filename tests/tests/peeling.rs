@@ -1,5 +1,7 @@
 //! The three ways to peel against one another and against the 64-bit scan-line judge.
 
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
 use glam::Vec3;
 use peelnet_core::{hash, scanline, tolerance::UNIT_ROUNDOFF};
 use peelnet_gpu::Gpu;

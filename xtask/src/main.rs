@@ -61,6 +61,10 @@ fn cargo() -> Command {
 
 /// Runs a command in the root with its output shown.
 fn run(command: &mut Command, name: &str) -> Result<(), String> {
+    // Graphics libraries complain on stderr where this is not set, as in containers.
+    if env::var_os("XDG_RUNTIME_DIR").is_none() {
+        command.env("XDG_RUNTIME_DIR", env::temp_dir());
+    }
     let status = command
         .current_dir(root())
         .status()

@@ -80,16 +80,9 @@ pub fn export(
 ) -> Result<Verification, ExportError> {
     let text = wgsl(model, options)?;
     let verification = verify(gpu, model, &text)?;
-    let failed = |source| ExportError::Write {
+    peelnet_files::write_whole(path, text.as_bytes()).map_err(|source| ExportError::Write {
         path: path.to_owned(),
         source,
-    };
-    let folder = match path.parent() {
-        Some(p) if !p.as_os_str().is_empty() => p,
-        _ => Path::new("."),
-    };
-    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
-    std::io::Write::write_all(&mut file, text.as_bytes()).map_err(failed)?;
-    file.persist(path).map_err(|e| failed(e.error))?;
+    })?;
     Ok(verification)
 }

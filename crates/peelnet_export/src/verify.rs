@@ -295,7 +295,8 @@ mod tests {
         let path = folder.path().join("w.wgsl");
         export(&gpu, &model, &path, &Options::default()).expect("exports");
         assert_eq!(std::fs::read_to_string(&path).expect("reads"), text);
-        let missing = folder.path().join("none").join("w.wgsl");
+        // A file stands where a folder would have to be.
+        let missing = path.join("w.wgsl");
         assert!(matches!(
             export(&gpu, &model, &missing, &Options::default()),
             Err(ExportError::Write { .. })

@@ -1,7 +1,6 @@
 //! The model as safetensors bytes, and files of them.
 
 use std::collections::HashMap;
-use std::io::Write;
 use std::path::Path;
 
 use peelnet_core::mlp::{Activation, Layer, Mlp};
@@ -211,22 +210,5 @@ pub(crate) fn save(model: &Model, path: &Path) -> Result<(), ModelError> {
         action: "write the model",
         source,
     };
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    // Temporary files are private by default; a model is not more secret than any other output.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o644));
-    }
-    let mut file = builder
-        .prefix(".peelnet-model-")
-        .tempfile_in(folder)
-        .map_err(io)?;
-    file.write_all(&bytes).map_err(io)?;
-    file.persist(path).map_err(|e| io(e.error))?;
-    Ok(())
+    peelnet_files::write_whole(path, &bytes).map_err(io)
 }

@@ -15,6 +15,10 @@ pub struct Image {
 }
 
 /// The sRGB transfer function (IEC 61966-2-1) of one linear value; values outside 0 … 1 are clipped first.
+#[allow(
+    clippy::manual_clamp,
+    reason = "clamp would hand a NaN on; max and min make it 0"
+)]
 pub fn srgb_encode(linear: f32) -> f32 {
     // NaN becomes 0 here, which shows as black: metrics look at linear values and see it.
     let x = linear.max(0.0).min(1.0);
@@ -72,39 +76,20 @@ impl Image {
             .and_then(|e| e.to_str())
             .unwrap_or_default()
             .to_lowercase();
-        let folder = match path.parent() {
-            Some(p) if !p.as_os_str().is_empty() => p,
-            _ => Path::new("."),
-        };
-        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(|e| failed(path, &e))?;
+        let flat = || -> Vec<f32> { self.pixels.iter().flatten().copied().collect() };
+        let mut bytes = std::io::Cursor::new(Vec::new());
         match ending.as_str() {
-            "png" => {
-                let bytes = self.to_png()?;
-                std::io::Write::write_all(&mut file, &bytes).map_err(|e| failed(path, &e))?;
-            }
-            "exr" => {
-                let flat: Vec<f32> = self.pixels.iter().flatten().copied().collect();
-                let buffer = image::Rgba32FImage::from_raw(self.width, self.height, flat)
-                    .ok_or_else(|| failed(path, &"pixels do not fill the frame"))?;
-                let mut bytes = std::io::Cursor::new(Vec::new());
-                buffer
-                    .write_to(&mut bytes, image::ImageFormat::OpenExr)
-                    .map_err(|e| failed(path, &e))?;
-                std::io::Write::write_all(&mut file, &bytes.into_inner())
-                    .map_err(|e| failed(path, &e))?;
-            }
+            "png" => bytes = std::io::Cursor::new(self.to_png()?),
+            "exr" => image::Rgba32FImage::from_raw(self.width, self.height, flat())
+                .ok_or_else(|| failed(path, &"pixels do not fill the frame"))?
+                .write_to(&mut bytes, image::ImageFormat::OpenExr)
+                .map_err(|e| failed(path, &e))?,
             "npy" => {
-                let flat: Vec<f32> = self.pixels.iter().flatten().copied().collect();
-                let array = ndarray::Array3::from_shape_vec(
-                    (self.height as usize, self.width as usize, 4),
-                    flat,
-                )
-                .map_err(|e| failed(path, &e))?;
-                ndarray_npy::WriteNpyExt::write_npy(
-                    &array,
-                    std::io::BufWriter::new(file.as_file_mut()),
-                )
-                .map_err(|e| failed(path, &e))?;
+                let shape = (self.height as usize, self.width as usize, 4);
+                let array =
+                    ndarray::Array3::from_shape_vec(shape, flat()).map_err(|e| failed(path, &e))?;
+                ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes)
+                    .map_err(|e| failed(path, &e))?;
             }
             other => {
                 return Err(failed(
@@ -113,8 +98,7 @@ impl Image {
                 ));
             }
         }
-        file.persist(path).map_err(|e| failed(path, &e.error))?;
-        Ok(())
+        peelnet_files::write_whole(path, &bytes.into_inner()).map_err(|e| failed(path, &e))
     }
 }
 

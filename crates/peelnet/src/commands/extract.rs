@@ -104,8 +104,13 @@ pub(super) fn peel(
 /// What an extraction did, in one line.
 pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
     let seconds = report.wall_micros / 1e6;
+    let lost = if report.lost > 0 {
+        format!(", {} FRAGMENTS LOST by peeling", thousands(report.lost))
+    } else {
+        String::new()
+    };
     format!(
-        "{}: {} rows of {} pixels in {} parts, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {} coplanar pairs",
+        "{}: {} rows of {} pixels in {} parts, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {} coplanar pairs{lost}",
         folder.display(),
         thousands(report.manifest.rows),
         thousands(report.manifest.pixels),

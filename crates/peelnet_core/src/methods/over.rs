@@ -56,10 +56,10 @@ mod tests {
         #[test]
         fn the_result_lies_in_the_hull(f in prop::collection::vec(any_fragment(), 1..64)) {
             let c = composite_f64(&f, [0.5; 3]);
-            for k in 0..3 {
+            for (k, c) in c.into_iter().enumerate() {
                 let lo = f.iter().map(|f| f.color[k]).fold(0.5, f32::min);
                 let hi = f.iter().map(|f| f.color[k]).fold(0.5, f32::max);
-                prop_assert!(c[k] >= f64::from(lo) - 1e-12 && c[k] <= f64::from(hi) + 1e-12);
+                prop_assert!(c >= f64::from(lo) - 1e-12 && c <= f64::from(hi) + 1e-12);
             }
         }
     }
