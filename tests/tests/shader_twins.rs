@@ -103,9 +103,12 @@ fn guards_are_the_same_numbers() {
     let gpu = gpu();
     let got = evaluate(
         &gpu,
-        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX};",
-        "y = vec4f(SUM_FLOOR, HALF_MAX, 0.0, 0.0);",
+        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR};",
+        "y = vec4f(SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, 0.0);",
         &[[0.0; 4]],
     );
-    assert_eq!(got[0][..2], [guards::SUM_FLOOR, guards::HALF_MAX]);
+    assert_eq!(
+        got[0][..3],
+        [guards::SUM_FLOOR, guards::HALF_MAX, guards::WEIGHT_FLOOR]
+    );
 }

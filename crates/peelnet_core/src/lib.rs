@@ -11,6 +11,7 @@
 //!
 //! The worked example of the whole project is four fragments, see [`fragment::worked_example`].
 
+pub mod absorbance;
 pub mod fragment;
 pub mod guards;
 pub mod hash;

@@ -2,6 +2,7 @@
 
 use crate::RenderError;
 use bytemuck::{Pod, Zeroable};
+use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
     Gpu, GpuError,
     bind::{Bind, Bound},
@@ -93,6 +94,8 @@ pub struct SceneBuffers {
     light_count: u32,
     opaque: Vec<DrawRun>,
     transparent: Vec<DrawRun>,
+    /// World-space boxes of the transparent parts.
+    bounds: Vec<[glam::Vec3; 2]>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
 }
@@ -165,6 +168,7 @@ impl SceneBuffers {
         let mut corners = Vec::with_capacity(triangles * 3);
         let mut materials = Vec::new();
         let (mut opaque, mut transparent) = (Vec::new(), Vec::new());
+        let mut bounds = Vec::new();
         for object in &scene.objects {
             let world = object.world_from_object;
             let normal_matrix = glam::Mat3::from_mat4(world).inverse().transpose();
@@ -205,12 +209,15 @@ impl SceneBuffers {
                         });
                     }
                 }
-                let runs = if material.alpha >= 1.0 && !material.blend {
+                let runs = if material.is_opaque() {
                     &mut opaque
                 } else {
                     &mut transparent
                 };
                 push_run(runs, begin..corners.len() as u32, !material.double_sided);
+                if !material.is_opaque() {
+                    bounds.extend(bounding_box(&corners[begin as usize..]));
+                }
             }
         }
         let lights: Vec<_> = scene
@@ -244,6 +251,7 @@ impl SceneBuffers {
             light_count: lights.len() as u32,
             opaque,
             transparent,
+            bounds,
             background: scene.background,
         })
     }
@@ -301,15 +309,41 @@ impl SceneBuffers {
     pub fn set_view(&self, gpu: &Gpu, camera: &Camera, size: [u32; 2], sample: PixelSample) {
         let clip_from_world =
             camera.clip_from_view(size[0] as f32 / size[1] as f32) * camera.view_from_world();
+        let warp = self.depth_warp(camera);
         let uniform = CameraUniform {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             eye: camera.position.extend(1.0).to_array(),
             frame: [size[0], size[1], self.light_count, sample.seed],
             sample: [sample.view, sample.threshold, 0, 0],
-            depth_scale: [depth_scale(camera.far), 0.0, 0.0, 0.0],
+            depth_scale: [
+                depth_scale(camera.far),
+                warp.log_near as f32,
+                warp.scale as f32,
+                0.0,
+            ],
         };
         gpu.queue
             .write_buffer(&self.camera, 0, bytemuck::bytes_of(&uniform));
+    }
+
+    /// The warp over the depths that transparent objects span in a view: from their boxes, clipped to near and far. A tight
+    /// range is what moments get their precision from.
+    pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
+        let view = camera.view_from_world();
+        let corners = self.bounds.iter().flat_map(|[lo, hi]| {
+            (0..8).map(|i| {
+                let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
+                glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
+            })
+        });
+        let (near, far) = corners
+            .map(|p| (-view.transform_point3(p).z).clamp(camera.near, camera.far))
+            .fold((f32::INFINITY, 0.0f32), |(a, b), z| (a.min(z), b.max(z)));
+        if near <= far {
+            DepthWarp::new(near.into(), far.into())
+        } else {
+            DepthWarp::new(camera.near.into(), camera.far.into())
+        }
     }
 
     /// Builds a geometry pass's pipelines: the shared vertex shader, the pass's fragment shader, and the features
@@ -467,6 +501,13 @@ impl SceneBuffers {
 /// The largest power of two that maps depths up to `far` below 1: multiplying by it loses no bit.
 fn depth_scale(far: f32) -> f32 {
     (-(far.log2().floor() + 1.0)).exp2()
+}
+
+/// The box around some corners; `None` without any.
+fn bounding_box(corners: &[Corner]) -> Option<[glam::Vec3; 2]> {
+    let mut points = corners.iter().map(|c| glam::Vec3::from_array(c.position));
+    let first = points.next()?;
+    Some(points.fold([first; 2], |[lo, hi], p| [lo.min(p), hi.max(p)]))
 }
 
 /// Appends a run, joining it with the one before where the same pipeline draws both.

@@ -10,6 +10,7 @@ macro_rules! sources {
 }
 
 sources! {
+    "helpers::absorbance" = "helpers/absorbance.wgsl",
     "helpers::guards" = "helpers/guards.wgsl",
     "helpers::hash" = "helpers/hash.wgsl",
     "helpers::resolve" = "helpers/resolve.wgsl",
@@ -25,6 +26,10 @@ sources! {
     "methods::dual_peel::resolve" = "methods/dual_peel/resolve.wgsl",
     "methods::wboit::gather" = "methods/wboit/gather.wgsl",
     "methods::wboit::resolve" = "methods/wboit/resolve.wgsl",
+    "methods::mboit4::gather" = "methods/mboit4/gather.wgsl",
+    "methods::mboit4::moments" = "methods/mboit4/moments.wgsl",
+    "methods::mboit4::reconstruct" = "methods/mboit4/reconstruct.wgsl",
+    "methods::mboit4::resolve" = "methods/mboit4/resolve.wgsl",
     "methods::weighted_average::gather" = "methods/weighted_average/gather.wgsl",
     "methods::weighted_average::resolve" = "methods/weighted_average/resolve.wgsl",
     "methods::weighted_sum::gather" = "methods/weighted_sum/gather.wgsl",

@@ -4,6 +4,7 @@
 
 pub mod blended;
 pub mod deep;
+pub mod mboit4;
 pub mod over;
 pub mod wboit;
 pub mod weighted_average;

@@ -28,6 +28,8 @@ pub(crate) struct Target {
     pub label: &'static str,
     /// 1, 2 or 4.
     pub channels: u32,
+    /// Whether it has 32 bits a channel unless the method's knob says otherwise.
+    pub full: bool,
     pub blend: Blend,
 }
 
@@ -104,8 +106,9 @@ impl Target {
 
 /// Makes a plan ready, with 16- or 32-bit targets as the method's knob says.
 pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let full = b.spec.full_precision()?;
-    if full {
+    let knob = b.spec.full_precision()?;
+    let is_full = |t: &Target| knob.unwrap_or(t.full);
+    if plan.targets.iter().any(is_full) {
         b.gpu.need(
             wgpu::Features::FLOAT32_BLENDABLE,
             "float32-blendable",
@@ -117,7 +120,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     for t in plan.targets {
         let view = b.gpu.texture(
             t.label,
-            t.format(full),
+            t.format(is_full(t)),
             b.frame.size,
             wgpu::TextureUsages::empty(),
         )?;
@@ -137,7 +140,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         let states: Vec<_> = gather
             .writes
             .iter()
-            .map(|&i| Some(plan.targets[i].state(full)))
+            .map(|&i| Some(plan.targets[i].state(is_full(&plan.targets[i]))))
             .collect();
         let pipelines = b.scene.pipelines(
             b.gpu,
@@ -176,7 +179,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     let bytes_per_pixel = plan
         .targets
         .iter()
-        .map(|t| t.channels * if full { 4 } else { 2 })
+        .map(|t| t.channels * if is_full(t) { 4 } else { 2 })
         .sum::<u32>()
         .into();
     Ok(Box::new(Commutative {

@@ -23,6 +23,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let statistics = Target {
         label: "statistics",
         channels: 2,
+        full: false,
         blend: Blend::Add,
     };
     commutative::build(

@@ -8,6 +8,7 @@ mod commutative;
 mod deep_thesis;
 pub mod depth_peel;
 pub mod dual_peel;
+mod mboit4;
 mod weighted;
 
 use crate::{
@@ -195,6 +196,25 @@ pub const METHODS: &[MethodEntry] = &[
         ]
     ),
     MethodEntry {
+        name: "mboit4",
+        about: "Münstermann et al. 2018, four power moments",
+        knobs: &[
+            (
+                "targets",
+                "f16 or f32 for all; by default 32-bit moments and 16-bit sums",
+            ),
+            ("overestimation", "0.25 by default"),
+            ("bias", "5e-7 by default, 6e-5 with 16-bit moments"),
+            (
+                "own",
+                "in (default, as published) or out: a fragment's own absorbance",
+            ),
+        ],
+        learned: false,
+        exact: false,
+        build: mboit4::build,
+    },
+    MethodEntry {
         name: "deep-thesis",
         about: "Papakostas 2022: eq 6 with a network's weight",
         knobs: &[TARGETS],
@@ -267,13 +287,29 @@ impl MethodSpec {
         }
     }
 
-    /// Whether 32-bit targets are asked for.
-    pub(crate) fn full_precision(&self) -> Result<bool, RenderError> {
+    /// Whether 16- or 32-bit targets are asked for; `None` leaves it to the method.
+    pub(crate) fn full_precision(&self) -> Result<Option<bool>, RenderError> {
         match self.knobs.get("targets").map(String::as_str) {
-            None | Some("f16") => Ok(false),
-            Some("f32") => Ok(true),
+            None => Ok(None),
+            Some("f16") => Ok(Some(false)),
+            Some("f32") => Ok(Some(true)),
             Some(other) => Err(self.bad(&format!("targets must be f16 or f32, not '{other}'"))),
         }
+    }
+
+    /// A knob that is one of some words; the first is the default.
+    pub(crate) fn word(
+        &self,
+        knob: &str,
+        words: &[&'static str],
+    ) -> Result<&'static str, RenderError> {
+        let given = self.knobs.get(knob).map_or(words[0], String::as_str);
+        words.iter().find(|w| **w == given).copied().ok_or_else(|| {
+            self.bad(&format!(
+                "{knob} must be one of {}, not '{given}'",
+                words.join(", ")
+            ))
+        })
     }
 
     fn bad(&self, message: &str) -> RenderError {

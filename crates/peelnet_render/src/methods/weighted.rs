@@ -11,6 +11,7 @@ use peelnet_core::weights::Weight;
 pub(super) const SUMS: Target = Target {
     label: "sums",
     channels: 4,
+    full: false,
     blend: Blend::Add,
 };
 
@@ -18,6 +19,7 @@ pub(super) const SUMS: Target = Target {
 pub(super) const TRANSMITTANCE: Target = Target {
     label: "transmittance",
     channels: 1,
+    full: false,
     blend: Blend::Transmit,
 };
 
@@ -48,6 +50,7 @@ pub(super) fn average(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError>
     let count = Target {
         label: "fragment count",
         channels: 1,
+        full: false,
         blend: Blend::Add,
     };
     commutative::build(

@@ -1,0 +1,197 @@
+//! `mboit4`: moment-based order-independent transparency with four power moments (Münstermann, Krumpen, Klein & Peters,
+//! "Moment-Based Order-Independent Transparency", PACMCGIT 1(1), 2018). The shader twin is `methods/mboit4/`.
+//!
+//! Pass 1 sums absorbance `b_i` and its moments `b_k = Σ b_i ζ_i^k` over warped depth ζ. The moments do not tell where the
+//! absorbance lies, but they bound how much of it can lie in front of a depth; the bound's ends are met by measures
+//! of three points (the depth itself and two others), and the estimate lies between them.
+
+use crate::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::Fragment,
+    guards::{SUM_FLOOR, WEIGHT_FLOOR},
+};
+
+/// How moments are turned into transmittance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Where between the two bounds the estimate lies: 0 the most light, 1 the least; 0.25 in the paper.
+    pub overestimation: f64,
+    /// Pull towards moments of a measure that can always be inverted; 5e−7 for 32-bit power moments in the paper's
+    /// code, 6e−5 for 16-bit ones.
+    pub bias: f64,
+    /// Whether a fragment's own absorbance is taken out of the moments before it is asked what lies in front of it.
+    pub own_share_out: bool,
+}
+
+impl Settings {
+    /// The paper's, for 32-bit moments.
+    pub const PAPER: Self = Self {
+        overestimation: 0.25,
+        bias: 5e-7,
+        own_share_out: false,
+    };
+}
+
+/// `b_0 … b_4` of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moments(pub [f64; 5]);
+
+impl Moments {
+    /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
+    pub fn add(&mut self, b: f64, zeta: f64) {
+        let mut power = b;
+        for m in &mut self.0 {
+            *m += power;
+            power *= zeta;
+        }
+    }
+
+    /// The estimate of the transmittance in front of `zeta`.
+    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+        let total = self.0[0];
+        // Less than that is invisible (1 − e^−x ≈ x) and its normalised moments are noise.
+        if total < 1e-4 {
+            return 1.0;
+        }
+        // A measure with these moments (0, ⅜, 0, ⅜) has more than two points, so that the matrix below is never singular.
+        let neutral = [0.0, 0.375, 0.0, 0.375];
+        let m: [f64; 4] = std::array::from_fn(|k| {
+            self.0[k + 1] / total * (1.0 - settings.bias) + neutral[k] * settings.bias
+        });
+        // Cholesky factors of the Hankel matrix [1 m1 m2; m1 m2 m3; m2 m3 m4].
+        let variance = m[1] - m[0] * m[0];
+        let l21_variance = m[2] - m[0] * m[1];
+        let l21 = l21_variance / variance;
+        let d22 = m[3] - m[1] * m[1] - l21_variance * l21;
+        // Coefficients of the kernel polynomial: H c = (1, ζ, ζ²).
+        let y1 = zeta - m[0];
+        let y2 = zeta * zeta - m[1] - l21 * y1;
+        let c2 = y2 / d22;
+        let c1 = y1 / variance - l21 * c2;
+        let c0 = 1.0 - m[0] * c1 - m[1] * c2;
+        // Its roots are the other two points of the measure.
+        let half_p = 0.5 * c1 / c2;
+        let root = (half_p * half_p - c0 / c2).max(0.0).sqrt();
+        let (z1, z2) = (-half_p - root, -half_p + root);
+        // The quadratic through (ζ, overestimation), (z1, is it in front?), (z2, is it in front?), and its mean over
+        // the measure: the absorbance in front.
+        let f0 = settings.overestimation;
+        let f1 = f64::from(u8::from(z1 < zeta));
+        let f2 = f64::from(u8::from(z2 < zeta));
+        let f01 = (f1 - f0) / (z1 - zeta);
+        let f12 = (f2 - f1) / (z2 - z1);
+        let f012 = (f12 - f01) / (z2 - zeta);
+        let a0 = f0 - zeta * (f01 - f012 * z1);
+        let a1 = f01 - f012 * (z1 + zeta);
+        let share = a0 + a1 * m[0] + f012 * m[1];
+        let t = (-total * share).exp();
+        // Degenerate points give NaN; nothing in front is the harmless answer.
+        if t.is_nan() { 1.0 } else { t.min(1.0) }
+    }
+}
+
+/// Eq 6's composite with the estimated transmittance as the weight.
+pub fn composite(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    warp: &DepthWarp,
+    settings: &Settings,
+) -> [f32; 3] {
+    let mut moments = Moments::default();
+    for f in fragments {
+        moments.add(absorbance(f.alpha), warp.apply(f.depth.into()));
+    }
+    let total = moments.0[0];
+    if total == 0.0 {
+        return background;
+    }
+    let (mut color, mut alpha) = ([0.0f64; 3], 0.0f64);
+    for f in fragments {
+        let zeta = warp.apply(f.depth.into());
+        let mut seen = moments;
+        if settings.own_share_out {
+            seen.add(-absorbance(f.alpha), zeta);
+        }
+        let w = seen.transmittance(zeta, settings).max(WEIGHT_FLOOR.into());
+        for (sum, c) in color.iter_mut().zip(f.premultiplied()) {
+            *sum += f64::from(c) * w;
+        }
+        alpha += f64::from(f.alpha) * w;
+    }
+    let t = (-total).exp();
+    std::array::from_fn(|k| {
+        let average = color[k] / alpha.max(SUM_FLOOR.into());
+        (average * (1.0 - t) + f64::from(background[k]) * t) as f32
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two layers: a measure of two points, which four moments determine, so the estimate is sharp away from them.
+    #[test]
+    fn two_layers_are_told_apart() {
+        let mut m = Moments::default();
+        m.add(0.7, -0.5);
+        m.add(1.1, 0.6);
+        for (zeta, front) in [(-0.9, 0.0), (0.0, 0.7), (0.9, 1.8)] {
+            let t = m.transmittance(zeta, &Settings::PAPER);
+            assert!((t - f64::exp(-front)).abs() < 2e-3, "{zeta}: {t}");
+        }
+    }
+
+    /// At a layer itself the estimate counts the overestimated part of it: e^−0.25·b of a lone one; nothing with its own share out.
+    #[test]
+    fn a_lone_layer_counts_a_quarter_of_itself() {
+        let mut m = Moments::default();
+        m.add(0.8, 0.1);
+        let t = m.transmittance(0.1, &Settings::PAPER);
+        assert!((t - f64::exp(-0.25 * 0.8)).abs() < 1e-3, "{t}");
+        m.add(-0.8, 0.1);
+        assert_eq!(m.transmittance(0.1, &Settings::PAPER), 1.0);
+    }
+
+    /// A single surface comes out exact at 801 depths across the range, whatever its opacity, in both forms.
+    #[test]
+    fn a_single_surface_is_exact() {
+        let warp = DepthWarp::new(0.1, 100.0);
+        for own_share_out in [false, true] {
+            let settings = Settings {
+                own_share_out,
+                ..Settings::PAPER
+            };
+            for i in 0..801 {
+                let z = 0.1 * 1000f32.powf(i as f32 / 800.0);
+                for alpha in [0.01, 0.5, 0.99] {
+                    let f = [Fragment::new(z, alpha, [0.9, 0.1, 0.4])];
+                    let got = composite(&f, [0.2; 3], &warp, &settings);
+                    let want = crate::methods::over::composite(&f, [0.2; 3]);
+                    for k in 0..3 {
+                        assert!(
+                            (got[k] - want[k]).abs() < 1e-6,
+                            "{z} {alpha}: {got:?} {want:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// The estimate never leaves 0 … 1, and falls from the front to the back of a stack.
+    #[test]
+    fn it_stays_a_transmittance() {
+        let mut m = Moments::default();
+        for i in 0..40 {
+            m.add(0.3, (f64::from(i) * 0.37).sin() * 0.8);
+        }
+        for i in 0..400 {
+            let t = m.transmittance(-1.0 + f64::from(i) / 200.0, &Settings::PAPER);
+            assert!((0.0..=1.0).contains(&t), "{t}");
+        }
+        // In front of, amid and behind all 40 layers, whose transmittance is e⁻¹².
+        let [front, amid, behind] = [-1.0, 0.0, 1.0].map(|z| m.transmittance(z, &Settings::PAPER));
+        assert!(front > amid && amid > behind, "{front} {amid} {behind}");
+        assert!(behind >= f64::exp(-12.0) * 0.999 && behind < f64::exp(-12.0 * 0.75));
+    }
+}

@@ -1,0 +1,30 @@
+// mboit4, pass 2: eq 6 with the transmittance that the moments tell.
+import package::helpers::absorbance::{absorbance, warped_depth};
+import package::helpers::guards::WEIGHT_FLOOR;
+import package::methods::mboit4::reconstruct::transmittance_from_moments;
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@group(1) @binding(0) var zeroth: texture_2d<f32>;
+@group(1) @binding(1) var higher: texture_2d<f32>;
+
+@fragment
+fn fragment_main(surface: Surface) -> @location(0) vec4f {
+    if !visible(surface) {
+        discard;
+    }
+    let pixel = vec2u(surface.position.xy);
+    let color = shade(surface);
+    let zeta = warped_depth(surface.depth_linear);
+    var total = textureLoad(zeroth, pixel, 0).x;
+    var moments = textureLoad(higher, pixel, 0);
+    @if(own_share_out) {
+        let b = absorbance(color.a);
+        let z2 = zeta * zeta;
+        total -= b;
+        moments -= b * vec4f(zeta, z2, z2 * zeta, z2 * z2);
+    }
+    let weight = max(transmittance_from_moments(total, moments, zeta), WEIGHT_FLOOR);
+    return vec4f(color.rgb * color.a, color.a) * weight;
+}
