@@ -181,7 +181,7 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
     }
     if bad_normals > 0 {
         warnings.push(format!(
-            "{}: {bad_normals} normals were zero or not finite and were computed from the triangles",
+            "{}: {bad_normals} normals were zero and were computed from the triangles",
             path.display()
         ));
     }
@@ -397,13 +397,13 @@ fn check(path: &Path, text: &str) -> Result<Facts, SceneError> {
                 }
                 for word in &values[..3] {
                     match word.parse::<f32>() {
-                        // A normal that is no number can be computed anew; a position cannot.
-                        Ok(x) if x.is_finite() || key == "vn" => {}
+                        Ok(x) if x.is_finite() => {}
                         Ok(_) => {
+                            let what = if key == "v" { "position" } else { "normal" };
                             return Err(fail(
                                 number,
                                 format!(
-                                    "position '{word}' is not finite; repair the mesh and export it again"
+                                    "{what} '{word}' is not finite; repair the mesh and export it again"
                                 ),
                             ));
                         }
@@ -600,7 +600,7 @@ mod tests {
     #[test]
     fn bad_normals_are_computed_and_flat_triangles_left_out() {
         let obj =
-            format!("{QUAD}vn nan 0 0\nvn 0 0 0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
+            format!("{QUAD}vn 0 0 0\nvn 0 0 -0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
         let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
         assert_eq!(loaded.mesh.triangles.len(), 1);
         assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
@@ -612,11 +612,16 @@ mod tests {
     /// Each bad file gives one error that names the file, the line and the mend.
     #[test]
     fn bad_files() {
-        let cases: [(&str, Vec<u8>, &str); 8] = [
+        let cases: [(&str, Vec<u8>, &str); 9] = [
             (
                 "NaN position",
                 b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
                 "a.obj:2: position 'nan'",
+            ),
+            (
+                "NaN normal",
+                format!("{QUAD}vn 0 nan 0\nf 1//1 2//1 3//1\n").into_bytes(),
+                "a.obj:5: normal 'nan'",
             ),
             (
                 "word",
