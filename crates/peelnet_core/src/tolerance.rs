@@ -19,8 +19,9 @@ pub fn composite(n: usize, peak: f64) -> f64 {
 /// Agreement that the specification asks of exact methods with a 64-bit composite, linear light.
 pub const EXACT: f64 = 1e-5;
 
-/// Relative agreement of an exported 32-bit function with the trainer's forward pass: a 3-10-8-1 network is about
-/// 120 rounded operations, whose errors partly cancel; the specification fixes the bound.
+/// Agreement of an exported 32-bit function with the 64-bit forward pass, relative to the last layer's `Σ|w||x| + |b|`,
+/// which is what a dot product's rounding error is a multiple of (its result may be a cancelled remainder of that). A
+/// 3-10-8-1 network is about 120 rounded operations, whose errors partly cancel; the specification fixes the bound.
 pub const EXPORT_F32: f64 = 1e-5;
 
 /// The same for 16-bit functions: half floats round at `2⁻¹¹ ≈ 4.9e-4`.

@@ -78,8 +78,17 @@ pub fn export(
     path: &Path,
     options: &Options,
 ) -> Result<Verification, ExportError> {
-    let text = wgsl(model, options)?;
-    let verification = verify(gpu, model, &text)?;
+    write_verified(gpu, model, path, &wgsl(model, options)?)
+}
+
+/// Writes a text if it computes what the model does.
+fn write_verified(
+    gpu: &Gpu,
+    model: &Model,
+    path: &Path,
+    text: &str,
+) -> Result<Verification, ExportError> {
+    let verification = verify(gpu, model, text)?;
     peelnet_files::write_whole(path, text.as_bytes()).map_err(|source| ExportError::Write {
         path: path.to_owned(),
         source,

@@ -11,7 +11,7 @@ use std::fmt;
 const RANDOM: usize = 4096;
 
 /// Inputs that nobody should pass and somebody will.
-const EXTREMES: [f32; 9] = [
+const EXTREMES: [f32; 10] = [
     0.0,
     1.0,
     -1.0,
@@ -19,6 +19,7 @@ const EXTREMES: [f32; 9] = [
     1e30,
     -1e30,
     f32::MAX,
+    -f32::MAX,
     f32::MIN_POSITIVE,
     1e-45,
 ];
@@ -285,14 +286,15 @@ mod tests {
         let gpu = gpu();
         let model = model(&[10, 8], 3);
         let text = wgsl(&model, &Options::default()).expect("exports");
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let path = folder.path().join("w.wgsl");
         let mut other = model.clone();
         other.mlp.layers[1].weights[3] += 0.01;
         assert!(matches!(
-            verify(&gpu, &other, &text),
+            crate::write_verified(&gpu, &other, &path, &text),
             Err(ExportError::Differs { .. })
         ));
-        let folder = tempfile::tempdir().expect("temporary folder");
-        let path = folder.path().join("w.wgsl");
+        assert!(!path.exists());
         export(&gpu, &model, &path, &Options::default()).expect("exports");
         assert_eq!(std::fs::read_to_string(&path).expect("reads"), text);
         // A file stands where a folder would have to be.

@@ -190,15 +190,15 @@ fn weight_function(model: &Model) -> String {
         );
     }
     let last = model.mlp.layers.len() - 1;
-    let mut before = 'x';
+    let mut before = "x".to_owned();
     for (l, layer) in model.mlp.layers.iter().enumerate() {
         let activation = if l == last {
             model.mlp.output
         } else {
             model.mlp.hidden
         };
-        let name = (b'a' + l as u8) as char;
-        layer_text(&mut t, layer, before, name, activation);
+        let name = format!("h{l}_");
+        layer_text(&mut t, layer, &before, &name, activation);
         before = name;
     }
     let (low, high) = model.meta.output.range();
@@ -212,7 +212,7 @@ fn weight_function(model: &Model) -> String {
 }
 
 /// One layer: `name0 … ` from `before0 …`, four outputs at a time.
-fn layer_text(t: &mut String, layer: &Layer, before: char, name: char, activation: Activation) {
+fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activation: Activation) {
     for row in 0..layer.outputs.div_ceil(4) {
         let mut sum = vec4(&layer.bias[row * 4..layer.outputs.min(row * 4 + 4)]);
         for column in 0..layer.inputs.div_ceil(4) {
