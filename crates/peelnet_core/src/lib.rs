@@ -18,5 +18,6 @@ pub mod hash;
 pub mod methods;
 pub mod mlp;
 pub mod scanline;
+pub mod statistics;
 pub mod tolerance;
 pub mod weights;

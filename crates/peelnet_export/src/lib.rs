@@ -28,16 +28,6 @@ pub enum ExportError {
     /// A model that does not hold together.
     #[error("the model cannot be exported: {0}")]
     Model(#[from] peelnet_model::Problem),
-    /// An output that no shader function is defined for.
-    #[error(
-        "recipe {recipe} with output '{output}' has no shader function in this version; export a model of recipe thesis"
-    )]
-    Output {
-        /// The model's recipe.
-        recipe: String,
-        /// Its output parametrisation.
-        output: String,
-    },
     /// The text is not valid or does not link: a bug here, or an edited text.
     #[error(transparent)]
     Shader(#[from] peelnet_shaders::ShaderError),

@@ -1,7 +1,10 @@
 //! The exported text, run on the GPU, against the trainer's forward pass.
 
-use crate::{ExportError, wgsl::self_test_inputs};
-use peelnet_core::{hash::pcg, mlp::Mlp, tolerance::EXPORT_F32};
+use crate::{
+    ExportError,
+    wgsl::{function_name, self_test_inputs},
+};
+use peelnet_core::{guards::LOG_ABSORBANCE_LIMIT, hash::pcg, mlp::Mlp, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
@@ -74,7 +77,28 @@ fn magnitude(mlp: &Mlp, normalised: &[f64]) -> f64 {
     size
 }
 
-/// Runs `wgsl` on the GPU over random, extreme and self-test inputs and compares with [`Model::forward_raw_f64`].
+/// The difference that is allowed of an answer: [`EXPORT_F32`] of [`magnitude`]. A weight `exp(−m_0 s)` may differ as
+/// much as its share may, and by [`EXPORT_F32`] more for the rounding of `m_0` and of the exponential.
+fn tolerance(model: &Model, raw: &[f64]) -> f64 {
+    let normalised: Vec<f64> = model
+        .meta
+        .inputs
+        .iter()
+        .zip(raw)
+        .map(|(i, &x)| i.normalise_f64(x))
+        .collect();
+    let sum = EXPORT_F32 * magnitude(&model.mlp, &normalised);
+    if !model.meta.output.is_share() {
+        return sum;
+    }
+    let share = model.forward_raw_f64(raw)[0];
+    let others = raw[0].clamp(0.0, LOG_ABSORBANCE_LIMIT.into()).exp_m1();
+    let weight = |share: f64| (-others * share.clamp(0.0, 1.0)).exp();
+    // A sigmoid's slope is at most a quarter.
+    EXPORT_F32 + weight(share - 0.25 * sum) - weight(share + 0.25 * sum)
+}
+
+/// Runs `wgsl` on the GPU over random, extreme and self-test inputs and compares with [`Model::shader_output_f64`].
 ///
 /// # Errors
 /// [`ExportError::Differs`] with the worst input; a text that is not valid; a GPU that fails.
@@ -87,33 +111,29 @@ pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, Expo
         worst_absolute: 0.0,
         worst_relative_to_tolerance: 0.0,
     };
-    for (inputs, &found) in samples.iter().zip(&outputs) {
+    let count = model.meta.output.count();
+    for (inputs, found) in samples.iter().zip(outputs.chunks_exact(count)) {
         let raw: Vec<f64> = inputs.iter().map(|&x| f64::from(x)).collect();
-        let expected = model.forward_raw_f64(&raw)[0];
-        let normalised: Vec<f64> = model
-            .meta
-            .inputs
-            .iter()
-            .zip(&raw)
-            .map(|(i, &x)| i.normalise_f64(x))
-            .collect();
-        let tolerance = EXPORT_F32 * magnitude(&model.mlp, &normalised).max(expected.abs());
-        let difference = (f64::from(found) - expected).abs();
-        // A NaN compares false with everything: ask for agreement, not for disagreement.
-        let agrees = difference <= tolerance;
-        if !agrees {
-            return Err(ExportError::Differs {
-                inputs: inputs.clone(),
-                found,
-                expected,
-                tolerance,
-            });
-        }
-        result.worst_absolute = result.worst_absolute.max(difference);
-        if tolerance > 0.0 {
-            result.worst_relative_to_tolerance = result
-                .worst_relative_to_tolerance
-                .max(difference / tolerance);
+        let tolerance = tolerance(model, &raw);
+        for (&found, expected) in found.iter().zip(model.shader_output_f64(&raw)) {
+            let tolerance = tolerance.max(EXPORT_F32 * expected.abs());
+            let difference = (f64::from(found) - expected).abs();
+            // A NaN compares false with everything: ask for agreement, not for disagreement.
+            let agrees = difference <= tolerance;
+            if !agrees {
+                return Err(ExportError::Differs {
+                    inputs: inputs.clone(),
+                    found,
+                    expected,
+                    tolerance,
+                });
+            }
+            result.worst_absolute = result.worst_absolute.max(difference);
+            if tolerance > 0.0 {
+                result.worst_relative_to_tolerance = result
+                    .worst_relative_to_tolerance
+                    .max(difference / tolerance);
+            }
         }
     }
     Ok(result)
@@ -158,14 +178,28 @@ fn evaluate(
     let arguments: Vec<_> = (0..count)
         .map(|k| format!("inputs[id.x * {count}u + {k}u]"))
         .collect();
+    let function = function_name(model.meta.output);
+    let outputs = model.meta.output.count();
+    // One component after the other: an array of vec3f would have gaps.
+    let components: String = (0..outputs)
+        .map(|k| {
+            let component = if outputs == 1 {
+                ""
+            } else {
+                [".x", ".y", ".z"][k]
+            };
+            format!("outputs[id.x * {outputs}u + {k}u] = answer{component};")
+        })
+        .collect();
     let driver = format!(
-        "import package::learned::weight::peelnet_weight;
+        "import package::learned::weight::{function};
         @group(0) @binding(0) var<storage, read> inputs: array<f32>;
         @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;
         @compute @workgroup_size(64)
         fn main(@builtin(global_invocation_id) id: vec3u) {{
-            if id.x < arrayLength(&outputs) {{
-                outputs[id.x] = peelnet_weight({});
+            if id.x < arrayLength(&outputs) / {outputs}u {{
+                let answer = {function}({});
+                {components}
             }}
         }}",
         arguments.join(", ")
@@ -177,12 +211,12 @@ fn evaluate(
     )?;
     let flat: Vec<f32> = samples.iter().flatten().copied().collect();
     let inputs = gpu.upload("inputs", &flat, wgpu::BufferUsages::STORAGE);
-    let bytes = samples.len() as u64 * 4;
-    let outputs = gpu.storage("outputs", bytes)?;
+    let bytes = (samples.len() * outputs) as u64 * 4;
+    let answers = gpu.storage("outputs", bytes)?;
     let bound = gpu.bind(
         "verification",
         wgpu::ShaderStages::COMPUTE,
-        &[Bind::Read(&inputs), Bind::Write(&outputs)],
+        &[Bind::Read(&inputs), Bind::Write(&answers)],
     );
     let pipeline = gpu.compute("verification", &linked, &[&bound.layout]);
     let mut recorder = Recorder::new(gpu, false);
@@ -193,7 +227,7 @@ fn evaluate(
         pass.dispatch_workgroups((samples.len() as u32).div_ceil(64), 1, 1);
     }
     recorder.finish()?;
-    Ok(gpu.read(&outputs, 0..bytes)?)
+    Ok(gpu.read(&answers, 0..bytes)?)
 }
 
 #[cfg(test)]
@@ -204,16 +238,31 @@ mod tests {
     use peelnet_gpu::AdapterRequest;
     use peelnet_model::{DatasetRef, Input, Losses, Metadata, Output, Recipe};
 
-    /// A random network of the thesis's inputs with these hidden layers.
+    /// A random network of the thesis's recipe with these hidden layers.
     fn model(hidden: &[usize], seed: u32) -> Model {
+        model_of(Recipe::Thesis, hidden, seed)
+    }
+
+    /// A random network of a recipe.
+    fn model_of(recipe: Recipe, hidden: &[usize], seed: u32) -> Model {
         let mut state = seed;
         let mut random = move || {
             state = pcg(state.wrapping_add(1));
             state as f32 / u32::MAX as f32 * 2.0 - 1.0
         };
-        let mut sizes = vec![3];
+        let (output, activation) = match recipe {
+            Recipe::Thesis => (Output::Transmittance, Activation::Identity),
+            Recipe::Nmt => (Output::Transmittance, Activation::Sigmoid),
+            Recipe::Small => (Output::AnchoredShare, Activation::Sigmoid),
+            Recipe::Medium | Recipe::Large => {
+                (Output::AnchoredShareSeparateEnds, Activation::Sigmoid)
+            }
+            Recipe::Dfaoit => (Output::TailColor, Activation::Sigmoid),
+        };
+        let names = recipe.input_names();
+        let mut sizes = vec![names.len()];
         sizes.extend(hidden);
-        sizes.push(1);
+        sizes.push(output.count());
         let mut layers: Vec<_> = sizes
             .windows(2)
             .map(|s| Layer {
@@ -228,26 +277,34 @@ mod tests {
             last.bias[0] = 0.5;
             last.weights.iter_mut().for_each(|w| *w *= 0.2);
         }
-        let input = |name: &str, offset, scale, min, max| Input {
-            name: name.into(),
-            unit: "1".into(),
-            offset,
-            scale,
-            min,
-            max,
-        };
+        let inputs = names
+            .iter()
+            .zip(
+                [
+                    (6.0, 0.5, 0.1, 12.0),
+                    (3.0, 0.3, 0.0, 9.0),
+                    (8.0, 0.125, 1.0, 34.0),
+                ]
+                .into_iter()
+                .cycle(),
+            )
+            .map(|(name, (offset, scale, min, max))| Input {
+                name: (*name).into(),
+                unit: "1".into(),
+                offset,
+                scale,
+                min,
+                max,
+            })
+            .collect();
         Model {
-            mlp: Mlp::new(layers, Activation::Relu, Activation::Identity).expect("shapes fit"),
+            mlp: Mlp::new(layers, Activation::Relu, activation).expect("shapes fit"),
             meta: Metadata {
                 format_version: peelnet_model::FORMAT_VERSION,
                 tool_version: "test".into(),
-                recipe: Recipe::Thesis,
-                inputs: vec![
-                    input("linear_depth", 6.0, 0.5, 0.1, 12.0),
-                    input("alpha_sum", 3.0, 0.3, 0.0, 9.0),
-                    input("fragment_count", 8.0, 0.125, 1.0, 34.0),
-                ],
-                output: Output::Transmittance,
+                recipe,
+                inputs,
+                output,
                 seed: 0,
                 dataset: Some(DatasetRef {
                     hash: "0".into(),
@@ -269,8 +326,10 @@ mod tests {
     #[test]
     fn exports_agree_for_every_topology() {
         let gpu = gpu();
-        for hidden in [&[10, 8][..], &[8], &[], &[32, 16], &[5, 3, 2]] {
-            let model = model(hidden, 7);
+        let topologies = [&[10, 8][..], &[8], &[], &[32, 16], &[5, 3, 2]];
+        let thesis = topologies.map(|hidden| model(hidden, 7));
+        let recipes = Recipe::ALL.map(|recipe| model_of(recipe, &[8, 8], 11));
+        for model in thesis.into_iter().chain(recipes) {
             let text = wgsl(&model, &Options::default()).expect("exports");
             assert_eq!(text, wgsl(&model, &Options::default()).expect("exports"));
             let v = verify(&gpu, &model, &text).expect("agrees");
@@ -328,15 +387,7 @@ mod tests {
                 .map(|x| x.parse().expect("a number"))
                 .collect();
             let answer: f32 = answer.parse().expect("a number");
-            assert_eq!(answer.to_bits(), model.forward_raw(&inputs)[0].to_bits());
+            assert_eq!(answer.to_bits(), model.shader_output(&inputs)[0].to_bits());
         }
-    }
-
-    #[test]
-    fn other_outputs_are_refused() {
-        let mut model = model(&[4], 1);
-        model.meta.recipe = Recipe::Small;
-        model.meta.output = Output::AnchoredShare;
-        assert!(wgsl(&model, &Options::default()).is_err());
     }
 }

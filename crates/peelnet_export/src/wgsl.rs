@@ -5,10 +5,10 @@ use crate::{
     literal::{float, vec4},
 };
 use peelnet_core::{
-    guards::{INPUT_LIMIT, RAW_LIMIT},
+    guards::{INPUT_LIMIT, LOG_ABSORBANCE_LIMIT, RAW_LIMIT},
     mlp::{Activation, Layer, Mlp},
 };
-use peelnet_model::{Model, Output};
+use peelnet_model::{Model, Output, Recipe};
 use std::fmt::Write as _;
 
 /// Multiply–adds of one evaluation of the network, as published costs count them (padding not included).
@@ -37,36 +37,26 @@ pub(crate) fn self_test_inputs(model: &Model) -> [Vec<f32>; 3] {
 /// A model that does not hold together, or whose output has no shader function.
 pub fn wgsl(model: &Model, _options: &Options) -> Result<String, ExportError> {
     model.check()?;
-    if model.meta.output != Output::Transmittance || model.meta.inputs.len() != 3 {
-        return Err(ExportError::Output {
-            recipe: model.meta.recipe.to_string(),
-            output: model.meta.output.to_string(),
-        });
-    }
+    let around: &[&str] = match model.meta.recipe {
+        Recipe::Thesis => &["learned::thesis"],
+        Recipe::Small => &["learned::anchored", "learned::fragment_small"],
+        Recipe::Medium => &["learned::anchored", "learned::fragment_medium"],
+        Recipe::Large => &[
+            "learned::anchored",
+            "learned::share_bounds",
+            "learned::fragment_large",
+        ],
+        Recipe::Nmt => &["learned::nmt", "learned::fragment_nmt"],
+        Recipe::Dfaoit => &["learned::dfaoit"],
+    };
     let mut text = header(model);
-    text.push_str(FEATURES);
+    for module in around {
+        text.push_str(peelnet_shaders::source(module)?);
+        text.push('\n');
+    }
     text.push_str(&weight_function(model));
     Ok(text)
 }
-
-/// What the thesis's network reads, and which targets that takes.
-const FEATURES: &str = "\
-// Statistics pass: draw all transparent surfaces, in any order, into one target
-//     format rg16float (rg32float for more than 2048 layers), cleared to 0, blending ONE, ONE, ADD,
-//     each fragment writing (alpha, 1): the pixel's sum of alpha and its number of fragments.
-// Weight pass: draw them again; each fragment reads its pixel's statistics and calls
-//     let f = peelnet_features(linear_depth, statistics);
-//     let w = peelnet_weight(f.x, f.y, f.z);
-// and writes (alpha * rgb * w, alpha * w) to an rgba16float target (cleared to 0, ONE, ONE, ADD) and alpha to an
-// r16float target (cleared to 1, ZERO, ONE_MINUS_SRC): T. Resolve over the background C_0, where T is not 1:
-//     sums.rgb / sums.a * (1 - T) + C_0 * T
-
-// linear_depth: distance along the view axis in scene units. statistics: sum of alpha, number of fragments.
-fn peelnet_features(linear_depth: f32, statistics: vec2f) -> vec3f {
-    return vec3f(linear_depth, statistics.x, statistics.y);
-}
-
-";
 
 fn header(model: &Model) -> String {
     let meta = &model.meta;
@@ -77,7 +67,7 @@ fn header(model: &Model) -> String {
         t.push('\n');
     };
     line(format!(
-        "peelnet_weight: a learned weight for order-independent transparency. Exported by peelnet {}.",
+        "A learned weight for order-independent transparency. Exported by peelnet {}.",
         env!("CARGO_PKG_VERSION")
     ));
     line("Licence of this generated text: MIT OR Apache-2.0.".into());
@@ -92,11 +82,20 @@ fn header(model: &Model) -> String {
         meta.seed,
         meta.epochs
     ));
+    let (low, high) = meta.output.range();
     line(format!(
-        "Answers: {}, kept in {} .. {}.",
-        meta.output,
-        float(meta.output.range().0),
-        float(meta.output.range().1)
+        "Answers: {}.",
+        match meta.output {
+            Output::Transmittance => format!(
+                "transmittance in front, kept in {} .. {}",
+                float(low),
+                float(high)
+            ),
+            Output::AnchoredShare | Output::AnchoredShareSeparateEnds =>
+                "weight exp(-others * share), others = exp(log_absorbance) - 1, share in 0 .. 1"
+                    .into(),
+            Output::TailColor => "linear RGB, kept in 0 .. 1".into(),
+        }
     ));
     for (i, input) in meta.inputs.iter().enumerate() {
         line(format!(
@@ -150,15 +149,28 @@ fn header(model: &Model) -> String {
     }
     for inputs in self_test_inputs(model) {
         let list: Vec<_> = inputs.iter().map(|&x| float(x)).collect();
-        let outputs = model.forward_raw(&inputs);
+        let outputs = model.shader_output(&inputs);
         line(format!(
-            "Self-test: peelnet_weight({}) = {}",
+            "Self-test: {}({}) = {}",
+            function_name(meta.output),
             list.join(", "),
-            float(outputs[0])
+            outputs
+                .iter()
+                .map(|&x| float(x))
+                .collect::<Vec<_>>()
+                .join(", ")
         ));
     }
     t.push('\n');
     t
+}
+
+/// The exported function's name.
+pub(crate) const fn function_name(output: Output) -> &'static str {
+    match output {
+        Output::TailColor => "peelnet_tail_color",
+        _ => "peelnet_weight",
+    }
 }
 
 /// The network as straight-line code.
@@ -169,8 +181,14 @@ fn weight_function(model: &Model) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         t,
-        "fn peelnet_weight({}) -> f32 {{\n    // Normalised inputs; the limits never bind on real data and keep everything finite.",
-        parameters.join(", ")
+        "fn {}({}) -> {} {{\n    // Normalised inputs; the limits never bind on real data and keep everything finite.",
+        function_name(model.meta.output),
+        parameters.join(", "),
+        if model.meta.output.count() == 1 {
+            "f32"
+        } else {
+            "vec3f"
+        }
     );
     let chunks = inputs.len().div_ceil(4);
     for c in 0..chunks {
@@ -202,12 +220,19 @@ fn weight_function(model: &Model) -> String {
         before = name;
     }
     let (low, high) = model.meta.output.range();
-    let _ = writeln!(
-        t,
-        "    return clamp({before}0.x, {}, {});\n}}",
-        float(low),
-        float(high)
-    );
+    let (low, high) = (float(low), float(high));
+    let answer = match model.meta.output {
+        Output::Transmittance => format!("clamp({before}0.x, {low}, {high})"),
+        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
+            let first = &inputs[0].name;
+            let limit = float(LOG_ABSORBANCE_LIMIT);
+            format!(
+                "exp((1.0 - exp(clamp({first}, 0.0, {limit}))) * clamp({before}0.x, {low}, {high}))"
+            )
+        }
+        Output::TailColor => format!("clamp({before}0.xyz, vec3f({low}), vec3f({high}))"),
+    };
+    let _ = writeln!(t, "    return {answer};\n}}");
     t
 }
 

@@ -1,6 +1,6 @@
 //! What a model knows about itself.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
 
@@ -65,30 +65,47 @@ impl Recipe {
         }
     }
 
-    /// The names of the inputs, in order, where this version computes them; they are also the names of the exported
-    /// function's parameters. `None` for a recipe of which only the number of inputs is fixed.
-    pub const fn input_names(self) -> Option<&'static [&'static str]> {
+    /// The names of the inputs, in order; they are also the names of the exported function's parameters.
+    pub const fn input_names(self) -> &'static [&'static str] {
         match self {
-            Self::Thesis => Some(&["linear_depth", "alpha_sum", "fragment_count"]),
-            Self::Small | Self::Medium => Some(&[
+            Self::Thesis => &["linear_depth", "alpha_sum", "fragment_count"],
+            Self::Small | Self::Medium => &[
                 "log_absorbance",
                 "depth_fraction",
                 "mean_fraction",
                 "depth_deviation",
                 "skewness",
-            ]),
-            Self::Large | Self::Nmt | Self::Dfaoit => None,
-        }
-    }
-
-    /// The number of inputs, where the recipe fixes it.
-    pub const fn input_count(self) -> Option<usize> {
-        match self {
-            Self::Thesis => Some(3),
-            Self::Small | Self::Medium => Some(5),
-            Self::Nmt => Some(7),
-            Self::Dfaoit => Some(10),
-            Self::Large => None,
+            ],
+            Self::Large => &[
+                "log_absorbance",
+                "depth_fraction",
+                "mean_fraction",
+                "depth_deviation",
+                "skewness",
+                "share_low",
+                "share_high",
+            ],
+            Self::Nmt => &[
+                "depth",
+                "fragment_count",
+                "absorbance",
+                "moment_1",
+                "moment_2",
+                "moment_3",
+                "moment_4",
+            ],
+            Self::Dfaoit => &[
+                "front_r",
+                "front_g",
+                "front_b",
+                "front_transmittance",
+                "tail_r",
+                "tail_g",
+                "tail_b",
+                "tail_alpha",
+                "tail_transmittance",
+                "tail_count",
+            ],
         }
     }
 
@@ -165,6 +182,11 @@ impl Output {
             Self::Transmittance => (WEIGHT_FLOOR, 1.0),
             Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::TailColor => (0.0, 1.0),
         }
+    }
+
+    /// Whether the value is a share of the others' absorbance, and the weight `exp(−m_0 s)`.
+    pub const fn is_share(self) -> bool {
+        matches!(self, Self::AnchoredShare | Self::AnchoredShareSeparateEnds)
     }
 
     /// Keeps one value of the network in range; NaN becomes the smallest value.
@@ -333,30 +355,10 @@ impl Metadata {
             expected,
             found: found.iter().map(|&n| n.to_owned()).collect(),
         };
-        if let Some(expected) = self.recipe.input_names() {
-            if found != expected {
-                return Err(wrong(format!("({})", expected.join(", "))));
-            }
-        } else if let Some(count) = self.recipe.input_count()
-            && found.len() != count
-        {
-            return Err(wrong(format!("{count} inputs")));
-        }
-        // The names become parameters of a function.
-        let distinct: BTreeSet<&str> = found.iter().copied().collect();
-        if found.is_empty() || distinct.len() != found.len() || !found.iter().all(|n| identifier(n))
-        {
-            return Err(wrong(
-                "one or more different names of letters, digits and underscores".to_owned(),
-            ));
+        let expected = self.recipe.input_names();
+        if found != expected {
+            return Err(wrong(format!("({})", expected.join(", "))));
         }
         Ok(())
     }
-}
-
-/// Whether a name can be a parameter in every shader language.
-fn identifier(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && !name.contains("__")
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use peelnet_core::mlp::{Layer, Mlp};
+use peelnet_core::{
+    guards::LOG_ABSORBANCE_LIMIT,
+    mlp::{Layer, Mlp},
+};
 
 use crate::error::{ModelError, Problem};
 use crate::file;
@@ -134,6 +137,40 @@ impl Model {
         let mut outputs = self.mlp.forward_f64(&normalised);
         for value in &mut outputs {
             *value = self.meta.output.guard_f64(*value);
+        }
+        outputs
+    }
+
+    /// What the exported function answers: [`Model::forward_raw`], made a weight where the network predicts a share:
+    /// `exp(−m_0 s)` with `m_0 = e^x − 1` from the first input `x = ln(1 + m_0)`, which is kept in 0 …
+    /// [`LOG_ABSORBANCE_LIMIT`].
+    ///
+    /// # Panics
+    /// If the number of features is not that of the model's inputs.
+    pub fn shader_output(&self, raw_inputs: &[f32]) -> Vec<f32> {
+        let mut outputs = self.forward_raw(raw_inputs);
+        if self.meta.output.is_share() {
+            let others = raw_inputs[0].clamp(0.0, LOG_ABSORBANCE_LIMIT).exp() - 1.0;
+            for share in &mut outputs {
+                *share = (-others * *share).exp();
+            }
+        }
+        outputs
+    }
+
+    /// As [`Model::shader_output`], in 64 bits.
+    ///
+    /// # Panics
+    /// If the number of features is not that of the model's inputs.
+    pub fn shader_output_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
+        let mut outputs = self.forward_raw_f64(raw_inputs);
+        if self.meta.output.is_share() {
+            let others = raw_inputs[0]
+                .clamp(0.0, LOG_ABSORBANCE_LIMIT.into())
+                .exp_m1();
+            for share in &mut outputs {
+                *share = (-others * *share).exp();
+            }
         }
         outputs
     }

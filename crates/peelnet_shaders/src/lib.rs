@@ -40,6 +40,18 @@ pub enum ShaderError {
     },
 }
 
+/// The text of a module as it stands in its file.
+///
+/// # Errors
+/// [`ShaderError::Path`] for a module that is not in [`SOURCES`].
+pub fn source(path: &str) -> Result<&'static str, ShaderError> {
+    SOURCES
+        .iter()
+        .find(|(p, _)| *p == path)
+        .map(|(_, text)| *text)
+        .ok_or_else(|| ShaderError::Path(path.to_owned()))
+}
+
 /// Everything that decides a linked text.
 type LinkKey = (String, Vec<String>, Vec<(String, String)>);
 
@@ -140,9 +152,33 @@ pub fn validate(
 mod tests {
     use super::*;
 
-    /// A stand-in for an exported network.
-    const LEARNED: &str = "fn peelnet_features(z: f32, s: vec2f) -> vec3f { return vec3f(z, s); }\n\
-        fn peelnet_weight(a: f32, b: f32, c: f32) -> f32 { return 1.0; }\n";
+    /// A stand-in for a network that was exported for the methods in `folder`.
+    fn learned(folder: &str) -> String {
+        let (modules, parameters): (&[&str], &str) = match folder {
+            "methods::deep_thesis" => (&["learned::thesis"], "a: f32, b: f32, c: f32"),
+            "methods::nmt" => (
+                &["learned::nmt", "learned::fragment_nmt"],
+                "a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32",
+            ),
+            "methods::dfaoit" => (&["learned::dfaoit"], ""),
+            _ => (
+                &["learned::anchored", "learned::fragment_medium"],
+                "a: f32, b: f32, c: f32, d: f32, e: f32",
+            ),
+        };
+        let texts: Vec<_> = modules
+            .iter()
+            .map(|m| source(m).expect("a module of the table"))
+            .collect();
+        format!(
+            "{}\nfn peelnet_weight({parameters}) -> f32 {{ return 1.0; }}
+            fn peelnet_tail_color(a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32, h: f32, i: f32, j: f32) -> vec3f {{
+                return vec3f(1.0);
+            }}\n",
+            texts.join("\n")
+        )
+    }
+
     const PARAMETERS: &str = "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\nconst BIAS: f32 = 5e-7;\nconst OVERESTIMATION: f32 = 0.25;\n";
 
     /// Every root (a module with an entry point) links and validates in every feature it names; all failures are
@@ -165,6 +201,12 @@ mod tests {
                     .to_vec()
             } else if *path == "methods::mboit4::gather" {
                 vec![vec![], vec!["own_share_out", "opaque"]]
+            } else if path.starts_with("methods::anchored") {
+                vec![
+                    vec![],
+                    vec!["separate_ends"],
+                    vec!["separate_ends", "opaque"],
+                ]
             } else {
                 vec![
                     vec![],
@@ -174,7 +216,11 @@ mod tests {
                 ]
             };
             for features in variants {
-                let extra = [("learned::weight", LEARNED), ("parameters", PARAMETERS)];
+                let learned = learned(path.rsplit_once("::").map_or("", |(folder, _)| folder));
+                let extra = [
+                    ("learned::weight", learned.as_str()),
+                    ("parameters", PARAMETERS),
+                ];
                 let result = link(path, &features, &extra).and_then(|wgsl| {
                     validate(path, &wgsl, naga::valid::Capabilities::empty()).map(drop)
                 });

@@ -10,6 +10,7 @@ use crate::{
     fragment::Fragment,
     guards::{SUM_FLOOR, WEIGHT_FLOOR},
 };
+use num_traits::Float;
 
 /// How moments are turned into transmittance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,41 +54,58 @@ impl Moments {
         if total < 1e-4 {
             return 1.0;
         }
-        // A measure with these moments (0, ⅜, 0, ⅜) has more than two points, so that the matrix below is never singular.
-        let neutral = [0.0, 0.375, 0.0, 0.375];
-        let m: [f64; 4] = std::array::from_fn(|k| {
-            self.0[k + 1] / total * (1.0 - settings.bias) + neutral[k] * settings.bias
-        });
-        // Cholesky factors of the Hankel matrix [1 m1 m2; m1 m2 m3; m2 m3 m4].
-        let variance = m[1] - m[0] * m[0];
-        let l21_variance = m[2] - m[0] * m[1];
-        let l21 = l21_variance / variance;
-        let d22 = m[3] - m[1] * m[1] - l21_variance * l21;
-        // Coefficients of the kernel polynomial: H c = (1, ζ, ζ²).
-        let y1 = zeta - m[0];
-        let y2 = zeta * zeta - m[1] - l21 * y1;
-        let c2 = y2 / d22;
-        let c1 = y1 / variance - l21 * c2;
-        let c0 = 1.0 - m[0] * c1 - m[1] * c2;
-        // Its roots are the other two points of the measure.
-        let half_p = 0.5 * c1 / c2;
-        let root = (half_p * half_p - c0 / c2).max(0.0).sqrt();
-        let (z1, z2) = (-half_p - root, -half_p + root);
-        // The quadratic through (ζ, overestimation), (z1, is it in front?), (z2, is it in front?), and its mean over
-        // the measure: the absorbance in front.
-        let f0 = settings.overestimation;
-        let f1 = f64::from(u8::from(z1 < zeta));
-        let f2 = f64::from(u8::from(z2 < zeta));
+        let m: [f64; 4] = std::array::from_fn(|k| self.0[k + 1] / total);
+        let (low, high) = share_bounds(m, settings.bias, zeta);
+        let share = low + settings.overestimation * (high - low);
+        let t = (-total * share).exp();
+        // Degenerate points give NaN; nothing in front is the harmless answer.
+        if t.is_nan() { 1.0 } else { t.min(1.0) }
+    }
+}
+
+/// The least and the most of a measure on −1 … 1 that can lie in front of `zeta`, from its first four moments over its
+/// zeroth: the share without and with all that the bound's measure has at `zeta` itself.
+///
+/// NaN where the points of that measure coincide.
+pub fn share_bounds<F: Float>(moments: [F; 4], bias: F, zeta: F) -> (F, F) {
+    let (zero, one) = (F::zero(), F::one());
+    let half = one / (one + one);
+    // A measure with these moments (0, ⅜, 0, ⅜) has more than two points, so that the matrix below is never singular.
+    let neutral = F::from(0.375).unwrap_or(half);
+    let m = [
+        moments[0] * (one - bias),
+        moments[1] * (one - bias) + neutral * bias,
+        moments[2] * (one - bias),
+        moments[3] * (one - bias) + neutral * bias,
+    ];
+    // Cholesky factors of the Hankel matrix [1 m1 m2; m1 m2 m3; m2 m3 m4].
+    let variance = m[1] - m[0] * m[0];
+    let l21_variance = m[2] - m[0] * m[1];
+    let l21 = l21_variance / variance;
+    let d22 = m[3] - m[1] * m[1] - l21_variance * l21;
+    // Coefficients of the kernel polynomial: H c = (1, ζ, ζ²).
+    let y1 = zeta - m[0];
+    let y2 = zeta * zeta - m[1] - l21 * y1;
+    let c2 = y2 / d22;
+    let c1 = y1 / variance - l21 * c2;
+    let c0 = one - m[0] * c1 - m[1] * c2;
+    // Its roots are the other two points of the measure.
+    let half_p = half * c1 / c2;
+    let root = (half_p * half_p - c0 / c2).max(zero).sqrt();
+    let (z1, z2) = (-half_p - root, -half_p + root);
+    // The quadratic through (ζ, f0), (z1, is it in front?), (z2, is it in front?), and its mean over the measure: the
+    // share in front when the part f0 of what lies at ζ counts.
+    let in_front = |z: F| if z < zeta { one } else { zero };
+    let (f1, f2) = (in_front(z1), in_front(z2));
+    let share = |f0: F| {
         let f01 = (f1 - f0) / (z1 - zeta);
         let f12 = (f2 - f1) / (z2 - z1);
         let f012 = (f12 - f01) / (z2 - zeta);
         let a0 = f0 - zeta * (f01 - f012 * z1);
         let a1 = f01 - f012 * (z1 + zeta);
-        let share = a0 + a1 * m[0] + f012 * m[1];
-        let t = (-total * share).exp();
-        // Degenerate points give NaN; nothing in front is the harmless answer.
-        if t.is_nan() { 1.0 } else { t.min(1.0) }
-    }
+        a0 + a1 * m[0] + f012 * m[1]
+    };
+    (share(zero), share(one))
 }
 
 /// Eq 6's composite with the estimated transmittance as the weight.

@@ -2,6 +2,7 @@
 //!
 //! The commutative methods take fragments in any order; [`over`] sorts first. `background` is `C_0`, linear RGB.
 
+pub mod anchored;
 pub mod blended;
 pub mod deep;
 pub mod mboit4;

@@ -8,6 +8,7 @@ use crate::{
     passes::fullscreen::FullscreenPass,
     scene::{GeometryPass, GeometryPipelines, Surfaces, clear_color},
 };
+use peelnet_core::guards::HALF_MAX;
 use peelnet_gpu::{
     bind::{Bind, Bound},
     wgpu,
@@ -20,6 +21,33 @@ pub(crate) enum Blend {
     Add,
     /// `dst · (1 − src)`, from 1.
     Transmit,
+    /// `max(dst, src)`, from the smallest half.
+    Max,
+}
+
+impl Blend {
+    /// What a target is cleared to.
+    fn start(self) -> f64 {
+        match self {
+            Self::Add => 0.0,
+            Self::Transmit => 1.0,
+            Self::Max => -f64::from(HALF_MAX),
+        }
+    }
+
+    fn component(self) -> wgpu::BlendComponent {
+        use wgpu::{BlendFactor as F, BlendOperation as O};
+        let (src_factor, dst_factor, operation) = match self {
+            Self::Add => (F::One, F::One, O::Add),
+            Self::Transmit => (F::Zero, F::OneMinusSrc, O::Add),
+            Self::Max => (F::One, F::One, O::Max),
+        };
+        wgpu::BlendComponent {
+            src_factor,
+            dst_factor,
+            operation,
+        }
+    }
 }
 
 /// One accumulator.
@@ -50,6 +78,8 @@ pub(crate) struct Plan<'a> {
     pub targets: &'a [Target],
     pub passes: &'a [Gather<'a>],
     pub resolve: &'static str,
+    /// Compile-time features of the resolve.
+    pub resolve_features: &'a [&'a str],
     /// Targets that the resolve reads, after `C_0`.
     pub resolve_reads: &'a [usize],
 }
@@ -71,7 +101,7 @@ struct Commutative {
 }
 
 impl Target {
-    fn format(&self, full: bool) -> wgpu::TextureFormat {
+    pub(crate) fn format(&self, full: bool) -> wgpu::TextureFormat {
         use wgpu::TextureFormat as F;
         match (self.channels, full) {
             (1, false) => F::R16Float,
@@ -83,16 +113,13 @@ impl Target {
         }
     }
 
-    fn state(&self, full: bool) -> wgpu::ColorTargetState {
-        let (src_factor, dst_factor) = match self.blend {
-            Blend::Add => (wgpu::BlendFactor::One, wgpu::BlendFactor::One),
-            Blend::Transmit => (wgpu::BlendFactor::Zero, wgpu::BlendFactor::OneMinusSrc),
-        };
-        let component = wgpu::BlendComponent {
-            src_factor,
-            dst_factor,
-            operation: wgpu::BlendOperation::Add,
-        };
+    /// Bytes a pixel.
+    pub(crate) const fn bytes(&self, full: bool) -> u32 {
+        self.channels * if full { 4 } else { 2 }
+    }
+
+    pub(crate) fn state(&self, full: bool) -> wgpu::ColorTargetState {
+        let component = self.blend.component();
         wgpu::ColorTargetState {
             format: self.format(full),
             blend: Some(wgpu::BlendState {
@@ -172,6 +199,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     let resolve = FullscreenPass::new(
         b.gpu,
         plan.resolve,
+        plan.resolve_features,
         &[],
         &entries,
         &[Some(wgpu::TextureFormat::Rgba32Float.into())],
@@ -179,7 +207,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     let bytes_per_pixel = plan
         .targets
         .iter()
-        .map(|t| t.channels * if is_full(t) { 4 } else { 2 })
+        .map(|t| t.bytes(is_full(t)))
         .sum::<u32>()
         .into();
     Ok(Box::new(Commutative {
@@ -198,11 +226,7 @@ impl Compositor for Commutative {
                 .iter()
                 .map(|&i| {
                     let (view, blend) = &self.targets[i];
-                    let start = match blend {
-                        Blend::Add => 0.0,
-                        Blend::Transmit => 1.0,
-                    };
-                    clear_color(view, [start; 4])
+                    clear_color(view, [blend.start(); 4])
                 })
                 .collect();
             let mut pass = cx.recorder.render(p.label, &colors, None);

@@ -8,18 +8,7 @@ use super::{
 use crate::RenderError;
 
 pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let learned = b
-        .learned
-        .ok_or_else(|| RenderError::NeedsModel(b.spec.to_string()))?;
-    let method = learned.recipe.method_name();
-    if method != b.spec.name() {
-        return Err(RenderError::Knob {
-            method: b.spec.to_string(),
-            message: format!(
-                "the model given was trained for method {method}; use that method, or another model"
-            ),
-        });
-    }
+    let learned = b.learned_weight()?;
     let statistics = Target {
         label: "statistics",
         channels: 2,
@@ -49,6 +38,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 },
             ],
             resolve: "methods::wboit::resolve",
+            resolve_features: &[],
             resolve_reads: &[0, 1],
         },
     )

@@ -44,6 +44,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             gpu,
             "methods::depth_peel::under",
             features,
+            &[],
             &[
                 Bind::Texture(&accumulated[from]),
                 Bind::Texture(&peel.layer),
@@ -57,6 +58,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         FullscreenPass::new(
             gpu,
             "methods::depth_peel::resolve",
+            &[],
             &[],
             &[
                 Bind::Texture(&frame.background),

@@ -60,6 +60,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             gpu,
             "methods::dual_peel::blend",
             features,
+            &[],
             &[
                 Bind::Texture(&peel.ranges[from]),
                 Bind::Texture(&peel.ranges[1 - from]),
@@ -73,6 +74,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let resolve = FullscreenPass::new(
         gpu,
         "methods::dual_peel::resolve",
+        &[],
         &[],
         &[
             Bind::Texture(&frame.background),

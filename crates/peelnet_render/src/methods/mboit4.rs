@@ -50,6 +50,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 },
             ],
             resolve: "methods::mboit4::resolve",
+            resolve_features: &[],
             resolve_reads: &[0, 1],
         },
     )

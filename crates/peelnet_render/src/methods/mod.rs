@@ -4,11 +4,14 @@
 //! tests are made from. Adding a method is one file here, one shader folder, and one line of that list.
 
 pub mod abuffer;
+mod anchored;
 mod commutative;
 mod deep_thesis;
 pub mod depth_peel;
+mod dfaoit;
 pub mod dual_peel;
 mod mboit4;
+mod nmt;
 mod weighted;
 
 use crate::{
@@ -85,7 +88,33 @@ pub(crate) struct Build<'a> {
     pub learned: Option<&'a LearnedWeight>,
 }
 
+impl Build<'_> {
+    /// The text that a learned method draws with.
+    ///
+    /// # Errors
+    /// No model, or one that was trained for another method.
+    pub(crate) fn learned_weight(&self) -> Result<&LearnedWeight, RenderError> {
+        let learned = self
+            .learned
+            .ok_or_else(|| RenderError::NeedsModel(self.spec.to_string()))?;
+        let method = learned.recipe.method_name();
+        if method != self.spec.name() {
+            return Err(RenderError::Knob {
+                method: self.spec.to_string(),
+                message: format!(
+                    "the model given was trained for method {method}; use that method, or another model"
+                ),
+            });
+        }
+        Ok(learned)
+    }
+}
+
 const TARGETS: (&str, &str) = ("targets", "f16 (default) or f32");
+const MOMENT_TARGETS: (&str, &str) = (
+    "targets",
+    "f16 or f32 for all; by default 32-bit moments and 16-bit sums",
+);
 const PASSES: (&str, &str) = ("passes", "a cap on the number of peeling passes");
 
 macro_rules! wboit {
@@ -199,10 +228,7 @@ pub const METHODS: &[MethodEntry] = &[
         name: "mboit4",
         about: "Münstermann et al. 2018, four power moments",
         knobs: &[
-            (
-                "targets",
-                "f16 or f32 for all; by default 32-bit moments and 16-bit sums",
-            ),
+            MOMENT_TARGETS,
             ("overestimation", "0.25 by default"),
             ("bias", "5e-7 by default, 6e-5 with 16-bit moments"),
             (
@@ -221,6 +247,46 @@ pub const METHODS: &[MethodEntry] = &[
         learned: true,
         exact: false,
         build: deep_thesis::build,
+    },
+    MethodEntry {
+        name: "nmt",
+        about: "Tsopouridis et al. 2024: a network reads four moments",
+        knobs: &[MOMENT_TARGETS],
+        learned: true,
+        exact: false,
+        build: nmt::build,
+    },
+    MethodEntry {
+        name: "dfaoit",
+        about: "Tsopouridis et al. 2024: two layers exact, the colour of the rest from a network",
+        knobs: &[TARGETS],
+        learned: true,
+        exact: false,
+        build: dfaoit::build,
+    },
+    MethodEntry {
+        name: "deep-small",
+        about: "a learned share of the others' absorbance, 5-8-1",
+        knobs: &[TARGETS],
+        learned: true,
+        exact: false,
+        build: anchored::build,
+    },
+    MethodEntry {
+        name: "deep-medium",
+        about: "the same with exact ends, 5-8-8-1: the one to ship",
+        knobs: &[TARGETS],
+        learned: true,
+        exact: false,
+        build: anchored::build,
+    },
+    MethodEntry {
+        name: "deep-large",
+        about: "the same with the bounds of four moments: the most accurate",
+        knobs: &[MOMENT_TARGETS],
+        learned: true,
+        exact: false,
+        build: anchored::build,
     },
 ];
 

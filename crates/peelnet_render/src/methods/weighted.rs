@@ -41,6 +41,7 @@ pub(super) fn sum(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             targets: &[SUMS],
             passes: &[gather("methods::weighted_sum::gather", &[0])],
             resolve: "methods::weighted_sum::resolve",
+            resolve_features: &[],
             resolve_reads: &[0],
         },
     )
@@ -59,6 +60,7 @@ pub(super) fn average(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError>
             targets: &[SUMS, count],
             passes: &[gather("methods::weighted_average::gather", &[0, 1])],
             resolve: "methods::weighted_average::resolve",
+            resolve_features: &[],
             resolve_reads: &[0, 1],
         },
     )
@@ -71,6 +73,7 @@ pub(super) fn blended(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError>
             targets: &[SUMS, TRANSMITTANCE],
             passes: &[gather("methods::blended::gather", &[0, 1])],
             resolve: "methods::wboit::resolve",
+            resolve_features: &[],
             resolve_reads: &[0, 1],
         },
     )
@@ -102,6 +105,7 @@ pub(super) fn wboit(
                 ..gather("methods::wboit::gather", &[0, 1])
             }],
             resolve: "methods::wboit::resolve",
+            resolve_features: &[],
             resolve_reads: &[0, 1],
         },
     )

@@ -17,7 +17,7 @@ pub struct FullscreenPass {
 }
 
 impl FullscreenPass {
-    /// Builds the pass; `entries` are the bindings of group 0 in order.
+    /// Builds the pass; `extra` are modules that are not in `shaders/`, `entries` the bindings of group 0 in order.
     ///
     /// # Errors
     /// A shader that does not link.
@@ -25,11 +25,12 @@ impl FullscreenPass {
         gpu: &Gpu,
         shader: &str,
         features: &[&str],
+        extra: &[(&str, &str)],
         entries: &[Bind<'_>],
         targets: &[Option<wgpu::ColorTargetState>],
     ) -> Result<Self, RenderError> {
         let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
-        let module = gpu.shader(shader, &peelnet_shaders::link(shader, features, &[])?);
+        let module = gpu.shader(shader, &peelnet_shaders::link(shader, features, extra)?);
         let pipeline = gpu
             .device
             .create_render_pipeline(&wgpu::RenderPipelineDescriptor {

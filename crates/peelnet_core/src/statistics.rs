@@ -1,0 +1,266 @@
+//! What the learned methods know of a pixel, and the features that their networks read.
+//!
+//! Pass 1 sums absorbance `b_i` and its moments over warped depth, `b_k = Σ b_i ζ_i^k`, and keeps the pixel's nearest and
+//! farthest ζ. Pass 2 takes a fragment's *own share* out of the moments, so that everything it reads is about the
+//! other fragments: what lies in front of a fragment does not depend on the fragment. All features are free of scene
+//! scale and unit. The shader twin is the `peelnet_features` of every exported text.
+//!
+//! Written once for 32 and 64 bits: 32 is what shaders compute, 64 what trains and judges.
+
+use crate::methods::mboit4;
+use num_traits::Float;
+
+/// Number of levels that a depth in −1 … 1 is quantised to before nearest and farthest are told: see [`half_of_code`].
+pub const DEPTH_CODES: u32 = 61_440;
+
+/// The level of a warped depth, 0 for −1 and [`DEPTH_CODES`] − 1 for 1.
+pub fn depth_code(zeta: f64) -> u32 {
+    let top = f64::from(DEPTH_CODES - 1);
+    ((zeta * 0.5 + 0.5) * top + 0.5).floor().clamp(0.0, top) as u32
+}
+
+/// The warped depth in the middle of a level.
+pub fn zeta_of_code(code: u32) -> f64 {
+    f64::from(code) / f64::from(DEPTH_CODES - 1) * 2.0 - 1.0
+}
+
+/// Bits of the half float that stands for a level: all normal halves in ascending order.
+///
+/// MAX blending of 16-bit targets compares values, not what they mean, so the levels are spread over *all* normal halves:
+/// 61,440 equal steps of 3.3e−5 of the frame's depth range. Storing ζ itself would waste most of the format's values
+/// near zero and tell depths near the ends of the range apart by 4.9e−4 only. The negated half is the level counted from
+/// the other end, so one MAX blending keeps both extremes.
+pub fn half_of_code(code: u32) -> u16 {
+    let half = DEPTH_CODES / 2;
+    if code >= half {
+        (0x400 + code - half) as u16
+    } else {
+        (0x8400 + half - 1 - code) as u16
+    }
+}
+
+/// The largest difference of levels at which a fragment still counts as the nearest or the farthest.
+///
+/// One: two passes of one shader may round a depth that lies between two levels differently. Missing the nearest
+/// fragment would cost its anchor, and two fragments within 6.5e−5 of the depth range are as good as one.
+pub const SAME_CODE: u32 = 1;
+
+/// The sums and extremes of one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statistics<F> {
+    /// `b_0 … b_4`.
+    pub moments: [F; 5],
+    /// Smallest warped depth.
+    pub nearest: F,
+    /// Largest warped depth.
+    pub farthest: F,
+}
+
+impl<F: Float> Statistics<F> {
+    /// Of a pixel without fragments.
+    pub fn empty() -> Self {
+        Self {
+            moments: [F::zero(); 5],
+            nearest: F::one(),
+            farthest: -F::one(),
+        }
+    }
+
+    /// Of a pixel's fragments, as (absorbance, warped depth).
+    pub fn of(fragments: impl IntoIterator<Item = (F, F)>) -> Self {
+        let mut s = Self::empty();
+        for (b, zeta) in fragments {
+            let mut power = b;
+            for m in &mut s.moments {
+                *m = *m + power;
+                power = power * zeta;
+            }
+            s.nearest = s.nearest.min(zeta);
+            s.farthest = s.farthest.max(zeta);
+        }
+        s
+    }
+
+    /// `m_k = b_k − b ζ^k`: the moments of the others. `m_0` is never negative.
+    pub fn others(&self, b: F, zeta: F) -> [F; 5] {
+        let mut power = b;
+        let mut m = self.moments.map(|sum| {
+            let rest = sum - power;
+            power = power * zeta;
+            rest
+        });
+        m[0] = m[0].max(F::zero());
+        m
+    }
+}
+
+/// Names and units of [`features`], in order.
+pub const FEATURES: [(&str, &str); 7] = [
+    ("log_absorbance", "ln(1 + absorbance of the others)"),
+    ("depth_fraction", "of the pixel's depth range"),
+    ("mean_fraction", "of the pixel's depth range"),
+    ("depth_deviation", "half standard deviations"),
+    ("skewness", "half skewness"),
+    ("share_low", "of the others' absorbance"),
+    ("share_high", "of the others' absorbance"),
+];
+
+/// Below this share of the pixel's absorbance the moments of the others are rounding noise of 16-bit sums.
+const NOISE: f64 = 1.0 / 1024.0;
+
+/// The least standard deviation, as a share of the pixel's depth range.
+const DEVIATION_FLOOR: f64 = 1.0 / 64.0;
+
+/// The same for the skewness, whose third power makes noise of 16-bit sums out of narrow distributions.
+const SKEWNESS_FLOOR: f64 = 1.0 / 8.0;
+
+/// Pull of the moments towards a measure that can be inverted, for [`features`] 5 and 6.
+const BIAS: f64 = 1e-3;
+
+/// The features of a fragment of absorbance `b` at depth `zeta`:
+///
+/// 0. `ln(1 + m_0)`
+/// 1. where in the pixel's range the fragment lies, 0 … 1
+/// 2. where the others' mean μ lies, 0 … 1
+/// 3. `clamp((ζ − μ)/2σ, −2, 2)`, σ the others' standard deviation
+/// 4. `clamp(skewness/2, −2, 2)` of the others, σ at least an eighth of the range in it
+/// 5. and 6.: the share of the others' absorbance that lies in front of the fragment according to the two bounds that
+///    four moments give (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
+///
+/// Feature 0 to 4 need `b_0 … b_3`, the last two `b_4` also.
+pub fn features<F: Float>(s: &Statistics<F>, b: F, zeta: F) -> [F; 7] {
+    // Every constant below is exactly a 32-bit float.
+    let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
+    let (zero, one, two) = (F::zero(), F::one(), c(2.0));
+    let m = s.others(b, zeta);
+    let level = two / c(f64::from(DEPTH_CODES - 1));
+    let extent = (s.farthest - s.nearest).max(level);
+    let total = m[0].max(s.moments[0] * c(NOISE)).max(c(1e-6));
+    // Moments of t = (ζ − nearest)/extent, 0 … 1, one power after the other.
+    let shift = s.nearest;
+    let scale = one / extent;
+    let [m1, m2, m3, m4] = [m[1] / total, m[2] / total, m[3] / total, m[4] / total];
+    let t1 = ((m1 - shift) * scale).max(zero).min(one);
+    let t2 = (m2 - shift * (two * m1 - shift)) * scale * scale;
+    let t3 = (m3 - shift * (c(3.0) * m2 - shift * (c(3.0) * m1 - shift))) * scale * scale * scale;
+    let t = ((zeta - s.nearest) * scale).max(zero).min(one);
+    let floor = c(DEVIATION_FLOOR);
+    let variance = (t2 - t1 * t1).max(floor * floor);
+    let sigma = variance.sqrt();
+    let wide = sigma.max(c(SKEWNESS_FLOOR));
+    let third = t3 - t1 * (c(3.0) * t2 - two * t1 * t1);
+    let half_clamp = |x: F| (x / two).max(-two).min(two);
+    let t4 = {
+        let inner = c(6.0) * m2 - shift * (c(4.0) * m1 - shift);
+        (m4 - shift * (c(4.0) * m3 - shift * inner)) * (scale * scale) * (scale * scale)
+    };
+    let (low, high) = share_bounds([t1, t2, t3, t4], t);
+    [
+        (one + m[0]).ln(),
+        t,
+        t1,
+        half_clamp((t - t1) / sigma),
+        half_clamp(third / (wide * wide * wide)),
+        low,
+        high,
+    ]
+}
+
+/// The shares in front of `t` (0 … 1) that normalised moments over 0 … 1 allow: the least and the most.
+fn share_bounds<F: Float>(t_moments: [F; 4], t: F) -> (F, F) {
+    let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
+    let (one, two, four) = (F::one(), c(2.0), c(4.0));
+    // To −1 … 1, where the neutral moments are known: x = 2t − 1.
+    let [a1, a2, a3, a4] = t_moments;
+    let x1 = two * a1 - one;
+    let x2 = four * (a2 - a1) + one;
+    let x3 = c(8.0) * a3 - c(12.0) * a2 + c(6.0) * a1 - one;
+    let x4 = c(16.0) * a4 - c(32.0) * a3 + c(24.0) * a2 - c(8.0) * a1 + one;
+    let (low, high) = mboit4::share_bounds([x1, x2, x3, x4], c(BIAS), two * t - one);
+    // NaN, where the bound's points coincide, becomes 0.
+    let clamp = |x: F| x.max(F::zero()).min(one);
+    (clamp(low), clamp(high))
+}
+
+/// The weight of a fragment whose others have absorbance `m_0`, of which `share` lies in front.
+pub fn weight<F: Float>(others: F, share: F) -> F {
+    (-others * share).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Levels ascend as halves ascend, negating mirrors them, and every half is normal.
+    #[test]
+    fn half_codes_are_ordered_and_mirrored() {
+        let value = |code| half::f16::from_bits(half_of_code(code));
+        for code in 0..DEPTH_CODES {
+            assert!(value(code).is_normal(), "{code}");
+            assert_eq!(value(DEPTH_CODES - 1 - code), -value(code));
+            assert!(code == 0 || value(code) > value(code - 1), "{code}");
+        }
+    }
+
+    /// Rounding to the nearest level: half a level off at most.
+    #[test]
+    fn codes_round_trip() {
+        let half_level = 1.0 / f64::from(DEPTH_CODES - 1);
+        for i in 0..=1000 {
+            let zeta = f64::from(i) / 500.0 - 1.0;
+            let back = zeta_of_code(depth_code(zeta));
+            assert!(
+                (back - zeta).abs() <= half_level * 1.000_001,
+                "{zeta} {back}"
+            );
+        }
+        for code in 0..DEPTH_CODES {
+            assert_eq!(depth_code(zeta_of_code(code)), code);
+        }
+    }
+
+    /// The 32-bit features follow the 64-bit ones. Mean powers err by a few roundings (2⁻²⁴) of values ≤ 1; moving them to the
+    /// pixel's range multiplies by up to its inverse (here 10, as the range is at least a tenth of the frame's), cubed for
+    /// the third, and dividing by σ³ ≥ 8⁻³ by up to 512 more.
+    #[test]
+    fn both_precisions_agree() {
+        let mut state = 9u32;
+        let mut random = move || {
+            state = crate::hash::pcg(state);
+            f64::from(state >> 8) / f64::from(1 << 24)
+        };
+        for _ in 0..500 {
+            let n = 2 + (random() * 20.0) as usize;
+            let (centre, width) = (random() - 0.5, 0.1 + 0.4 * random());
+            let points: Vec<(f64, f64)> = (0..n)
+                .map(|_| {
+                    (
+                        0.02 + 3.0 * random(),
+                        centre + width * (2.0 * random() - 1.0),
+                    )
+                })
+                .collect();
+            let wide = Statistics::of(points.iter().copied());
+            let narrow = Statistics::of(points.iter().map(|&(b, z)| (b as f32, z as f32)));
+            for &(b, z) in &points {
+                let (a, c) = (features(&wide, b, z), features(&narrow, b as f32, z as f32));
+                for k in 0..5 {
+                    let roundings = 4.0 / f64::from(1 << 24);
+                    let width = f64::from(narrow.farthest - narrow.nearest) / 2.0;
+                    let tolerance = match k {
+                        3 => roundings / width.powi(2) * 64.0 * 64.0,
+                        4 => roundings / width.powi(3) * 512.0,
+                        _ => roundings / width * 8.0,
+                    };
+                    let noisy = wide.others(b, z)[0] < 0.1 * wide.moments[0];
+                    assert!(
+                        noisy || (a[k] - f64::from(c[k])).abs() < tolerance,
+                        "{k}: {} {}",
+                        a[k],
+                        c[k]
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! `dfaoit`: the two nearest fragments exact, the colour of the rest from a network (Tsopouridis, Vasilakos & Fudos 2024),
+//! drawn with the exported text itself.
+
+use super::{
+    Build, Compositor, DrawContext, FrameStats,
+    commutative::{Blend, Target},
+    weighted::SUMS,
+};
+use crate::{
+    RenderError,
+    passes::{
+        fullscreen::FullscreenPass,
+        single::{self, SinglePeel},
+    },
+    scene::{GeometryPass, GeometryPipelines, Surfaces, clear_color},
+};
+use peelnet_gpu::{
+    bind::{Bind, Bound},
+    wgpu,
+};
+
+/// Layers that are composited exactly.
+const FRONT: u32 = 2;
+
+#[derive(Debug)]
+struct Dfaoit {
+    peel: SinglePeel,
+    /// What is composited so far, in turn.
+    front: [wgpu::TextureView; 2],
+    under: [FullscreenPass; 2],
+    second: Bound,
+    tail: GeometryPipelines,
+    sums: [wgpu::TextureView; 2],
+    resolve: FullscreenPass,
+    bytes_per_pixel: f64,
+}
+
+pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let (gpu, frame) = (b.gpu, b.frame);
+    let learned = b.learned_weight()?;
+    let full = b.spec.full_precision()? == Some(true);
+    if full {
+        gpu.need(
+            wgpu::Features::FLOAT32_BLENDABLE,
+            "float32-blendable",
+            &b.spec.to_string(),
+            "use targets=f16",
+        )?;
+    }
+    let peel = SinglePeel::new(gpu, b.scene, frame, &[])?;
+    let targets = [
+        SUMS,
+        Target {
+            label: "tail absorbance",
+            channels: 2,
+            full: false,
+            blend: Blend::Add,
+        },
+    ];
+    let texture =
+        |label, format| gpu.texture(label, format, frame.size, wgpu::TextureUsages::empty());
+    let format = wgpu::TextureFormat::Rgba32Float;
+    let front = [texture("front", format)?, texture("front", format)?];
+    let sums = [
+        texture(targets[0].label, targets[0].format(full))?,
+        texture(targets[1].label, targets[1].format(full))?,
+    ];
+    let found = gpu.storage("found", 8)?;
+    let image = [Some(format.into())];
+    let under = |from: usize| {
+        FullscreenPass::new(
+            gpu,
+            "methods::depth_peel::under",
+            &[],
+            &[],
+            &[
+                Bind::Texture(&front[from]),
+                Bind::Texture(&peel.layer),
+                Bind::Uint(&peel.keys[1 - from]),
+                Bind::Write(&found),
+            ],
+            &image,
+        )
+    };
+    // Two peels later the last key lies in the first texture again.
+    let second = gpu.bind(
+        "second key",
+        wgpu::ShaderStages::FRAGMENT,
+        &[Bind::Uint(&peel.keys[0])],
+    );
+    let extra = [("learned::weight", learned.wgsl.as_str())];
+    let tail = b.scene.pipelines(
+        gpu,
+        frame,
+        Surfaces::Transparent,
+        &GeometryPass {
+            label: "tail",
+            shader: "methods::dfaoit::tail",
+            features: &[],
+            extra: &extra,
+            group: Some(&second.layout),
+            targets: &targets.map(|t| Some(t.state(full))),
+            depth: None,
+        },
+    )?;
+    let resolve = FullscreenPass::new(
+        gpu,
+        "methods::dfaoit::resolve",
+        &[],
+        &extra,
+        &[
+            Bind::Texture(&frame.background),
+            Bind::Texture(&front[0]),
+            Bind::Texture(&sums[0]),
+            Bind::Texture(&sums[1]),
+        ],
+        &image,
+    )?;
+    let bytes = targets
+        .map(|t| f64::from(t.bytes(full)))
+        .iter()
+        .sum::<f64>();
+    Ok(Box::new(Dfaoit {
+        under: [under(0)?, under(1)?],
+        peel,
+        front,
+        second,
+        tail,
+        sums,
+        resolve,
+        bytes_per_pixel: single::BYTES_PER_PIXEL + 2.0 * 16.0 + bytes,
+    }))
+}
+
+impl Compositor for Dfaoit {
+    fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
+        self.peel.init(cx.recorder);
+        drop(cx.recorder.render(
+            "clear",
+            &[clear_color(&self.front[0], [0.0, 0.0, 0.0, 1.0])],
+            None,
+        ));
+        for layer in 0..FRONT {
+            let from = (layer % 2) as usize;
+            self.peel.peel(cx.recorder, cx.scene, cx.frame, layer);
+            self.under[from].draw(cx.recorder, &[clear_color(&self.front[1 - from], [0.0; 4])]);
+        }
+        {
+            let colors = [0, 1].map(|i| clear_color(&self.sums[i], [0.0; 4]));
+            let mut pass = cx.recorder.render("tail", &colors, None);
+            pass.set_bind_group(1, &self.second.group, &[]);
+            cx.scene
+                .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.tail);
+        }
+        self.resolve
+            .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);
+        Ok(FrameStats {
+            tiles: 1,
+            geometry_passes: FRONT + 1,
+            fullscreen_passes: FRONT + 3,
+            bytes_per_pixel: self.bytes_per_pixel,
+            ..Default::default()
+        })
+    }
+}

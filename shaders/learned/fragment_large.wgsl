@@ -1,0 +1,17 @@
+// Weight pass: draw all transparent surfaces again into two rgba16float targets cleared to 0, blending ONE, ONE, ADD.
+// Each fragment reads its pixel's statistics, calls w = peelnet_fragment(..), and writes (alpha * rgb * w.x, alpha * w.x)
+// to the first target, `sums`, if w.y is 0 (it lies between the pixel's ends), else to the second, `ends`; zero to the
+// other one. Resolve over the background C_0 with T = exp(-moments.x), where T is not 1:
+//     k = (1 - T) / ends.a, at most 1 unless sums.a is 0
+//     ends.rgb * k + sums.rgb / sums.a * max(1 - T - ends.a * k, 0) + C_0 * T
+
+// The weight of a fragment, and its end (see PeelnetFeatures): 1 for the nearest, exp(-others) for the farthest, the
+// network's between them.
+fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec2f, fourth: f32) -> vec2f {
+    let f = peelnet_features(alpha, zeta, moments, extent);
+    let bounds = peelnet_share_bounds(alpha, zeta, f, extent, fourth);
+    let between = peelnet_weight(
+        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness, bounds.x, bounds.y);
+    let w = select(select(between, exp(-f.others), f.end == 2.0), 1.0, f.end == 1.0);
+    return vec2f(w, f.end);
+}

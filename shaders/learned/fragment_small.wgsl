@@ -1,0 +1,14 @@
+// Weight pass: draw all transparent surfaces again; each fragment reads its pixel's statistics and writes
+// (alpha * rgb * w, alpha * w) with w = peelnet_fragment(..).x to an rgba16float target cleared to 0, blending ONE, ONE,
+// ADD. Resolve over the background C_0 with T = exp(-moments.x), where T is not 1:
+//     sums.rgb / sums.a * (1 - T) + C_0 * T
+
+// The weight of a fragment, and its end (see PeelnetFeatures): 1 for the nearest, exp(-others) for the farthest, the
+// network's between them.
+fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec2f) -> vec2f {
+    let f = peelnet_features(alpha, zeta, moments, extent);
+    let between = peelnet_weight(
+        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness);
+    let w = select(select(between, exp(-f.others), f.end == 2.0), 1.0, f.end == 1.0);
+    return vec2f(w, f.end);
+}

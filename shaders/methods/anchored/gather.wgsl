@@ -1,0 +1,38 @@
+// Learned methods with anchors, pass 2: the exported text's weight.
+import package::helpers::absorbance::warped_depth;
+import package::learned::weight::peelnet_fragment;
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@group(1) @binding(0) var moments: texture_2d<f32>;
+@group(1) @binding(1) var extent: texture_2d<f32>;
+@if(fourth_moment)
+@group(1) @binding(2) var fourth: texture_2d<f32>;
+
+struct Sums {
+    @location(0) between: vec4f,
+    @if(separate_ends)
+    @location(1) ends: vec4f,
+}
+
+@fragment
+fn fragment_main(surface: Surface) -> Sums {
+    if !visible(surface) {
+        discard;
+    }
+    let pixel = vec2u(surface.position.xy);
+    let color = shade(surface);
+    let zeta = warped_depth(surface.depth_linear);
+    let m = textureLoad(moments, pixel, 0);
+    let e = textureLoad(extent, pixel, 0).xy;
+    @if(fourth_moment)
+    let w = peelnet_fragment(color.a, zeta, m, e, textureLoad(fourth, pixel, 0).x);
+    @else
+    let w = peelnet_fragment(color.a, zeta, m, e);
+    let sum = vec4f(color.rgb * color.a, color.a) * w.x;
+    @if(separate_ends)
+    return Sums(select(sum, vec4f(0.0), w.y > 0.0), select(vec4f(0.0), sum, w.y > 0.0));
+    @else
+    return Sums(sum);
+}

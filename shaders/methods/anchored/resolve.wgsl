@@ -1,0 +1,39 @@
+// Learned methods with anchors: eq 6's resolve, or the ends exact and the rest normalised to what they leave.
+// Twin of peelnet_core::methods::anchored.
+import package::helpers::guards::{SUM_FLOOR, HALF_MAX};
+import package::helpers::resolve::normalised;
+import package::helpers::screen::screen_corner;
+
+@group(0) @binding(0) var background: texture_2d<f32>;
+@group(0) @binding(1) var between: texture_2d<f32>;
+@group(0) @binding(2) var moments: texture_2d<f32>;
+@if(separate_ends)
+@group(0) @binding(3) var ends: texture_2d<f32>;
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
+    let sums = textureLoad(between, pixel, 0);
+    let transmittance = exp(-textureLoad(moments, pixel, 0).x);
+    let behind = textureLoad(background, pixel, 0).rgb;
+    @if(!separate_ends)
+    return normalised(sums, transmittance, behind);
+    @if(separate_ends) {
+        if transmittance == 1.0 {
+            return vec4f(behind, 0.0);
+        }
+        let coverage = 1.0 - transmittance;
+        let rest = min(sums, vec4f(HALF_MAX));
+        let exact = min(textureLoad(ends, pixel, 0), vec4f(HALF_MAX));
+        // All of it where nothing lies between; never more than there is.
+        let share = select(min(1.0, coverage / max(exact.a, SUM_FLOOR)), coverage / max(exact.a, SUM_FLOOR), rest.a == 0.0);
+        let left = max(coverage - exact.a * share, 0.0);
+        let color = exact.rgb * share + rest.rgb * (left / max(rest.a, SUM_FLOOR)) + behind * transmittance;
+        return vec4f(color, coverage);
+    }
+}

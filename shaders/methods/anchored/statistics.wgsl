@@ -1,0 +1,25 @@
+// Learned methods with anchors, pass 1: what the exported text's features are computed from.
+import package::helpers::absorbance::warped_depth;
+import package::learned::weight::peelnet_statistics;
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+struct Statistics {
+    @location(0) moments: vec4f,
+    @location(1) extent: vec2f,
+    @if(fourth_moment)
+    @location(2) fourth: f32,
+}
+
+@fragment
+fn fragment_main(surface: Surface) -> Statistics {
+    if !visible(surface) {
+        discard;
+    }
+    let s = peelnet_statistics(shade(surface).a, warped_depth(surface.depth_linear));
+    @if(fourth_moment)
+    return Statistics(s.moments, s.extent, s.fourth);
+    @else
+    return Statistics(s.moments, s.extent);
+}

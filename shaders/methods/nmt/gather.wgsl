@@ -1,0 +1,24 @@
+// nmt, pass 2: eq 6 with the weight that the exported network gives.
+import package::helpers::absorbance::warped_depth;
+import package::learned::weight::peelnet_fragment;
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@group(1) @binding(0) var absorbance: texture_2d<f32>;
+@group(1) @binding(1) var moments: texture_2d<f32>;
+
+@fragment
+fn fragment_main(surface: Surface) -> @location(0) vec4f {
+    if !visible(surface) {
+        discard;
+    }
+    let pixel = vec2u(surface.position.xy);
+    let color = shade(surface);
+    let weight = peelnet_fragment(
+        warped_depth(surface.depth_linear),
+        textureLoad(absorbance, pixel, 0).xy,
+        textureLoad(moments, pixel, 0),
+    );
+    return vec4f(color.rgb * color.a, color.a) * weight;
+}
