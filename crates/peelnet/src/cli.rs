@@ -1,6 +1,6 @@
 //! The commands and their flags. The names are fixed: scripts call them.
 
-use crate::parse::{Size, ViewCount, fraction, positive};
+use crate::parse::{MethodList, Size, ViewCount, fraction, positive};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use peelnet_dataset::{Format, Shard};
 use peelnet_gpu::AdapterRequest;
@@ -70,6 +70,8 @@ pub enum Command {
     Export(ExportArgs),
     /// Draw a scene with one method
     Render(RenderArgs),
+    /// Compare many methods: error against time
+    Bench(BenchArgs),
     /// Tell what a scene, a dataset or a model is
     Inspect(InspectArgs),
     /// Tell which adapters there are, which one is used and why
@@ -270,6 +272,39 @@ pub struct RenderArgs {
     pub size: Size,
 }
 
+/// `peelnet bench`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet bench data/scenes/cups.toml --out out/bench
+  peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
+  peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
+
+DIR gets results.json, results.csv, table.md and images/. A learned method takes the shipped model unless --models names
+another one of its recipe.")]
+pub struct BenchArgs {
+    /// Scene files
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Folder for everything that is written
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Methods to compare, with commas between them; a knob follows a colon
+    #[arg(long, value_name = "all|A,B", default_value = "all")]
+    pub methods: MethodList,
+    /// Model files of learned methods, with commas between them
+    #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',')]
+    pub models: Vec<PathBuf>,
+    /// Frames of each method and view that are timed, all methods in turn; 0 times the compared frame
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub frames: u32,
+    /// Frame size in pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x768")]
+    pub size: Size,
+    /// Views of each scene
+    #[arg(long, value_name = "N|all", default_value = "all")]
+    pub views: ViewCount,
+}
+
 /// `peelnet inspect`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
@@ -319,6 +354,7 @@ mod tests {
             "train d e --out m --recipe thesis --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
+            "bench s --out d --methods mboit4,wboit-eq9 --models m,n --frames 2 --size 8x8 --views 1",
             "inspect x --json",
             "doctor --json",
         ] {

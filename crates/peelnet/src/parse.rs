@@ -1,5 +1,6 @@
 //! Values of flags that have a syntax of their own.
 
+use peelnet_render::MethodSpec;
 use std::fmt;
 use std::str::FromStr;
 
@@ -102,9 +103,58 @@ pub fn command_line() -> String {
         .join(" ")
 }
 
+/// Methods of a comparison.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MethodList {
+    /// Every one there is.
+    All,
+    /// These.
+    These(Vec<MethodSpec>),
+}
+
+impl FromStr for MethodList {
+    type Err = String;
+
+    /// Commas stand between methods and between a method's knobs: what has no colon but an equals sign is a knob.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "all" {
+            return Ok(Self::All);
+        }
+        let mut names: Vec<String> = Vec::new();
+        for part in text.split(',') {
+            match names.last_mut() {
+                Some(last) if part.contains('=') && !part.contains(':') => {
+                    last.push(',');
+                    last.push_str(part);
+                }
+                _ => names.push(part.to_owned()),
+            }
+        }
+        names
+            .iter()
+            .map(|name| name.parse().map_err(|e| format!("{e}")))
+            .collect::<Result<_, _>>()
+            .map(Self::These)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn method_lists_keep_knobs_together() {
+        let list: MethodList = "mboit4:bias=1e-6,own=out,wboit-eq9"
+            .parse()
+            .expect("parses");
+        let MethodList::These(methods) = list else {
+            panic!("a list");
+        };
+        let names: Vec<_> = methods.iter().map(ToString::to_string).collect();
+        assert_eq!(names, ["mboit4:bias=1e-6,own=out", "wboit-eq9"]);
+        assert_eq!("all".parse(), Ok(MethodList::All));
+        assert!("mboit4,nothing".parse::<MethodList>().is_err());
+    }
 
     #[test]
     fn sizes() {

@@ -1,7 +1,7 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
 use crate::{EvalError, Row, metrics};
-use peelnet_gpu::Gpu;
+use peelnet_gpu::{Gpu, record::PassTime};
 use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::Scene;
 use std::path::Path;
@@ -19,6 +19,10 @@ pub struct Plan<'a> {
     pub methods: &'a [MethodSpec],
     /// Weights for the learned methods among them, found by recipe.
     pub learned: &'a [LearnedWeight],
+    /// Views of each scene; all of them when none.
+    pub views: Option<usize>,
+    /// Frames of each method and view that are timed, after the comparison and all methods in turn.
+    pub frames: u32,
     /// Where view 0 of every method is saved as `<scene>-<method>.png`.
     pub images: Option<&'a Path>,
 }
@@ -69,6 +73,10 @@ pub fn compare(
     let others = plan.methods.iter().filter(|m| m.to_string() != EXACT);
     let mut exact: Vec<Image> = Vec::with_capacity(scene.views.len());
     let mut rows = Vec::new();
+    let views = &scene.views[..plan
+        .views
+        .map_or(scene.views.len(), |n| n.min(scene.views.len()))];
+    let mut timed = Vec::new();
     for method in std::iter::once(&exact_method).chain(others) {
         let name = method.to_string();
         let learned = plan
@@ -78,7 +86,7 @@ pub fn compare(
         let mut prepared = renderer
             .prepare(method, plan.size, learned)
             .map_err(failed(&name))?;
-        for (view, camera) in scene.views.iter().enumerate() {
+        for (view, camera) in views.iter().enumerate() {
             if stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
@@ -100,6 +108,35 @@ pub fn compare(
             }
             drawn(&name);
         }
+        if plan.frames > 0 {
+            timed.push((name, prepared));
+        }
+    }
+    // In turn, so that whatever else the machine does hits all methods alike.
+    for (view, camera) in views.iter().enumerate() {
+        let mut times = vec![Vec::new(); timed.len()];
+        for _ in 0..plan.frames {
+            for ((name, prepared), times) in timed.iter_mut().zip(&mut times) {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(EvalError::Interrupted);
+                }
+                let (passes, wall) = renderer.time(prepared, camera).map_err(failed(name))?;
+                times.push(milliseconds(&passes).unwrap_or(wall / 1e3));
+                drawn(name);
+            }
+        }
+        for (k, mut times) in times.into_iter().enumerate() {
+            times.sort_by(f64::total_cmp);
+            let rank = |share: f64| {
+                let i = (share * times.len() as f64).ceil() as usize;
+                times.get(i.max(1) - 1).copied()
+            };
+            // Rows go method by method, view by view.
+            let row = &mut rows[k * views.len() + view];
+            row.time_ms = rank(0.5);
+            row.time_ms_min = times.first().copied();
+            row.time_ms_p90 = rank(0.9);
+        }
     }
     // Only the exact method knows the fragments of a view for certain.
     for k in 0..rows.len() {
@@ -107,6 +144,12 @@ pub fn compare(
         (rows[k].fragments, rows[k].max_layers) = (rows[view].fragments, rows[view].max_layers);
     }
     Ok(rows)
+}
+
+/// GPU time of a frame; none without timestamps.
+fn milliseconds(times: &[PassTime]) -> Option<f64> {
+    let micros: f64 = times.iter().map(|t| t.micros).sum();
+    (micros > 0.0).then_some(micros / 1e3)
 }
 
 fn row(
@@ -117,7 +160,6 @@ fn row(
     frame: &Frame,
     d: metrics::Differences,
 ) -> Row {
-    let micros: f64 = frame.times.iter().map(|t| t.micros).sum();
     Row {
         method: method.to_owned(),
         scene: scene.name.clone(),
@@ -136,7 +178,9 @@ fn row(
         covered_pixels: d.covered_pixels,
         dark_pixels: d.dark_pixels,
         non_finite_pixels: d.non_finite_pixels,
-        time_ms: (micros > 0.0).then_some(micros / 1e3),
+        time_ms: milliseconds(&frame.times),
+        time_ms_min: None,
+        time_ms_p90: None,
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
         bytes_per_pixel: frame.stats.bytes_per_pixel,
         adapter: gpu.info.name.clone(),

@@ -22,6 +22,7 @@ mod files;
 pub mod findings;
 mod machine;
 pub mod metrics;
+pub mod ratios;
 pub mod report;
 mod row;
 pub mod table;

@@ -2,7 +2,9 @@
 
 mod page;
 
-use crate::{EvalError, Machine, Row, findings::findings, table, table::Table, write_atomically};
+use crate::{
+    EvalError, Machine, Row, findings::findings, ratios, table, table::Table, write_atomically,
+};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -85,6 +87,53 @@ impl Record {
             table::markdown(&headings, &cells),
             self.machine.adapter,
             self.machine.cpu,
+            self.command,
+        )
+    }
+}
+
+/// A comparison of methods.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bench {
+    /// What it was measured on.
+    pub machine: Machine,
+    /// The command line.
+    pub command: String,
+    /// One row per method, scene and view.
+    pub rows: Vec<Row>,
+}
+
+impl Bench {
+    /// Writes `results.json`, `results.csv` and `table.md` into a folder.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
+        let mut json = serde_json::to_vec_pretty(self)
+            .expect("a record has string keys only, and floats serialise always");
+        json.push(b'\n');
+        write_atomically(&folder.join("results.json"), &json)?;
+        let mut table = csv::Writer::from_writer(Vec::new());
+        for row in &self.rows {
+            table.serialize(row).expect("a row has flat fields");
+        }
+        let csv = table.into_inner().expect("memory can be written");
+        write_atomically(&folder.join("results.csv"), &csv)?;
+        write_atomically(&folder.join("table.md"), self.markdown().as_bytes())
+    }
+
+    /// `table.md`: every method as ratios to the references.
+    pub fn markdown(&self) -> String {
+        format!(
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. Measured on \
+             {} ({}, {} cores) with `{}`.\n",
+            table::markdown(
+                &ratios::HEADINGS.map(str::to_owned),
+                &ratios::cells(&ratios::ratios(&self.rows))
+            ),
+            self.machine.adapter,
+            self.machine.cpu,
+            self.machine.cores,
             self.command,
         )
     }

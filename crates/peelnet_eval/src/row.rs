@@ -40,8 +40,13 @@ pub struct Row {
     pub dark_pixels: u64,
     /// Pixels with a component that is not finite.
     pub non_finite_pixels: u64,
-    /// GPU time of one frame, milliseconds: a single frame, no benchmark.
+    /// GPU time of a frame (clock time where the adapter has no timestamps), milliseconds: the median of the timed frames,
+    /// or of the one that was compared where none were timed.
     pub time_ms: Option<f64>,
+    /// The fastest timed frame.
+    pub time_ms_min: Option<f64>,
+    /// 90th percentile (nearest rank) of the timed frames.
+    pub time_ms_p90: Option<f64>,
     /// Geometry and full-screen passes.
     pub passes: u32,
     /// Bytes of the method's own targets and storage, per pixel.

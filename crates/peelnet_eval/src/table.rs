@@ -263,6 +263,8 @@ pub(crate) mod tests {
             dark_pixels: 0,
             non_finite_pixels: 0,
             time_ms: None,
+            time_ms_min: None,
+            time_ms_p90: None,
             passes: 1,
             bytes_per_pixel: 10.0,
             adapter: "test".to_owned(),

@@ -15,8 +15,10 @@ fn rows() -> TrainingData {
     TrainingData {
         source: "synthetic".to_owned(),
         inputs: vec![column(7.0, 5.0), column(3.3, 2.0), column(12.1, 11.0)],
-        target: column(0.5, 0.5),
-        held_out: None,
+        targets: vec![column(0.5, 0.5)],
+        weights: None,
+        pixels: None,
+        subsets: None,
         dataset: None,
     }
 }
@@ -34,7 +36,7 @@ fn epochs(c: &mut Criterion) {
             batch,
             epochs: 8,
             held_out: 0.0,
-            ..Config::for_recipe(Recipe::Thesis).expect("the thesis's recipe is built in")
+            ..Config::for_recipe(Recipe::Thesis)
         };
         group.bench_function(BenchmarkId::new("epoch", batch), |bencher| {
             // The loop times itself, so that normalisation and files are left out.

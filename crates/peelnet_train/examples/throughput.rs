@@ -34,15 +34,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let data = TrainingData {
         source: file.clone(),
         inputs: columns,
-        target,
-        held_out: None,
+        targets: vec![target],
+        weights: None,
+        pixels: None,
+        subsets: None,
         dataset: None,
     };
     let config = Config {
         batch: batch.parse()?,
         epochs: epochs.parse()?,
         held_out: 0.0,
-        ..Config::for_recipe(Recipe::Thesis)?
+        ..Config::for_recipe(Recipe::Thesis)
     };
     let folder = tempfile::tempdir()?;
     let stop = AtomicBool::new(false);

@@ -73,7 +73,7 @@ impl State {
             .flat_map(|row| {
                 [
                     row.train_loss,
-                    row.test_loss.unwrap_or(f64::NAN),
+                    row.held_out_loss.unwrap_or(f64::NAN),
                     row.seconds,
                     row.rows_per_s,
                 ]
@@ -216,13 +216,13 @@ impl State {
                 .collect();
             let mut lowest = f64::INFINITY;
             for (i, row) in values.chunks_exact(HISTORY).enumerate() {
-                let test_loss = (!row[1].is_nan()).then_some(row[1]);
-                let score = test_loss.unwrap_or(row[0]);
+                let held_out_loss = (!row[1].is_nan()).then_some(row[1]);
+                let score = held_out_loss.unwrap_or(row[0]);
                 history.push(EpochReport {
                     epoch: i as u32 + 1,
                     epochs: config.epochs,
                     train_loss: row[0],
-                    test_loss,
+                    held_out_loss,
                     seconds: row[2],
                     rows_per_s: row[3],
                     best: score < lowest,

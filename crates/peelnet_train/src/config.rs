@@ -5,6 +5,7 @@ use peelnet_model::Recipe;
 use serde::{Deserialize, Serialize};
 
 use crate::error::TrainError;
+use crate::recipe::Definition;
 
 /// Everything that decides the weights, except the data. Saved in the model file and beside the checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,8 +38,11 @@ pub struct Config {
     pub beta2: f64,
     /// Added to the root of the second moment.
     pub epsilon: f64,
-    /// Share of the examples held out, in `[0, 1)`.
+    /// Share of the examples held out for testing, in `[0, 1)`.
     pub held_out: f64,
+    /// Share of the examples that choices are made by, in `[0, 1)`: neither trained on nor tested with.
+    #[serde(default)]
+    pub validation: f64,
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
 }
@@ -76,12 +80,9 @@ impl Schedule {
 }
 
 impl Config {
-    /// The published settings of a recipe.
-    ///
-    /// # Errors
-    /// [`TrainError::Recipe`] when the trainer does not know the recipe.
-    pub fn for_recipe(recipe: Recipe) -> Result<Self, TrainError> {
-        Ok(crate::recipe::definition(recipe)?.config)
+    /// The settings that a recipe is trained with unless told otherwise.
+    pub fn for_recipe(recipe: Recipe) -> Self {
+        Definition::of(recipe).config
     }
 
     /// # Errors
@@ -129,12 +130,14 @@ impl Config {
                 "give a positive number",
             );
         }
-        if !(0.0..1.0).contains(&self.held_out) {
-            return bad(
-                "held_out",
-                self.held_out.to_string(),
-                "give a share from 0 to below 1",
-            );
+        for (setting, share) in [("held_out", self.held_out), ("validation", self.validation)] {
+            if !(0.0..1.0).contains(&share) || self.held_out + self.validation >= 1.0 {
+                return bad(
+                    setting,
+                    share.to_string(),
+                    "give a share from 0 to below 1, both together below 1",
+                );
+            }
         }
         if self.patience == Some(0) {
             return bad("patience", "0".into(), "give at least 1, or leave it out");
@@ -169,7 +172,7 @@ mod tests {
 
     #[test]
     fn settings_out_of_range_are_named() {
-        let good = Config::for_recipe(Recipe::Thesis).unwrap();
+        let good = Config::for_recipe(Recipe::Thesis);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
         let spoiled: [(&str, Spoil); 8] = [
@@ -192,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_config_survives_json_and_unknown_keys_are_refused() {
-        let config = Config::for_recipe(Recipe::Thesis).unwrap();
+        let config = Config::for_recipe(Recipe::Thesis);
         let mut json = serde_json::to_value(&config).unwrap();
         assert_eq!(
             serde_json::from_value::<Config>(json.clone()).unwrap(),

@@ -11,7 +11,7 @@ use crate::report::EpochReport;
 /// The forms of a loss curve, chosen by the file's ending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveFormat {
-    /// Columns epoch, train_loss, test_loss, seconds, rows_per_s.
+    /// Columns epoch, train_loss, held_out_loss, seconds, rows_per_s.
     Csv,
     /// Both losses over the epochs, logarithmic.
     Svg,
@@ -49,12 +49,19 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 fn csv(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(["epoch", "train_loss", "test_loss", "seconds", "rows_per_s"])?;
+    table.write_record([
+        "epoch",
+        "train_loss",
+        "held_out_loss",
+        "seconds",
+        "rows_per_s",
+    ])?;
     for row in history {
         table.write_record([
             row.epoch.to_string(),
             row.train_loss.to_string(),
-            row.test_loss.map_or(String::new(), |loss| loss.to_string()),
+            row.held_out_loss
+                .map_or(String::new(), |loss| loss.to_string()),
             format!("{:.4}", row.seconds),
             format!("{:.0}", row.rows_per_s),
         ])?;
@@ -67,7 +74,7 @@ fn svg(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
     let positive = || {
         history
             .iter()
-            .flat_map(|row| [Some(row.train_loss), row.test_loss])
+            .flat_map(|row| [Some(row.train_loss), row.held_out_loss])
             .flatten()
             .filter(|loss| *loss > 0.0)
     };
@@ -103,10 +110,10 @@ fn svg(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
             .draw_series(LineSeries::new(train_points, train.stroke_width(2)))?
             .label("training")
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], train.stroke_width(2)));
-        if history.iter().any(|r| r.test_loss.is_some()) {
+        if history.iter().any(|r| r.held_out_loss.is_some()) {
             let points = history
                 .iter()
-                .filter_map(|r| r.test_loss.map(|loss| (r.epoch, loss.max(low))));
+                .filter_map(|r| r.held_out_loss.map(|loss| (r.epoch, loss.max(low))));
             chart
                 .draw_series(LineSeries::new(points, test.stroke_width(2)))?
                 .label("held out")
@@ -130,12 +137,12 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn row(epoch: u32, train_loss: f64, test_loss: Option<f64>) -> EpochReport {
+    fn row(epoch: u32, train_loss: f64, held_out_loss: Option<f64>) -> EpochReport {
         EpochReport {
             epoch,
             epochs: 3,
             train_loss,
-            test_loss,
+            held_out_loss,
             seconds: 0.5,
             rows_per_s: 1234.5,
             best: false,
@@ -149,7 +156,7 @@ mod tests {
         write_curve(&path, &[row(1, 0.25, Some(0.5)), row(2, 0.125, None)]).unwrap();
         assert_eq!(
             std::fs::read_to_string(path).unwrap(),
-            "epoch,train_loss,test_loss,seconds,rows_per_s\n1,0.25,0.5,0.5000,1234\n2,0.125,,0.5000,1234\n"
+            "epoch,train_loss,held_out_loss,seconds,rows_per_s\n1,0.25,0.5,0.5000,1234\n2,0.125,,0.5000,1234\n"
         );
     }
 

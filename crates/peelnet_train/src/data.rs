@@ -1,130 +1,126 @@
 //! From datasets to columns.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use peelnet_dataset::{Column, ColumnData, Dataset, Split, Subset};
 use peelnet_model::{DatasetRef, Model, Recipe};
 
 use crate::config::Config;
 use crate::error::TrainError;
-use crate::recipe;
+use crate::pixels;
 use crate::training_data::TrainingData;
 
 impl TrainingData {
     /// The rows of all scenes that are not held out, dataset after dataset.
     ///
-    /// Of these, the share [`Config::held_out`] is set aside by whole pixels: the fragments of a pixel have their sum
+    /// Of these, the shares [`Config::held_out`] and [`Config::validation`] are set aside by whole pixels: the fragments of a pixel have their sum
     /// and count in common and say almost everything about one another.
     ///
     /// # Errors
-    /// A dataset that cannot be read, or a recipe that does not take columns as they are.
+    /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
-        let mut columns = columns(config.recipe)?;
-        let features = columns.len() - 1;
-        columns.extend([Column::View, Column::X, Column::Y]);
-        let mut inputs = vec![Vec::new(); features];
-        let mut target = Vec::new();
-        let mut held_out = Vec::new();
-        let mut scenes = BTreeSet::new();
-        let split = Split::new(config.seed, 0.0, config.held_out)?;
-        for dataset in datasets {
-            let mut data =
-                dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
-            let pixels = data.split_off(features + 1);
-            if let [view, x, y] = pixels.as_slice()
-                && let (Some(view), Some(x), Some(y)) = (view.as_u32(), x.as_u32(), y.as_u32())
-            {
-                held_out.extend(
-                    view.iter()
-                        .zip(x.iter().zip(y))
-                        .map(|(&view, (&x, &y))| split.pixel(view, x, y) == Subset::Test),
-                );
-            }
-            for (into, column) in inputs.iter_mut().chain([&mut target]).zip(data) {
-                match column {
-                    ColumnData::F32(values) if into.is_empty() => *into = values,
-                    ColumnData::F32(values) => into.extend(values),
-                    // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
-                    ColumnData::U32(values) => into.extend(values.iter().map(|&v| v as f32)),
-                }
-            }
-            let manifest = dataset.manifest();
-            scenes.extend(
-                manifest
-                    .parts
-                    .iter()
-                    .filter(|part| !dataset.is_held_out(part))
-                    .map(|part| manifest.scenes[part.scene as usize].name.clone()),
-            );
-        }
+        let split = Split::new(config.seed, config.validation, config.held_out)?;
+        let mut data = if config.recipe == Recipe::Thesis {
+            thesis_rows(&split, datasets)?
+        } else {
+            pixels::gather(config.recipe, &split, datasets)?
+        };
         let paths: Vec<String> = datasets
             .iter()
             .map(|d| d.path().display().to_string())
             .collect();
+        data.source = paths.join(", ");
         let hashes: Vec<&str> = datasets.iter().map(Dataset::hash).collect();
-        // A handful of pixels may all fall on one side: then the trainer draws rows.
-        let usable =
-            held_out.contains(&false) && (config.held_out == 0.0 || held_out.contains(&true));
-        Ok(Self {
-            source: paths.join(", "),
-            dataset: Some(DatasetRef {
-                hash: hashes.join("+"),
-                rows: target.len() as u64,
-                scenes: scenes.into_iter().collect(),
-            }),
-            held_out: usable.then_some(held_out),
-            inputs,
-            target,
-        })
+        let rows = datasets.iter().flat_map(|d| {
+            let ours = d.manifest().parts.iter();
+            ours.filter(|part| !d.is_held_out(part)).map(|p| p.rows)
+        });
+        data.dataset = Some(DatasetRef {
+            hash: hashes.join("+"),
+            rows: rows.sum(),
+            scenes: pixels::training_scenes(datasets).into_iter().collect(),
+        });
+        // A handful of pixels may all fall on one side: then the trainer draws examples.
+        let there = |subset, share: f64| {
+            share == 0.0 || data.subsets.iter().flatten().any(|&s| s == subset)
+        };
+        let usable = there(Subset::Train, 1.0)
+            && there(Subset::Test, config.held_out)
+            && there(Subset::Validation, config.validation);
+        data.subsets = data.subsets.take().filter(|_| usable);
+        Ok(data)
     }
 }
 
-/// The recipe's features as columns of the dataset, then the target.
-fn columns(recipe: Recipe) -> Result<Vec<Column>, TrainError> {
-    let mut columns = recipe::definition(recipe)?
-        .features
+/// The thesis's rows: columns as they are.
+fn thesis_rows(split: &Split, datasets: &[Dataset]) -> Result<TrainingData, TrainError> {
+    let names = Recipe::Thesis.input_names();
+    let mut columns: Vec<Column> = names
         .iter()
-        .map(|feature| Column::from_name(feature.name).ok_or(TrainError::Recipe(recipe)))
-        .collect::<Result<Vec<_>, _>>()?;
-    columns.push(Column::Transmittance);
-    Ok(columns)
+        .filter_map(|name| Column::from_name(name))
+        .collect();
+    columns.extend([Column::Transmittance, Column::View, Column::X, Column::Y]);
+    let mut inputs = vec![Vec::new(); names.len()];
+    let mut targets = vec![Vec::new()];
+    let mut subsets = Vec::new();
+    for dataset in datasets {
+        let mut data = dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
+        let pixels = data.split_off(names.len() + 1);
+        if let [view, x, y] = pixels.as_slice()
+            && let (Some(view), Some(x), Some(y)) = (view.as_u32(), x.as_u32(), y.as_u32())
+        {
+            subsets.extend(
+                view.iter()
+                    .zip(x.iter().zip(y))
+                    .map(|(&view, (&x, &y))| split.pixel(view, x, y)),
+            );
+        }
+        for (into, column) in inputs.iter_mut().chain(&mut targets).zip(data) {
+            match column {
+                ColumnData::F32(values) if into.is_empty() => *into = values,
+                ColumnData::F32(values) => into.extend(values),
+                // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
+                ColumnData::U32(values) => into.extend(values.iter().map(|&v| v as f32)),
+            }
+        }
+    }
+    Ok(TrainingData {
+        source: String::new(),
+        inputs,
+        targets,
+        weights: None,
+        pixels: None,
+        subsets: Some(subsets),
+        dataset: None,
+    })
 }
 
-/// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records.
+/// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records. Empty for a
+/// network that predicts no transmittance.
 ///
 /// [`Metadata::held_out`]: peelnet_model::Metadata::held_out
 ///
 /// # Errors
-/// A dataset that cannot be read, or a model whose inputs are not columns.
+/// A dataset that cannot be read.
 pub fn held_out_errors(
     model: &Model,
     datasets: &[Dataset],
 ) -> Result<BTreeMap<String, f64>, TrainError> {
-    let columns = columns(model.meta.recipe)?;
     let mut sums: BTreeMap<String, (f64, u64)> = BTreeMap::new();
     for dataset in datasets {
         let manifest = dataset.manifest();
-        for (scene, entry) in manifest.scenes.iter().enumerate() {
-            if !entry.held_out {
-                continue;
-            }
-            let data = dataset.read_columns_where(&columns, |part| part.scene as usize == scene)?;
-            let sum = sums.entry(entry.name.clone()).or_default();
-            let value = |column: &ColumnData, row: usize| match column {
-                ColumnData::F32(values) => values[row],
-                ColumnData::U32(values) => values[row] as f32,
-            };
-            let (target, inputs) = data
-                .split_last()
-                .expect("the target is always among the columns");
-            let mut raw = vec![0.0; inputs.len()];
-            for row in 0..target.len() {
-                for (into, column) in raw.iter_mut().zip(inputs) {
-                    *into = value(column, row);
+        for part in manifest.parts.iter().filter(|p| dataset.is_held_out(p)) {
+            let sum = sums
+                .entry(manifest.scenes[part.scene as usize].name.clone())
+                .or_default();
+            let warp = pixels::warp(dataset, part)?;
+            pixels::for_each_pixel(dataset, part, |_, pixel| {
+                let weights = pixels::weights(model, pixel, &warp);
+                for (w, &t) in weights.iter().zip(pixel.transmittance) {
+                    sum.0 += (w - f64::from(t)).abs();
+                    sum.1 += 1;
                 }
-                sum.0 += f64::from(model.forward_raw(&raw)[0] - value(target, row)).abs();
-                sum.1 += 1;
-            }
+            })?;
         }
     }
     Ok(sums

@@ -2,14 +2,9 @@
 
 use std::path::PathBuf;
 
-use peelnet_model::Recipe;
-
 /// Why training did not start or did not finish.
 #[derive(Debug, thiserror::Error)]
 pub enum TrainError {
-    /// The trainer has no definition for the recipe.
-    #[error("recipe {0:?} cannot be trained: only `thesis` is built in")]
-    Recipe(Recipe),
     /// A hyper-parameter is out of its range.
     #[error("setting `{setting}` is {value}: {mend}")]
     Config {

@@ -1,4 +1,4 @@
-//! Single fragments, mean squared error: the thesis's way to train.
+//! Single rows, (weighted) mean squared error: the thesis's way to train, and its successors'.
 
 use std::ops::Range;
 
@@ -14,8 +14,10 @@ use crate::training_data::TrainingData;
 struct Columns {
     /// `[features, rows]`
     inputs: Tensor<2>,
-    /// `[1, rows]`
+    /// `[outputs, rows]`
     target: Tensor<2>,
+    /// `[1, rows]`
+    weight: Option<Tensor<2>>,
     rows: usize,
 }
 
@@ -32,10 +34,17 @@ impl Columns {
             .zip(&data.inputs)
             .flat_map(|(normalisation, values)| normalisation.apply(values, rows))
             .collect();
-        let target: Vec<f32> = rows.iter().map(|&row| data.target[row as usize]).collect();
+        let pick = |values: &Vec<f32>| -> Vec<f32> {
+            rows.iter().map(|&row| values[row as usize]).collect()
+        };
+        let target: Vec<f32> = data.targets.iter().flat_map(pick).collect();
+        let upload = |values: Vec<f32>, columns: usize| {
+            Tensor::from_data(TensorData::new(values, [columns, n]), device)
+        };
         Self {
-            inputs: Tensor::from_data(TensorData::new(inputs, [normalisation.len(), n]), device),
-            target: Tensor::from_data(TensorData::new(target, [1, n]), device),
+            inputs: upload(inputs, normalisation.len()),
+            target: upload(target, data.targets.len()),
+            weight: data.weights.as_ref().map(|w| upload(pick(w), 1)),
             rows: n,
         }
     }
@@ -45,6 +54,7 @@ impl Columns {
 pub(crate) struct FragmentMse {
     original: Columns,
     shuffled: Columns,
+    validation: Columns,
     test: Columns,
     device: Device,
 }
@@ -60,11 +70,13 @@ impl FragmentMse {
         let shuffled = Columns {
             inputs: original.inputs.clone(),
             target: original.target.clone(),
+            weight: original.weight.clone(),
             rows: original.rows,
         };
         Self {
             original,
             shuffled,
+            validation: Columns::new(data, normalisation, &split.validation, device),
             test: Columns::new(data, normalisation, &split.test, device),
             device: device.clone(),
         }
@@ -75,6 +87,7 @@ impl Task for FragmentMse {
     fn examples(&self, part: Part) -> usize {
         match part {
             Part::Train => self.original.rows,
+            Part::Validation => self.validation.rows,
             Part::Test => self.test.rows,
         }
     }
@@ -85,17 +98,23 @@ impl Task for FragmentMse {
         let indices =
             Tensor::<1, Int>::from_data(TensorData::new(indices, [order.len()]), &self.device);
         self.shuffled.inputs = self.original.inputs.clone().select(1, indices.clone());
+        self.shuffled.weight = (self.original.weight.clone()).map(|w| w.select(1, indices.clone()));
         self.shuffled.target = self.original.target.clone().select(1, indices);
     }
 
     fn loss_sum(&self, network: &Network, part: Part, range: Range<usize>) -> Tensor<1> {
         let columns = match part {
             Part::Train => &self.shuffled,
+            Part::Validation => &self.validation,
             Part::Test => &self.test,
         };
         let inputs = columns.inputs.clone().narrow(1, range.start, range.len());
         let target = columns.target.clone().narrow(1, range.start, range.len());
         let difference = network.forward(inputs) - target;
-        (difference.clone() * difference).sum()
+        let squared = difference.clone() * difference;
+        match &columns.weight {
+            Some(weight) => (squared * weight.clone().narrow(1, range.start, range.len())).sum(),
+            None => squared.sum(),
+        }
     }
 }

@@ -4,7 +4,7 @@ use peelnet_core::mlp::Activation;
 use peelnet_model::{Output, Recipe};
 
 use crate::config::{Config, Schedule};
-use crate::error::TrainError;
+use crate::pixels;
 
 /// An input of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub struct Feature {
 #[derive(Clone, Debug)]
 pub struct Definition {
     /// Inputs, in order.
-    pub features: &'static [Feature],
+    pub features: Vec<Feature>,
     /// What the network's answer means.
     pub output: Output,
     /// Width of the last layer.
@@ -29,56 +29,73 @@ pub struct Definition {
     pub config: Config,
 }
 
-const THESIS: &[Feature] = &[
-    Feature {
-        name: "linear_depth",
-        unit: "scene units",
-    },
-    Feature {
-        name: "alpha_sum",
-        unit: "1",
-    },
-    Feature {
-        name: "fragment_count",
-        unit: "1",
-    },
-];
-
-/// Looks a recipe up.
-pub(crate) fn definition(recipe: Recipe) -> Result<Definition, TrainError> {
-    match recipe {
-        Recipe::Thesis => Ok(Definition {
-            features: THESIS,
-            output: Output::Transmittance,
-            outputs: 1,
-            config: Config {
-                recipe,
-                seed: 1,
-                hidden: vec![10, 8],
-                hidden_activation: Activation::Relu,
-                output_activation: Activation::Identity,
-                epochs: 150,
-                batch: 128,
-                chunk: 2048,
-                learning_rate: 1e-4,
-                schedule: Schedule::Constant,
-                beta1: 0.9,
-                beta2: 0.999,
-                epsilon: 1e-8,
-                held_out: 1.0 / 3.0,
-                patience: None,
-            },
-        }),
-        other => Err(TrainError::Recipe(other)),
-    }
-}
-
 impl Definition {
-    /// The definition of a recipe.
-    ///
-    /// # Errors
-    /// [`TrainError::Recipe`] when the trainer does not know it.
-    pub fn of(recipe: Recipe) -> Result<Self, TrainError> {
-        definition(recipe)
+    /// The definition of a recipe. The networks and the thesis's settings are published; those of our own networks were
+    /// chosen on validation pixels.
+    pub fn of(recipe: Recipe) -> Self {
+        let features = recipe
+            .input_names()
+            .iter()
+            .map(|&name| Feature {
+                name,
+                unit: pixels::unit(name),
+            })
+            .collect();
+        let thesis = Config {
+            recipe,
+            seed: 1,
+            hidden: vec![10, 8],
+            hidden_activation: Activation::Relu,
+            output_activation: Activation::Identity,
+            epochs: 150,
+            batch: 128,
+            chunk: 2048,
+            learning_rate: 1e-4,
+            schedule: Schedule::Constant,
+            beta1: 0.9,
+            beta2: 0.999,
+            epsilon: 1e-8,
+            held_out: 1.0 / 3.0,
+            validation: 0.0,
+            patience: None,
+        };
+        let pixels = |hidden: &[usize]| Config {
+            hidden: hidden.to_vec(),
+            output_activation: Activation::Sigmoid,
+            epochs: 24,
+            batch: 1024,
+            chunk: 256,
+            learning_rate: 4e-3,
+            schedule: Schedule::OneCycle { warmup: 0.2 },
+            held_out: 0.1,
+            validation: 0.1,
+            ..thesis.clone()
+        };
+        // The competitors' batches are rows: as many fragments as ours have on average.
+        let rows = |hidden: &[usize]| Config {
+            batch: 8192,
+            chunk: 2048,
+            ..pixels(hidden)
+        };
+        let (output, config) = match recipe {
+            Recipe::Thesis => (Output::Transmittance, thesis),
+            Recipe::Small => (Output::AnchoredShare, pixels(&[8])),
+            Recipe::Medium => (Output::AnchoredShareSeparateEnds, pixels(&[8, 8])),
+            Recipe::Large => (Output::AnchoredShareSeparateEnds, pixels(&[14, 9])),
+            Recipe::Nmt => (Output::Transmittance, rows(&[32, 16])),
+            Recipe::Dfaoit => (
+                Output::TailColor,
+                Config {
+                    batch: 1024,
+                    ..rows(&[32, 16])
+                },
+            ),
+        };
+        Self {
+            features,
+            output,
+            outputs: output.count(),
+            config,
+        }
     }
 }

@@ -14,7 +14,7 @@ pub struct EpochReport {
     /// Mean loss of the training examples, each measured before the step that learnt from it.
     pub train_loss: f64,
     /// Mean loss of the held-out examples after the epoch; none when nothing is held out.
-    pub test_loss: Option<f64>,
+    pub held_out_loss: Option<f64>,
     /// Wall-clock time of the training part of the epoch.
     pub seconds: f64,
     /// Training examples per second.

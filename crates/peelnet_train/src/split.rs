@@ -1,15 +1,18 @@
 //! Which examples are held out.
 
+use peelnet_dataset::Subset;
+
 use crate::random::{Random, Stream};
 
-/// Indices of the training and of the held-out examples, both ascending.
+/// Indices of the examples of each part, ascending.
 pub(crate) struct Split {
     pub(crate) train: Vec<u32>,
+    pub(crate) validation: Vec<u32>,
     pub(crate) test: Vec<u32>,
 }
 
 impl Split {
-    /// Draws `⌊n·share⌋` examples at random from the seed. At least one example is left for training.
+    /// Draws `⌊n·share⌋` examples for testing at random from the seed. At least one example is left for training.
     pub(crate) fn random(n: u32, share: f64, seed: u64) -> Self {
         let held_out = (f64::from(n) * share) as usize;
         let order = Random::new(seed, Stream::Split).permutation(n);
@@ -21,22 +24,24 @@ impl Split {
         };
         Self {
             train: sorted(train),
+            validation: Vec::new(),
             test: sorted(test),
         }
     }
 
-    /// As the mask says: true is held out.
-    pub(crate) fn from_mask(held_out: &[bool]) -> Self {
-        let rows = |wanted: bool| {
+    /// As the subsets say.
+    pub(crate) fn of(subsets: &[Subset]) -> Self {
+        let examples = |wanted: Subset| {
             (0u32..)
-                .zip(held_out)
-                .filter(|&(_, &held_out)| held_out == wanted)
-                .map(|(row, _)| row)
+                .zip(subsets)
+                .filter(|&(_, &subset)| subset == wanted)
+                .map(|(example, _)| example)
                 .collect()
         };
         Self {
-            train: rows(false),
-            test: rows(true),
+            train: examples(Subset::Train),
+            validation: examples(Subset::Validation),
+            test: examples(Subset::Test),
         }
     }
 }
@@ -47,14 +52,22 @@ mod tests {
 
     #[test]
     fn a_third_is_held_out_and_no_row_is_lost() {
-        let Split { train, test } = Split::random(3000, 1.0 / 3.0, 5);
+        let Split { train, test, .. } = Split::random(3000, 1.0 / 3.0, 5);
         assert_eq!((train.len(), test.len()), (2000, 1000));
         let mut all: Vec<u32> = train.into_iter().chain(test).collect();
         all.sort_unstable();
         assert_eq!(all, (0..3000).collect::<Vec<_>>());
         let one = Split::random(1, 0.9, 5);
         assert_eq!((one.train.len(), one.test.len()), (1, 0));
-        let mask = Split::from_mask(&[false, true, false]);
-        assert_eq!((mask.train, mask.test), (vec![0, 2], vec![1]));
+        let named = Split::of(&[
+            Subset::Train,
+            Subset::Test,
+            Subset::Validation,
+            Subset::Train,
+        ]);
+        assert_eq!(
+            (named.train, named.validation, named.test),
+            (vec![0, 3], vec![2], vec![1])
+        );
     }
 }

@@ -6,12 +6,14 @@ use burn::tensor::Tensor;
 
 use crate::network::Network;
 
-/// The two halves of the examples.
+/// What examples are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Those that gradients come from.
     Train,
-    /// Those that are held out.
+    /// Those that choices are made by.
+    Validation,
+    /// Those that are only reported.
     Test,
 }
 

@@ -17,8 +17,9 @@ use crate::error::TrainError;
 use crate::fragment_mse::FragmentMse;
 use crate::network::Shape;
 use crate::normalise::Normalisation;
+use crate::pixel_share::PixelShare;
 use crate::random::{Random, Stream};
-use crate::recipe::{self, Definition};
+use crate::recipe::Definition;
 use crate::report::{End, EpochReport, Outcome};
 use crate::split::Split;
 use crate::task::{Part, Task};
@@ -86,19 +87,35 @@ pub fn train(
             });
         }
     }
-    let definition = recipe::definition(config.recipe)?;
-    data.check(definition.features)?;
-    let split = match &data.held_out {
-        Some(held_out) => Split::from_mask(held_out),
-        None => Split::random(data.rows() as u32, config.held_out, config.seed),
+    let definition = Definition::of(config.recipe);
+    data.check(&definition.features)?;
+    let split = match &data.subsets {
+        Some(subsets) => Split::of(subsets),
+        None => Split::random(data.examples() as u32, config.held_out, config.seed),
     };
+    let pixel_rows: Option<Vec<u32>> = data.pixels.as_ref().map(|pixels| {
+        let examples = split.train.iter();
+        examples
+            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
+            .collect()
+    });
+    let training_rows = pixel_rows.as_ref().unwrap_or(&split.train);
     let normalisation: Vec<Normalisation> = data
         .inputs
         .iter()
-        .map(|values| Normalisation::over(values, &split.train))
+        .map(|values| Normalisation::over(values, training_rows))
         .collect();
     let device = options.compute.device();
-    let mut task = FragmentMse::new(data, &normalisation, &split, &device);
+    let mut task: Box<dyn Task> = match &data.pixels {
+        Some(pixels) => Box::new(PixelShare::new(
+            data,
+            pixels,
+            &normalisation,
+            [&split.train, &split.validation, &split.test],
+            &device,
+        )),
+        None => Box::new(FragmentMse::new(data, &normalisation, &split, &device)),
+    };
     let run = Run {
         config,
         definition: &definition,
@@ -111,7 +128,7 @@ pub fn train(
         shape: shape(config, &definition),
         folder: checkpoint::folder(&options.out),
     };
-    run.go(&mut task, on_epoch)
+    run.go(task.as_mut(), on_epoch)
 }
 
 fn shape(config: &Config, definition: &Definition) -> Shape {
@@ -154,7 +171,7 @@ struct Pass {
     parameters: Tensor<1>,
     adam: Adam,
     train_loss: f64,
-    test_loss: Option<f64>,
+    held_out_loss: Option<f64>,
     seconds: f64,
 }
 
@@ -207,16 +224,16 @@ impl Run<'_> {
                 parameters,
                 adam,
                 train_loss,
-                test_loss,
+                held_out_loss,
                 seconds,
             }) = self.epoch(epoch, task, &progress)
             else {
                 break End::Interrupted;
             };
-            if let Some(what) = self.not_finite(train_loss, test_loss, &parameters) {
+            if let Some(what) = self.not_finite(train_loss, held_out_loss, &parameters) {
                 return Err(self.diverged(epoch, what, &progress));
             }
-            let score = test_loss.unwrap_or(train_loss);
+            let score = held_out_loss.unwrap_or(train_loss);
             let best = self.score(&progress).is_none_or(|lowest| score < lowest);
             if best {
                 progress.best = Some((epoch, parameters.clone()));
@@ -227,7 +244,7 @@ impl Run<'_> {
                 epoch,
                 epochs: self.config.epochs,
                 train_loss,
-                test_loss,
+                held_out_loss,
                 seconds,
                 rows_per_s: task.examples(Part::Train) as f64 / seconds.max(f64::MIN_POSITIVE),
                 best,
@@ -248,7 +265,18 @@ impl Run<'_> {
             Some((epoch, parameters)) if self.config.patience.is_some() => (*epoch, parameters),
             _ => (progress.history.len() as u32, &progress.parameters),
         };
-        let model = self.model(chosen.0, chosen.1, &progress.history, &self.options.out)?;
+        let mut model = self.model(chosen.0, chosen.1, &progress.history, &self.options.out)?;
+        if task.examples(Part::Validation) > 0 {
+            let losses = &mut model.meta.losses;
+            losses.validation = losses.validation.or(losses.test);
+            losses.test = Team::with(
+                self.threads,
+                &*task,
+                &self.shape,
+                self.config.chunk,
+                |team| mean_loss(team, chosen.1, Part::Test),
+            );
+        }
         if end != End::Interrupted {
             save_model(&model, &self.options.out)?;
         }
@@ -291,10 +319,10 @@ impl Run<'_> {
             }
             let train_loss = total(losses) / examples as f64;
             let seconds = begin.elapsed().as_secs_f64();
-            let test_loss = held_out_loss(team, &parameters);
+            let held_out_loss = held_out_loss(team, &parameters);
             Some(Pass {
                 train_loss,
-                test_loss,
+                held_out_loss,
                 seconds,
                 parameters,
                 adam,
@@ -319,18 +347,18 @@ impl Run<'_> {
     fn score(&self, progress: &Progress) -> Option<f64> {
         let (epoch, _) = progress.best.as_ref()?;
         let row = &progress.history[*epoch as usize - 1];
-        Some(row.test_loss.unwrap_or(row.train_loss))
+        Some(row.held_out_loss.unwrap_or(row.train_loss))
     }
 
     fn not_finite(
         &self,
         train_loss: f64,
-        test_loss: Option<f64>,
+        held_out_loss: Option<f64>,
         parameters: &Tensor<1>,
     ) -> Option<&'static str> {
         if !train_loss.is_finite() {
             Some("the training loss")
-        } else if test_loss.is_some_and(|loss| !loss.is_finite()) {
+        } else if held_out_loss.is_some_and(|loss| !loss.is_finite()) {
             Some("the held-out loss")
         } else if download(parameters).iter().any(|v| !v.is_finite()) {
             Some("a weight")
@@ -419,7 +447,7 @@ impl Run<'_> {
             error,
         };
         let row = (epoch as usize).checked_sub(1).and_then(|i| history.get(i));
-        let held_out = row.and_then(|r| r.test_loss);
+        let held_out = row.and_then(|r| r.held_out_loss);
         let chosen_by_it = self.config.patience.is_some();
         let inputs = self
             .definition
@@ -471,11 +499,16 @@ impl Run<'_> {
     }
 }
 
-/// Mean held-out loss; none when nothing is held out.
+/// Mean loss of what an epoch is judged by: the validation examples, or the test examples where there are none.
 fn held_out_loss(team: &Team<'_>, parameters: &Tensor<1>) -> Option<f64> {
-    let losses = team.losses(parameters, Part::Test);
-    let examples = team.examples(Part::Test);
-    (examples > 0).then(|| total(losses) / examples as f64)
+    mean_loss(team, parameters, Part::Validation)
+        .or_else(|| mean_loss(team, parameters, Part::Test))
+}
+
+/// Mean loss of a part; none when it is empty.
+fn mean_loss(team: &Team<'_>, parameters: &Tensor<1>, part: Part) -> Option<f64> {
+    let examples = team.examples(part);
+    (examples > 0).then(|| total(team.losses(parameters, part)) / examples as f64)
 }
 
 fn save_model(model: &Model, path: &Path) -> Result<(), TrainError> {

@@ -1,30 +1,66 @@
 //! The columns that training reads.
 
+use std::ops::Range;
+
+use peelnet_dataset::Subset;
 use peelnet_model::DatasetRef;
 
 use crate::error::TrainError;
 use crate::recipe::Feature;
 
-/// Rows in memory, by column. All columns are as long as `target`.
+/// Rows in memory, by column. All columns are equally long.
+///
+/// An *example* is what batches count: a row, or a pixel with all of its rows where there are [`TrainingData::pixels`].
 #[derive(Clone, Debug)]
 pub struct TrainingData {
     /// Where the rows are from, for messages: a path.
     pub source: String,
     /// One column per input, in the recipe's order and in raw units (scene units, counts).
     pub inputs: Vec<Vec<f32>>,
-    /// What the network should answer.
-    pub target: Vec<f32>,
-    /// Which rows are held out, as long as `target`. Without it, [`Config::held_out`](crate::Config::held_out) of the
-    /// rows are drawn from the seed.
-    pub held_out: Option<Vec<bool>>,
+    /// What the network should answer, one column per output; for pixels, how much of each fragment is seen (`α T`).
+    pub targets: Vec<Vec<f32>>,
+    /// Weight of each example's loss; 1 without it.
+    pub weights: Option<Vec<f32>>,
+    /// Which rows make a pixel, for recipes that learn from whole pixels.
+    pub pixels: Option<PixelColumns>,
+    /// The subset of each example. Without it, [`Config::held_out`](crate::Config::held_out) of them are drawn from the
+    /// seed for testing.
+    pub subsets: Option<Vec<Subset>>,
     /// Recorded in the model file.
     pub dataset: Option<DatasetRef>,
+}
+
+/// What whole pixels have beside their rows. A row is a fragment that the network is asked about.
+#[derive(Clone, Debug, Default)]
+pub struct PixelColumns {
+    /// First row of each pixel.
+    pub first: Vec<u32>,
+    /// Absorbance of the pixel's other fragments, for each row.
+    pub others: Vec<f32>,
+    /// Opacity, for each row.
+    pub alpha: Vec<f32>,
+    /// For each pixel: the coverage that is left to distribute, then sums over the fragments that take part without a
+    /// network: of their contribution `a`, of `a²`, of `a` times the exact one `y`, of `y²`.
+    pub fixed: Vec<[f32; 5]>,
+}
+
+impl PixelColumns {
+    /// The rows of a pixel, of `rows` in all.
+    pub(crate) fn rows(&self, pixel: usize, rows: usize) -> Range<u32> {
+        let end = self.first.get(pixel + 1).map_or(rows as u32, |&row| row);
+        self.first[pixel]..end
+    }
 }
 
 impl TrainingData {
     /// Number of rows.
     pub fn rows(&self) -> usize {
-        self.target.len()
+        self.targets.first().map_or(0, Vec::len)
+    }
+
+    /// Number of examples.
+    pub fn examples(&self) -> usize {
+        self.pixels.as_ref().map_or(self.rows(), |p| p.first.len())
     }
 
     /// # Errors
@@ -69,23 +105,24 @@ impl TrainingData {
                 ));
             }
         }
-        if let Some(held_out) = &self.held_out {
-            if held_out.len() != self.rows() {
+        if let Some(subsets) = &self.subsets {
+            if subsets.len() != self.examples() {
                 return columns(format!(
-                    "the split has {} rows, but the target has {}",
-                    held_out.len(),
-                    self.rows()
+                    "the split has {} examples, but there are {}",
+                    subsets.len(),
+                    self.examples()
                 ));
             }
-            if held_out.iter().all(|&row| row) {
+            if !subsets.contains(&Subset::Train) {
                 return columns(
                     "every row is held out, none is left to train on; hold out a smaller share"
                         .into(),
                 );
             }
         }
-        let named = features.iter().map(|f| f.name).chain(["target"]);
-        for (name, values) in named.zip(self.inputs.iter().chain([&self.target])) {
+        let named = features.iter().map(|f| f.name);
+        let named = named.chain(std::iter::repeat("target"));
+        for (name, values) in named.zip(self.inputs.iter().chain(&self.targets)) {
             if let Some(row) = values.iter().position(|v| !v.is_finite()) {
                 return Err(TrainError::Value {
                     data: self.source.clone(),
@@ -101,7 +138,7 @@ impl TrainingData {
     /// Tells whether a checkpoint was made with the same rows: a 64-bit hash over the bits of every value.
     pub(crate) fn fingerprint(&self) -> String {
         let mut hash = 0xCBF2_9CE4_8422_2325_u64;
-        for column in self.inputs.iter().chain([&self.target]) {
+        for column in self.inputs.iter().chain(&self.targets).chain(&self.weights) {
             for word in column
                 .iter()
                 .map(|v| u64::from(v.to_bits()))
@@ -112,8 +149,8 @@ impl TrainingData {
                     .rotate_left(29);
             }
         }
-        for &row in self.held_out.iter().flatten() {
-            hash = (hash ^ u64::from(row))
+        for &subset in self.subsets.iter().flatten() {
+            hash = (hash ^ subset as u64)
                 .wrapping_mul(0x9E37_79B9_7F4A_7C15)
                 .rotate_left(29);
         }

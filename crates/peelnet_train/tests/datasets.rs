@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use peelnet_dataset::{
     CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo,
-    SceneEntry,
+    SceneEntry, Subset,
 };
 use peelnet_model::Recipe;
 use peelnet_train::{Config, RunOptions, TrainError, TrainingData, held_out_errors, train};
@@ -103,7 +103,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let b = write(&folder.path().join("b"), vec![scene("smoke", false)]);
     let config = Config {
         epochs: 2,
-        ..Config::for_recipe(Recipe::Thesis).unwrap()
+        ..Config::for_recipe(Recipe::Thesis)
     };
     let datasets = [a, b];
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
@@ -113,7 +113,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     assert!(
         data.inputs[1].iter().all(|&sum| sum == 1.5) && data.inputs[2].iter().all(|&n| n == 3.0)
     );
-    assert_eq!(data.target[..4], [1.0, 0.5, 0.25, 1.0]);
+    assert_eq!(data.targets[0][..4], [1.0, 0.5, 0.25, 1.0]);
     let reference = data.dataset.clone().unwrap();
     assert_eq!(reference.scenes, ["cups", "smoke"]);
     assert_eq!(reference.rows, rows as u64);
@@ -122,7 +122,9 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
         format!("{}+{}", datasets[0].hash(), datasets[1].hash())
     );
 
-    let held_out = data.held_out.clone().unwrap();
+    let held_out: Vec<bool> = (data.subsets.as_ref().unwrap().iter())
+        .map(|&s| s == Subset::Test)
+        .collect();
     assert!(
         held_out
             .chunks_exact(3)
@@ -145,7 +147,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let expected = (0..batch.len())
         .map(|i| {
             let answer = model.forward_raw(&[batch.linear_depth[i], 1.5, 3.0])[0];
-            f64::from(answer - batch.transmittance[i]).abs()
+            (f64::from(answer) - f64::from(batch.transmittance[i])).abs()
         })
         .sum::<f64>()
         / batch.len() as f64;
@@ -156,7 +158,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
 fn a_dataset_of_held_out_scenes_only_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let datasets = [write(&folder.path().join("a"), vec![scene("panes", true)])];
-    let config = Config::for_recipe(Recipe::Thesis).unwrap();
+    let config = Config::for_recipe(Recipe::Thesis);
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
     let stop = AtomicBool::new(false);
     let options = RunOptions::new(folder.path().join("net.safetensors"), &stop);

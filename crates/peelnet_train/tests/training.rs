@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use peelnet_dataset::Subset;
 use peelnet_model::{Model, Recipe};
 use peelnet_train::{
     Config, End, RunOptions, Schedule, TrainError, TrainingData, checkpoint_folder, train,
@@ -16,8 +17,10 @@ fn rows(n: usize) -> TrainingData {
     let mut data = TrainingData {
         source: "synthetic".to_owned(),
         inputs: vec![Vec::new(); 3],
-        target: Vec::new(),
-        held_out: None,
+        targets: vec![Vec::new()],
+        weights: None,
+        pixels: None,
+        subsets: None,
         dataset: None,
     };
     for i in 0..n {
@@ -31,8 +34,7 @@ fn rows(n: usize) -> TrainingData {
         data.inputs[0].push((2.0 + 10.0 * share) as f32);
         data.inputs[1].push((alpha * count) as f32);
         data.inputs[2].push(count as f32);
-        data.target
-            .push((1.0 - alpha).powf(share * (count - 1.0)) as f32);
+        data.targets[0].push((1.0 - alpha).powf(share * (count - 1.0)) as f32);
     }
     data
 }
@@ -41,7 +43,7 @@ fn config() -> Config {
     Config {
         epochs: 6,
         learning_rate: 1e-3,
-        ..Config::for_recipe(Recipe::Thesis).unwrap()
+        ..Config::for_recipe(Recipe::Thesis)
     }
 }
 
@@ -106,7 +108,7 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
     let error = (0..data.rows())
         .map(|i| {
             let raw = [data.inputs[0][i], data.inputs[1][i], data.inputs[2][i]];
-            (model.forward_raw(&raw)[0] - data.target[i]).abs()
+            (model.forward_raw(&raw)[0] - data.targets[0][i]).abs()
         })
         .sum::<f32>()
         / data.rows() as f32;
@@ -201,7 +203,7 @@ fn a_run_interrupted_after_an_epoch_resumes_to_the_same_bytes() {
             outcome
                 .history
                 .iter()
-                .map(|r| (r.train_loss, r.test_loss, r.best))
+                .map(|r| (r.train_loss, r.held_out_loss, r.best))
                 .collect()
         };
         assert_eq!(losses(&expected), losses(&second));
@@ -307,7 +309,7 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
     );
     assert!(text.contains("`hidden`"), "{text}");
     let mut other = data.clone();
-    other.target[7] += 0.25;
+    other.targets[0][7] += 0.25;
     let text = message(&config(), &other);
     assert!(text.contains("other rows"), "{text}");
 
@@ -396,7 +398,7 @@ fn patience_stops_and_takes_the_best_epoch() {
     let folder = tempfile::tempdir().unwrap();
     // Noise cannot be learnt, so the held-out loss soon stops falling.
     let mut data = rows(90);
-    for (i, target) in data.target.iter_mut().enumerate() {
+    for (i, target) in data.targets[0].iter_mut().enumerate() {
         *target = (i * 37 % 11) as f32 / 10.0;
     }
     let config = Config {
@@ -411,7 +413,7 @@ fn patience_stops_and_takes_the_best_epoch() {
     let lowest = outcome
         .history
         .iter()
-        .filter_map(|r| r.test_loss)
+        .filter_map(|r| r.held_out_loss)
         .fold(f64::INFINITY, f64::min);
     assert_eq!(outcome.model.meta.losses.validation, Some(lowest));
     assert_eq!(outcome.model.meta.losses.test, None);
@@ -434,7 +436,7 @@ fn rows_that_cannot_be_trained_on_are_named() {
         refuse(&data, &["row 4", "alpha_sum", name]);
     }
     let mut data = rows(10);
-    data.target[9] = f32::NAN;
+    data.targets[0][9] = f32::NAN;
     refuse(&data, &["row 9", "target"]);
     let mut data = rows(10);
     data.inputs[2].pop();
@@ -445,7 +447,7 @@ fn rows_that_cannot_be_trained_on_are_named() {
         &["2 input columns", "linear_depth, alpha_sum, fragment_count"],
     );
     let mut data = rows(2);
-    data.held_out = Some(vec![true, true]);
+    data.subsets = Some(vec![Subset::Test; 2]);
     refuse(&data, &["every row is held out"]);
     assert!(
         !out.exists() && !checkpoint_folder(&out).exists(),
@@ -462,10 +464,10 @@ fn few_equal_and_constant_rows_train_to_something_finite() {
         one.model.meta.losses.test, None,
         "one row leaves none to hold out"
     );
-    assert_eq!(one.history[5].test_loss, None);
+    assert_eq!(one.history[5].held_out_loss, None);
 
     let mut same = rows(1);
-    for column in same.inputs.iter_mut().chain([&mut same.target]) {
+    for column in same.inputs.iter_mut().chain(&mut same.targets) {
         column.resize(500, column[0]);
     }
     let same_rows = run(
@@ -534,10 +536,4 @@ fn places_that_cannot_be_written_are_refused_before_training() {
         ..RunOptions::new(folder.path().join("net.safetensors"), &stop)
     };
     refuse(curve, "loss.png");
-}
-
-#[test]
-fn recipes_without_a_definition_are_refused() {
-    let error = Config::for_recipe(Recipe::Dfaoit).unwrap_err();
-    assert!(error.to_string().contains("Dfaoit"), "{error}");
 }

@@ -1,5 +1,6 @@
 //! One file per command.
 
+mod bench;
 mod doctor;
 mod export;
 mod extract;
@@ -87,6 +88,7 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::Train(args) => train::run(&context, args),
         Command::Export(args) => export::run(&context, args),
         Command::Render(args) => render::run(&context, args),
+        Command::Bench(args) => bench::run(&context, args),
         Command::Inspect(args) => inspect::run(&context, args),
         Command::Doctor => doctor::run(&context),
     }

@@ -40,7 +40,7 @@ impl Sizes {
         } else {
             (Size([512, 384]), 300_000)
         };
-        let mut config = Config::for_recipe(Recipe::Thesis)?;
+        let mut config = Config::for_recipe(Recipe::Thesis);
         config.seed = args.seed;
         config.epochs = args.epochs.unwrap_or(config.epochs);
         Ok(Self {
@@ -264,6 +264,8 @@ fn compare_all(
         size: frame.0,
         methods: &methods,
         learned: &learned,
+        views: None,
+        frames: 0,
         images: Some(images),
     };
     let views: usize = scenes.iter().map(|s| s.views.len()).sum();

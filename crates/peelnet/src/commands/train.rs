@@ -56,7 +56,7 @@ fn usage(error: TrainError) -> Failure {
 
 /// The recipe's settings with those of the flags.
 fn config(args: &TrainArgs) -> Result<Config, Failure> {
-    let mut config = Config::for_recipe(args.recipe).map_err(usage)?;
+    let mut config = Config::for_recipe(args.recipe);
     config.seed = args.seed;
     config.epochs = args.epochs.unwrap_or(config.epochs);
     config.batch = args.batch.map_or(config.batch, |b| b as usize);
@@ -83,7 +83,7 @@ pub(super) fn fit(
     let bar = Progress::new(context.console, "train", config.epochs.into());
     let outcome = train(config, &data, options, |e| {
         let held_out = e
-            .test_loss
+            .held_out_loss
             .map_or_else(String::new, |l| format!(", held out {l:.6}"));
         bar.set(
             e.epoch.into(),

@@ -1,0 +1,146 @@
+//! Methods against one another: the errors of each as ratios to those of two references, over scenes and views.
+
+use crate::{Row, table::geometric_mean};
+use std::collections::BTreeMap;
+
+/// The weighted blending that errors are compared with.
+pub const WEIGHTED: &str = "wboit-eq9";
+/// The moment method that errors and times are compared with.
+pub const MOMENTS: &str = "mboit4";
+
+/// A method's figures over all scenes and views.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ratios {
+    /// The method's name with its knobs.
+    pub method: String,
+    /// Geometric mean of `mse_linear` over scenes and views; `None` where one is 0.
+    pub mse_linear: Option<f64>,
+    /// The same as a ratio to [`WEIGHTED`]'s.
+    pub to_weighted: Option<f64>,
+    /// The same as a ratio to [`MOMENTS`]'s.
+    pub to_moments: Option<f64>,
+    /// The scene with the largest ratio of mean error to [`MOMENTS`]'s, and that ratio.
+    pub worst: Option<(String, f64)>,
+    /// Geometric mean of the median frame times as a ratio to [`MOMENTS`]'s.
+    pub time_to_moments: Option<f64>,
+    /// The same to [`WEIGHTED`]'s.
+    pub time_to_weighted: Option<f64>,
+    /// Most bytes a pixel.
+    pub bytes_per_pixel: f64,
+    /// Pixels that are not finite, in all views.
+    pub non_finite_pixels: u64,
+}
+
+/// The figures of every method, in the order of the rows.
+pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
+    let mut methods: Vec<&str> = Vec::new();
+    for row in rows {
+        if !methods.contains(&row.method.as_str()) {
+            methods.push(&row.method);
+        }
+    }
+    let of = |method: &str| -> Vec<&Row> { rows.iter().filter(|r| r.method == method).collect() };
+    let mean = |method: &str, value: &dyn Fn(&Row) -> Option<f64>| {
+        let values: Option<Vec<f64>> = of(method).into_iter().map(value).collect();
+        geometric_mean(values?)
+    };
+    let error = |r: &Row| Some(r.mse_linear);
+    let time = |r: &Row| r.time_ms;
+    let by_scene = |method: &str| {
+        let mut sums: BTreeMap<&str, f64> = BTreeMap::new();
+        for row in of(method) {
+            *sums.entry(&row.scene).or_default() += row.mse_linear;
+        }
+        sums
+    };
+    let ratio = |a: Option<f64>, b: Option<f64>| Some(a? / b?);
+    let reference = by_scene(MOMENTS);
+    methods
+        .iter()
+        .map(|&method| {
+            let mse = mean(method, &error);
+            let worst = by_scene(method)
+                .into_iter()
+                .filter_map(|(scene, sum)| {
+                    let base = *reference.get(scene)?;
+                    (base > 0.0).then(|| (scene.to_owned(), sum / base))
+                })
+                .max_by(|a, b| a.1.total_cmp(&b.1));
+            Ratios {
+                method: method.to_owned(),
+                mse_linear: mse,
+                to_weighted: ratio(mse, mean(WEIGHTED, &error)),
+                to_moments: ratio(mse, mean(MOMENTS, &error)),
+                worst,
+                time_to_moments: ratio(mean(method, &time), mean(MOMENTS, &time)),
+                time_to_weighted: ratio(mean(method, &time), mean(WEIGHTED, &time)),
+                bytes_per_pixel: of(method)
+                    .iter()
+                    .map(|r| r.bytes_per_pixel)
+                    .fold(0.0, f64::max),
+                non_finite_pixels: of(method).iter().map(|r| r.non_finite_pixels).sum(),
+            }
+        })
+        .collect()
+}
+
+/// Headings of [`cells`].
+pub const HEADINGS: [&str; 8] = [
+    "method",
+    "MSE (linear)",
+    "/ wboit-eq9",
+    "/ mboit4",
+    "worst scene / mboit4",
+    "time / mboit4",
+    "time / wboit-eq9",
+    "bytes a pixel",
+];
+
+/// One line for each method.
+pub fn cells(ratios: &[Ratios]) -> Vec<Vec<String>> {
+    let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| format!("{x:.3}"));
+    ratios
+        .iter()
+        .map(|r| {
+            vec![
+                r.method.clone(),
+                r.mse_linear
+                    .map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}")),
+                number(r.to_weighted),
+                number(r.to_moments),
+                r.worst
+                    .as_ref()
+                    .map_or_else(|| "–".to_owned(), |(scene, x)| format!("{x:.2} ({scene})")),
+                number(r.time_to_moments),
+                number(r.time_to_weighted),
+                format!("{:.0}", r.bytes_per_pixel),
+            ]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::tests::row;
+
+    /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.
+    #[test]
+    fn means_are_geometric_and_the_worst_scene_is_named() {
+        let mut rows = Vec::new();
+        for (scene, mine) in [("a", 1.0), ("b", 4.0)] {
+            for (method, mse, ms) in [(WEIGHTED, 16.0, 1.0), (MOMENTS, 4.0, 2.0), ("x", mine, 3.0)]
+            {
+                let mut r = row(scene, 0, method, 65025.0 * mse);
+                r.time_ms = Some(ms);
+                rows.push(r);
+            }
+        }
+        let all = ratios(&rows);
+        let x = &all[2];
+        let close = |a: Option<f64>, b: f64| (a.expect("measured") - b).abs() < 1e-12;
+        assert!(close(x.to_moments, 0.5) && close(x.to_weighted, 0.125));
+        assert_eq!(x.worst, Some(("b".to_owned(), 1.0)));
+        assert!(close(x.time_to_moments, 1.5) && close(x.time_to_weighted, 3.0));
+    }
+}

@@ -1,0 +1,214 @@
+//! Whole pixels, squared error of the normalised contributions: how the anchored networks train.
+//!
+//! The network answers with the share `s_i` of every fragment between a pixel's ends. Its unnormalised contribution is
+//! `k_i = α_i e^(−m_0 s_i)`, and what of the coverage is left to distribute, `R`, goes to each in proportion:
+//! `p̂_i = R k_i / (A + Σ k)`, where `A` is what the ends contribute when they are normalised with the rest (0 with
+//! separate ends). The loss of a pixel is `Σ (p̂_i − α_i T_i)²` over all of its fragments.
+
+use std::ops::Range;
+
+use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
+use peelnet_core::guards::SUM_FLOOR;
+
+use crate::network::Network;
+use crate::normalise::Normalisation;
+use crate::task::{Part, Task};
+use crate::training_data::{PixelColumns, TrainingData};
+
+/// Columns of a pixel: what is left, the four sums over its ends, its weight.
+const FIXED: usize = 6;
+
+/// Some pixels, on the device and as the numbers that they are made from.
+struct Pixels {
+    /// First row of each pixel, and the number of rows.
+    first: Vec<u32>,
+    /// `[inputs, absorbance of the others, α, exact contribution, the pixel's weight][rows]`
+    columns: Vec<Vec<f32>>,
+    /// `[FIXED][pixels]`
+    fixed: Vec<Vec<f32>>,
+    tensors: Tensors,
+}
+
+struct Tensors {
+    /// `[columns, rows]`
+    rows: Tensor<2>,
+    /// `[FIXED, pixels]`
+    fixed: Tensor<2>,
+    /// The pixel of each row, `[rows]`.
+    pixel: Tensor<1, Int>,
+    first: Vec<u32>,
+}
+
+fn upload(columns: &[Vec<f32>], device: &Device) -> Tensor<2> {
+    let n = columns.first().map_or(0, Vec::len);
+    Tensor::from_data(
+        TensorData::new(columns.concat(), [columns.len(), n]),
+        device,
+    )
+}
+
+impl Pixels {
+    fn new(
+        data: &TrainingData,
+        pixels: &PixelColumns,
+        normalisation: &[Normalisation],
+        examples: &[u32],
+        device: &Device,
+    ) -> Self {
+        let rows: Vec<u32> = examples
+            .iter()
+            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
+            .collect();
+        let at =
+            |values: &[f32]| -> Vec<f32> { rows.iter().map(|&r| values[r as usize]).collect() };
+        let weights = data.weights.as_deref();
+        let weight = |p: u32| weights.map_or(1.0, |w| w[p as usize]);
+        let mut columns: Vec<Vec<f32>> = normalisation
+            .iter()
+            .zip(&data.inputs)
+            .map(|(n, values)| n.apply(values, &rows))
+            .collect();
+        columns.push(at(&pixels.others));
+        columns.push(at(&pixels.alpha));
+        columns.push(at(&data.targets[0]));
+        let mut first = Vec::with_capacity(examples.len() + 1);
+        let mut of_rows = Vec::with_capacity(rows.len());
+        for &p in examples {
+            first.push(of_rows.len() as u32);
+            let n = pixels.rows(p as usize, data.rows()).len();
+            of_rows.resize(of_rows.len() + n, weight(p));
+        }
+        first.push(of_rows.len() as u32);
+        columns.push(of_rows);
+        let mut fixed: Vec<Vec<f32>> = (0..FIXED - 1)
+            .map(|k| {
+                examples
+                    .iter()
+                    .map(|&p| pixels.fixed[p as usize][k])
+                    .collect()
+            })
+            .collect();
+        fixed.push(examples.iter().map(|&p| weight(p)).collect());
+        let order: Vec<u32> = (0..examples.len() as u32).collect();
+        let tensors = Tensors::new(&first, &columns, &fixed, &order, device);
+        Self {
+            first,
+            columns,
+            fixed,
+            tensors,
+        }
+    }
+}
+
+impl Tensors {
+    /// The pixels in the given order.
+    fn new(
+        first: &[u32],
+        columns: &[Vec<f32>],
+        fixed: &[Vec<f32>],
+        order: &[u32],
+        device: &Device,
+    ) -> Self {
+        let rows = columns.first().map_or(0, Vec::len);
+        let mut starts = Vec::with_capacity(order.len() + 1);
+        let mut pixel = Vec::with_capacity(rows);
+        let mut from = Vec::with_capacity(rows);
+        for (i, &p) in order.iter().enumerate() {
+            starts.push(from.len() as u32);
+            let range = first[p as usize]..first[p as usize + 1];
+            pixel.resize(pixel.len() + range.len(), i as i32);
+            from.extend(range);
+        }
+        starts.push(from.len() as u32);
+        let pick = |values: &Vec<f32>, at: &[u32]| -> Vec<f32> {
+            at.iter().map(|&i| values[i as usize]).collect()
+        };
+        let columns: Vec<Vec<f32>> = columns.iter().map(|c| pick(c, &from)).collect();
+        let fixed: Vec<Vec<f32>> = fixed.iter().map(|c| pick(c, order)).collect();
+        Self {
+            rows: upload(&columns, device),
+            fixed: upload(&fixed, device),
+            pixel: Tensor::from_data(TensorData::new(pixel, [rows]), device),
+            first: starts,
+        }
+    }
+}
+
+/// Pixels as examples.
+pub(crate) struct PixelShare {
+    train: Pixels,
+    validation: Pixels,
+    test: Pixels,
+    inputs: usize,
+    device: Device,
+}
+
+impl PixelShare {
+    /// `parts`: the examples of each part.
+    pub(crate) fn new(
+        data: &TrainingData,
+        pixels: &PixelColumns,
+        normalisation: &[Normalisation],
+        parts: [&[u32]; 3],
+        device: &Device,
+    ) -> Self {
+        let [train, validation, test] =
+            parts.map(|part| Pixels::new(data, pixels, normalisation, part, device));
+        Self {
+            train,
+            validation,
+            test,
+            inputs: normalisation.len(),
+            device: device.clone(),
+        }
+    }
+
+    fn part(&self, part: Part) -> &Pixels {
+        match part {
+            Part::Train => &self.train,
+            Part::Validation => &self.validation,
+            Part::Test => &self.test,
+        }
+    }
+}
+
+impl Task for PixelShare {
+    fn examples(&self, part: Part) -> usize {
+        self.part(part).first.len() - 1
+    }
+
+    fn shuffle(&mut self, order: &[u32]) {
+        let Pixels {
+            first,
+            columns,
+            fixed,
+            ..
+        } = &self.train;
+        self.train.tensors = Tensors::new(first, columns, fixed, order, &self.device);
+    }
+
+    fn loss_sum(&self, network: &Network, part: Part, range: Range<usize>) -> Tensor<1> {
+        let t = &self.part(part).tensors;
+        let (from, to) = (t.first[range.start] as usize, t.first[range.end] as usize);
+        let rows = t.rows.clone().narrow(1, from, to - from);
+        let row = |k: usize| rows.clone().narrow(0, self.inputs + k, 1);
+        let fixed = t.fixed.clone().narrow(1, range.start, range.len());
+        let column = |k: usize| fixed.clone().narrow(0, k, 1);
+        let pixel = t.pixel.clone().narrow(0, from, to - from) - range.start as i32;
+
+        let share = network.forward(rows.clone().narrow(0, 0, self.inputs));
+        let contribution = row(1) * (row(0) * share).neg().exp();
+        let sums = (column(1) + SUM_FLOOR).select_assign(
+            1,
+            pixel.clone(),
+            contribution.clone(),
+            IndexingUpdateOp::Add,
+        );
+        let scale = column(0) / sums;
+        let error = contribution * scale.clone().select(1, pixel) - row(2);
+        let between = row(3) * error.clone() * error;
+        // Σ over the ends of (a·scale − y)².
+        let ends = column(2) * scale.clone() * scale.clone() - column(3) * scale * 2.0 + column(4);
+        between.sum() + (column(5) * ends).sum()
+    }
+}

@@ -1,0 +1,399 @@
+//! From whole pixels of a dataset to the examples of the recipes that learn from pixels.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use peelnet_core::absorbance::{DepthWarp, absorbance};
+use peelnet_core::methods::anchored::{Place, seen};
+use peelnet_core::methods::mboit4;
+use peelnet_core::statistics;
+use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
+use peelnet_model::{Model, Output, Recipe};
+
+use crate::error::TrainError;
+use crate::training_data::{PixelColumns, TrainingData};
+
+/// Rows that are read at once.
+const ROWS_AT_A_TIME: usize = 1 << 16;
+
+/// A pixel of a dataset, nearest fragment first.
+pub(crate) struct Pixel<'a> {
+    /// Linear depth and opacity.
+    pub(crate) points: &'a [(f32, f32)],
+    /// `T_i`.
+    pub(crate) transmittance: &'a [f32],
+    /// Un-premultiplied radiance.
+    pub(crate) colors: &'a [[f32; 3]],
+}
+
+impl Pixel<'_> {
+    /// `T_∞`.
+    fn behind(&self) -> f64 {
+        self.points
+            .last()
+            .zip(self.transmittance.last())
+            .map_or(1.0, |((_, alpha), t)| {
+                f64::from(*t) * f64::from(1.0 - alpha)
+            })
+    }
+
+    /// `α_i T_i`: how much of each fragment is seen.
+    fn contributions(&self) -> impl Iterator<Item = f64> + '_ {
+        self.points
+            .iter()
+            .zip(self.transmittance)
+            .map(|((_, alpha), t)| f64::from(*alpha) * f64::from(*t))
+    }
+}
+
+/// The depth warp of a part: over the range of its fragments. The features do not depend on the warp's range; where it
+/// matters (`nmt`), this is the range that tight bounding boxes would give.
+pub(crate) fn warp(dataset: &Dataset, part: &Part) -> Result<DepthWarp, TrainError> {
+    let columns = dataset.read_columns_where(&[Column::LinearDepth], |p| p.index == part.index)?;
+    let depths = columns.first().and_then(|c| c.as_f32()).unwrap_or_default();
+    let near = depths.iter().copied().fold(f32::MAX, f32::min);
+    let far = depths.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    Ok(DepthWarp::new(near.min(far).into(), far.into()))
+}
+
+/// Calls `each` with every pixel of a part, and its place (view, x, y).
+pub(crate) fn for_each_pixel(
+    dataset: &Dataset,
+    part: &Part,
+    mut each: impl FnMut([u32; 3], &Pixel<'_>),
+) -> Result<(), TrainError> {
+    for batch in dataset.batches_where(ROWS_AT_A_TIME, |p| p.index == part.index) {
+        let batch: FragmentBatch = batch?;
+        let points: Vec<(f32, f32)> = batch
+            .linear_depth
+            .iter()
+            .zip(&batch.one_minus_alpha)
+            .map(|(&z, &through)| (z, 1.0 - through))
+            .collect();
+        let colors: Vec<[f32; 3]> = (0..batch.len())
+            .map(|i| [batch.r[i], batch.g[i], batch.b[i]])
+            .collect();
+        for Range { start, end } in batch.pixels() {
+            each(
+                [batch.view[start], batch.x[start], batch.y[start]],
+                &Pixel {
+                    points: &points[start..end],
+                    transmittance: &batch.transmittance[start..end],
+                    colors: &colors[start..end],
+                },
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Squared error of the normalised contributions that MBOIT-4 gives, summed over a pixel: how hard the pixel is.
+///
+/// The figure that a user looks at is a method's error over that of another on the same image. Weighing each view by the
+/// inverse of its mean hardness trains for that figure: faint scenes count as much as glaring ones.
+fn hardness(pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
+    let mut moments = mboit4::Moments::default();
+    let zetas: Vec<f64> = pixel
+        .points
+        .iter()
+        .map(|&(depth, alpha)| {
+            let zeta = warp.apply(depth.into());
+            moments.add(absorbance(alpha), zeta);
+            zeta
+        })
+        .collect();
+    let shares: Vec<f64> = pixel
+        .points
+        .iter()
+        .zip(&zetas)
+        .map(|((_, alpha), &zeta)| {
+            f64::from(*alpha) * moments.transmittance(zeta, &mboit4::Settings::PAPER)
+        })
+        .collect();
+    let scale = (1.0 - pixel.behind()) / shares.iter().sum::<f64>().max(1e-12);
+    pixel
+        .contributions()
+        .zip(shares)
+        .map(|(exact, share)| (share * scale - exact).powi(2))
+        .sum()
+}
+
+/// Examples of one part, before they are weighed.
+#[derive(Default)]
+struct Gathered {
+    hardness: f64,
+    pixels: u64,
+    /// First example of the part.
+    first: usize,
+}
+
+/// Reads the datasets' training scenes as the recipe's examples.
+pub(crate) fn gather(
+    recipe: Recipe,
+    split: &Split,
+    datasets: &[Dataset],
+) -> Result<TrainingData, TrainError> {
+    let mut data = TrainingData {
+        source: String::new(),
+        inputs: vec![Vec::new(); recipe.input_names().len()],
+        targets: vec![Vec::new(); if recipe == Recipe::Dfaoit { 3 } else { 1 }],
+        weights: Some(Vec::new()),
+        pixels: matches!(recipe, Recipe::Small | Recipe::Medium | Recipe::Large)
+            .then(PixelColumns::default),
+        subsets: Some(Vec::new()),
+        dataset: None,
+    };
+    let mut parts = Vec::new();
+    for dataset in datasets {
+        let ours = dataset.manifest().parts.iter();
+        for part in ours.filter(|part| !dataset.is_held_out(part) && part.rows > 0) {
+            let warp = warp(dataset, part)?;
+            let mut gathered = Gathered {
+                first: data.weights.as_ref().map_or(0, Vec::len),
+                ..Default::default()
+            };
+            for_each_pixel(dataset, part, |[view, x, y], pixel| {
+                gathered.hardness += hardness(pixel, &warp);
+                gathered.pixels += 1;
+                let subset = split.pixel(view, x, y);
+                match recipe {
+                    Recipe::Nmt => transmittance_rows(&mut data, pixel, &warp, subset),
+                    Recipe::Dfaoit => tail_row(&mut data, pixel, subset),
+                    _ => share_pixel(&mut data, pixel, &warp, recipe, subset),
+                }
+            })?;
+            parts.push(gathered);
+        }
+    }
+    weigh(&mut data, &parts);
+    Ok(data)
+}
+
+/// Divides the weights of each part's examples by the part's mean hardness, and all by their mean.
+fn weigh(data: &mut TrainingData, parts: &[Gathered]) {
+    let Some(weights) = &mut data.weights else {
+        return;
+    };
+    let (sum, pixels) = parts.iter().fold((0.0, 0), |(s, p), part| {
+        (s + part.hardness, p + part.pixels)
+    });
+    let overall = sum / pixels.max(1) as f64;
+    for (k, part) in parts.iter().enumerate() {
+        let end = parts.get(k + 1).map_or(weights.len(), |next| next.first);
+        // A view that MBOIT-4 draws almost exactly must not outweigh all others.
+        let mean = part.hardness / part.pixels.max(1) as f64 + 0.02 * overall;
+        for weight in &mut weights[part.first..end] {
+            *weight = (f64::from(*weight) * overall / mean.max(f64::MIN_POSITIVE)) as f32;
+        }
+    }
+}
+
+fn push(columns: &mut [Vec<f32>], values: impl IntoIterator<Item = f64>) {
+    for (column, value) in columns.iter_mut().zip(values) {
+        column.push(value as f32);
+    }
+}
+
+/// The fragments of a pixel whose share the network is asked for, and what the others contribute.
+fn share_pixel(
+    data: &mut TrainingData,
+    pixel: &Pixel<'_>,
+    warp: &DepthWarp,
+    recipe: Recipe,
+    subset: Subset,
+) {
+    let Some(columns) = &mut data.pixels else {
+        return;
+    };
+    let separate_ends = recipe != Recipe::Small;
+    let all = seen(pixel.points, warp);
+    let between = all.iter().filter(|s| s.place == Place::Between).count();
+    // Exact whatever the network says: nothing to learn.
+    if between == 0 || (separate_ends && between == 1) {
+        return;
+    }
+    let first = data.targets[0].len();
+    let mut left = 1.0 - pixel.behind();
+    // Of the ends that are normalised with the rest: Σ a, Σ a², Σ a y, Σ y².
+    let mut fixed = [0.0f64; 4];
+    for ((s, (_, alpha)), exact) in all.iter().zip(pixel.points).zip(pixel.contributions()) {
+        let alpha = f64::from(*alpha);
+        if s.place == Place::Between {
+            push(&mut data.inputs, s.features);
+            push(&mut data.targets, [exact]);
+            columns.others.push(s.others as f32);
+            columns.alpha.push(alpha as f32);
+            continue;
+        }
+        let a = alpha * s.weight(|_| 0.0);
+        if separate_ends {
+            left -= a;
+        } else {
+            for (sum, x) in fixed.iter_mut().zip([a, a * a, a * exact, exact * exact]) {
+                *sum += x;
+            }
+        }
+    }
+    columns.first.push(first as u32);
+    let [sum, squares, products, exact] = fixed.map(|x| x as f32);
+    columns
+        .fixed
+        .push([left.max(0.0) as f32, sum, squares, products, exact]);
+    if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
+        weights.push(1.0);
+        subsets.push(subset);
+    }
+}
+
+/// `nmt`'s inputs of a fragment.
+fn nmt_inputs(moments: &mboit4::Moments, n: usize, zeta: f64) -> [f64; 7] {
+    let [b0, b1, b2, b3, b4] = moments.0;
+    let total = b0.max(1e-6);
+    [
+        zeta,
+        n as f64,
+        b0,
+        b1 / total,
+        b2 / total,
+        b3 / total,
+        b4 / total,
+    ]
+}
+
+fn transmittance_rows(
+    data: &mut TrainingData,
+    pixel: &Pixel<'_>,
+    warp: &DepthWarp,
+    subset: Subset,
+) {
+    let mut moments = mboit4::Moments::default();
+    for &(depth, alpha) in pixel.points {
+        moments.add(absorbance(alpha), warp.apply(depth.into()));
+    }
+    let n = pixel.points.len();
+    for (&(depth, alpha), &t) in pixel.points.iter().zip(pixel.transmittance) {
+        push(
+            &mut data.inputs,
+            nmt_inputs(&moments, n, warp.apply(depth.into())),
+        );
+        data.targets[0].push(t);
+        if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
+            // An error of T is seen as much as the fragment is opaque.
+            weights.push(alpha * alpha);
+            subsets.push(subset);
+        }
+    }
+}
+
+/// One row for a pixel with a tail of two or more fragments; a tail of one needs no network.
+fn tail_row(data: &mut TrainingData, pixel: &Pixel<'_>, subset: Subset) {
+    const FRONT: usize = 2;
+    let n = pixel.points.len();
+    if n < FRONT + 2 {
+        return;
+    }
+    let seen: Vec<f64> = pixel.contributions().collect();
+    let mut front = [0.0f64; 3];
+    let (mut exact, mut average, mut alphas) = ([0.0f64; 3], [0.0f64; 3], 0.0f64);
+    for (i, color) in pixel.colors.iter().enumerate() {
+        let alpha = f64::from(pixel.points[i].1);
+        if i >= FRONT {
+            alphas += alpha;
+        }
+        for k in 0..3 {
+            let c = f64::from(color[k]);
+            if i < FRONT {
+                front[k] += seen[i] * c;
+            } else {
+                exact[k] += seen[i] * c;
+                average[k] += alpha * c;
+            }
+        }
+    }
+    let through = f64::from(pixel.transmittance[FRONT]);
+    let tail = (n - FRONT) as f64;
+    let behind: f64 = pixel.points[FRONT..]
+        .iter()
+        .map(|(_, alpha)| absorbance(*alpha))
+        .sum::<f64>();
+    let behind = (-behind).exp();
+    let covered = through * (1.0 - behind);
+    if covered <= 0.0 || alphas <= 0.0 {
+        return;
+    }
+    let [r, g, b] = front;
+    let [ar, ag, ab] = average.map(|c| c / alphas);
+    push(
+        &mut data.inputs,
+        [r, g, b, through, ar, ag, ab, alphas / tail, behind, tail],
+    );
+    push(&mut data.targets, exact.map(|c| (c / covered).min(1.0)));
+    if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
+        weights.push((covered * covered) as f32);
+        subsets.push(subset);
+    }
+}
+
+/// The weight `T̂` of every fragment of a pixel; empty for a network that predicts none.
+pub(crate) fn weights(model: &Model, pixel: &Pixel<'_>, warp: &DepthWarp) -> Vec<f64> {
+    let inputs = model.meta.inputs.len();
+    match model.meta.output {
+        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => seen(pixel.points, warp)
+            .iter()
+            .map(|s| s.weight(|features| model.forward_raw_f64(&features[..inputs])[0]))
+            .collect(),
+        Output::Transmittance if model.meta.recipe == Recipe::Nmt => {
+            let mut moments = mboit4::Moments::default();
+            for &(depth, alpha) in pixel.points {
+                moments.add(absorbance(alpha), warp.apply(depth.into()));
+            }
+            let n = pixel.points.len();
+            pixel
+                .points
+                .iter()
+                .map(|&(depth, _)| {
+                    let inputs = nmt_inputs(&moments, n, warp.apply(depth.into()));
+                    model.forward_raw_f64(&inputs)[0]
+                })
+                .collect()
+        }
+        Output::Transmittance => {
+            let sum: f32 = pixel.points.iter().map(|(_, alpha)| alpha).sum();
+            pixel
+                .points
+                .iter()
+                .map(|&(depth, _)| {
+                    model.forward_raw(&[depth, sum, pixel.points.len() as f32])[0].into()
+                })
+                .collect()
+        }
+        Output::TailColor => Vec::new(),
+    }
+}
+
+/// Names of the scenes that are trained on.
+pub(crate) fn training_scenes(datasets: &[Dataset]) -> BTreeSet<String> {
+    datasets
+        .iter()
+        .flat_map(|dataset| {
+            let manifest = dataset.manifest();
+            manifest
+                .parts
+                .iter()
+                .filter(|part| !dataset.is_held_out(part))
+                .map(|part| manifest.scenes[part.scene as usize].name.clone())
+        })
+        .collect()
+}
+
+/// Units of a recipe's inputs, for readers of the model file.
+pub(crate) fn unit(name: &str) -> &'static str {
+    match name {
+        "linear_depth" => "scene units",
+        "depth" => "warped, -1 .. 1 over the frame's transparent depth range",
+        _ => statistics::FEATURES
+            .iter()
+            .find(|(n, _)| *n == name)
+            .map_or("1", |(_, unit)| unit),
+    }
+}
