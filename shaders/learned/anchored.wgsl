@@ -1,6 +1,6 @@
 // Statistics pass: draw all transparent surfaces, in any order, into
 //     moments  rgba16float (or rgba32float), cleared to 0, blending ONE, ONE, ADD;
-//     extent   rg16float, cleared to -65504, blending ONE, ONE, MAX;
+//     extent   rgba16float, cleared to -65504, blending ONE, ONE, MAX;
 // each fragment writing the fields of peelnet_statistics(alpha, zeta).
 // zeta is depth on a logarithmic scale: with z the distance along the view axis, and near and far the range that the
 // bounding boxes of the transparent objects in view span (clipped to the camera's),
@@ -15,8 +15,8 @@ const PEELNET_TOP: f32 = 61439.0;
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3: to be summed.
     moments: vec4f,
-    // The nearest and the farthest depth: to be maximised.
-    extent: vec2f,
+    // The nearest and the farthest depth, then each once more, coarsely, with its opacity: to be maximised.
+    extent: vec4f,
     // b zeta^4: to be summed, by models that read it.
     fourth: f32,
 }
@@ -30,10 +30,12 @@ struct PeelnetFeatures {
     skewness: f32,
     // 1 for the pixel's nearest fragment, 2 for its farthest, 0 between them.
     end: f32,
-    // Absorbance of the other fragments.
-    others: f32,
-    // Mean powers 1 to 3 of the others' zeta, and the sum that they were divided by.
+    // The fragment's weight but for what the network says: 1, exp(-others), or the nearest fragment's transmittance.
+    known: f32,
+    // Mean powers 1 to 3 of the rest's zeta, and the sum that they were divided by.
     means: vec4f,
+    // Absorbance of the nearest and the farthest fragment where they are known, and their zeta.
+    ends: vec4f,
 }
 
 // -log(1 - alpha), at most 16: opaque, but finite.
@@ -43,6 +45,13 @@ fn peelnet_absorbance(alpha: f32) -> f32 {
 
 fn peelnet_level(zeta: f32) -> f32 {
     return floor((zeta * 0.5 + 0.5) * PEELNET_TOP + 0.5);
+}
+
+// Coarse depth, 240 bins, and opacity, 256 levels that are even in sqrt(1 - alpha): the bin times 256 and the level.
+fn peelnet_end(alpha: f32, zeta: f32) -> vec2f {
+    let bin = clamp(floor((zeta * 0.5 + 0.5) * 240.0), 0.0, 239.0);
+    let level = floor((1.0 - sqrt(max(1.0 - alpha, 0.0))) * 255.0 + 0.5);
+    return vec2f((239.0 - bin) * 256.0, bin * 256.0) + level;
 }
 
 // The half float that stands for a level: all normal halves in ascending order, so that MAX blending of 16-bit targets
@@ -65,26 +74,49 @@ fn peelnet_statistics(alpha: f32, zeta: f32) -> PeelnetStatistics {
     let b = peelnet_absorbance(alpha);
     let z2 = zeta * zeta;
     let level = peelnet_level(zeta);
+    let end = peelnet_end(alpha, zeta);
     // The nearest is kept as the maximum of levels counted from the far end.
-    let extent = vec2f(peelnet_half(PEELNET_TOP - level), peelnet_half(level));
+    let extent = vec4f(
+        peelnet_half(PEELNET_TOP - level),
+        peelnet_half(level),
+        peelnet_half(end.x),
+        peelnet_half(end.y),
+    );
     return PeelnetStatistics(
         b * vec4f(1.0, zeta, z2, z2 * zeta),
-        select(extent, vec2f(-65504.0), alpha < PEELNET_FAINT),
+        select(extent, vec4f(-65504.0), alpha < PEELNET_FAINT),
         b * z2 * z2,
     );
 }
 
-// Features of a fragment from its pixel's statistics, its own share taken out.
-fn peelnet_features(alpha: f32, zeta: f32, moments: vec4f, extent: vec2f) -> PeelnetFeatures {
+// The absorbance of an end, from its level.
+fn peelnet_end_absorbance(level: f32) -> f32 {
+    let through = 1.0 - (level - 256.0 * floor(level / 256.0)) / 255.0;
+    return min(-2.0 * log(max(through, 1e-30)), 16.0);
+}
+
+// Features of a fragment from its pixel's statistics, its own share and the known ends taken out.
+fn peelnet_features(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> PeelnetFeatures {
     let b = peelnet_absorbance(alpha);
-    let z2 = zeta * zeta;
-    let m = moments - b * vec4f(1.0, zeta, z2, z2 * zeta);
-    let m0 = max(m.x, 0.0);
+    let level = peelnet_level(zeta);
     let first = PEELNET_TOP - peelnet_level_of_half(extent.x);
     let last = peelnet_level_of_half(extent.y);
     let near = first / PEELNET_TOP * 2.0 - 1.0;
+    let far = last / PEELNET_TOP * 2.0 - 1.0;
+    // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a more
+    // opaque one in the same bin), stays with the rest.
+    let own_end = peelnet_end(alpha, zeta);
+    let near_end = peelnet_level_of_half(extent.z);
+    let far_end = peelnet_level_of_half(extent.w);
+    let front = select(0.0, peelnet_end_absorbance(near_end), level > first && own_end.x != near_end);
+    let back = select(0.0, peelnet_end_absorbance(far_end), level < last && own_end.y != far_end);
+    let z = vec3f(zeta, near, far);
+    let taken = vec3f(b, front, back);
+    let z2 = z * z;
+    let m = moments - vec4f(b + front + back, dot(taken, z), dot(taken, z2), dot(taken, z2 * z));
+    let m0 = max(m.x, 0.0);
     let scale = PEELNET_TOP / (2.0 * max(last - first, 1.0));
-    // Where the others are no more than the rounding of 16-bit sums, their moments are noise.
+    // Where the rest is no more than the rounding of 16-bit sums, its moments are noise.
     let total = max(max(m0, moments.x * 0.0009765625), 1e-6);
     let mean = m.yzw / total;
     // Moments of (zeta - near) * scale.
@@ -97,16 +129,19 @@ fn peelnet_features(alpha: f32, zeta: f32, moments: vec4f, extent: vec2f) -> Pee
     let wide = max(sigma, 0.125);
     let third = t3 - t1 * (3.0 * t2 - 2.0 * t1 * t1);
     // Two passes may round one zeta to neighbouring levels.
-    let level = peelnet_level(zeta);
-    let end = select(select(0.0, 2.0, level >= last - 1.0), 1.0, level <= first + 1.0);
+    let at_end = select(select(0.0, 2.0, level >= last - 1.0), 1.0, level <= first + 1.0);
+    let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
+    let others = max(moments.x - b, 0.0);
+    let known = select(select(exp(-front), exp(-others), end == 2.0), 1.0, end == 1.0);
     return PeelnetFeatures(
         log(1.0 + m0),
         t,
         t1,
         clamp(0.5 * (t - t1) / sigma, -2.0, 2.0),
         clamp(0.5 * third / (wide * wide * wide), -2.0, 2.0),
-        select(end, 0.0, alpha < PEELNET_FAINT),
-        m0,
+        end,
+        known,
         vec4f(mean, total),
+        vec4f(front, back, near, far),
     );
 }

@@ -5,13 +5,14 @@
 //     k = (1 - T) / ends.a, at most 1 unless sums.a is 0
 //     ends.rgb * k + sums.rgb / sums.a * max(1 - T - ends.a * k, 0) + C_0 * T
 
-// The weight of a fragment, and its end (see PeelnetFeatures): 1 for the nearest, exp(-others) for the farthest, the
-// network's between them.
-fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec2f, fourth: f32) -> vec2f {
+// The weight of a fragment, and its end (see PeelnetFeatures). The ends are exact and do without the network.
+fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f, fourth: f32) -> vec2f {
     let f = peelnet_features(alpha, zeta, moments, extent);
-    let bounds = peelnet_share_bounds(alpha, zeta, f, extent, fourth);
-    let between = peelnet_weight(
+    if f.end > 0.0 {
+        return vec2f(f.known, f.end);
+    }
+    let bounds = peelnet_share_bounds(alpha, zeta, f, fourth);
+    let rest = peelnet_weight(
         f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness, bounds.x, bounds.y);
-    let w = select(select(between, exp(-f.others), f.end == 2.0), 1.0, f.end == 1.0);
-    return vec2f(w, f.end);
+    return vec2f(f.known * rest, 0.0);
 }

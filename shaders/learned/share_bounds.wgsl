@@ -1,14 +1,14 @@
-// The least and the most of the others' absorbance that can lie in front of a fragment, as shares, from its first four
+// The least and the most of the rest's absorbance that can lie in front of a fragment, as shares, from its first four
 // moments (Muenstermann et al. 2018). Statistics pass: one more target,
 //     fourth   r16float (or r32float), cleared to 0, blending ONE, ONE, ADD: peelnet_statistics(..).fourth
 
-fn peelnet_share_bounds(alpha: f32, zeta: f32, f: PeelnetFeatures, extent: vec2f, fourth: f32) -> vec2f {
-    let z2 = zeta * zeta;
-    let first = PEELNET_TOP - peelnet_level_of_half(extent.x);
-    let last = peelnet_level_of_half(extent.y);
-    let near = first / PEELNET_TOP * 2.0 - 1.0;
-    let scale = PEELNET_TOP / (2.0 * max(last - first, 1.0));
-    let mean = vec4f(f.means.xyz, (fourth - peelnet_absorbance(alpha) * z2 * z2) / f.means.w);
+fn peelnet_share_bounds(alpha: f32, zeta: f32, f: PeelnetFeatures, fourth: f32) -> vec2f {
+    let near = f.ends.z;
+    let scale = 1.0 / max(f.ends.w - near, 2.0 / PEELNET_TOP);
+    let z = vec3f(zeta, near, f.ends.w);
+    let z4 = z * z * z * z;
+    let taken = dot(vec3f(peelnet_absorbance(alpha), f.ends.xy), z4);
+    let mean = vec4f(f.means.xyz, (fourth - taken) / f.means.w);
     // Moments over 0 .. 1, then over -1 .. 1, where the neutral measure is known.
     let t1 = f.mean_fraction;
     let t2 = (mean.y - near * (2.0 * mean.x - near)) * scale * scale;

@@ -1,13 +1,14 @@
 //! What the learned methods know of a pixel, and the features that their networks read.
 //!
 //! Pass 1 sums absorbance `b_i` and its moments over warped depth, `b_k = Σ b_i ζ_i^k`, and keeps the pixel's nearest and
-//! farthest ζ. Pass 2 takes a fragment's *own share* out of the moments, so that everything it reads is about the
-//! other fragments: what lies in front of a fragment does not depend on the fragment. All features are free of scene
-//! scale and unit. The shader twin is the `peelnet_features` of every exported text.
+//! farthest ζ with their opacities. Pass 2 takes a fragment's *own share* out of the moments, and the shares of the
+//! two ends, which are known: what is left to be guessed is where the *rest* lies. What lies in front of a fragment
+//! does not depend on the fragment. All features are free of scene scale and unit. The shader twin is the
+//! `peelnet_features` of every exported text.
 //!
 //! Written once for 32 and 64 bits: 32 is what shaders compute, 64 what trains and judges.
 
-use crate::methods::mboit4;
+use crate::{absorbance::ABSORBANCE_MAX, methods::mboit4};
 use num_traits::Float;
 
 /// Number of levels that a depth in −1 … 1 is quantised to before nearest and farthest are told: see [`half_of_code`].
@@ -45,6 +46,37 @@ pub fn half_of_code(code: u32) -> u16 {
 /// fragment would cost its anchor, and two fragments within 6.5e−5 of the depth range are as good as one.
 pub const SAME_CODE: u32 = 1;
 
+/// Coarse levels of depth in [`end_code`].
+pub const END_BINS: u32 = 240;
+/// Levels of opacity in [`end_code`].
+pub const END_ALPHAS: u32 = 256;
+
+/// A fragment's depth, coarsely, and its opacity in one level: MAX blending of it keeps the opacity of the fragment with
+/// the largest depth. Of fragments in one of the 240 bins it keeps the most opaque one's.
+pub fn end_code(zeta: f64, alpha: f64) -> u32 {
+    let bin = ((zeta * 0.5 + 0.5) * f64::from(END_BINS)).floor();
+    let bin = bin.clamp(0.0, f64::from(END_BINS - 1)) as u32;
+    bin * END_ALPHAS + alpha_level(alpha)
+}
+
+/// [`end_code`] with depth counted from the far end, for the nearest fragment.
+pub fn mirrored_end_code(zeta: f64, alpha: f64) -> u32 {
+    let code = end_code(zeta, alpha);
+    (END_BINS - 1 - code / END_ALPHAS) * END_ALPHAS + code % END_ALPHAS
+}
+
+/// The opacity's level: even steps of `√(1 − α)`, which keep the error of absorbance small also near opaque.
+fn alpha_level(alpha: f64) -> u32 {
+    let top = f64::from(END_ALPHAS - 1);
+    ((1.0 - (1.0 - alpha).max(0.0).sqrt()) * top + 0.5).floor() as u32
+}
+
+/// The absorbance that a level of [`end_code`] stands for, at most [`ABSORBANCE_MAX`].
+pub fn absorbance_of_end_code(code: u32) -> f64 {
+    let through = 1.0 - f64::from(code % END_ALPHAS) / f64::from(END_ALPHAS - 1);
+    (-2.0 * through.ln()).min(ABSORBANCE_MAX)
+}
+
 /// The sums and extremes of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics<F> {
@@ -81,14 +113,17 @@ impl<F: Float> Statistics<F> {
         s
     }
 
-    /// `m_k = b_k − b ζ^k`: the moments of the others. `m_0` is never negative.
-    pub fn others(&self, b: F, zeta: F) -> [F; 5] {
-        let mut power = b;
-        let mut m = self.moments.map(|sum| {
-            let rest = sum - power;
-            power = power * zeta;
-            rest
-        });
+    /// The moments without some fragments, given as (absorbance, warped depth): `m_k = b_k − Σ b ζ^k`. `m_0` is never
+    /// negative.
+    pub fn without(&self, fragments: &[(F, F)]) -> [F; 5] {
+        let mut m = self.moments;
+        for &(b, zeta) in fragments {
+            let mut power = b;
+            for sum in &mut m {
+                *sum = *sum - power;
+                power = power * zeta;
+            }
+        }
         m[0] = m[0].max(F::zero());
         m
     }
@@ -96,16 +131,16 @@ impl<F: Float> Statistics<F> {
 
 /// Names and units of [`features`], in order.
 pub const FEATURES: [(&str, &str); 7] = [
-    ("log_absorbance", "ln(1 + absorbance of the others)"),
+    ("log_absorbance", "ln(1 + absorbance of the rest)"),
     ("depth_fraction", "of the pixel's depth range"),
     ("mean_fraction", "of the pixel's depth range"),
     ("depth_deviation", "half standard deviations"),
     ("skewness", "half skewness"),
-    ("share_low", "of the others' absorbance"),
-    ("share_high", "of the others' absorbance"),
+    ("share_low", "of the rest's absorbance"),
+    ("share_high", "of the rest's absorbance"),
 ];
 
-/// Below this share of the pixel's absorbance the moments of the others are rounding noise of 16-bit sums.
+/// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
 const NOISE: f64 = 1.0 / 1024.0;
 
 /// The least standard deviation, as a share of the pixel's depth range.
@@ -117,22 +152,22 @@ const SKEWNESS_FLOOR: f64 = 1.0 / 8.0;
 /// Pull of the moments towards a measure that can be inverted, for [`features`] 5 and 6.
 const BIAS: f64 = 1e-3;
 
-/// The features of a fragment of absorbance `b` at depth `zeta`:
+/// The features of a fragment at depth `zeta`, given the moments `m` of the rest: all fragments but itself and the
+/// pixel's ends.
 ///
 /// 0. `ln(1 + m_0)`
 /// 1. where in the pixel's range the fragment lies, 0 … 1
-/// 2. where the others' mean μ lies, 0 … 1
-/// 3. `clamp((ζ − μ)/2σ, −2, 2)`, σ the others' standard deviation
-/// 4. `clamp(skewness/2, −2, 2)` of the others, σ at least an eighth of the range in it
-/// 5. and 6.: the share of the others' absorbance that lies in front of the fragment according to the two bounds that
+/// 2. where the rest's mean μ lies, 0 … 1
+/// 3. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
+/// 4. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
+/// 5. and 6.: the share of the rest's absorbance that lies in front of the fragment according to the two bounds that
 ///    four moments give (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
 ///
-/// Feature 0 to 4 need `b_0 … b_3`, the last two `b_4` also.
-pub fn features<F: Float>(s: &Statistics<F>, b: F, zeta: F) -> [F; 7] {
+/// Features 0 to 4 need `b_0 … b_3`, the last two `b_4` also.
+pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
     // Every constant below is exactly a 32-bit float.
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
     let (zero, one, two) = (F::zero(), F::one(), c(2.0));
-    let m = s.others(b, zeta);
     let level = two / c(f64::from(DEPTH_CODES - 1));
     let extent = (s.farthest - s.nearest).max(level);
     let total = m[0].max(s.moments[0] * c(NOISE)).max(c(1e-6));
@@ -182,11 +217,6 @@ fn share_bounds<F: Float>(t_moments: [F; 4], t: F) -> (F, F) {
     (clamp(low), clamp(high))
 }
 
-/// The weight of a fragment whose others have absorbance `m_0`, of which `share` lies in front.
-pub fn weight<F: Float>(others: F, share: F) -> F {
-    (-others * share).exp()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -219,6 +249,38 @@ mod tests {
         }
     }
 
+    /// √(1 − α) is off by half a step, 1/510, so α by up to 1/255 and the absorbance by 2/510 over √(1 − α).
+    #[test]
+    fn end_codes_keep_the_opacity_of_the_extreme() {
+        for i in 0..=1000 {
+            let alpha = f64::from(i) / 1001.0;
+            let code = end_code(0.3, alpha);
+            let exact = -(1.0 - alpha).ln();
+            let error = (absorbance_of_end_code(code) - exact).abs();
+            // The second-order term of the logarithm, near opaque.
+            let root = (1.0 - alpha).sqrt();
+            let step = 0.5 / 255.0;
+            assert!(
+                error <= -2.0 * (1.0 - step / root).ln() + 1e-12,
+                "{alpha}: {error}"
+            );
+            // Nearer wins in the mirrored code, farther in the other, whatever the opacities.
+            assert!(
+                end_code(0.4, 0.0) > code
+                    && mirrored_end_code(0.2, 0.0) > mirrored_end_code(0.3, alpha)
+            );
+            assert_eq!(
+                absorbance_of_end_code(mirrored_end_code(-0.7, alpha)),
+                absorbance_of_end_code(code)
+            );
+        }
+        assert!(
+            end_code(1.0, 1.0) == DEPTH_CODES - 1
+                && mirrored_end_code(-1.0, 1.0) == DEPTH_CODES - 1
+        );
+        assert_eq!(absorbance_of_end_code(end_code(0.0, 1.0)), ABSORBANCE_MAX);
+    }
+
     /// The 32-bit features follow the 64-bit ones. Mean powers err by a few roundings (2⁻²⁴) of values ≤ 1; moving them to the
     /// pixel's range multiplies by up to its inverse (here 10, as the range is at least a tenth of the frame's), cubed for
     /// the third, and dividing by σ³ ≥ 8⁻³ by up to 512 more.
@@ -243,7 +305,12 @@ mod tests {
             let wide = Statistics::of(points.iter().copied());
             let narrow = Statistics::of(points.iter().map(|&(b, z)| (b as f32, z as f32)));
             for &(b, z) in &points {
-                let (a, c) = (features(&wide, b, z), features(&narrow, b as f32, z as f32));
+                let m = wide.without(&[(b, z)]);
+                let (b32, z32) = (b as f32, z as f32);
+                let (a, c) = (
+                    features(&wide, &m, z),
+                    features(&narrow, &narrow.without(&[(b32, z32)]), z32),
+                );
                 for k in 0..5 {
                     let roundings = 4.0 / f64::from(1 << 24);
                     let width = f64::from(narrow.farthest - narrow.nearest) / 2.0;
@@ -252,7 +319,7 @@ mod tests {
                         4 => roundings / width.powi(3) * 512.0,
                         _ => roundings / width * 8.0,
                     };
-                    let noisy = wide.others(b, z)[0] < 0.1 * wide.moments[0];
+                    let noisy = m[0] < 0.1 * wide.moments[0];
                     assert!(
                         noisy || (a[k] - f64::from(c[k])).abs() < tolerance,
                         "{k}: {} {}",

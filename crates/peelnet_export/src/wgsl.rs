@@ -92,7 +92,7 @@ fn header(model: &Model) -> String {
                 float(high)
             ),
             Output::AnchoredShare | Output::AnchoredShareSeparateEnds =>
-                "weight exp(-others * share), others = exp(log_absorbance) - 1, share in 0 .. 1"
+                "transmittance of the rest, exp(-rest * share) with rest = exp(log_absorbance) - 1 and share in 0 .. 1"
                     .into(),
             Output::TailColor => "linear RGB, kept in 0 .. 1".into(),
         }

@@ -148,8 +148,8 @@ impl FromStr for Recipe {
 pub enum Output {
     /// T_i, kept in [`WEIGHT_FLOOR`] … 1.
     Transmittance,
-    /// The share of the other fragments' absorbance that lies in front, kept in 0 … 1; 0 for the nearest fragment
-    /// and 1 for the farthest, whatever the network says.
+    /// The share of the rest's absorbance (all but the fragment and the pixel's ends) that lies in front, kept in 0 … 1; the
+    /// nearest and the farthest fragment are known without it.
     AnchoredShare,
     /// The same, where the nearest and the farthest fragment accumulate apart.
     AnchoredShareSeparateEnds,
@@ -184,7 +184,7 @@ impl Output {
         }
     }
 
-    /// Whether the value is a share of the others' absorbance, and the weight `exp(−m_0 s)`.
+    /// Whether the value is a share of absorbance `r`, and the function answers with its transmittance `exp(−r s)`.
     pub const fn is_share(self) -> bool {
         matches!(self, Self::AnchoredShare | Self::AnchoredShareSeparateEnds)
     }

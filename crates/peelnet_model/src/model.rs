@@ -141,8 +141,8 @@ impl Model {
         outputs
     }
 
-    /// What the exported function answers: [`Model::forward_raw`], made a weight where the network predicts a share:
-    /// `exp(−m_0 s)` with `m_0 = e^x − 1` from the first input `x = ln(1 + m_0)`, which is kept in 0 …
+    /// What the exported function answers: [`Model::forward_raw`], made a transmittance where the network predicts a share:
+    /// `exp(−r s)` with `r = e^x − 1` from the first input `x = ln(1 + r)`, which is kept in 0 …
     /// [`LOG_ABSORBANCE_LIMIT`].
     ///
     /// # Panics

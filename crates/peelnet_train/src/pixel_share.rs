@@ -1,7 +1,7 @@
 //! Whole pixels, squared error of the normalised contributions: how the anchored networks train.
 //!
 //! The network answers with the share `s_i` of every fragment between a pixel's ends. Its unnormalised contribution is
-//! `k_i = α_i e^(−m_0 s_i)`, and what of the coverage is left to distribute, `R`, goes to each in proportion:
+//! `k_i = α_i e^(−b_n − r_i s_i)`, and what of the coverage is left to distribute, `R`, goes to each in proportion:
 //! `p̂_i = R k_i / (A + Σ k)`, where `A` is what the ends contribute when they are normalised with the rest (0 with
 //! separate ends). The loss of a pixel is `Σ (p̂_i − α_i T_i)²` over all of its fragments.
 
@@ -22,7 +22,7 @@ const FIXED: usize = 6;
 struct Pixels {
     /// First row of each pixel, and the number of rows.
     first: Vec<u32>,
-    /// `[inputs, absorbance of the others, α, exact contribution, the pixel's weight][rows]`
+    /// `[inputs, absorbance of the rest, α, exact contribution, the pixel's weight][rows]`
     columns: Vec<Vec<f32>>,
     /// `[FIXED][pixels]`
     fixed: Vec<Vec<f32>>,
@@ -68,7 +68,7 @@ impl Pixels {
             .zip(&data.inputs)
             .map(|(n, values)| n.apply(values, &rows))
             .collect();
-        columns.push(at(&pixels.others));
+        columns.push(at(&pixels.rest));
         columns.push(at(&pixels.alpha));
         columns.push(at(&data.targets[0]));
         let mut first = Vec::with_capacity(examples.len() + 1);

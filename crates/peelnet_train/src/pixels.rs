@@ -221,8 +221,9 @@ fn share_pixel(
         if s.place == Place::Between {
             push(&mut data.inputs, s.features);
             push(&mut data.targets, [exact]);
-            columns.others.push(s.others as f32);
-            columns.alpha.push(alpha as f32);
+            columns.rest.push(s.rest as f32);
+            // What is known of its weight goes with its opacity.
+            columns.alpha.push((alpha * (-s.front).exp()) as f32);
             continue;
         }
         let a = alpha * s.weight(|_| 0.0);

@@ -35,9 +35,9 @@ pub struct TrainingData {
 pub struct PixelColumns {
     /// First row of each pixel.
     pub first: Vec<u32>,
-    /// Absorbance of the pixel's other fragments, for each row.
-    pub others: Vec<f32>,
-    /// Opacity, for each row.
+    /// Absorbance of which the network tells the share in front, for each row.
+    pub rest: Vec<f32>,
+    /// Opacity, times the transmittance of what is known to lie in front, for each row.
     pub alpha: Vec<f32>,
     /// For each pixel: the coverage that is left to distribute, then sums over the fragments that take part without a
     /// network: of their contribution `a`, of `a²`, of `a` times the exact one `y`, of `y²`.

@@ -25,7 +25,7 @@ fn fragment_main(surface: Surface) -> Sums {
     let color = shade(surface);
     let zeta = warped_depth(surface.depth_linear);
     let m = textureLoad(moments, pixel, 0);
-    let e = textureLoad(extent, pixel, 0).xy;
+    let e = textureLoad(extent, pixel, 0);
     @if(fourth_moment)
     let w = peelnet_fragment(color.a, zeta, m, e, textureLoad(fourth, pixel, 0).x);
     @else

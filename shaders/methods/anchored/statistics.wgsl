@@ -7,7 +7,7 @@ import package::scene::visible::visible;
 
 struct Statistics {
     @location(0) moments: vec4f,
-    @location(1) extent: vec2f,
+    @location(1) extent: vec4f,
     @if(fourth_moment)
     @location(2) fourth: f32,
 }

@@ -1,15 +1,20 @@
-//! `deep-small`, `deep-medium`, `deep-large`: a learned share of the others' absorbance, anchored at both ends.
+//! `deep-small`, `deep-medium`, `deep-large`: a learned share of what lies in front, anchored at both ends.
 //!
-//! `w_i = exp(−m_0 s_i)` with `s = 0` for the nearest fragment, 1 for the farthest and a network's answer in 0 … 1
-//! between. The nearest fragment's weight is 1, so the sum of weights cannot vanish, and one and two layers come out
-//! exact. With *separate ends* the nearest (`T = 1`) and the farthest (`T = e^−m_0`), whose contributions are known,
-//! accumulate apart, and only what lies between is normalised to what they leave of `1 − T_∞`; three layers are exact then.
+//! The nearest fragment has weight 1 and the farthest `e^−m_0` (`m_0` the absorbance of all others): both are exact.
+//! Between them `w_i = e^−(b_n + s_i r_i)`: the nearest fragment's absorbance `b_n` is known, and a network says which
+//! share `s_i` of the *rest* `r_i` (all but the fragment itself and the two ends) lies in front. The weights are in (0, 1],
+//! their sum cannot vanish, and up to three layers come out exact but for the ends' quantised opacities. With *separate
+//! ends* the nearest and the farthest accumulate apart, and only what lies between is normalised to what they leave of
+//! `1 − T_∞`; three layers are exact then.
 
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
     guards::SUM_FLOOR,
-    statistics::{self, SAME_CODE, Statistics, depth_code, features, zeta_of_code},
+    statistics::{
+        self, SAME_CODE, Statistics, absorbance_of_end_code, depth_code, end_code, features,
+        mirrored_end_code, zeta_of_code,
+    },
 };
 
 /// Fragments of less opacity are composited, but are never a pixel's nearest or farthest: an invisible fragment would
@@ -32,8 +37,12 @@ pub enum Place {
 pub struct Seen {
     /// Nearest, farthest or between.
     pub place: Place,
-    /// Absorbance of the others, `m_0`.
+    /// Absorbance of all other fragments, `m_0`.
     pub others: f64,
+    /// Absorbance of the nearest fragment, `b_n`; 0 where it does not lie in front.
+    pub front: f64,
+    /// Absorbance of the rest, `r`.
+    pub rest: f64,
     /// What the network reads ([`statistics::features`]).
     pub features: [f64; 7],
 }
@@ -41,42 +50,45 @@ pub struct Seen {
 impl Seen {
     /// The weight, given what the network answers for a fragment that lies between the ends.
     pub fn weight(&self, share: impl FnOnce(&[f64; 7]) -> f64) -> f64 {
-        let share = match self.place {
-            Place::Nearest => 0.0,
-            Place::Between => share(&self.features),
-            Place::Farthest => 1.0,
-        };
-        statistics::weight(self.others, share)
+        match self.place {
+            Place::Nearest => 1.0,
+            Place::Between => (-(self.front + self.rest * share(&self.features))).exp(),
+            Place::Farthest => (-self.others).exp(),
+        }
     }
 }
 
-/// What the network knows of each fragment of a pixel, in the order given. Any affine map of the logarithm of depth
-/// serves as the warp.
+/// What the network knows of each fragment of a pixel, in the order given: fragments are (linear depth, α).
 pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Seen> {
     let points: Vec<(f64, f64)> = fragments
         .iter()
         .map(|&(depth, alpha)| (absorbance(alpha), warp.apply(depth.into())))
         .collect();
     let mut s = Statistics::of(points.iter().copied());
-    let codes = |wanted: fn(&f32) -> bool| {
+    let visible = || {
         fragments
             .iter()
             .zip(&points)
-            .filter(move |((_, alpha), _)| wanted(alpha))
-            .map(|(_, &(_, zeta))| depth_code(zeta))
+            .filter(|((_, alpha), _)| *alpha >= FAINT)
+            .map(|((_, alpha), &(_, zeta))| (zeta, f64::from(*alpha)))
     };
-    let visible = |alpha: &f32| *alpha >= FAINT;
     // Without a visible fragment the targets keep their clear values.
-    let first = codes(visible).min().unwrap_or(statistics::DEPTH_CODES - 1);
-    let last = codes(visible).max().unwrap_or(0);
+    let codes = || visible().map(|(zeta, _)| depth_code(zeta));
+    let first = codes().min().unwrap_or(statistics::DEPTH_CODES - 1);
+    let last = codes().max().unwrap_or(0);
+    let near = visible()
+        .map(|(z, a)| mirrored_end_code(z, a))
+        .max()
+        .unwrap_or(0);
+    let far = visible().map(|(z, a)| end_code(z, a)).max().unwrap_or(0);
     s.nearest = zeta_of_code(first);
     s.farthest = zeta_of_code(last);
     fragments
         .iter()
         .zip(&points)
-        .map(|((_, alpha), &(b, zeta))| {
+        .map(|(&(_, alpha), &(b, zeta))| {
             let code = depth_code(zeta);
-            let place = if *alpha < FAINT {
+            let place = if alpha < FAINT {
                 Place::Between
             } else if code <= first + SAME_CODE {
                 Place::Nearest
@@ -85,10 +97,25 @@ pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Seen> {
             } else {
                 Place::Between
             };
+            // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a
+            // more opaque one in the same bin), stays with the rest.
+            let alpha = f64::from(alpha);
+            let known = |is_known: bool, code: u32| {
+                if is_known {
+                    absorbance_of_end_code(code)
+                } else {
+                    0.0
+                }
+            };
+            let front = known(code > first && mirrored_end_code(zeta, alpha) != near, near);
+            let back = known(code < last && end_code(zeta, alpha) != far, far);
+            let rest = s.without(&[(b, zeta), (front, s.nearest), (back, s.farthest)]);
             Seen {
                 place,
-                others: s.others(b, zeta)[0],
-                features: features(&s, b, zeta),
+                others: s.without(&[(b, zeta)])[0],
+                front,
+                rest: rest[0],
+                features: features(&s, &rest, zeta),
             }
         })
         .collect()
@@ -192,7 +219,7 @@ mod tests {
                         .position(|s| s.features == *x)
                         .expect("one of them");
                     let front: f64 = f[..i].iter().map(|f| absorbance(f.alpha)).sum();
-                    front / all[i].others
+                    (front - all[i].front) / all[i].rest
                 });
                 let same_level = all.iter().filter(|s| s.place != Place::Between).count() > 2;
                 for k in 0..3 {
@@ -220,6 +247,10 @@ mod tests {
                 let warp = DepthWarp::new((near * factor).into(), (far * factor).into());
                 for (a, b) in base.iter().zip(seen(&scaled, &warp)) {
                     assert_eq!(a.place, b.place);
+                    // A depth at the edge of a bin may fall on its other side, and another end be known then.
+                    if (a.front - b.front).abs() + (a.rest - b.rest).abs() > 1e-9 {
+                        continue;
+                    }
                     // The share bounds jump where a point of the bound passes the fragment.
                     for k in 0..5 {
                         assert!((a.features[k] - b.features[k]).abs() < 1e-3, "{a:?} {b:?}");
@@ -229,25 +260,44 @@ mod tests {
         }
     }
 
-    /// Hand-worked: three equal layers (b = ln 2) at ζ = −1, 0, 1, seen from the middle one. The others lie at
-    /// both ends of the range: mean ½, deviation ½, no skew, half in front.
+    /// Hand-worked: five equal layers (α = ½) at ζ = −1, −½, 0, ½, 1, seen from the middle one. The rest lies a quarter and
+    /// three quarters into the range: mean ½, deviation ¼, no skew, half in front, and the nearest is known.
     #[test]
-    fn the_middle_of_three() {
-        let f = [(1.0, 0.5), (10.0, 0.5), (100.0, 0.5)];
+    fn the_middle_of_five() {
+        let f = [0.0, 0.5, 1.0, 1.5, 2.0].map(|e| (10f32.powf(e), 0.5));
         let s = seen(&f, &DepthWarp::new(1.0, 100.0));
-        assert_eq!(
-            [s[0].place, s[1].place, s[2].place],
-            [Place::Nearest, Place::Between, Place::Farthest]
-        );
-        let want = [(1.0 + 2.0 * 2f64.ln()).ln(), 0.5, 0.5, 0.0, 0.0, 0.5, 0.5];
+        assert_eq!(s[0].place, Place::Nearest);
+        assert_eq!(s[4].place, Place::Farthest);
+        assert!(s[1..4].iter().all(|s| s.place == Place::Between));
+        let half = 2f64.ln();
+        // √½ is quantised to steps of 1/255: its logarithm is off by 1/510/√½ at most, twice for α, for both ends.
+        let quantised = 2.0 / 510.0 / 0.5f64.sqrt();
+        assert!((s[2].front - half).abs() < quantised);
+        assert!((s[2].rest - 2.0 * half).abs() < 2.0 * quantised);
+        let want = [(1.0 + 2.0 * half).ln(), 0.5, 0.5, 0.0, 0.0, 0.5, 0.5];
         for k in 0..7 {
-            // The quantised ends are off by half a level, 1.6e−5; the bias of the bounds is 1e−3.
-            let tolerance = if k < 5 { 1e-4 } else { 2e-2 };
+            // Both ends err alike, so the mean stays. What is left of them weighs 16 times as much in fourth powers as the
+            // rest, which lies half as far from the middle.
+            let tolerance = [
+                2.0 * quantised,
+                1e-2,
+                1e-2,
+                1e-2,
+                1e-2,
+                16.0 * quantised,
+                16.0 * quantised,
+            ][k];
             assert!(
-                (s[1].features[k] - want[k]).abs() < tolerance,
+                (s[2].features[k] - want[k]).abs() < tolerance,
                 "{k}: {:?}",
-                s[1].features
+                s[2].features
             );
+        }
+        // The second layer has nothing of the rest in front, the fourth all.
+        let exact = [1.0, 0.5, 0.25, 0.125, 0.0625];
+        for (i, share) in [(1, 0.0), (2, 0.5), (3, 1.0)] {
+            let w = s[i].weight(|_| share);
+            assert!((w / exact[i] - 1.0).abs() < 4.0 * quantised, "{i}: {w}");
         }
     }
 

@@ -25,7 +25,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         target("moments", 4, Blend::Add),
         Target {
             full: false,
-            ..target("extent", 2, Blend::Max)
+            ..target("extent", 4, Blend::Max)
         },
     ];
     let (mut statistics, mut sums, mut resolve_reads) = (vec![1, 2], vec![0], vec![0, 1]);
