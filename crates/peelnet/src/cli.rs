@@ -118,12 +118,21 @@ pub struct RunArgs {
   peelnet extract data/scenes/*.toml --out d --views all --pixels 0.1 --augment 4 --seed 7
   peelnet extract scene.toml --out d --format csv --size 640x480
   peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler
+  peelnet extract --synthetic 300000 --out d            no scene: lists of fragments made up from the seed
 
 DATASET is a folder: manifest.json and the fragment files. The same seed gives the same bytes.")]
 pub struct ExtractArgs {
     /// Scene files
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(value_name = "SCENE", required_unless_present = "synthetic")]
     pub scenes: Vec<PathBuf>,
+    /// Make N fragment lists up instead of peeling scenes
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with_all = ["scenes", "size", "views", "peel", "max_passes", "pixels", "augment", "shard"],
+        value_parser = clap::value_parser!(u64).range(1..)
+    )]
+    pub synthetic: Option<u64>,
     /// Folder of the dataset
     #[arg(long, value_name = "DATASET")]
     pub out: PathBuf,
@@ -351,6 +360,7 @@ mod tests {
             "run --out o",
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
+            "extract --synthetic 1000 --out d --seed 3",
             "train d e --out m --recipe thesis --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",

@@ -17,6 +17,7 @@ pub mod guards;
 pub mod hash;
 pub mod methods;
 pub mod mlp;
+pub mod random;
 pub mod scanline;
 pub mod statistics;
 pub mod tolerance;

@@ -11,6 +11,7 @@ mod extract;
 pub mod harvest;
 pub mod items;
 pub mod rows;
+pub mod synthetic;
 
 pub use error::PeelError;
 pub use extract::{ExtractOptions, ExtractReport, Progress, extract};

@@ -12,7 +12,6 @@ mod material;
 mod mesh;
 pub mod obj;
 mod polygons;
-mod random;
 pub mod scatter;
 mod scene;
 pub mod shapes;

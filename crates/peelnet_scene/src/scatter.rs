@@ -19,8 +19,9 @@
 //!
 //! Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
 
-use crate::{file::MeshRef, random::Random};
+use crate::file::MeshRef;
 use glam::{Mat4, Quat, Vec3};
+use peelnet_core::random::Random;
 use serde::Deserialize;
 
 /// The table in the scene file.

@@ -1,7 +1,8 @@
 //! Meshes made by code. Closed ones are watertight, turned outwards, and their corners are shared.
 
-use crate::{Material, Mesh, mesh::smooth_normals, random::Random};
+use crate::{Material, Mesh, mesh::smooth_normals};
 use glam::Vec3;
+use peelnet_core::random::Random;
 use serde::Deserialize;
 use std::f32::consts::{PI, TAU};
 

@@ -1,7 +1,8 @@
 //! Variations of a scene, for training: other colours, opacities, cameras and scales of the same geometry.
 
-use crate::{Material, Scene, random::Random};
+use crate::{Material, Scene};
 use glam::{Mat4, Quat, Vec3};
+use peelnet_core::random::Random;
 
 /// How a copy's opacities are drawn. What networks find hardest is among them: extremes in one pixel, near-opaque and
 /// very faint layers.

@@ -87,4 +87,4 @@ pub use recipe::{Definition, Feature};
 pub use report::{End, EpochReport, Outcome};
 pub use task::{Part, Task};
 pub use train::{RunOptions, train};
-pub use training_data::{PixelColumns, TrainingData};
+pub use training_data::{PixelColumns, PixelFixed, TrainingData};

@@ -4,7 +4,7 @@ use burn::tensor::activation::{relu, sigmoid};
 use burn::tensor::{Gradients, Tensor};
 use peelnet_core::mlp::{Activation, Layer, Mlp, ShapeError};
 
-use crate::random::{Random, Stream};
+use crate::random::{Stream, signed_unit};
 
 /// Widths and activations.
 ///
@@ -34,13 +34,13 @@ impl Shape {
 
     /// Initial parameters: uniform in ±1/√inputs, weights and biases, as PyTorch's `nn.Linear` starts.
     pub(crate) fn initial(&self, seed: u64) -> Vec<f32> {
-        let mut random = Random::new(seed, Stream::Weights);
+        let mut random = Stream::Weights.of(seed);
         self.layers()
             .flat_map(|(inputs, outputs)| {
                 let bound = 1.0 / (inputs as f32).sqrt();
                 std::iter::repeat_n(bound, (inputs + 1) * outputs)
             })
-            .map(|bound| bound * random.signed_unit())
+            .map(|bound| bound * signed_unit(&mut random))
             .collect()
     }
 
@@ -158,8 +158,10 @@ mod tests {
     }
 
     fn random_inputs(rows: usize, seed: u64) -> Vec<f32> {
-        let mut random = Random::new(seed, Stream::Split);
-        (0..3 * rows).map(|_| 3.0 * random.signed_unit()).collect()
+        let mut random = Stream::Split.of(seed);
+        (0..3 * rows)
+            .map(|_| 3.0 * signed_unit(&mut random))
+            .collect()
     }
 
     /// Both forward passes round every product and sum once, in different orders. A sum of k terms errs by at most

@@ -15,8 +15,8 @@ use crate::normalise::Normalisation;
 use crate::task::{Part, Task};
 use crate::training_data::{PixelColumns, TrainingData};
 
-/// Columns of a pixel: what is left, the four sums over its ends, its weight.
-const FIXED: usize = 6;
+/// Columns of a pixel: [`PixelFixed`], then its weight.
+const FIXED: usize = 9;
 
 /// Some pixels, on the device and as the numbers that they are made from.
 struct Pixels {
@@ -71,6 +71,7 @@ impl Pixels {
         columns.push(at(&pixels.rest));
         columns.push(at(&pixels.alpha));
         columns.push(at(&data.targets[0]));
+        columns.extend(pixels.color.iter().map(|c| at(c)));
         let mut first = Vec::with_capacity(examples.len() + 1);
         let mut of_rows = Vec::with_capacity(rows.len());
         for &p in examples {
@@ -79,16 +80,17 @@ impl Pixels {
             of_rows.resize(of_rows.len() + n, weight(p));
         }
         first.push(of_rows.len() as u32);
-        columns.push(of_rows);
-        let mut fixed: Vec<Vec<f32>> = (0..FIXED - 1)
-            .map(|k| {
-                examples
-                    .iter()
-                    .map(|&p| pixels.fixed[p as usize][k])
-                    .collect()
-            })
-            .collect();
-        fixed.push(examples.iter().map(|&p| weight(p)).collect());
+        let _ = of_rows;
+        let mut fixed = vec![Vec::with_capacity(examples.len()); FIXED];
+        for &p in examples {
+            let f = &pixels.fixed[p as usize];
+            let [r, g, b] = f.color;
+            let [er, eg, eb] = f.exact;
+            let values = [f.left, f.sum, r, g, b, er, eg, eb, weight(p)];
+            for (column, value) in fixed.iter_mut().zip(values) {
+                column.push(value);
+            }
+        }
         let order: Vec<u32> = (0..examples.len() as u32).collect();
         let tensors = Tensors::new(&first, &columns, &fixed, &order, device);
         Self {
@@ -205,10 +207,15 @@ impl Task for PixelShare {
             IndexingUpdateOp::Add,
         );
         let scale = column(0) / sums;
-        let error = contribution * scale.clone().select(1, pixel) - row(2);
-        let between = row(3) * error.clone() * error;
-        // Σ over the ends of (a·scale − y)².
-        let ends = column(2) * scale.clone() * scale.clone() - column(3) * scale * 2.0 + column(4);
-        between.sum() + (column(5) * ends).sum()
+        let error = contribution * scale.clone().select(1, pixel.clone()) - row(2);
+        // Colour by colour: Σ over all fragments of (p̂ − αT) c.
+        let image = (fixed.clone().narrow(0, 2, 3) * scale - fixed.clone().narrow(0, 5, 3))
+            .select_assign(
+                1,
+                pixel,
+                rows.narrow(0, self.inputs + 3, 3) * error.clone(),
+                IndexingUpdateOp::Add,
+            );
+        (column(8) * (image.clone() * image)).sum() * (1.0 / 3.0)
     }
 }

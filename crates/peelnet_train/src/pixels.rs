@@ -11,7 +11,7 @@ use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Model, Output, Recipe};
 
 use crate::error::TrainError;
-use crate::training_data::{PixelColumns, TrainingData};
+use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
 
 /// Rows that are read at once.
 const ROWS_AT_A_TIME: usize = 1 << 16;
@@ -87,7 +87,7 @@ pub(crate) fn for_each_pixel(
     Ok(())
 }
 
-/// Squared error of the normalised contributions that MBOIT-4 gives, summed over a pixel: how hard the pixel is.
+/// Squared error of a pixel that MBOIT-4 draws, mean over the channels: how hard the pixel is.
 ///
 /// The figure that a user looks at is a method's error over that of another on the same image. Weighing each view by the
 /// inverse of its mean hardness trains for that figure: faint scenes count as much as glaring ones.
@@ -111,11 +111,13 @@ fn hardness(pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
         })
         .collect();
     let scale = (1.0 - pixel.behind()) / shares.iter().sum::<f64>().max(1e-12);
-    pixel
-        .contributions()
-        .zip(shares)
-        .map(|(exact, share)| (share * scale - exact).powi(2))
-        .sum()
+    let mut error = [0.0; 3];
+    for ((exact, share), color) in pixel.contributions().zip(shares).zip(pixel.colors) {
+        for (e, &c) in error.iter_mut().zip(color) {
+            *e += (share * scale - exact) * f64::from(c);
+        }
+    }
+    error.iter().map(|e| e * e / 3.0).sum()
 }
 
 /// Examples of one part, before they are weighed.
@@ -214,32 +216,35 @@ fn share_pixel(
     }
     let first = data.targets[0].len();
     let mut left = 1.0 - pixel.behind();
-    // Of the ends that are normalised with the rest: Σ a, Σ a², Σ a y, Σ y².
-    let mut fixed = [0.0f64; 4];
-    for ((s, (_, alpha)), exact) in all.iter().zip(pixel.points).zip(pixel.contributions()) {
-        let alpha = f64::from(*alpha);
+    let mut fixed = PixelFixed::default();
+    for (i, exact) in pixel.contributions().enumerate() {
+        let (s, color) = (&all[i], pixel.colors[i]);
+        let alpha = f64::from(pixel.points[i].1);
         if s.place == Place::Between {
             push(&mut data.inputs, s.features);
             push(&mut data.targets, [exact]);
             columns.rest.push(s.rest as f32);
             // What is known of its weight goes with its opacity.
             columns.alpha.push((alpha * (-s.front).exp()) as f32);
+            for (column, c) in columns.color.iter_mut().zip(color) {
+                column.push(c);
+            }
             continue;
         }
         let a = alpha * s.weight(|_| 0.0);
         if separate_ends {
             left -= a;
         } else {
-            for (sum, x) in fixed.iter_mut().zip([a, a * a, a * exact, exact * exact]) {
-                *sum += x;
+            fixed.sum += a as f32;
+            for k in 0..3 {
+                fixed.color[k] += a as f32 * color[k];
+                fixed.exact[k] += exact as f32 * color[k];
             }
         }
     }
+    fixed.left = left.max(0.0) as f32;
     columns.first.push(first as u32);
-    let [sum, squares, products, exact] = fixed.map(|x| x as f32);
-    columns
-        .fixed
-        .push([left.max(0.0) as f32, sum, squares, products, exact]);
+    columns.fixed.push(fixed);
     if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
         weights.push(1.0);
         subsets.push(subset);

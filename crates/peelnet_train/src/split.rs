@@ -2,7 +2,7 @@
 
 use peelnet_dataset::Subset;
 
-use crate::random::{Random, Stream};
+use crate::random::Stream;
 
 /// Indices of the examples of each part, ascending.
 pub(crate) struct Split {
@@ -15,7 +15,7 @@ impl Split {
     /// Draws `⌊n·share⌋` examples for testing at random from the seed. At least one example is left for training.
     pub(crate) fn random(n: u32, share: f64, seed: u64) -> Self {
         let held_out = (f64::from(n) * share) as usize;
-        let order = Random::new(seed, Stream::Split).permutation(n);
+        let order = Stream::Split.of(seed).permutation(n);
         let (test, train) = order.split_at(held_out.min((n as usize).saturating_sub(1)));
         let sorted = |part: &[u32]| {
             let mut part = part.to_vec();

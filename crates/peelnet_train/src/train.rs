@@ -18,7 +18,7 @@ use crate::fragment_mse::FragmentMse;
 use crate::network::Shape;
 use crate::normalise::Normalisation;
 use crate::pixel_share::PixelShare;
-use crate::random::{Random, Stream};
+use crate::random::Stream;
 use crate::recipe::Definition;
 use crate::report::{End, EpochReport, Outcome};
 use crate::split::Split;
@@ -297,7 +297,11 @@ impl Run<'_> {
         let steps_per_epoch = examples.div_ceil(config.batch) as u64;
         let steps = steps_per_epoch * u64::from(config.epochs);
         let begin = Instant::now();
-        task.shuffle(&Random::new(config.seed, Stream::Order(epoch)).permutation(examples as u32));
+        task.shuffle(
+            &Stream::Order(epoch)
+                .of(config.seed)
+                .permutation(examples as u32),
+        );
         Team::with(self.threads, &*task, &self.shape, config.chunk, |team| {
             let mut parameters = start.parameters.clone();
             let mut adam = start.adam.clone();

@@ -39,9 +39,23 @@ pub struct PixelColumns {
     pub rest: Vec<f32>,
     /// Opacity, times the transmittance of what is known to lie in front, for each row.
     pub alpha: Vec<f32>,
-    /// For each pixel: the coverage that is left to distribute, then sums over the fragments that take part without a
-    /// network: of their contribution `a`, of `a²`, of `a` times the exact one `y`, of `y²`.
-    pub fixed: Vec<[f32; 5]>,
+    /// Radiance, for each row.
+    pub color: [Vec<f32>; 3],
+    /// For each pixel, see [`PixelFixed`].
+    pub fixed: Vec<PixelFixed>,
+}
+
+/// What a pixel's ends contribute without a network.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelFixed {
+    /// The coverage that is left to distribute.
+    pub left: f32,
+    /// `Σ a`: contributions before normalisation, of ends that are normalised with the rest.
+    pub sum: f32,
+    /// `Σ a c`.
+    pub color: [f32; 3],
+    /// `Σ y c`, of the exact contributions `y` of the same fragments.
+    pub exact: [f32; 3],
 }
 
 impl PixelColumns {

@@ -6,19 +6,30 @@ use crate::failure::Failure;
 use crate::parse::{ViewCount, command_line};
 use crate::progress::{Progress, short, thousands};
 use peelnet_gpu::Gpu;
-use peelnet_peel::{ExtractOptions, ExtractReport, PeelError, Views, extract};
+use peelnet_peel::{
+    ExtractOptions, ExtractReport, PeelError, Views, extract,
+    synthetic::{SyntheticOptions, synthetic},
+};
 use peelnet_scene::Scene;
 use serde_json::json;
 use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
-    let scenes = context.scenes(&args.scenes)?;
-    let gpu = context.gpu()?;
-    let report = peel(
-        context,
-        &gpu,
-        &scenes,
-        &ExtractOptions {
+    let report = if let Some(lists) = args.synthetic {
+        make_up(
+            context,
+            &SyntheticOptions {
+                out: args.out.clone(),
+                lists,
+                format: args.format,
+                seed: args.seed,
+                command: command_line(),
+            },
+        )?
+    } else {
+        let scenes = context.scenes(&args.scenes)?;
+        let gpu = context.gpu()?;
+        let options = ExtractOptions {
             out: args.out.clone(),
             size: args.size.0,
             views: match args.views {
@@ -34,8 +45,9 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
             shard: args.shard,
             command: command_line(),
             budget: None,
-        },
-    )?;
+        };
+        peel(context, &gpu, &scenes, &options)?
+    };
     // A shard lies in a folder of its own.
     let folder = match args.shard {
         Some(shard) => args.out.join(shard.folder()),
@@ -63,6 +75,23 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     )
 }
 
+/// Makes lists up with a progress bar.
+fn make_up(context: &Context<'_>, options: &SyntheticOptions) -> Result<ExtractReport, Failure> {
+    let bar = Progress::new(context.console, "synthetic", 1);
+    let report = synthetic(options, context.stop, &mut |p| show(&bar, p))?;
+    drop(bar);
+    Ok(report)
+}
+
+fn show(bar: &Progress, p: &peelnet_peel::Progress) {
+    let rate = p.rows as f64 / p.seconds.max(1e-3);
+    bar.set(
+        p.items_done.into(),
+        p.items.into(),
+        format!("{} rows, {} rows/s", short(p.rows as f64), short(rate)),
+    );
+}
+
 /// Peels with a progress bar, and warns of what peeling left out.
 pub(super) fn peel(
     context: &Context<'_>,
@@ -78,14 +107,7 @@ pub(super) fn peel(
         gpu.info.name
     ));
     let bar = Progress::new(context.console, "extract", 1);
-    let report = extract(gpu, scenes, options, context.stop, &mut |p| {
-        let rate = p.rows as f64 / p.seconds.max(1e-3);
-        bar.set(
-            p.items_done.into(),
-            p.items.into(),
-            format!("{} rows, {} rows/s", short(p.rows as f64), short(rate)),
-        );
-    });
+    let report = extract(gpu, scenes, options, context.stop, &mut |p| show(&bar, p));
     drop(bar);
     let report = report.map_err(|error| match error {
         PeelError::Usage(text) => Failure::Usage(text),

@@ -1,0 +1,319 @@
+//! Fragment lists that no scene was drawn for: training data wider than any suite of scenes.
+//!
+//! Lists come in *worlds* of [`PIXELS`] lists. A world draws once what the pixels of a view have in common: how far its
+//! depths range (1.05 to 8,000 times), where its objects lie (evenly, towards the front, in clusters, in rows), whether
+//! they are sheets, bodies with two surfaces or thin walls, how opaque each is (the schemes that scenes are varied with,
+//! and particles), and their colours. A list is then a ray through it: it meets some objects, each off its middle by
+//! chance. A world is a part of the dataset like a view of a scene, with the same columns.
+
+use crate::{
+    ExtractReport, PeelError, Progress,
+    rows::{RawTile, ViewConstants, append_rows},
+};
+use peelnet_core::random::Random;
+use peelnet_dataset::{
+    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo, SceneEntry,
+};
+use std::{
+    path::PathBuf,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
+
+/// Lists of one world.
+pub const PIXELS: u64 = 32 * 32;
+/// Most fragments of one list.
+const MOST: usize = 160;
+/// The scene's name in the dataset.
+const NAME: &str = "synthetic";
+
+/// What to make.
+#[derive(Clone, Debug)]
+pub struct SyntheticOptions {
+    /// Folder of the dataset.
+    pub out: PathBuf,
+    /// Number of lists.
+    pub lists: u64,
+    /// File format.
+    pub format: Format,
+    /// Seed of everything.
+    pub seed: u64,
+    /// The command line, for the manifest.
+    pub command: String,
+}
+
+/// Something that rays meet.
+#[derive(Clone, Copy, Debug)]
+struct Object {
+    /// Middle, in 0 … 1 of the world's depth range.
+    middle: f32,
+    /// Half of its depth; 0 for a sheet.
+    half: f32,
+    /// Thickness of its walls; 0 where a surface is one fragment.
+    wall: f32,
+    alpha: f32,
+    color: [f32; 3],
+}
+
+/// What the lists of a part have in common.
+#[derive(Clone, Debug)]
+struct World {
+    /// Nearest depth, scene units.
+    near: f32,
+    /// Logarithm of the depth range.
+    log_range: f32,
+    objects: Vec<Object>,
+    /// How likely a ray meets an object.
+    hit: f32,
+    /// How much a sheet's depth varies from ray to ray.
+    slope: f32,
+    /// Whether opacity falls off towards an object's rim, as in sprites.
+    sprites: bool,
+    /// Whether each fragment has an opacity of its own.
+    own_alpha: bool,
+}
+
+impl World {
+    fn new(random: &mut Random) -> Self {
+        let count = random.log_between(2.0, 90.0) as usize;
+        let log_range = random.log_between(0.05, 9.0);
+        let placement = random.below(5);
+        let clusters: [f32; 3] = std::array::from_fn(|_| random.unit());
+        let kind = random.below(6);
+        let scheme = random.below(9);
+        let same = random.between(0.02, 0.98);
+        let bands = [random.between(0.02, 0.98), random.between(0.02, 0.98)];
+        let palette: [f32; 4] = std::array::from_fn(|_| random.between(0.02, 0.98));
+        let wall = random.log_between(1e-3, 0.1);
+        let size = random.log_between(0.01, 0.5);
+        let objects = (0..count)
+            .map(|i| {
+                let u = random.unit();
+                let middle = match placement {
+                    0 => u,
+                    1 => u * u,
+                    2 => 1.0 - u * u,
+                    3 => (clusters[random.below(3)] + 0.1 * (u - 0.5)).clamp(0.0, 1.0),
+                    _ => (i as f32 + 0.5 * u) / count as f32,
+                };
+                let body = match kind {
+                    0 | 1 => false,
+                    2 | 3 => true,
+                    _ => random.unit() < 0.5,
+                };
+                let half = if body {
+                    size * random.between(0.3, 1.0)
+                } else {
+                    0.0
+                };
+                let thin = body && kind == 3 || random.unit() < 0.15;
+                let u = random.unit();
+                let alpha = match scheme {
+                    0 | 1 => 0.02 + 0.97 * u,
+                    2 => same,
+                    3 => [0.02, 0.98][usize::from(u < 0.5)],
+                    4 => 0.8 + 0.19 * u,
+                    5 => 0.02 + 0.18 * u,
+                    6 => (bands[usize::from(middle > 0.5)] + 0.1 * (u - 0.5)).clamp(0.02, 0.98),
+                    7 => palette[random.below(4)],
+                    _ => u * u * u,
+                };
+                Object {
+                    middle,
+                    half,
+                    wall: if thin { wall } else { 0.0 },
+                    alpha: alpha.clamp(0.005, 0.998),
+                    color: random.color(),
+                }
+            })
+            .collect();
+        Self {
+            near: random.log_between(0.05, 20.0),
+            log_range,
+            objects,
+            hit: random.between(0.15, 1.0),
+            slope: random.log_between(1e-3, 0.3),
+            sprites: random.unit() < 0.15,
+            own_alpha: random.unit() < 0.1,
+        }
+    }
+
+    /// A ray's fragments, in any order: depth and (radiance, α).
+    fn list(&self, random: &mut Random) -> Vec<(f32, [f32; 4])> {
+        let mut list = Vec::new();
+        for o in &self.objects {
+            // Drawn for every object, so that missing one changes nothing of the others.
+            let (met, offset, falloff) = (random.unit(), random.unit(), random.unit());
+            if met >= self.hit || list.len() + 4 > MOST {
+                continue;
+            }
+            let middle = o.middle + self.slope * (offset - 0.5);
+            // Half a chord through a ball, `offset` of the radius off its middle.
+            let chord = o.half * (1.0 - offset * offset).sqrt();
+            let shade = 0.4 + 0.6 * falloff;
+            let mut add = |at: f32| {
+                let mut alpha = o.alpha;
+                if self.sprites {
+                    alpha *= 1.0 - falloff * falloff;
+                }
+                if self.own_alpha {
+                    alpha = random.between(0.02, 0.98);
+                }
+                let [r, g, b] = o.color.map(|c| c * shade);
+                let depth = self.near * (self.log_range * at).exp();
+                list.push((depth, [r, g, b, alpha.max(1e-3)]));
+            };
+            let walls: &[f32] = if o.wall > 0.0 { &[0.0, o.wall] } else { &[0.0] };
+            for inward in walls {
+                add(middle - chord + inward);
+                if chord > 0.0 {
+                    add(middle + chord - inward);
+                }
+            }
+        }
+        list
+    }
+}
+
+/// Writes the dataset. Nothing appears in the folder before everything is done.
+///
+/// # Errors
+/// A folder that cannot be written, or [`PeelError::Interrupted`] when `stop` becomes true.
+pub fn synthetic(
+    options: &SyntheticOptions,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<ExtractReport, PeelError> {
+    let start = Instant::now();
+    let worlds = u32::try_from(options.lists.div_ceil(PIXELS))
+        .map_err(|_| PeelError::Usage(format!("--synthetic {}: too many lists", options.lists)))?;
+    let writer = DatasetWriter::create(
+        &options.out,
+        Header {
+            format: options.format,
+            seed: options.seed,
+            adapter: "none".to_owned(),
+            tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+            command: options.command.clone(),
+            peel: NAME.to_owned(),
+            pixels_fraction: 1.0,
+            augment: 0,
+            scenes: vec![SceneEntry {
+                name: NAME.to_owned(),
+                file: NAME.to_owned(),
+                // Nothing is read; the lists follow from the seed and this version.
+                sha256: "0".repeat(64),
+                held_out: false,
+            }],
+            work_items: worlds,
+            shard: None,
+        },
+    )?;
+    let mut batch = FragmentBatch::default();
+    let (mut rows, mut coplanar) = (0, 0);
+    for index in 0..worlds {
+        if stop.load(Ordering::Relaxed) {
+            return Err(PeelError::Interrupted);
+        }
+        let mut random = Random::new(options.seed, &[0x5e7f, index.into()]);
+        let world = World::new(&mut random);
+        let lists = PIXELS.min(options.lists - u64::from(index) * PIXELS);
+        let (tile, range) = tile(&world, lists, &mut random);
+        let info = PartInfo {
+            index,
+            scene: 0,
+            copy: 0,
+            view: index,
+            camera: CameraInfo {
+                position: [0.0; 3],
+                target: [0.0, 0.0, -1.0],
+                up: [0.0, 1.0, 0.0],
+                fov_y_degrees: 45.0,
+                near: range[0],
+                far: range[1],
+            },
+            width: 32,
+            height: 32,
+        };
+        let constants = ViewConstants {
+            view: index,
+            width: 32,
+            near: range[0],
+            far: range[1],
+        };
+        let mut part = writer.begin(info)?;
+        let counts = append_rows(&tile, constants, &mut batch, usize::MAX, |b| part.write(b))?;
+        part.finish(PartCounts {
+            lost_fragments: 0,
+            coplanar_ties: counts.coplanar,
+        })?;
+        rows += counts.rows;
+        coplanar += counts.coplanar;
+        progress(&Progress {
+            items_done: index + 1,
+            items: worlds,
+            rows,
+            seconds: start.elapsed().as_secs_f64(),
+        });
+    }
+    Ok(ExtractReport {
+        manifest: writer.finish()?,
+        gpu_micros: 0.0,
+        wall_micros: start.elapsed().as_secs_f64() * 1e6,
+        lost: 0,
+        coplanar,
+        tiles: 0,
+    })
+}
+
+/// A world's lists, sorted, and clip distances around them.
+fn tile(world: &World, lists: u64, random: &mut Random) -> (RawTile, [f32; 2]) {
+    let mut tile = RawTile {
+        offsets: vec![0],
+        ..Default::default()
+    };
+    for _ in 0..lists {
+        let mut list = world.list(random);
+        list.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (depth, color) in list {
+            tile.depths.push(depth);
+            tile.colors.push(color);
+        }
+        tile.offsets.push(tile.depths.len() as u32);
+    }
+    let near = tile.depths.iter().copied().fold(f32::MAX, f32::min);
+    let far = tile.depths.iter().copied().fold(0.0, f32::max);
+    if far == 0.0 {
+        return (tile, [0.1, 100.0]);
+    }
+    (tile, [near * 0.5, far * 2.0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Worlds differ widely, and each of their lists is a valid pixel.
+    #[test]
+    fn worlds_are_wide() {
+        let mut ranges = Vec::new();
+        let mut layers = Vec::new();
+        for seed in 0..300 {
+            let mut random = Random::new(seed, &[]);
+            let world = World::new(&mut random);
+            let (tile, range) = tile(&world, 64, &mut random);
+            assert_eq!(tile.offsets.len(), 65);
+            for run in tile.offsets.windows(2) {
+                let depths = &tile.depths[run[0] as usize..run[1] as usize];
+                assert!(depths.is_sorted() && depths.len() <= MOST);
+                layers.push(depths.len());
+            }
+            assert!(tile.depths.iter().all(|&z| z > range[0] && z < range[1]));
+            assert!(tile.colors.iter().all(|c| c[3] > 0.0 && c[3] < 1.0));
+            ranges.push(world.log_range);
+        }
+        let most = layers.iter().max().copied().unwrap_or(0);
+        assert!(most >= 100 && layers.contains(&3), "{most}");
+        assert!(ranges.iter().any(|&r| r < 0.1) && ranges.iter().any(|&r| r > 8.0));
+    }
+}
