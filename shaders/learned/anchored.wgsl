@@ -28,6 +28,8 @@ struct PeelnetFeatures {
     mean_fraction: f32,
     depth_deviation: f32,
     skewness: f32,
+    share_low: f32,
+    share_high: f32,
     // 1 for the pixel's nearest fragment, 2 for its farthest, 0 between them.
     end: f32,
     // The fragment's weight but for what the network says: 1, exp(-others), or the nearest fragment's transmittance.
@@ -95,6 +97,22 @@ fn peelnet_end_absorbance(level: f32) -> f32 {
     return min(-2.0 * log(max(through, 1e-30)), 16.0);
 }
 
+// The least and the most of a distribution on 0 .. 1 that can lie in front of x, from its first three moments: the
+// extreme one has the points x, y and one of the ends.
+fn peelnet_interval_bounds(m: vec3f, x: f32) -> vec2f {
+    let y0 = (m.z - x * m.y) / (m.y - x * m.x);
+    let at_zero = y0 >= 0.0 && y0 <= 1.0;
+    // Moments of t dm or of (1 - t) dm, whose points are x and y alone.
+    let n = select(vec3f(1.0, m.xy) - m, m, at_zero);
+    let y = select((n.z - x * n.y) / (n.y - x * n.x), y0, at_zero);
+    let at = (n.y - y * n.x) / ((x - y) * select(1.0 - x, x, at_zero));
+    let other = (n.y - x * n.x) / ((y - x) * select(1.0 - y, y, at_zero));
+    let low = select(0.0, 1.0 - at - other, at_zero) + select(0.0, other, y < x);
+    let share = vec2f(low, low + at);
+    // Points that coincide give NaN, which no comparison finds true.
+    return select(vec2f(0.0), min(share, vec2f(1.0)), share >= vec2f(0.0));
+}
+
 // Features of a fragment from its pixel's statistics, its own share and the known ends taken out.
 fn peelnet_features(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> PeelnetFeatures {
     let b = peelnet_absorbance(alpha);
@@ -133,12 +151,15 @@ fn peelnet_features(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> Pee
     let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
     let others = max(moments.x - b, 0.0);
     let known = select(select(exp(-front), exp(-others), end == 2.0), 1.0, end == 1.0);
+    let bounds = peelnet_interval_bounds(vec3f(t1, t2, t3), t);
     return PeelnetFeatures(
         log(1.0 + m0),
         t,
         t1,
         clamp(0.5 * (t - t1) / sigma, -2.0, 2.0),
         clamp(0.5 * third / (wide * wide * wide), -2.0, 2.0),
+        bounds.x,
+        bounds.y,
         end,
         known,
         vec4f(mean, total),

@@ -11,8 +11,9 @@ fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f, fourth
     if f.end > 0.0 {
         return vec2f(f.known, f.end);
     }
-    let bounds = peelnet_share_bounds(alpha, zeta, f, fourth);
+    let bounds = peelnet_moment_bounds(alpha, zeta, f, fourth);
     let rest = peelnet_weight(
-        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness, bounds.x, bounds.y);
+        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness,
+        f.share_low, f.share_high, bounds.x, bounds.y);
     return vec2f(f.known * rest, 0.0);
 }

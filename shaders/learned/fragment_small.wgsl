@@ -10,6 +10,7 @@ fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec
         return vec2f(f.known, f.end);
     }
     let rest = peelnet_weight(
-        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness);
+        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness,
+        f.share_low, f.share_high);
     return vec2f(f.known * rest, 0.0);
 }

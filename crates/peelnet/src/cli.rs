@@ -180,13 +180,16 @@ pub struct TrainArgs {
     /// The model file to write; checkpoints lie beside it
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
-    /// What to train: thesis (other recipes come later)
+    /// What to train: thesis, small, medium, large, nmt or dfaoit
     #[arg(long, value_name = "RECIPE", default_value = "thesis")]
     pub recipe: Recipe,
     /// Passes over the training rows [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub epochs: Option<u32>,
-    /// Rows per step [default: the recipe's]
+    /// Widths of the hidden layers [default: the recipe's]
+    #[arg(long, value_name = "N,N", value_delimiter = ',')]
+    pub hidden: Option<Vec<usize>>,
+    /// Fragments, or pixels where a recipe learns from whole pixels, per step [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub batch: Option<u32>,
     /// Learning rate [default: the recipe's]
@@ -361,7 +364,7 @@ mod tests {
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
             "extract --synthetic 1000 --out d --seed 3",
-            "train d e --out m --recipe thesis --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
+            "train d e --out m --recipe thesis --hidden 4,3 --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
             "bench s --out d --methods mboit4,wboit-eq9 --models m,n --frames 2 --size 8x8 --views 1",

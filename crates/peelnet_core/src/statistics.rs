@@ -130,7 +130,7 @@ impl<F: Float> Statistics<F> {
 }
 
 /// Names and units of [`features`], in order.
-pub const FEATURES: [(&str, &str); 7] = [
+pub const FEATURES: [(&str, &str); 9] = [
     ("log_absorbance", "ln(1 + absorbance of the rest)"),
     ("depth_fraction", "of the pixel's depth range"),
     ("mean_fraction", "of the pixel's depth range"),
@@ -138,6 +138,8 @@ pub const FEATURES: [(&str, &str); 7] = [
     ("skewness", "half skewness"),
     ("share_low", "of the rest's absorbance"),
     ("share_high", "of the rest's absorbance"),
+    ("moment_low", "of the rest's absorbance"),
+    ("moment_high", "of the rest's absorbance"),
 ];
 
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
@@ -149,7 +151,7 @@ const DEVIATION_FLOOR: f64 = 1.0 / 64.0;
 /// The same for the skewness, whose third power makes noise of 16-bit sums out of narrow distributions.
 const SKEWNESS_FLOOR: f64 = 1.0 / 8.0;
 
-/// Pull of the moments towards a measure that can be inverted, for [`features`] 5 and 6.
+/// Pull of the moments towards a measure that can be inverted, for [`features`] 7 and 8.
 const BIAS: f64 = 1e-3;
 
 /// The features of a fragment at depth `zeta`, given the moments `m` of the rest: all fragments but itself and the
@@ -160,11 +162,12 @@ const BIAS: f64 = 1e-3;
 /// 2. where the rest's mean μ lies, 0 … 1
 /// 3. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
 /// 4. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
-/// 5. and 6.: the share of the rest's absorbance that lies in front of the fragment according to the two bounds that
-///    four moments give (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
+/// 5. and 6.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given three
+///    moments and that all of it lies between the ends ([`interval_bounds`])
+/// 7. and 8.: the same from four moments without the ends (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
 ///
-/// Features 0 to 4 need `b_0 … b_3`, the last two `b_4` also.
-pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
+/// Features 0 to 6 need `b_0 … b_3`, the last two `b_4` also.
+pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
     // Every constant below is exactly a 32-bit float.
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
     let (zero, one, two) = (F::zero(), F::one(), c(2.0));
@@ -189,7 +192,8 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
         let inner = c(6.0) * m2 - shift * (c(4.0) * m1 - shift);
         (m4 - shift * (c(4.0) * m3 - shift * inner)) * (scale * scale) * (scale * scale)
     };
-    let (low, high) = share_bounds([t1, t2, t3, t4], t);
+    let (moment_low, moment_high) = moment_bounds([t1, t2, t3, t4], t);
+    let (low, high) = interval_bounds([t1, t2, t3], t);
     [
         (one + m[0]).ln(),
         t,
@@ -198,11 +202,40 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
         half_clamp(third / (wide * wide * wide)),
         low,
         high,
+        moment_low,
+        moment_high,
     ]
 }
 
-/// The shares in front of `t` (0 … 1) that normalised moments over 0 … 1 allow: the least and the most.
-fn share_bounds<F: Float>(t_moments: [F; 4], t: F) -> (F, F) {
+/// The least and the most of a distribution on 0 … 1 that can lie in front of `x`, from its first three moments.
+///
+/// The extreme distribution has three points: `x`, one end of the interval, and one more, `y` (Krein & Nudelman, "The
+/// Markov Moment Problem and Extremal Problems", 1977, ch. III: the canonical representation of index 5/2 through `x`).
+/// If the end is 0, the moments of `t dμ` have the two points `x` and `y`, which gives `y`; else those of `(1 − t) dμ`.
+/// Both shares are kept in 0 … 1; moments that no distribution has, as rounding makes them, give 0 at worst.
+pub fn interval_bounds<F: Float>(moments: [F; 3], x: F) -> (F, F) {
+    let (zero, one) = (F::zero(), F::one());
+    let [m1, m2, m3] = moments;
+    let y = (m3 - x * m2) / (m2 - x * m1);
+    let in_front = |share: F, y: F| if y < x { share } else { zero };
+    let (low, at) = if y >= zero && y <= one {
+        let at = (m2 - y * m1) / (x * (x - y));
+        let other = (m2 - x * m1) / (y * (y - x));
+        (one - at - other + in_front(other, y), at)
+    } else {
+        let [n0, n1, n2] = [one - m1, m1 - m2, m2 - m3];
+        let y = (n2 - x * n1) / (n1 - x * n0);
+        let at = (n1 - y * n0) / ((x - y) * (one - x));
+        let other = (n1 - x * n0) / ((y - x) * (one - y));
+        (in_front(other, y), at)
+    };
+    // NaN, where points coincide, becomes 0.
+    let clamp = |share: F| share.max(zero).min(one);
+    (clamp(low), clamp(low + at))
+}
+
+/// The same from four moments of a distribution anywhere on the line.
+fn moment_bounds<F: Float>(t_moments: [F; 4], t: F) -> (F, F) {
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
     let (one, two, four) = (F::one(), c(2.0), c(4.0));
     // To −1 … 1, where the neutral moments are known: x = 2t − 1.

@@ -75,6 +75,8 @@ impl Recipe {
                 "mean_fraction",
                 "depth_deviation",
                 "skewness",
+                "share_low",
+                "share_high",
             ],
             Self::Large => &[
                 "log_absorbance",
@@ -84,6 +86,8 @@ impl Recipe {
                 "skewness",
                 "share_low",
                 "share_high",
+                "moment_low",
+                "moment_high",
             ],
             Self::Nmt => &[
                 "depth",

@@ -163,7 +163,7 @@ mod tests {
             "methods::dfaoit" => (&["learned::dfaoit"], ""),
             _ => (
                 &["learned::anchored", "learned::fragment_medium"],
-                "a: f32, b: f32, c: f32, d: f32, e: f32",
+                "a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32",
             ),
         };
         let texts: Vec<_> = modules

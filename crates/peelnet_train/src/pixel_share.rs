@@ -1,9 +1,10 @@
-//! Whole pixels, squared error of the normalised contributions: how the anchored networks train.
+//! Whole pixels, squared error of the composited colour: how the anchored networks train.
 //!
 //! The network answers with the share `s_i` of every fragment between a pixel's ends. Its unnormalised contribution is
 //! `k_i = α_i e^(−b_n − r_i s_i)`, and what of the coverage is left to distribute, `R`, goes to each in proportion:
 //! `p̂_i = R k_i / (A + Σ k)`, where `A` is what the ends contribute when they are normalised with the rest (0 with
-//! separate ends). The loss of a pixel is `Σ (p̂_i − α_i T_i)²` over all of its fragments.
+//! separate ends). The loss of a pixel is the squared error of its colour, `|Σ (p̂_i − α_i T_i) c_i|² / 3` over all of its
+//! fragments: what a user of the image sees, surfaces of one object weighing together because they share a colour.
 
 use std::ops::Range;
 
@@ -22,7 +23,7 @@ const FIXED: usize = 9;
 struct Pixels {
     /// First row of each pixel, and the number of rows.
     first: Vec<u32>,
-    /// `[inputs, absorbance of the rest, α, exact contribution, the pixel's weight][rows]`
+    /// `[inputs, absorbance of the rest, α, exact contribution, colour][rows]`
     columns: Vec<Vec<f32>>,
     /// `[FIXED][pixels]`
     fixed: Vec<Vec<f32>>,
@@ -73,14 +74,12 @@ impl Pixels {
         columns.push(at(&data.targets[0]));
         columns.extend(pixels.color.iter().map(|c| at(c)));
         let mut first = Vec::with_capacity(examples.len() + 1);
-        let mut of_rows = Vec::with_capacity(rows.len());
+        let mut row = 0;
         for &p in examples {
-            first.push(of_rows.len() as u32);
-            let n = pixels.rows(p as usize, data.rows()).len();
-            of_rows.resize(of_rows.len() + n, weight(p));
+            first.push(row);
+            row += pixels.rows(p as usize, data.rows()).len() as u32;
         }
-        first.push(of_rows.len() as u32);
-        let _ = of_rows;
+        first.push(row);
         let mut fixed = vec![Vec::with_capacity(examples.len()); FIXED];
         for &p in examples {
             let f = &pixels.fixed[p as usize];

@@ -61,6 +61,7 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.epochs = args.epochs.unwrap_or(config.epochs);
     config.batch = args.batch.map_or(config.batch, |b| b as usize);
     config.learning_rate = args.lr.unwrap_or(config.learning_rate);
+    config.hidden = args.hidden.clone().unwrap_or(config.hidden);
     config.patience = args.patience.or(config.patience);
     Ok(config)
 }

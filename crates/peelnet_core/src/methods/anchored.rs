@@ -44,12 +44,12 @@ pub struct Seen {
     /// Absorbance of the rest, `r`.
     pub rest: f64,
     /// What the network reads ([`statistics::features`]).
-    pub features: [f64; 7],
+    pub features: [f64; 9],
 }
 
 impl Seen {
     /// The weight, given what the network answers for a fragment that lies between the ends.
-    pub fn weight(&self, share: impl FnOnce(&[f64; 7]) -> f64) -> f64 {
+    pub fn weight(&self, share: impl FnOnce(&[f64; 9]) -> f64) -> f64 {
         match self.place {
             Place::Nearest => 1.0,
             Place::Between => (-(self.front + self.rest * share(&self.features))).exp(),
@@ -127,7 +127,7 @@ pub fn composite(
     background: [f32; 3],
     warp: &DepthWarp,
     separate_ends: bool,
-    share: impl Fn(&[f64; 7]) -> f64,
+    share: impl Fn(&[f64; 9]) -> f64,
 ) -> [f32; 3] {
     let points: Vec<(f32, f32)> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
     let total: f64 = fragments.iter().map(|f| absorbance(f.alpha)).sum();
@@ -274,21 +274,29 @@ mod tests {
         let quantised = 2.0 / 510.0 / 0.5f64.sqrt();
         assert!((s[2].front - half).abs() < quantised);
         assert!((s[2].rest - 2.0 * half).abs() < 2.0 * quantised);
-        let want = [(1.0 + 2.0 * half).ln(), 0.5, 0.5, 0.0, 0.0, 0.5, 0.5];
-        for k in 0..7 {
-            // Both ends err alike, so the mean stays. What is left of them weighs 16 times as much in fourth powers as the
-            // rest, which lies half as far from the middle.
-            let tolerance = [
-                2.0 * quantised,
-                1e-2,
-                1e-2,
-                1e-2,
-                1e-2,
-                16.0 * quantised,
-                16.0 * quantised,
-            ][k];
+        // With three moments, the extreme distributions have an eighth at each end and the rest in the middle.
+        let want = [
+            (1.0 + 2.0 * half).ln(),
+            0.5,
+            0.5,
+            0.0,
+            0.0,
+            0.125,
+            0.875,
+            0.5,
+            0.5,
+        ];
+        for (k, want) in want.into_iter().enumerate() {
+            // Both ends err alike, so the mean stays. What is left of them weighs 4 times as much in second powers as the
+            // rest, which lies half as far from the middle, and 16 times in fourth powers.
+            let tolerance = match k {
+                0 => 2.0 * quantised,
+                1..=4 => 1e-2,
+                5 | 6 => 4.0 * quantised,
+                _ => 16.0 * quantised,
+            };
             assert!(
-                (s[2].features[k] - want[k]).abs() < tolerance,
+                (s[2].features[k] - want).abs() < tolerance,
                 "{k}: {:?}",
                 s[2].features
             );

@@ -2,7 +2,7 @@
 // moments (Muenstermann et al. 2018). Statistics pass: one more target,
 //     fourth   r16float (or r32float), cleared to 0, blending ONE, ONE, ADD: peelnet_statistics(..).fourth
 
-fn peelnet_share_bounds(alpha: f32, zeta: f32, f: PeelnetFeatures, fourth: f32) -> vec2f {
+fn peelnet_moment_bounds(alpha: f32, zeta: f32, f: PeelnetFeatures, fourth: f32) -> vec2f {
     let near = f.ends.z;
     let scale = 1.0 / max(f.ends.w - near, 2.0 / PEELNET_TOP);
     let z = vec3f(zeta, near, f.ends.w);
