@@ -5,14 +5,15 @@
 //     k = (1 - T) / ends.a, at most 1 unless sums.a is 0
 //     ends.rgb * k + sums.rgb / sums.a * max(1 - T - ends.a * k, 0) + C_0 * T
 
-// The weight of a fragment, and its end (see PeelnetFeatures). The ends are exact and do without the network.
+// The weight of a fragment, and its end (see PeelnetPlace). The ends are known and do without the network.
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
-    let f = peelnet_features(alpha, zeta, moments, extent);
-    if f.end > 0.0 {
-        return vec2f(f.known, f.end);
+    let place = peelnet_place(alpha, zeta, moments, extent);
+    if place.end > 0.0 {
+        return vec2f(place.known, place.end);
     }
+    let f = peelnet_features(place, moments, extent);
     let rest = peelnet_weight(
         f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness,
         f.share_low, f.share_high);
-    return vec2f(f.known * rest, 0.0);
+    return vec2f(place.known * rest, 0.0);
 }

@@ -46,35 +46,81 @@ pub fn half_of_code(code: u32) -> u16 {
 /// fragment would cost its anchor, and two fragments within 6.5e−5 of the depth range are as good as one.
 pub const SAME_CODE: u32 = 1;
 
-/// Coarse levels of depth in [`end_code`].
-pub const END_BINS: u32 = 240;
-/// Levels of opacity in [`end_code`].
-pub const END_ALPHAS: u32 = 256;
-
 /// A fragment's depth, coarsely, and its opacity in one level: MAX blending of it keeps the opacity of the fragment with
-/// the largest depth. Of fragments in one of the 240 bins it keeps the most opaque one's.
-pub fn end_code(zeta: f64, alpha: f64) -> u32 {
-    let bin = ((zeta * 0.5 + 0.5) * f64::from(END_BINS)).floor();
-    let bin = bin.clamp(0.0, f64::from(END_BINS - 1)) as u32;
-    bin * END_ALPHAS + alpha_level(alpha)
+/// the largest depth. Of fragments in one bin it keeps the most opaque one's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EndCode {
+    /// Levels of depth.
+    pub bins: u32,
+    /// Levels of opacity: even steps of `√(1 − α)`, which keep the error of absorbance small also near opaque. The bins times
+    /// the alphas are [`DEPTH_CODES`].
+    pub alphas: u32,
 }
 
-/// [`end_code`] with depth counted from the far end, for the nearest fragment.
-pub fn mirrored_end_code(zeta: f64, alpha: f64) -> u32 {
-    let code = end_code(zeta, alpha);
-    (END_BINS - 1 - code / END_ALPHAS) * END_ALPHAS + code % END_ALPHAS
+/// Of the nearest fragment, whose exact level is kept beside it, so that its opacity gets most of the levels.
+pub const NEAR_END: EndCode = EndCode {
+    bins: 240,
+    alphas: 256,
+};
+
+/// Of the farthest fragment, which is recognised by this level alone.
+pub const FAR_END: EndCode = EndCode {
+    bins: 1920,
+    alphas: 32,
+};
+
+impl EndCode {
+    /// The level of a fragment.
+    pub fn level(self, zeta: f64, alpha: f64) -> u32 {
+        self.bin(zeta) * self.alphas + self.alpha_level(alpha)
+    }
+
+    /// The level with depth counted from the far end, for the nearest fragment.
+    pub fn mirrored(self, zeta: f64, alpha: f64) -> u32 {
+        (self.bins - 1 - self.bin(zeta)) * self.alphas + self.alpha_level(alpha)
+    }
+
+    fn bin(self, zeta: f64) -> u32 {
+        let bin = ((zeta * 0.5 + 0.5) * f64::from(self.bins)).floor();
+        bin.clamp(0.0, f64::from(self.bins - 1)) as u32
+    }
+
+    fn alpha_level(self, alpha: f64) -> u32 {
+        let top = f64::from(self.alphas - 1);
+        ((1.0 - (1.0 - alpha).max(0.0).sqrt()) * top + 0.5).floor() as u32
+    }
+
+    /// The absorbance that a level stands for, at most [`ABSORBANCE_MAX`].
+    pub fn absorbance(self, level: u32) -> f64 {
+        let through = 1.0 - f64::from(level % self.alphas) / f64::from(self.alphas - 1);
+        (-2.0 * through.ln()).min(ABSORBANCE_MAX)
+    }
+
+    /// The warped depth in the middle of a level's bin, not mirrored.
+    pub fn zeta(self, level: u32) -> f64 {
+        (f64::from(level / self.alphas) + 0.5) / f64::from(self.bins) * 2.0 - 1.0
+    }
 }
 
-/// The opacity's level: even steps of `√(1 − α)`, which keep the error of absorbance small also near opaque.
-fn alpha_level(alpha: f64) -> u32 {
-    let top = f64::from(END_ALPHAS - 1);
-    ((1.0 - (1.0 - alpha).max(0.0).sqrt()) * top + 0.5).floor() as u32
+/// How the sums are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SumPrecision {
+    /// Without rounding.
+    #[default]
+    Exact,
+    /// As 16-bit targets do it: every term and every sum is rounded to a half.
+    Half,
 }
 
-/// The absorbance that a level of [`end_code`] stands for, at most [`ABSORBANCE_MAX`].
-pub fn absorbance_of_end_code(code: u32) -> f64 {
-    let through = 1.0 - f64::from(code % END_ALPHAS) / f64::from(END_ALPHAS - 1);
-    (-2.0 * through.ln()).min(ABSORBANCE_MAX)
+impl SumPrecision {
+    /// A sum with one more term.
+    fn add(self, sum: f64, term: f64) -> f64 {
+        let half = |x: f64| f64::from(half::f16::from_f64(x));
+        match self {
+            Self::Exact => sum + term,
+            Self::Half => half(sum + half(term)),
+        }
+    }
 }
 
 /// The sums and extremes of one pixel.
@@ -86,6 +132,26 @@ pub struct Statistics<F> {
     pub nearest: F,
     /// Largest warped depth.
     pub farthest: F,
+}
+
+impl Statistics<f64> {
+    /// Of a pixel's fragments, with sums of the given precision.
+    pub fn rounded(
+        fragments: impl IntoIterator<Item = (f64, f64)>,
+        precision: SumPrecision,
+    ) -> Self {
+        let mut s = Self::empty();
+        for (b, zeta) in fragments {
+            let mut power = b;
+            for m in &mut s.moments {
+                *m = precision.add(*m, power);
+                power *= zeta;
+            }
+            s.nearest = s.nearest.min(zeta);
+            s.farthest = s.farthest.max(zeta);
+        }
+        s
+    }
 }
 
 impl<F: Float> Statistics<F> {
@@ -138,8 +204,8 @@ pub const FEATURES: [(&str, &str); 9] = [
     ("skewness", "half skewness"),
     ("share_low", "of the rest's absorbance"),
     ("share_high", "of the rest's absorbance"),
-    ("moment_low", "of the rest's absorbance"),
-    ("moment_high", "of the rest's absorbance"),
+    ("interval_low", "of the rest's absorbance"),
+    ("interval_high", "of the rest's absorbance"),
 ];
 
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
@@ -151,7 +217,7 @@ const DEVIATION_FLOOR: f64 = 1.0 / 64.0;
 /// The same for the skewness, whose third power makes noise of 16-bit sums out of narrow distributions.
 const SKEWNESS_FLOOR: f64 = 1.0 / 8.0;
 
-/// Pull of the moments towards a measure that can be inverted, for [`features`] 7 and 8.
+/// Pull of the moments towards a measure that can be inverted, for [`features`] 5 and 6.
 const BIAS: f64 = 1e-3;
 
 /// The features of a fragment at depth `zeta`, given the moments `m` of the rest: all fragments but itself and the
@@ -162,11 +228,9 @@ const BIAS: f64 = 1e-3;
 /// 2. where the rest's mean μ lies, 0 … 1
 /// 3. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
 /// 4. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
-/// 5. and 6.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given three
-///    moments and that all of it lies between the ends ([`interval_bounds`])
-/// 7. and 8.: the same from four moments without the ends (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
-///
-/// Features 0 to 6 need `b_0 … b_3`, the last two `b_4` also.
+/// 5. and 6.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four
+///    moments (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
+/// 7. and 8.: the same from three moments and that all of it lies between the ends ([`interval_bounds`])
 pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
     // Every constant below is exactly a 32-bit float.
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
@@ -192,8 +256,8 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
         let inner = c(6.0) * m2 - shift * (c(4.0) * m1 - shift);
         (m4 - shift * (c(4.0) * m3 - shift * inner)) * (scale * scale) * (scale * scale)
     };
-    let (moment_low, moment_high) = moment_bounds([t1, t2, t3, t4], t);
-    let (low, high) = interval_bounds([t1, t2, t3], t);
+    let (low, high) = moment_bounds([t1, t2, t3, t4], t);
+    let (interval_low, interval_high) = interval_bounds([t1, t2, t3], t);
     [
         (one + m[0]).ln(),
         t,
@@ -202,8 +266,8 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
         half_clamp(third / (wide * wide * wide)),
         low,
         high,
-        moment_low,
-        moment_high,
+        interval_low,
+        interval_high,
     ]
 }
 
@@ -282,36 +346,70 @@ mod tests {
         }
     }
 
-    /// √(1 − α) is off by half a step, 1/510, so α by up to 1/255 and the absorbance by 2/510 over √(1 − α).
+    /// √(1 − α) is off by half a step, so the absorbance by twice that over √(1 − α), and a little more for the curvature of
+    /// the logarithm.
     #[test]
     fn end_codes_keep_the_opacity_of_the_extreme() {
-        for i in 0..=1000 {
-            let alpha = f64::from(i) / 1001.0;
-            let code = end_code(0.3, alpha);
-            let exact = -(1.0 - alpha).ln();
-            let error = (absorbance_of_end_code(code) - exact).abs();
-            // The second-order term of the logarithm, near opaque.
-            let root = (1.0 - alpha).sqrt();
-            let step = 0.5 / 255.0;
+        for code in [NEAR_END, FAR_END] {
+            assert_eq!(code.bins * code.alphas, DEPTH_CODES);
+            let bin = 2.0 / f64::from(code.bins);
+            for i in 0..=1000 {
+                let alpha = f64::from(i) / 1001.0;
+                let level = code.level(0.3, alpha);
+                let exact = -(1.0 - alpha).ln();
+                let error = (code.absorbance(level) - exact).abs();
+                let root = (1.0 - alpha).sqrt();
+                let step = 0.5 / f64::from(code.alphas - 1);
+                // The last level stands for opaque.
+                let limit = if root <= step {
+                    ABSORBANCE_MAX
+                } else {
+                    -2.0 * (1.0 - step / root).ln() + 1e-12
+                };
+                assert!(error <= limit, "{alpha}: {error} {limit}");
+                assert!((code.zeta(level) - 0.3).abs() <= bin / 2.0 + 1e-12);
+                // Farther wins, nearer in the mirrored level, whatever the opacities.
+                assert!(code.level(0.3 + 2.0 * bin, 0.0) > level);
+                assert!(code.mirrored(0.3 - 2.0 * bin, 0.0) > code.mirrored(0.3, alpha));
+                assert_eq!(
+                    code.absorbance(code.mirrored(-0.7, alpha)),
+                    code.absorbance(level)
+                );
+            }
+            assert_eq!(code.level(1.0, 1.0), DEPTH_CODES - 1);
+            assert_eq!(code.mirrored(-1.0, 1.0), DEPTH_CODES - 1);
+            assert_eq!(code.absorbance(code.level(0.0, 1.0)), ABSORBANCE_MAX);
+        }
+    }
+
+    /// Distributions of a few points on 0 … 1: the share in front of any x lies within both bounds.
+    #[test]
+    fn bounds_hold() {
+        let mut random = crate::random::Random::new(5, &[]);
+        for _ in 0..2000 {
+            let n = 3 + random.below(6);
+            let points: Vec<(f64, f64)> = (0..n)
+                .map(|_| (f64::from(random.unit()), 0.05 + f64::from(random.unit())))
+                .collect();
+            let total: f64 = points.iter().map(|p| p.1).sum();
+            let moment = |k: i32| points.iter().map(|p| p.1 * p.0.powi(k)).sum::<f64>() / total;
+            let m = [moment(1), moment(2), moment(3), moment(4)];
+            let x = f64::from(random.between(0.02, 0.98));
+            let share = points.iter().filter(|p| p.0 < x).map(|p| p.1).sum::<f64>() / total;
+            let (low, high) = interval_bounds([m[0], m[1], m[2]], x);
+            // 64-bit moments: nothing but rounding, where the points nearly coincide.
             assert!(
-                error <= -2.0 * (1.0 - step / root).ln() + 1e-12,
-                "{alpha}: {error}"
+                low <= share + 1e-6 && share <= high + 1e-6,
+                "{low} {share} {high}"
             );
-            // Nearer wins in the mirrored code, farther in the other, whatever the opacities.
+            // The bias gives way by up to its square root times a few.
+            let (low, high) = moment_bounds(m, x);
+            let slack = 4.0 * BIAS.sqrt();
             assert!(
-                end_code(0.4, 0.0) > code
-                    && mirrored_end_code(0.2, 0.0) > mirrored_end_code(0.3, alpha)
-            );
-            assert_eq!(
-                absorbance_of_end_code(mirrored_end_code(-0.7, alpha)),
-                absorbance_of_end_code(code)
+                low <= share + slack && share <= high + slack,
+                "{low} {share} {high}"
             );
         }
-        assert!(
-            end_code(1.0, 1.0) == DEPTH_CODES - 1
-                && mirrored_end_code(-1.0, 1.0) == DEPTH_CODES - 1
-        );
-        assert_eq!(absorbance_of_end_code(end_code(0.0, 1.0)), ABSORBANCE_MAX);
     }
 
     /// The 32-bit features follow the 64-bit ones. Mean powers err by a few roundings (2⁻²⁴) of values ≤ 1; moving them to the

@@ -43,7 +43,7 @@ pub fn wgsl(model: &Model, _options: &Options) -> Result<String, ExportError> {
         Recipe::Medium => &["learned::anchored", "learned::fragment_medium"],
         Recipe::Large => &[
             "learned::anchored",
-            "learned::moment_bounds",
+            "learned::interval_bounds",
             "learned::fragment_large",
         ],
         Recipe::Nmt => &["learned::nmt", "learned::fragment_nmt"],

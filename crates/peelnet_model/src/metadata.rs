@@ -86,8 +86,8 @@ impl Recipe {
                 "skewness",
                 "share_low",
                 "share_high",
-                "moment_low",
-                "moment_high",
+                "interval_low",
+                "interval_high",
             ],
             Self::Nmt => &[
                 "depth",

@@ -23,7 +23,7 @@ sources! {
     "learned::fragment_nmt" = "learned/fragment_nmt.wgsl",
     "learned::fragment_small" = "learned/fragment_small.wgsl",
     "learned::nmt" = "learned/nmt.wgsl",
-    "learned::moment_bounds" = "learned/moment_bounds.wgsl",
+    "learned::interval_bounds" = "learned/interval_bounds.wgsl",
     "learned::thesis" = "learned/thesis.wgsl",
     "methods::abuffer::composite" = "methods/abuffer/composite.wgsl",
     "methods::anchored::gather" = "methods/anchored/gather.wgsl",

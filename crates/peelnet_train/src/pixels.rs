@@ -6,12 +6,20 @@ use std::ops::Range;
 use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::methods::anchored::{Place, seen};
 use peelnet_core::methods::mboit4;
-use peelnet_core::statistics;
+use peelnet_core::statistics::{self, SumPrecision};
 use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Model, Output, Recipe};
 
 use crate::error::TrainError;
 use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
+
+/// The precision of the sums that a recipe's method keeps by default: networks train on what they will read.
+const fn precision(recipe: Recipe) -> SumPrecision {
+    match recipe {
+        Recipe::Small | Recipe::Medium => SumPrecision::Half,
+        _ => SumPrecision::Exact,
+    }
+}
 
 /// Rows that are read at once.
 const ROWS_AT_A_TIME: usize = 1 << 16;
@@ -208,7 +216,7 @@ fn share_pixel(
         return;
     };
     let separate_ends = recipe != Recipe::Small;
-    let all = seen(pixel.points, warp);
+    let all = seen(pixel.points, warp, precision(recipe));
     let between = all.iter().filter(|s| s.place == Place::Between).count();
     // Exact whatever the network says: nothing to learn.
     if between == 0 || (separate_ends && between == 1) {
@@ -344,10 +352,12 @@ fn tail_row(data: &mut TrainingData, pixel: &Pixel<'_>, subset: Subset) {
 pub(crate) fn weights(model: &Model, pixel: &Pixel<'_>, warp: &DepthWarp) -> Vec<f64> {
     let inputs = model.meta.inputs.len();
     match model.meta.output {
-        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => seen(pixel.points, warp)
-            .iter()
-            .map(|s| s.weight(|features| model.forward_raw_f64(&features[..inputs])[0]))
-            .collect(),
+        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
+            seen(pixel.points, warp, precision(model.meta.recipe))
+                .iter()
+                .map(|s| s.weight(|features| model.forward_raw_f64(&features[..inputs])[0]))
+                .collect()
+        }
         Output::Transmittance if model.meta.recipe == Recipe::Nmt => {
             let mut moments = mboit4::Moments::default();
             for &(depth, alpha) in pixel.points {

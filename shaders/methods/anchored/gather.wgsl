@@ -7,8 +7,6 @@ import package::scene::visible::visible;
 
 @group(1) @binding(0) var moments: texture_2d<f32>;
 @group(1) @binding(1) var extent: texture_2d<f32>;
-@if(fourth_moment)
-@group(1) @binding(2) var fourth: texture_2d<f32>;
 
 struct Sums {
     @location(0) between: vec4f,
@@ -26,9 +24,6 @@ fn fragment_main(surface: Surface) -> Sums {
     let zeta = warped_depth(surface.depth_linear);
     let m = textureLoad(moments, pixel, 0);
     let e = textureLoad(extent, pixel, 0);
-    @if(fourth_moment)
-    let w = peelnet_fragment(color.a, zeta, m, e, textureLoad(fourth, pixel, 0).x);
-    @else
     let w = peelnet_fragment(color.a, zeta, m, e);
     let sum = vec4f(color.rgb * color.a, color.a) * w.x;
     @if(separate_ends)

@@ -8,8 +8,6 @@ import package::scene::visible::visible;
 struct Statistics {
     @location(0) moments: vec4f,
     @location(1) extent: vec4f,
-    @if(fourth_moment)
-    @location(2) fourth: f32,
 }
 
 @fragment
@@ -18,8 +16,5 @@ fn fragment_main(surface: Surface) -> Statistics {
         discard;
     }
     let s = peelnet_statistics(shade(surface).a, warped_depth(surface.depth_linear));
-    @if(fourth_moment)
-    return Statistics(s.moments, s.extent, s.fourth);
-    @else
     return Statistics(s.moments, s.extent);
 }

@@ -12,8 +12,8 @@ use crate::{
     fragment::Fragment,
     guards::SUM_FLOOR,
     statistics::{
-        self, SAME_CODE, Statistics, absorbance_of_end_code, depth_code, end_code, features,
-        mirrored_end_code, zeta_of_code,
+        self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, features,
+        zeta_of_code,
     },
 };
 
@@ -59,12 +59,12 @@ impl Seen {
 }
 
 /// What the network knows of each fragment of a pixel, in the order given: fragments are (linear depth, α).
-pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Seen> {
+pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp, precision: SumPrecision) -> Vec<Seen> {
     let points: Vec<(f64, f64)> = fragments
         .iter()
         .map(|&(depth, alpha)| (absorbance(alpha), warp.apply(depth.into())))
         .collect();
-    let mut s = Statistics::of(points.iter().copied());
+    let mut s = Statistics::rounded(points.iter().copied(), precision);
     let visible = || {
         fragments
             .iter()
@@ -73,42 +73,44 @@ pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Seen> {
             .map(|((_, alpha), &(_, zeta))| (zeta, f64::from(*alpha)))
     };
     // Without a visible fragment the targets keep their clear values.
-    let codes = || visible().map(|(zeta, _)| depth_code(zeta));
-    let first = codes().min().unwrap_or(statistics::DEPTH_CODES - 1);
-    let last = codes().max().unwrap_or(0);
-    let near = visible()
-        .map(|(z, a)| mirrored_end_code(z, a))
+    let first = visible().map(|(zeta, _)| depth_code(zeta)).min();
+    let first = first.unwrap_or(statistics::DEPTH_CODES - 1);
+    let near = visible().map(|(z, a)| NEAR_END.mirrored(z, a)).max();
+    let near = near.unwrap_or(0);
+    let far = visible()
+        .map(|(z, a)| FAR_END.level(z, a))
         .max()
         .unwrap_or(0);
-    let far = visible().map(|(z, a)| end_code(z, a)).max().unwrap_or(0);
     s.nearest = zeta_of_code(first);
-    s.farthest = zeta_of_code(last);
+    s.farthest = FAR_END.zeta(far);
     fragments
         .iter()
         .zip(&points)
         .map(|(&(_, alpha), &(b, zeta))| {
             let code = depth_code(zeta);
+            let wide = f64::from(alpha);
+            let (own_near, own_far) = (NEAR_END.mirrored(zeta, wide), FAR_END.level(zeta, wide));
             let place = if alpha < FAINT {
                 Place::Between
             } else if code <= first + SAME_CODE {
                 Place::Nearest
-            } else if code + SAME_CODE >= last {
+            } else if own_far == far {
                 Place::Farthest
             } else {
                 Place::Between
             };
             // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a
             // more opaque one in the same bin), stays with the rest.
-            let alpha = f64::from(alpha);
-            let known = |is_known: bool, code: u32| {
-                if is_known {
-                    absorbance_of_end_code(code)
-                } else {
-                    0.0
-                }
+            let front = if code > first && own_near != near {
+                NEAR_END.absorbance(near)
+            } else {
+                0.0
             };
-            let front = known(code > first && mirrored_end_code(zeta, alpha) != near, near);
-            let back = known(code < last && end_code(zeta, alpha) != far, far);
+            let back = if own_far < far {
+                FAR_END.absorbance(far)
+            } else {
+                0.0
+            };
             let rest = s.without(&[(b, zeta), (front, s.nearest), (back, s.farthest)]);
             Seen {
                 place,
@@ -136,7 +138,10 @@ pub fn composite(
     }
     // Premultiplied colour and alpha of what lies between, and of the ends.
     let mut sums = [[0.0f64; 4]; 2];
-    for (f, s) in fragments.iter().zip(seen(&points, warp)) {
+    for (f, s) in fragments
+        .iter()
+        .zip(seen(&points, warp, SumPrecision::Exact))
+    {
         let w = s.weight(&share);
         let end = separate_ends && s.place != Place::Between;
         let sum = &mut sums[usize::from(end)];
@@ -210,7 +215,7 @@ mod tests {
             crate::fragment::sort_front_to_back(&mut f);
             let points: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
             let exact = over::composite(&f, C0);
-            let all = seen(&points, &warp);
+            let all = seen(&points, &warp, SumPrecision::Exact);
             for separate_ends in [false, true] {
                 let got = composite(&f, C0, &warp, separate_ends, |x| {
                     // Which fragment it is, by its features.
@@ -241,11 +246,15 @@ mod tests {
             let points: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
             let near = points.iter().map(|p| p.0).fold(f32::MAX, f32::min);
             let far = points.iter().map(|p| p.0).fold(0.0, f32::max);
-            let base = seen(&points, &DepthWarp::new(near.into(), far.into()));
+            let base = seen(
+                &points,
+                &DepthWarp::new(near.into(), far.into()),
+                SumPrecision::Exact,
+            );
             for factor in [1e-3f32, 1e3] {
                 let scaled: Vec<_> = points.iter().map(|&(z, a)| (z * factor, a)).collect();
                 let warp = DepthWarp::new((near * factor).into(), (far * factor).into());
-                for (a, b) in base.iter().zip(seen(&scaled, &warp)) {
+                for (a, b) in base.iter().zip(seen(&scaled, &warp, SumPrecision::Exact)) {
                     assert_eq!(a.place, b.place);
                     // A depth at the edge of a bin may fall on its other side, and another end be known then.
                     if (a.front - b.front).abs() + (a.rest - b.rest).abs() > 1e-9 {
@@ -265,15 +274,16 @@ mod tests {
     #[test]
     fn the_middle_of_five() {
         let f = [0.0, 0.5, 1.0, 1.5, 2.0].map(|e| (10f32.powf(e), 0.5));
-        let s = seen(&f, &DepthWarp::new(1.0, 100.0));
+        let s = seen(&f, &DepthWarp::new(1.0, 100.0), SumPrecision::Exact);
         assert_eq!(s[0].place, Place::Nearest);
         assert_eq!(s[4].place, Place::Farthest);
         assert!(s[1..4].iter().all(|s| s.place == Place::Between));
         let half = 2f64.ln();
-        // √½ is quantised to steps of 1/255: its logarithm is off by 1/510/√½ at most, twice for α, for both ends.
-        let quantised = 2.0 / 510.0 / 0.5f64.sqrt();
-        assert!((s[2].front - half).abs() < quantised);
-        assert!((s[2].rest - 2.0 * half).abs() < 2.0 * quantised);
+        // √½ is quantised to steps of 1/255 (near) and 1/31 (far): the absorbance is off by that over √½ at most.
+        let near = 1.0 / 255.0 / 0.5f64.sqrt();
+        let far = 1.0 / 31.0 / 0.5f64.sqrt();
+        assert!((s[2].front - half).abs() < near);
+        assert!((s[2].rest - 2.0 * half).abs() < near + far);
         // With three moments, the extreme distributions have an eighth at each end and the rest in the middle.
         let want = [
             (1.0 + 2.0 * half).ln(),
@@ -281,20 +291,17 @@ mod tests {
             0.5,
             0.0,
             0.0,
+            0.5,
+            0.5,
             0.125,
             0.875,
-            0.5,
-            0.5,
         ];
         for (k, want) in want.into_iter().enumerate() {
-            // Both ends err alike, so the mean stays. What is left of them weighs 4 times as much in second powers as the
-            // rest, which lies half as far from the middle, and 16 times in fourth powers.
-            let tolerance = match k {
-                0 => 2.0 * quantised,
-                1..=4 => 1e-2,
-                5 | 6 => 4.0 * quantised,
-                _ => 16.0 * quantised,
-            };
+            // What is left of the ends weighs 2, 4, 8 and 16 times as much in the moments as the rest, which lies half as far
+            // from the middle; the bounds sum up all four.
+            let tolerance = [1.0, 0.0, 2.0, 8.0, 16.0, 16.0, 16.0, 8.0, 8.0][k] * (near + far)
+                // The farthest fragment's depth is known to half a bin.
+                + 1.0 / f64::from(FAR_END.bins);
             assert!(
                 (s[2].features[k] - want).abs() < tolerance,
                 "{k}: {:?}",
@@ -305,7 +312,7 @@ mod tests {
         let exact = [1.0, 0.5, 0.25, 0.125, 0.0625];
         for (i, share) in [(1, 0.0), (2, 0.5), (3, 1.0)] {
             let w = s[i].weight(|_| share);
-            assert!((w / exact[i] - 1.0).abs() < 4.0 * quantised, "{i}: {w}");
+            assert!((w / exact[i] - 1.0).abs() < 2.0 * (near + far), "{i}: {w}");
         }
     }
 
@@ -315,6 +322,7 @@ mod tests {
         let s = seen(
             &[(1.0, 0.002), (2.0, 0.5), (3.0, 0.5)],
             &DepthWarp::new(1.0, 3.0),
+            SumPrecision::Exact,
         );
         assert_eq!(
             [s[0].place, s[1].place, s[2].place],

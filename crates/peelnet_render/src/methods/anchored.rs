@@ -12,37 +12,28 @@ use peelnet_model::Recipe;
 pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
     let separate_ends = learned.recipe != Recipe::Small;
-    let fourth = learned.recipe == Recipe::Large;
-    let target = |label, channels, blend| Target {
+    let full = learned.recipe == Recipe::Large;
+    let target = |label, blend| Target {
         label,
-        channels,
-        full: fourth,
+        channels: 4,
+        full,
         blend,
     };
-    // What a network does not read is not accumulated.
     let mut targets = vec![
         SUMS,
-        target("moments", 4, Blend::Add),
-        Target {
-            full: false,
-            ..target("extent", 4, Blend::Max)
-        },
+        target("moments", Blend::Add),
+        target("extent", Blend::MaxAdd),
     ];
-    let (mut statistics, mut sums, mut resolve_reads) = (vec![1, 2], vec![0], vec![0, 1]);
-    let mut features = Vec::new();
+    let (mut sums, mut resolve_reads) = (vec![0], vec![0, 1]);
+    let mut features: &[&str] = &[];
     if separate_ends {
-        features.push("separate_ends");
+        features = &["separate_ends"];
         sums.push(targets.len());
         resolve_reads.push(targets.len());
         targets.push(Target {
             label: "ends",
             ..SUMS
         });
-    }
-    if fourth {
-        features.push("fourth_moment");
-        statistics.push(targets.len());
-        targets.push(target("fourth moment", 1, Blend::Add));
     }
     let extra = [("learned::weight", learned.wgsl.as_str())];
     commutative::build(
@@ -53,22 +44,22 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Gather {
                     label: "statistics",
                     shader: "methods::anchored::statistics",
-                    features: &features,
+                    features,
                     extra: &extra,
-                    writes: &statistics,
+                    writes: &[1, 2],
                     reads: &[],
                 },
                 Gather {
                     label: "gather",
                     shader: "methods::anchored::gather",
-                    features: &features,
+                    features,
                     extra: &extra,
                     writes: &sums,
-                    reads: &statistics,
+                    reads: &[1, 2],
                 },
             ],
             resolve: "methods::anchored::resolve",
-            resolve_features: &features,
+            resolve_features: features,
             resolve_reads: &resolve_reads,
         },
     )

@@ -21,32 +21,36 @@ pub(crate) enum Blend {
     Add,
     /// `dst · (1 − src)`, from 1.
     Transmit,
-    /// `max(dst, src)`, from the smallest half.
-    Max,
+    /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
+    MaxAdd,
 }
 
 impl Blend {
     /// What a target is cleared to.
-    fn start(self) -> f64 {
+    fn start(self) -> [f64; 4] {
+        let least = -f64::from(HALF_MAX);
         match self {
-            Self::Add => 0.0,
-            Self::Transmit => 1.0,
-            Self::Max => -f64::from(HALF_MAX),
+            Self::Add => [0.0; 4],
+            Self::Transmit => [1.0; 4],
+            Self::MaxAdd => [least, least, least, 0.0],
         }
     }
 
-    fn component(self) -> wgpu::BlendComponent {
+    fn state(self) -> wgpu::BlendState {
         use wgpu::{BlendFactor as F, BlendOperation as O};
-        let (src_factor, dst_factor, operation) = match self {
-            Self::Add => (F::One, F::One, O::Add),
-            Self::Transmit => (F::Zero, F::OneMinusSrc, O::Add),
-            Self::Max => (F::One, F::One, O::Max),
-        };
-        wgpu::BlendComponent {
+        let component = |src_factor, dst_factor, operation| wgpu::BlendComponent {
             src_factor,
             dst_factor,
             operation,
-        }
+        };
+        let add = component(F::One, F::One, O::Add);
+        let transmit = component(F::Zero, F::OneMinusSrc, O::Add);
+        let (color, alpha) = match self {
+            Self::Add => (add, add),
+            Self::Transmit => (transmit, transmit),
+            Self::MaxAdd => (component(F::One, F::One, O::Max), add),
+        };
+        wgpu::BlendState { color, alpha }
     }
 }
 
@@ -119,13 +123,9 @@ impl Target {
     }
 
     pub(crate) fn state(&self, full: bool) -> wgpu::ColorTargetState {
-        let component = self.blend.component();
         wgpu::ColorTargetState {
             format: self.format(full),
-            blend: Some(wgpu::BlendState {
-                color: component,
-                alpha: component,
-            }),
+            blend: Some(self.blend.state()),
             write_mask: wgpu::ColorWrites::ALL,
         }
     }
@@ -226,7 +226,7 @@ impl Compositor for Commutative {
                 .iter()
                 .map(|&i| {
                     let (view, blend) = &self.targets[i];
-                    clear_color(view, [blend.start(); 4])
+                    clear_color(view, blend.start())
                 })
                 .collect();
             let mut pass = cx.recorder.render(p.label, &colors, None);
