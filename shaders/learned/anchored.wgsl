@@ -12,9 +12,9 @@
 const PEELNET_FAINT: f32 = 0.003921569;
 // Levels of depth, less one.
 const PEELNET_TOP: f32 = 61439.0;
-// Bins of depth and levels of opacity that the nearest and the farthest fragment are kept with.
-const PEELNET_NEAR_END: vec2f = vec2f(240.0, 256.0);
-const PEELNET_FAR_END: vec2f = vec2f(1920.0, 32.0);
+// Bins of depth, and levels of opacity in each, that the nearest and the farthest fragment are kept with.
+const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
+const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
 
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3.
@@ -37,14 +37,14 @@ struct PeelnetPlace {
 
 // What peelnet_weight reads.
 struct PeelnetFeatures {
-    log_absorbance: f32,
+    root_absorbance: f32,
     depth_fraction: f32,
     mean_fraction: f32,
-    depth_deviation: f32,
-    skewness: f32,
     share_low: f32,
     share_high: f32,
-    // Mean powers 1 to 3 of the rest's depth, 0 .. 1 from the nearest to the farthest.
+    depth_deviation: f32,
+    skewness: f32,
+    // Mean powers 1 to 3 of the rest's depth, -1 .. 1 from the nearest to the farthest.
     means: vec3f,
 }
 
@@ -57,86 +57,60 @@ fn peelnet_level(zeta: f32) -> f32 {
     return floor((zeta * 0.5 + 0.5) * PEELNET_TOP + 0.5);
 }
 
-fn peelnet_bin(zeta: f32, code: vec2f) -> f32 {
-    return clamp(floor((zeta * 0.5 + 0.5) * code.x), 0.0, code.x - 1.0);
+// A fragment's levels as its pixel's nearest and as its farthest: coarse depth, counted from the far end for the nearest,
+// then opacity, even in b / (1 + b), up to b = 16.
+fn peelnet_ends(b: f32, zeta: f32) -> vec2f {
+    let bins = min(floor((zeta * 0.5 + 0.5) * PEELNET_BINS), PEELNET_BINS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
+    return vec2f(PEELNET_BINS.x - 1.0 - bins.x, bins.y) * PEELNET_OPACITIES + opacity;
 }
 
-// Opacity in levels that are even in sqrt(1 - alpha).
-fn peelnet_alpha_level(alpha: f32, code: vec2f) -> f32 {
-    return floor((1.0 - sqrt(max(1.0 - alpha, 0.0))) * (code.y - 1.0) + 0.5);
+// The half floats that stand for levels: all normal halves in ascending order, so that MAX blending of 16-bit targets
+// tells 61440 levels apart. A step of a half's bits is 8192 in those of 32 bits; no step here rounds.
+fn peelnet_halves(levels: vec3f) -> vec3f {
+    let from_middle = levels - 30719.5;
+    let magnitude = bitcast<vec3f>(vec3i(abs(from_middle) * 8192.0 + 947908608.0));
+    return select(-magnitude, magnitude, from_middle > vec3f(0.0));
 }
 
-fn peelnet_near_end(alpha: f32, zeta: f32) -> f32 {
-    let code = PEELNET_NEAR_END;
-    return (code.x - 1.0 - peelnet_bin(zeta, code)) * code.y + peelnet_alpha_level(alpha, code);
-}
-
-fn peelnet_far_end(alpha: f32, zeta: f32) -> f32 {
-    let code = PEELNET_FAR_END;
-    return peelnet_bin(zeta, code) * code.y + peelnet_alpha_level(alpha, code);
-}
-
-// The absorbance that an end's level stands for.
-fn peelnet_end_absorbance(level: f32, code: vec2f) -> f32 {
-    let through = 1.0 - (level - code.y * floor(level / code.y)) / (code.y - 1.0);
-    return min(-2.0 * log(max(through, 1e-30)), 16.0);
-}
-
-// The half float that stands for a level: all normal halves in ascending order, so that MAX blending of 16-bit targets
-// tells 61440 levels apart.
-fn peelnet_half(level: f32) -> f32 {
-    let code = u32(clamp(level, 0.0, PEELNET_TOP));
-    let behind = code >= 30720u;
-    // The half's exponent and fraction, widened to those of 32 bits: 112 is the difference of the biases.
-    let magnitude = select(31743u - code, code - 29696u, behind);
-    return bitcast<f32>(select(0x80000000u, 0u, behind) | ((magnitude << 13u) + (112u << 23u)));
-}
-
-fn peelnet_level_of_half(value: f32) -> f32 {
-    let bits = bitcast<u32>(value);
-    let magnitude = f32(((bits & 0x7fffffffu) - (112u << 23u)) >> 13u) - 1024.0;
-    return select(30720.0 + magnitude, 30719.0 - magnitude, (bits >> 31u) == 1u);
+fn peelnet_levels(halves: vec3f) -> vec3f {
+    let from_middle = vec3f(bitcast<vec3i>(abs(halves))) * 0.0001220703125 - 115711.5;
+    return 30719.5 + select(-from_middle, from_middle, halves > vec3f(0.0));
 }
 
 fn peelnet_statistics(alpha: f32, zeta: f32) -> PeelnetStatistics {
     let b = peelnet_absorbance(alpha);
     let z2 = zeta * zeta;
     // The nearest is kept as the maximum of levels counted from the far end.
-    let extent = vec3f(
-        peelnet_half(PEELNET_TOP - peelnet_level(zeta)),
-        peelnet_half(peelnet_near_end(alpha, zeta)),
-        peelnet_half(peelnet_far_end(alpha, zeta)),
-    );
+    let halves = peelnet_halves(vec3f(PEELNET_TOP - peelnet_level(zeta), peelnet_ends(b, zeta)));
     return PeelnetStatistics(
         b * vec4f(1.0, zeta, z2, z2 * zeta),
-        vec4f(select(extent, vec3f(-65504.0), alpha < PEELNET_FAINT), b * z2 * z2),
+        vec4f(select(halves, vec3f(-65504.0), alpha < PEELNET_FAINT), b * z2 * z2),
     );
 }
 
 fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
     let level = peelnet_level(zeta);
-    let first = PEELNET_TOP - peelnet_level_of_half(extent.x);
-    let near_end = peelnet_level_of_half(extent.y);
-    let far_end = peelnet_level_of_half(extent.z);
-    let own_near = peelnet_near_end(alpha, zeta);
-    let own_far = peelnet_far_end(alpha, zeta);
+    let levels = peelnet_levels(extent.xyz);
+    let first = PEELNET_TOP - levels.x;
+    let ends = levels.yz;
+    let own = peelnet_ends(b, zeta);
     // Two passes may round one zeta to neighbouring levels.
-    let at_end = select(select(0.0, 2.0, own_far == far_end), 1.0, level <= first + 1.0);
+    let at_end = select(select(0.0, 2.0, own.y == ends.y), 1.0, level <= first + 1.0);
     let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
+    let bins = floor(ends / PEELNET_OPACITIES);
+    let share = (ends - bins * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
     // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a more
     // opaque one in the same bin), stays with the rest.
-    let front = select(
-        0.0, peelnet_end_absorbance(near_end, PEELNET_NEAR_END), level > first && own_near != near_end);
-    let back = select(0.0, peelnet_end_absorbance(far_end, PEELNET_FAR_END), own_far < far_end);
+    let taken = vec2<bool>(level > first && own.x != ends.x, own.y < ends.y);
+    let absorbances = select(vec2f(0.0), share / (1.0625 - share), taken);
     let others = max(moments.x - b, 0.0);
-    let known = select(select(exp(-front), exp(-others), end == 2.0), 1.0, end == 1.0);
-    let far_bin = floor(far_end / PEELNET_FAR_END.y) + 0.5;
     return PeelnetPlace(
         end,
-        known,
-        vec3f(b, front, back),
-        vec3f(zeta, first / PEELNET_TOP * 2.0 - 1.0, far_bin / PEELNET_FAR_END.x * 2.0 - 1.0),
+        exp(-select(select(absorbances.x, others, end == 2.0), 0.0, end == 1.0)),
+        vec3f(b, absorbances),
+        vec3f(zeta, first * (2.0 / PEELNET_TOP) - 1.0, (bins.y + 0.5) * (2.0 / PEELNET_BINS.y) - 1.0),
     );
 }
 
@@ -187,35 +161,27 @@ fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> Peeln
     // Where the rest is no more than the rounding of 16-bit sums, its moments are noise.
     let total = max(max(m0, moments.x * 0.0009765625), 1e-6);
     let mean = vec4f(m.yzw, extent.w - dot(place.taken, z2 * z2)) / total;
-    // Moments of (zeta - near) * scale, 0 .. 1.
-    let near = z.y;
-    let scale = 1.0 / max(z.z - near, 2.0 / PEELNET_TOP);
+    // Moments over the pixel's range as -1 .. 1: of (zeta - middle) * scale.
+    let middle = 0.5 * (z.y + z.z);
+    let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
     let s2 = scale * scale;
-    let t1 = clamp((mean.x - near) * scale, 0.0, 1.0);
-    let t2 = (mean.y - near * (2.0 * mean.x - near)) * s2;
-    let t3 = (mean.z - near * (3.0 * mean.y - near * (3.0 * mean.x - near))) * scale * s2;
-    let t4 = (mean.w - near * (4.0 * mean.z - near * (6.0 * mean.y - near * (4.0 * mean.x - near)))) * s2 * s2;
-    let t = clamp((z.x - near) * scale, 0.0, 1.0);
-    let variance = max(t2 - t1 * t1, 0.000244140625);
-    let sigma = sqrt(variance);
-    let wide = max(sigma, 0.125);
-    let third = t3 - t1 * (3.0 * t2 - 2.0 * t1 * t1);
-    // To -1 .. 1.
-    let x = vec4f(
-        2.0 * t1 - 1.0,
-        4.0 * (t2 - t1) + 1.0,
-        8.0 * t3 - 12.0 * t2 + 6.0 * t1 - 1.0,
-        16.0 * t4 - 32.0 * t3 + 24.0 * t2 - 8.0 * t1 + 1.0,
-    );
-    let bounds = peelnet_moment_bounds(x, 2.0 * t - 1.0);
+    let m1 = clamp((mean.x - middle) * scale, -1.0, 1.0);
+    let m2 = (mean.y - middle * (2.0 * mean.x - middle)) * s2;
+    let m3 = (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * s2;
+    let m4 = (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * s2 * s2;
+    let x = clamp((z.x - middle) * scale, -1.0, 1.0);
+    let sigma = sqrt(max(m2 - m1 * m1, 0.0009765625));
+    let wide = max(sigma, 0.25);
+    let third = m3 - m1 * (3.0 * m2 - 2.0 * m1 * m1);
+    let bounds = peelnet_moment_bounds(vec4f(m1, m2, m3, m4), x);
     return PeelnetFeatures(
-        log(1.0 + m0),
-        t,
-        t1,
-        clamp(0.5 * (t - t1) / sigma, -2.0, 2.0),
-        clamp(0.5 * third / (wide * wide * wide), -2.0, 2.0),
+        sqrt(m0),
+        0.5 * x + 0.5,
+        0.5 * m1 + 0.5,
         bounds.x,
         bounds.y,
-        vec3f(t1, t2, t3),
+        clamp(0.5 * (x - m1) / sigma, -2.0, 2.0),
+        clamp(0.5 * third / (wide * wide * wide), -2.0, 2.0),
+        vec3f(m1, m2, m3),
     );
 }

@@ -5,15 +5,13 @@
 //     k = (1 - T) / ends.a, at most 1 unless sums.a is 0
 //     ends.rgb * k + sums.rgb / sums.a * max(1 - T - ends.a * k, 0) + C_0 * T
 
-// The weight of a fragment, and its end (see PeelnetPlace). The ends are known and do without the network.
+// The weight of a fragment, and its end (see PeelnetPlace). What the network says of the ends is not used: they are known.
+// No branch around it: neighbouring fragments rarely all lie at an end, and then it only costs.
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     let place = peelnet_place(alpha, zeta, moments, extent);
-    if place.end > 0.0 {
-        return vec2f(place.known, place.end);
-    }
     let f = peelnet_features(place, moments, extent);
     let rest = peelnet_weight(
-        f.log_absorbance, f.depth_fraction, f.mean_fraction, f.depth_deviation, f.skewness,
-        f.share_low, f.share_high);
-    return vec2f(place.known * rest, 0.0);
+        f.root_absorbance, f.depth_fraction, f.mean_fraction, f.share_low, f.share_high,
+        f.depth_deviation, f.skewness);
+    return vec2f(place.known * select(rest, 1.0, place.end > 0.0), place.end);
 }

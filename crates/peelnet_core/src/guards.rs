@@ -27,5 +27,5 @@ pub const RAW_LIMIT: f32 = 1e18;
 /// weights stay finite by twenty orders of magnitude, so that no finite input makes an exported function answer NaN.
 pub const INPUT_LIMIT: f32 = 1e4;
 
-/// `ln(1 + m_0)` is cut off here: 65,536 of absorbance is more than 16-bit sums hold, and its exponential is finite.
-pub const LOG_ABSORBANCE_LIMIT: f32 = 11.090_355;
+/// `√m_0` is cut off here: 65,536 of absorbance is more than 16-bit sums hold, and its square is finite.
+pub const ROOT_ABSORBANCE_LIMIT: f32 = 256.0;

@@ -52,8 +52,8 @@ pub const SAME_CODE: u32 = 1;
 pub struct EndCode {
     /// Levels of depth.
     pub bins: u32,
-    /// Levels of opacity: even steps of `√(1 − α)`, which keep the error of absorbance small also near opaque. The bins times
-    /// the alphas are [`DEPTH_CODES`].
+    /// Levels of opacity: even steps of `b/(1 + b)`, `b` absorbance, which err in transmittance `e^−b` by three quarters of a
+    /// step at most, cost a division to read, and reach [`ABSORBANCE_MAX`]. The bins times the alphas are [`DEPTH_CODES`].
     pub alphas: u32,
 }
 
@@ -69,15 +69,18 @@ pub const FAR_END: EndCode = EndCode {
     alphas: 32,
 };
 
+/// Makes [`ABSORBANCE_MAX`] the last level of opacity.
+const MOST_LEVEL: f64 = (ABSORBANCE_MAX + 1.0) / ABSORBANCE_MAX;
+
 impl EndCode {
     /// The level of a fragment.
-    pub fn level(self, zeta: f64, alpha: f64) -> u32 {
-        self.bin(zeta) * self.alphas + self.alpha_level(alpha)
+    pub fn level(self, zeta: f64, absorbance: f64) -> u32 {
+        self.bin(zeta) * self.alphas + self.alpha_level(absorbance)
     }
 
     /// The level with depth counted from the far end, for the nearest fragment.
-    pub fn mirrored(self, zeta: f64, alpha: f64) -> u32 {
-        (self.bins - 1 - self.bin(zeta)) * self.alphas + self.alpha_level(alpha)
+    pub fn mirrored(self, zeta: f64, absorbance: f64) -> u32 {
+        (self.bins - 1 - self.bin(zeta)) * self.alphas + self.alpha_level(absorbance)
     }
 
     fn bin(self, zeta: f64) -> u32 {
@@ -85,15 +88,15 @@ impl EndCode {
         bin.clamp(0.0, f64::from(self.bins - 1)) as u32
     }
 
-    fn alpha_level(self, alpha: f64) -> u32 {
+    fn alpha_level(self, absorbance: f64) -> u32 {
         let top = f64::from(self.alphas - 1);
-        ((1.0 - (1.0 - alpha).max(0.0).sqrt()) * top + 0.5).floor() as u32
+        (absorbance / (absorbance + 1.0) * MOST_LEVEL * top + 0.5).floor() as u32
     }
 
     /// The absorbance that a level stands for, at most [`ABSORBANCE_MAX`].
     pub fn absorbance(self, level: u32) -> f64 {
-        let through = 1.0 - f64::from(level % self.alphas) / f64::from(self.alphas - 1);
-        (-2.0 * through.ln()).min(ABSORBANCE_MAX)
+        let share = f64::from(level % self.alphas) / f64::from(self.alphas - 1);
+        share / (MOST_LEVEL - share)
     }
 
     /// The warped depth in the middle of a level's bin, not mirrored.
@@ -197,13 +200,13 @@ impl<F: Float> Statistics<F> {
 
 /// Names and units of [`features`], in order.
 pub const FEATURES: [(&str, &str); 9] = [
-    ("log_absorbance", "ln(1 + absorbance of the rest)"),
+    ("root_absorbance", "root of the rest's absorbance"),
     ("depth_fraction", "of the pixel's depth range"),
     ("mean_fraction", "of the pixel's depth range"),
-    ("depth_deviation", "half standard deviations"),
-    ("skewness", "half skewness"),
     ("share_low", "of the rest's absorbance"),
     ("share_high", "of the rest's absorbance"),
+    ("depth_deviation", "half standard deviations"),
+    ("skewness", "half skewness"),
     ("interval_low", "of the rest's absorbance"),
     ("interval_high", "of the rest's absorbance"),
 ];
@@ -211,107 +214,99 @@ pub const FEATURES: [(&str, &str); 9] = [
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
 const NOISE: f64 = 1.0 / 1024.0;
 
-/// The least standard deviation, as a share of the pixel's depth range.
-const DEVIATION_FLOOR: f64 = 1.0 / 64.0;
+/// The least standard deviation, in halves of the pixel's depth range.
+const DEVIATION_FLOOR: f64 = 1.0 / 32.0;
 
 /// The same for the skewness, whose third power makes noise of 16-bit sums out of narrow distributions.
-const SKEWNESS_FLOOR: f64 = 1.0 / 8.0;
+const SKEWNESS_FLOOR: f64 = 1.0 / 4.0;
 
-/// Pull of the moments towards a measure that can be inverted, for [`features`] 5 and 6.
+/// Pull of the moments towards a measure that can be inverted, for [`features`] 3 and 4.
 const BIAS: f64 = 1e-3;
 
 /// The features of a fragment at depth `zeta`, given the moments `m` of the rest: all fragments but itself and the
 /// pixel's ends.
 ///
-/// 0. `ln(1 + m_0)`
+/// 0. `√m_0`
 /// 1. where in the pixel's range the fragment lies, 0 … 1
 /// 2. where the rest's mean μ lies, 0 … 1
-/// 3. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
-/// 4. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
-/// 5. and 6.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four
+/// 3. and 4.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four
 ///    moments (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
+/// 5. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
+/// 6. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
 /// 7. and 8.: the same from three moments and that all of it lies between the ends ([`interval_bounds`])
 pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
     // Every constant below is exactly a 32-bit float.
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
-    let (zero, one, two) = (F::zero(), F::one(), c(2.0));
+    let (one, two) = (F::one(), c(2.0));
     let level = two / c(f64::from(DEPTH_CODES - 1));
     let extent = (s.farthest - s.nearest).max(level);
     let total = m[0].max(s.moments[0] * c(NOISE)).max(c(1e-6));
-    // Moments of t = (ζ − nearest)/extent, 0 … 1, one power after the other.
-    let shift = s.nearest;
-    let scale = one / extent;
+    // Moments over the pixel's range as −1 … 1: of (ζ − middle)·scale.
+    let middle = (s.nearest + s.farthest) / two;
+    let scale = two / extent;
     let [m1, m2, m3, m4] = [m[1] / total, m[2] / total, m[3] / total, m[4] / total];
-    let t1 = ((m1 - shift) * scale).max(zero).min(one);
-    let t2 = (m2 - shift * (two * m1 - shift)) * scale * scale;
-    let t3 = (m3 - shift * (c(3.0) * m2 - shift * (c(3.0) * m1 - shift))) * scale * scale * scale;
-    let t = ((zeta - s.nearest) * scale).max(zero).min(one);
-    let floor = c(DEVIATION_FLOOR);
-    let variance = (t2 - t1 * t1).max(floor * floor);
-    let sigma = variance.sqrt();
-    let wide = sigma.max(c(SKEWNESS_FLOOR));
-    let third = t3 - t1 * (c(3.0) * t2 - two * t1 * t1);
-    let half_clamp = |x: F| (x / two).max(-two).min(two);
-    let t4 = {
-        let inner = c(6.0) * m2 - shift * (c(4.0) * m1 - shift);
-        (m4 - shift * (c(4.0) * m3 - shift * inner)) * (scale * scale) * (scale * scale)
+    let x1 = ((m1 - middle) * scale).max(-one).min(one);
+    let x2 = (m2 - middle * (two * m1 - middle)) * scale.powi(2);
+    let x3 = (m3 - middle * (c(3.0) * m2 - middle * (c(3.0) * m1 - middle))) * scale.powi(3);
+    let x4 = {
+        let inner = c(6.0) * m2 - middle * (c(4.0) * m1 - middle);
+        (m4 - middle * (c(4.0) * m3 - middle * inner)) * scale.powi(4)
     };
-    let (low, high) = moment_bounds([t1, t2, t3, t4], t);
-    let (interval_low, interval_high) = interval_bounds([t1, t2, t3], t);
+    let x = ((zeta - middle) * scale).max(-one).min(one);
+    let sigma = (x2 - x1 * x1)
+        .max(c(DEVIATION_FLOOR * DEVIATION_FLOOR))
+        .sqrt();
+    let wide = sigma.max(c(SKEWNESS_FLOOR));
+    let third = x3 - x1 * (c(3.0) * x2 - two * x1 * x1);
+    let half_clamp = |x: F| (x / two).max(-two).min(two);
+    let (low, high) = clamped(mboit4::share_bounds([x1, x2, x3, x4], c(BIAS), x));
+    let (interval_low, interval_high) = interval_bounds([x1, x2, x3], x);
     [
-        (one + m[0]).ln(),
-        t,
-        t1,
-        half_clamp((t - t1) / sigma),
-        half_clamp(third / (wide * wide * wide)),
+        m[0].sqrt(),
+        (x + one) / two,
+        (x1 + one) / two,
         low,
         high,
+        half_clamp((x - x1) / sigma),
+        half_clamp(third / wide.powi(3)),
         interval_low,
         interval_high,
     ]
 }
 
-/// The least and the most of a distribution on 0 … 1 that can lie in front of `x`, from its first three moments.
+/// Both shares in 0 … 1; NaN, where the points of a bound coincide, becomes 0.
+fn clamped<F: Float>((low, high): (F, F)) -> (F, F) {
+    let clamp = |share: F| share.max(F::zero()).min(F::one());
+    (clamp(low), clamp(high))
+}
+
+/// The least and the most of a distribution on −1 … 1 that can lie in front of `x`, from its first three moments.
 ///
 /// The extreme distribution has three points: `x`, one end of the interval, and one more, `y` (Krein & Nudelman, "The
 /// Markov Moment Problem and Extremal Problems", 1977, ch. III: the canonical representation of index 5/2 through `x`).
-/// If the end is 0, the moments of `t dμ` have the two points `x` and `y`, which gives `y`; else those of `(1 − t) dμ`.
-/// Both shares are kept in 0 … 1; moments that no distribution has, as rounding makes them, give 0 at worst.
+/// If the end is −1, the moments of `(t + 1) dμ` have the two points `x` and `y`, which gives `y`; else those of
+/// `(1 − t) dμ`. Both shares are kept in 0 … 1; moments that no distribution has, as rounding makes them, give 0 at worst.
 pub fn interval_bounds<F: Float>(moments: [F; 3], x: F) -> (F, F) {
     let (zero, one) = (F::zero(), F::one());
     let [m1, m2, m3] = moments;
-    let y = (m3 - x * m2) / (m2 - x * m1);
+    let point = |[n0, n1, n2]: [F; 3]| (n2 - x * n1) / (n1 - x * n0);
     let in_front = |share: F, y: F| if y < x { share } else { zero };
-    let (low, at) = if y >= zero && y <= one {
-        let at = (m2 - y * m1) / (x * (x - y));
-        let other = (m2 - x * m1) / (y * (y - x));
+    let low_end = [one + m1, m1 + m2, m2 + m3];
+    let y = point(low_end);
+    let (low, at) = if y >= -one && y <= one {
+        let [n0, n1, _] = low_end;
+        let at = (n1 - y * n0) / ((x - y) * (one + x));
+        let other = (n1 - x * n0) / ((y - x) * (one + y));
         (one - at - other + in_front(other, y), at)
     } else {
-        let [n0, n1, n2] = [one - m1, m1 - m2, m2 - m3];
-        let y = (n2 - x * n1) / (n1 - x * n0);
+        let high_end = [one - m1, m1 - m2, m2 - m3];
+        let [n0, n1, _] = high_end;
+        let y = point(high_end);
         let at = (n1 - y * n0) / ((x - y) * (one - x));
         let other = (n1 - x * n0) / ((y - x) * (one - y));
         (in_front(other, y), at)
     };
-    // NaN, where points coincide, becomes 0.
-    let clamp = |share: F| share.max(zero).min(one);
-    (clamp(low), clamp(low + at))
-}
-
-/// The same from four moments of a distribution anywhere on the line.
-fn moment_bounds<F: Float>(t_moments: [F; 4], t: F) -> (F, F) {
-    let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
-    let (one, two, four) = (F::one(), c(2.0), c(4.0));
-    // To −1 … 1, where the neutral moments are known: x = 2t − 1.
-    let [a1, a2, a3, a4] = t_moments;
-    let x1 = two * a1 - one;
-    let x2 = four * (a2 - a1) + one;
-    let x3 = c(8.0) * a3 - c(12.0) * a2 + c(6.0) * a1 - one;
-    let x4 = c(16.0) * a4 - c(32.0) * a3 + c(24.0) * a2 - c(8.0) * a1 + one;
-    let (low, high) = mboit4::share_bounds([x1, x2, x3, x4], c(BIAS), two * t - one);
-    // NaN, where the bound's points coincide, becomes 0.
-    let clamp = |x: F| x.max(F::zero()).min(one);
-    (clamp(low), clamp(high))
+    clamped((low, low + at))
 }
 
 #[cfg(test)]
@@ -346,8 +341,7 @@ mod tests {
         }
     }
 
-    /// √(1 − α) is off by half a step, so the absorbance by twice that over √(1 − α), and a little more for the curvature of
-    /// the logarithm.
+    /// `b/(1 + b)` is off by half a step, so `b` by what half a step more makes of it.
     #[test]
     fn end_codes_keep_the_opacity_of_the_extreme() {
         for code in [NEAR_END, FAR_END] {
@@ -355,46 +349,53 @@ mod tests {
             let bin = 2.0 / f64::from(code.bins);
             for i in 0..=1000 {
                 let alpha = f64::from(i) / 1001.0;
-                let level = code.level(0.3, alpha);
                 let exact = -(1.0 - alpha).ln();
+                let level = code.level(0.3, exact);
                 let error = (code.absorbance(level) - exact).abs();
-                let root = (1.0 - alpha).sqrt();
                 let step = 0.5 / f64::from(code.alphas - 1);
-                // The last level stands for opaque.
-                let limit = if root <= step {
-                    ABSORBANCE_MAX
+                let share = exact / (exact + 1.0) * MOST_LEVEL + step;
+                let limit = if share < MOST_LEVEL {
+                    share / (MOST_LEVEL - share) - exact + 1e-12
                 } else {
-                    -2.0 * (1.0 - step / root).ln() + 1e-12
+                    ABSORBANCE_MAX
                 };
                 assert!(error <= limit, "{alpha}: {error} {limit}");
                 assert!((code.zeta(level) - 0.3).abs() <= bin / 2.0 + 1e-12);
                 // Farther wins, nearer in the mirrored level, whatever the opacities.
                 assert!(code.level(0.3 + 2.0 * bin, 0.0) > level);
-                assert!(code.mirrored(0.3 - 2.0 * bin, 0.0) > code.mirrored(0.3, alpha));
+                assert!(code.mirrored(0.3 - 2.0 * bin, 0.0) > code.mirrored(0.3, exact));
                 assert_eq!(
-                    code.absorbance(code.mirrored(-0.7, alpha)),
+                    code.absorbance(code.mirrored(-0.7, exact)),
                     code.absorbance(level)
                 );
             }
-            assert_eq!(code.level(1.0, 1.0), DEPTH_CODES - 1);
-            assert_eq!(code.mirrored(-1.0, 1.0), DEPTH_CODES - 1);
-            assert_eq!(code.absorbance(code.level(0.0, 1.0)), ABSORBANCE_MAX);
+            assert_eq!(code.level(1.0, ABSORBANCE_MAX), DEPTH_CODES - 1);
+            assert_eq!(code.mirrored(-1.0, ABSORBANCE_MAX), DEPTH_CODES - 1);
+            assert_eq!(
+                code.absorbance(code.level(0.0, ABSORBANCE_MAX)),
+                ABSORBANCE_MAX
+            );
         }
     }
 
-    /// Distributions of a few points on 0 … 1: the share in front of any x lies within both bounds.
+    /// Distributions of a few points on −1 … 1: the share in front of any x lies within both bounds.
     #[test]
     fn bounds_hold() {
         let mut random = crate::random::Random::new(5, &[]);
         for _ in 0..2000 {
             let n = 3 + random.below(6);
             let points: Vec<(f64, f64)> = (0..n)
-                .map(|_| (f64::from(random.unit()), 0.05 + f64::from(random.unit())))
+                .map(|_| {
+                    (
+                        f64::from(random.between(-1.0, 1.0)),
+                        0.05 + f64::from(random.unit()),
+                    )
+                })
                 .collect();
             let total: f64 = points.iter().map(|p| p.1).sum();
             let moment = |k: i32| points.iter().map(|p| p.1 * p.0.powi(k)).sum::<f64>() / total;
             let m = [moment(1), moment(2), moment(3), moment(4)];
-            let x = f64::from(random.between(0.02, 0.98));
+            let x = f64::from(random.between(-0.96, 0.96));
             let share = points.iter().filter(|p| p.0 < x).map(|p| p.1).sum::<f64>() / total;
             let (low, high) = interval_bounds([m[0], m[1], m[2]], x);
             // 64-bit moments: nothing but rounding, where the points nearly coincide.
@@ -403,7 +404,7 @@ mod tests {
                 "{low} {share} {high}"
             );
             // The bias gives way by up to its square root times a few.
-            let (low, high) = moment_bounds(m, x);
+            let (low, high) = clamped(mboit4::share_bounds(m, BIAS, x));
             let slack = 4.0 * BIAS.sqrt();
             assert!(
                 low <= share + slack && share <= high + slack,
@@ -442,12 +443,12 @@ mod tests {
                     features(&wide, &m, z),
                     features(&narrow, &narrow.without(&[(b32, z32)]), z32),
                 );
-                for k in 0..5 {
+                for k in [0, 1, 2, 5, 6] {
                     let roundings = 4.0 / f64::from(1 << 24);
                     let width = f64::from(narrow.farthest - narrow.nearest) / 2.0;
                     let tolerance = match k {
-                        3 => roundings / width.powi(2) * 64.0 * 64.0,
-                        4 => roundings / width.powi(3) * 512.0,
+                        5 => roundings / width.powi(2) * 64.0 * 64.0,
+                        6 => roundings / width.powi(3) * 512.0,
                         _ => roundings / width * 8.0,
                     };
                     let noisy = m[0] < 0.1 * wide.moments[0];

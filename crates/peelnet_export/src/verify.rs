@@ -4,7 +4,7 @@ use crate::{
     ExportError,
     wgsl::{function_name, self_test_inputs},
 };
-use peelnet_core::{guards::LOG_ABSORBANCE_LIMIT, hash::pcg, mlp::Mlp, tolerance::EXPORT_F32};
+use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, hash::pcg, mlp::Mlp, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
@@ -77,8 +77,8 @@ fn magnitude(mlp: &Mlp, normalised: &[f64]) -> f64 {
     size
 }
 
-/// The difference that is allowed of an answer: [`EXPORT_F32`] of [`magnitude`]. A weight `exp(−m_0 s)` may differ as
-/// much as its share may, and by [`EXPORT_F32`] more for the rounding of `m_0` and of the exponential.
+/// The difference that is allowed of an answer: [`EXPORT_F32`] of [`magnitude`]. A weight `exp(−r s)` may differ as
+/// much as its share may, and by [`EXPORT_F32`] more for the rounding of `r` and of the exponential.
 fn tolerance(model: &Model, raw: &[f64]) -> f64 {
     let normalised: Vec<f64> = model
         .meta
@@ -92,8 +92,8 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
         return sum;
     }
     let share = model.forward_raw_f64(raw)[0];
-    let others = raw[0].clamp(0.0, LOG_ABSORBANCE_LIMIT.into()).exp_m1();
-    let weight = |share: f64| (-others * share.clamp(0.0, 1.0)).exp();
+    let rest = raw[0].clamp(0.0, ROOT_ABSORBANCE_LIMIT.into()).powi(2);
+    let weight = |share: f64| (-rest * share.clamp(0.0, 1.0)).exp();
     // A sigmoid's slope is at most a quarter.
     EXPORT_F32 + weight(share - 0.25 * sum) - weight(share + 0.25 * sum)
 }

@@ -5,10 +5,10 @@ use crate::{
     literal::{float, vec4},
 };
 use peelnet_core::{
-    guards::{INPUT_LIMIT, LOG_ABSORBANCE_LIMIT, RAW_LIMIT},
+    guards::{INPUT_LIMIT, RAW_LIMIT, ROOT_ABSORBANCE_LIMIT},
     mlp::{Activation, Layer, Mlp},
 };
-use peelnet_model::{Model, Output, Recipe};
+use peelnet_model::{Input, Model, Output, Recipe};
 use std::fmt::Write as _;
 
 /// Multiply–adds of one evaluation of the network, as published costs count them (padding not included).
@@ -92,7 +92,7 @@ fn header(model: &Model) -> String {
                 float(high)
             ),
             Output::AnchoredShare | Output::AnchoredShareSeparateEnds =>
-                "transmittance of the rest, exp(-rest * share) with rest = exp(log_absorbance) - 1 and share in 0 .. 1"
+                "transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1"
                     .into(),
             Output::TailColor => "linear RGB, kept in 0 .. 1".into(),
         }
@@ -198,11 +198,17 @@ fn weight_function(model: &Model) -> String {
             .collect();
         let offsets: Vec<_> = here.iter().map(|i| i.offset).collect();
         let scales: Vec<_> = here.iter().map(|i| i.scale).collect();
-        let (raw, limit) = (float(RAW_LIMIT), float(INPUT_LIMIT));
+        // The limits of the normalised input, in units of the raw one.
+        let limits = |sign: f32| -> Vec<f32> {
+            let limit = |i: &&Input| (INPUT_LIMIT / i.scale.abs()).min(RAW_LIMIT);
+            here.iter().map(|i| i.offset + sign * limit(&i)).collect()
+        };
         let _ = writeln!(
             t,
-            "    let x{c} = clamp((clamp(vec4f({}), vec4f(-{raw}), vec4f({raw})) - {}) * {}, vec4f(-{limit}), vec4f({limit}));",
+            "    let x{c} = (clamp(vec4f({}), {}, {}) - {}) * {};",
             names.join(", "),
+            vec4(&limits(-1.0)),
+            vec4(&limits(1.0)),
             vec4(&offsets),
             vec4(&scales)
         );
@@ -222,13 +228,12 @@ fn weight_function(model: &Model) -> String {
     let (low, high) = model.meta.output.range();
     let (low, high) = (float(low), float(high));
     let answer = match model.meta.output {
-        Output::Transmittance => format!("clamp({before}0.x, {low}, {high})"),
+        Output::Transmittance => format!("clamp({before}0, {low}, {high})"),
         Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
             let first = &inputs[0].name;
-            let limit = float(LOG_ABSORBANCE_LIMIT);
-            format!(
-                "exp((1.0 - exp(clamp({first}, 0.0, {limit}))) * clamp({before}0.x, {low}, {high}))"
-            )
+            let limit = float(ROOT_ABSORBANCE_LIMIT);
+            let _ = writeln!(t, "    let root = clamp({first}, 0.0, {limit});");
+            format!("exp(-root * root * clamp({before}0, {low}, {high}))")
         }
         Output::TailColor => format!("clamp({before}0.xyz, vec3f({low}), vec3f({high}))"),
     };
@@ -236,8 +241,20 @@ fn weight_function(model: &Model) -> String {
     t
 }
 
-/// One layer: `name0 … ` from `before0 …`, four outputs at a time.
+/// One layer: `name0 … ` from `before0 …`, four outputs at a time, or a single one as a number.
 fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activation: Activation) {
+    if layer.outputs == 1 {
+        let mut sum = float(layer.bias[0]);
+        for (c, weights) in layer.weights.chunks(4).enumerate() {
+            let _ = write!(sum, "\n        + dot({}, {before}{c})", vec4(weights));
+        }
+        let _ = writeln!(
+            t,
+            "    let {name}0 = {};",
+            activated(&sum, activation, float)
+        );
+        return;
+    }
     for row in 0..layer.outputs.div_ceil(4) {
         let mut sum = vec4(&layer.bias[row * 4..layer.outputs.min(row * 4 + 4)]);
         for column in 0..layer.inputs.div_ceil(4) {
@@ -262,13 +279,24 @@ fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activatio
                 columns.join(", ")
             );
         }
-        let value = match activation {
-            Activation::Relu => format!("max({sum}, vec4f(0.0))"),
-            Activation::Sigmoid => {
-                format!("1.0 / (1.0 + exp(-clamp({sum}, vec4f(-80.0), vec4f(80.0))))")
-            }
-            Activation::Identity => sum,
-        };
-        let _ = writeln!(t, "    let {name}{row} = {value};");
+        let splat = |x| format!("vec4f({})", float(x));
+        let _ = writeln!(
+            t,
+            "    let {name}{row} = {};",
+            activated(&sum, activation, splat)
+        );
+    }
+}
+
+/// An activation's text; `constant` writes a number in the sum's type.
+fn activated(sum: &str, activation: Activation, constant: impl Fn(f32) -> String) -> String {
+    match activation {
+        Activation::Relu => format!("max({sum}, {})", constant(0.0)),
+        Activation::Sigmoid => format!(
+            "1.0 / (1.0 + exp(-clamp({sum}, {}, {})))",
+            constant(-80.0),
+            constant(80.0)
+        ),
+        Activation::Identity => sum.to_owned(),
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use peelnet_core::{
-    guards::LOG_ABSORBANCE_LIMIT,
+    guards::ROOT_ABSORBANCE_LIMIT,
     mlp::{Layer, Mlp},
 };
 
@@ -142,17 +142,17 @@ impl Model {
     }
 
     /// What the exported function answers: [`Model::forward_raw`], made a transmittance where the network predicts a share:
-    /// `exp(−r s)` with `r = e^x − 1` from the first input `x = ln(1 + r)`, which is kept in 0 …
-    /// [`LOG_ABSORBANCE_LIMIT`].
+    /// `exp(−x² s)` with the first input `x`, the root of the rest's absorbance, which is kept in 0 …
+    /// [`ROOT_ABSORBANCE_LIMIT`].
     ///
     /// # Panics
     /// If the number of features is not that of the model's inputs.
     pub fn shader_output(&self, raw_inputs: &[f32]) -> Vec<f32> {
         let mut outputs = self.forward_raw(raw_inputs);
         if self.meta.output.is_share() {
-            let others = raw_inputs[0].clamp(0.0, LOG_ABSORBANCE_LIMIT).exp() - 1.0;
+            let rest = raw_inputs[0].clamp(0.0, ROOT_ABSORBANCE_LIMIT).powi(2);
             for share in &mut outputs {
-                *share = (-others * *share).exp();
+                *share = (-rest * *share).exp();
             }
         }
         outputs
@@ -165,11 +165,11 @@ impl Model {
     pub fn shader_output_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
         let mut outputs = self.forward_raw_f64(raw_inputs);
         if self.meta.output.is_share() {
-            let others = raw_inputs[0]
-                .clamp(0.0, LOG_ABSORBANCE_LIMIT.into())
-                .exp_m1();
+            let rest = raw_inputs[0]
+                .clamp(0.0, ROOT_ABSORBANCE_LIMIT.into())
+                .powi(2);
             for share in &mut outputs {
-                *share = (-others * *share).exp();
+                *share = (-rest * *share).exp();
             }
         }
         outputs

@@ -294,7 +294,7 @@ fn bad_metadata() {
         ),
         (
             |v| v["recipe"] = "small".into(),
-            &["other features", "recipe small", "log_absorbance"],
+            &["other features", "recipe small", "root_absorbance"],
         ),
         (
             |v| v["output"] = "tail-color".into(),
