@@ -27,15 +27,15 @@ struct PeelnetStatistics {
 struct PeelnetPlace {
     // 1 for the nearest, 2 for the farthest, 0 between them.
     end: f32,
-    // The fragment's weight but for what the network says: 1, exp(-others), or the nearest fragment's transmittance.
-    known: f32,
+    // Absorbance in front as far as it is known: nothing, all others, or the nearest fragment.
+    in_front: f32,
     // Absorbance of the fragment itself, of the nearest and of the farthest where they are known.
     taken: vec3f,
     // zeta of the same.
     zeta: vec3f,
 }
 
-// What peelnet_weight reads.
+// What peelnet_share and peelnet_weight read.
 struct PeelnetFeatures {
     root_absorbance: f32,
     depth_fraction: f32,
@@ -50,7 +50,7 @@ struct PeelnetFeatures {
 
 // -log(1 - alpha), at most 16: opaque, but finite.
 fn peelnet_absorbance(alpha: f32) -> f32 {
-    return min(-log(1.0 - min(alpha, 0.99999994)), 16.0);
+    return -log(max(1.0 - alpha, 1.1253517e-7));
 }
 
 fn peelnet_level(zeta: f32) -> f32 {
@@ -108,7 +108,7 @@ fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> Peelne
     let others = max(moments.x - b, 0.0);
     return PeelnetPlace(
         end,
-        exp(-select(select(absorbances.x, others, end == 2.0), 0.0, end == 1.0)),
+        select(select(absorbances.x, others, end == 2.0), 0.0, end == 1.0),
         vec3f(b, absorbances),
         vec3f(zeta, first * (2.0 / PEELNET_TOP) - 1.0, (bins.y + 0.5) * (2.0 / PEELNET_BINS.y) - 1.0),
     );

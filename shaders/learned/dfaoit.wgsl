@@ -9,7 +9,7 @@ struct PeelnetTail {
 }
 
 fn peelnet_absorbance(alpha: f32) -> f32 {
-    return min(-log(1.0 - min(alpha, 0.99999994)), 16.0);
+    return -log(max(1.0 - alpha, 1.1253517e-7));
 }
 
 // front: premultiplied colour and transmittance of the two nearest. tail: sums of (alpha * rgb, alpha). sums: absorbance

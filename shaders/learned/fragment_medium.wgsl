@@ -10,8 +10,8 @@
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     let place = peelnet_place(alpha, zeta, moments, extent);
     let f = peelnet_features(place, moments, extent);
-    let rest = peelnet_weight(
-        f.root_absorbance, f.depth_fraction, f.mean_fraction, f.share_low, f.share_high,
-        f.depth_deviation, f.skewness);
-    return vec2f(place.known * select(rest, 1.0, place.end > 0.0), place.end);
+    let share = peelnet_share(
+        f.root_absorbance, f.depth_fraction, f.mean_fraction, f.share_low, f.share_high);
+    let between = select(f.root_absorbance * f.root_absorbance * share, 0.0, place.end > 0.0);
+    return vec2f(exp(-(place.in_front + between)), place.end);
 }

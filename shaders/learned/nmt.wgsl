@@ -14,7 +14,7 @@ struct PeelnetStatistics {
 }
 
 fn peelnet_statistics(alpha: f32, zeta: f32) -> PeelnetStatistics {
-    let b = min(-log(1.0 - min(alpha, 0.99999994)), 16.0);
+    let b = -log(max(1.0 - alpha, 1.1253517e-7));
     let z2 = zeta * zeta;
     return PeelnetStatistics(vec2f(b, 1.0), b * vec4f(zeta, z2, z2 * zeta, z2 * z2));
 }

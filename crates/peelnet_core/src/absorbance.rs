@@ -1,7 +1,5 @@
 //! Absorbance, and the warped depth that its moments are taken of. The shader twin is `helpers/absorbance.wgsl`.
 
-use crate::guards::ALPHA_CEILING;
-
 /// The largest absorbance of one fragment: `e⁻¹⁶ ≈ 1e−7` is opaque to any display, and sums of it stay small enough for
 /// accumulators.
 pub const ABSORBANCE_MAX: f64 = 16.0;
@@ -15,7 +13,7 @@ pub const ABSORBANCE_MAX: f64 = 16.0;
 /// assert_eq!(absorbance(1.0), 16.0);
 /// ```
 pub fn absorbance(alpha: f32) -> f64 {
-    (-f64::from(1.0 - alpha.min(ALPHA_CEILING)).ln()).min(ABSORBANCE_MAX)
+    (-f64::from((1.0 - alpha).max(0.0)).ln()).min(ABSORBANCE_MAX)
 }
 
 /// Maps depth to −1 … 1 by its logarithm over a range (Münstermann et al. 2018, §3.1): ratios of depth become

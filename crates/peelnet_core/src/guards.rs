@@ -7,9 +7,6 @@
 /// 16-bit target can still hold it.
 pub const WEIGHT_FLOOR: f32 = 1.0 / 16384.0;
 
-/// The largest opacity that absorbance is computed from: `1 − 2⁻²⁴`, the largest `f32` below one.
-pub const ALPHA_CEILING: f32 = 1.0 - 1.0 / 16_777_216.0;
-
 /// The divisor's floor in the resolve of weighted methods.
 ///
 /// `2⁻²⁴` is the smallest positive half float: a sum of weights that a 16-bit target can tell from zero is never

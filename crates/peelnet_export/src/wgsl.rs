@@ -173,45 +173,90 @@ pub(crate) const fn function_name(output: Output) -> &'static str {
     }
 }
 
-/// The network as straight-line code.
+/// The network as straight-line code: the function that the model's inputs go to, and for shares of absorbance the share
+/// alone before it.
 fn weight_function(model: &Model) -> String {
     let inputs = &model.meta.inputs;
+    let output = model.meta.output;
+    let list = |each: &dyn Fn(&Input) -> String| -> String {
+        let all: Vec<String> = inputs.iter().map(each).collect();
+        all.join(", ")
+    };
+    let parameters = list(&|i| format!("{}: f32", i.name));
+    let kind = if output.count() == 1 { "f32" } else { "vec3f" };
+    let name = function_name(output);
+    let (low, high) = output.range();
+    let (low, high) = (float(low), float(high));
     let mut t = String::new();
-    let parameters: Vec<_> = inputs.iter().map(|i| format!("{}: f32", i.name)).collect();
     // Writing to a string cannot fail.
-    let _ = writeln!(
-        t,
-        "fn {}({}) -> {} {{\n    // Normalised inputs; the limits never bind on real data and keep everything finite.",
-        function_name(model.meta.output),
-        parameters.join(", "),
-        if model.meta.output.count() == 1 {
-            "f32"
-        } else {
-            "vec3f"
+    let _ = match output {
+        Output::Transmittance | Output::TailColor => {
+            let _ = writeln!(t, "fn {name}({parameters}) -> {kind} {{");
+            let last = network(&mut t, model, true);
+            let answer = if output.count() == 1 {
+                format!("clamp({last}0, {low}, {high})")
+            } else {
+                format!("clamp({last}0.xyz, vec3f({low}), vec3f({high}))")
+            };
+            writeln!(t, "    return {answer};\n}}")
         }
-    );
-    let chunks = inputs.len().div_ceil(4);
-    for c in 0..chunks {
-        let here = &inputs[c * 4..inputs.len().min(c * 4 + 4)];
+        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
+            let _ = writeln!(
+                t,
+                "// The share of the rest's absorbance that lies in front, for inputs as peelnet_features gives them.\n\
+                 fn peelnet_share({parameters}) -> {kind} {{"
+            );
+            let last = network(&mut t, model, false);
+            let _ = writeln!(t, "    return {last}0;\n}}\n");
+            let _ = writeln!(
+                t,
+                "// Its transmittance, for any finite inputs.\nfn {name}({parameters}) -> {kind} {{"
+            );
+            let limited = list(&|i| {
+                let [low, high] = limits(i);
+                format!("clamp({}, {}, {})", i.name, float(low), float(high))
+            });
+            let root = format!(
+                "clamp({}, 0.0, {})",
+                inputs[0].name,
+                float(ROOT_ABSORBANCE_LIMIT)
+            );
+            let _ = writeln!(t, "    let root = {root};");
+            writeln!(
+                t,
+                "    return exp(-root * root * peelnet_share(\n        {limited}));\n}}"
+            )
+        }
+    };
+    t
+}
+
+/// The raw values at which the normalised ones reach [`INPUT_LIMIT`], or [`RAW_LIMIT`].
+fn limits(input: &Input) -> [f32; 2] {
+    let reach = (INPUT_LIMIT / input.scale.abs()).min(RAW_LIMIT);
+    [input.offset - reach, input.offset + reach]
+}
+
+/// The lines from the raw inputs to the last layer; returns that layer's name.
+fn network(t: &mut String, model: &Model, limited: bool) -> String {
+    if limited {
+        t.push_str("    // The limits never bind on real data and keep everything finite.\n");
+    }
+    for (c, here) in model.meta.inputs.chunks(4).enumerate() {
         let names: Vec<_> = (0..4)
             .map(|k| here.get(k).map_or("0.0", |i| i.name.as_str()))
             .collect();
-        let offsets: Vec<_> = here.iter().map(|i| i.offset).collect();
-        let scales: Vec<_> = here.iter().map(|i| i.scale).collect();
-        // The limits of the normalised input, in units of the raw one.
-        let limits = |sign: f32| -> Vec<f32> {
-            let limit = |i: &&Input| (INPUT_LIMIT / i.scale.abs()).min(RAW_LIMIT);
-            here.iter().map(|i| i.offset + sign * limit(&i)).collect()
+        let column = |value: &dyn Fn(&Input) -> f32| -> String {
+            let values: Vec<f32> = here.iter().map(value).collect();
+            vec4(&values)
         };
-        let _ = writeln!(
-            t,
-            "    let x{c} = (clamp(vec4f({}), {}, {}) - {}) * {};",
-            names.join(", "),
-            vec4(&limits(-1.0)),
-            vec4(&limits(1.0)),
-            vec4(&offsets),
-            vec4(&scales)
-        );
+        let mut raw = format!("vec4f({})", names.join(", "));
+        if limited {
+            let (low, high) = (column(&|i| limits(i)[0]), column(&|i| limits(i)[1]));
+            raw = format!("clamp({raw}, {low}, {high})");
+        }
+        let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
+        let _ = writeln!(t, "    let x{c} = ({raw} - {offset}) * {scale};");
     }
     let last = model.mlp.layers.len() - 1;
     let mut before = "x".to_owned();
@@ -222,23 +267,10 @@ fn weight_function(model: &Model) -> String {
             model.mlp.hidden
         };
         let name = format!("h{l}_");
-        layer_text(&mut t, layer, &before, &name, activation);
+        layer_text(t, layer, &before, &name, activation);
         before = name;
     }
-    let (low, high) = model.meta.output.range();
-    let (low, high) = (float(low), float(high));
-    let answer = match model.meta.output {
-        Output::Transmittance => format!("clamp({before}0, {low}, {high})"),
-        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
-            let first = &inputs[0].name;
-            let limit = float(ROOT_ABSORBANCE_LIMIT);
-            let _ = writeln!(t, "    let root = clamp({first}, 0.0, {limit});");
-            format!("exp(-root * root * clamp({before}0, {low}, {high}))")
-        }
-        Output::TailColor => format!("clamp({before}0.xyz, vec3f({low}), vec3f({high}))"),
-    };
-    let _ = writeln!(t, "    return {answer};\n}}");
-    t
+    before
 }
 
 /// One layer: `name0 … ` from `before0 …`, four outputs at a time, or a single one as a number.
@@ -292,11 +324,8 @@ fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activatio
 fn activated(sum: &str, activation: Activation, constant: impl Fn(f32) -> String) -> String {
     match activation {
         Activation::Relu => format!("max({sum}, {})", constant(0.0)),
-        Activation::Sigmoid => format!(
-            "1.0 / (1.0 + exp(-clamp({sum}, {}, {})))",
-            constant(-80.0),
-            constant(80.0)
-        ),
+        // The other end needs no limit: the exponential becomes 0 there.
+        Activation::Sigmoid => format!("1.0 / (1.0 + exp(min(-({sum}), {})))", constant(80.0)),
         Activation::Identity => sum.to_owned(),
     }
 }

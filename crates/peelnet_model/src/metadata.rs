@@ -75,8 +75,6 @@ impl Recipe {
                 "mean_fraction",
                 "share_low",
                 "share_high",
-                "depth_deviation",
-                "skewness",
             ],
             Self::Large => &[
                 "root_absorbance",

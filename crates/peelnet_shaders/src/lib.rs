@@ -163,7 +163,7 @@ mod tests {
             "methods::dfaoit" => (&["learned::dfaoit"], ""),
             _ => (
                 &["learned::anchored", "learned::fragment_medium"],
-                "a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32",
+                "a: f32, b: f32, c: f32, d: f32, e: f32",
             ),
         };
         let texts: Vec<_> = modules
@@ -172,6 +172,7 @@ mod tests {
             .collect();
         format!(
             "{}\nfn peelnet_weight({parameters}) -> f32 {{ return 1.0; }}
+            fn peelnet_share({parameters}) -> f32 {{ return 1.0; }}
             fn peelnet_tail_color(a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32, h: f32, i: f32, j: f32) -> vec3f {{
                 return vec3f(1.0);
             }}\n",
