@@ -15,6 +15,7 @@ const PEELNET_TOP: f32 = 61439.0;
 // Bins of depth, and levels of opacity in each, that the nearest and the farthest fragment are kept with.
 const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
 const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
+const PEELNET_OPACITY_STEP: vec2f = 1.0 / (PEELNET_OPACITIES - 1.0);
 
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3.
@@ -100,7 +101,7 @@ fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> Peelne
     let at_end = select(select(0.0, 2.0, own.y == ends.y), 1.0, level <= first + 1.0);
     let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
     let bins = floor(ends / PEELNET_OPACITIES);
-    let share = (ends - bins * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
+    let share = (ends - bins * PEELNET_OPACITIES) * PEELNET_OPACITY_STEP;
     // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a more
     // opaque one in the same bin), stays with the rest.
     let taken = vec2<bool>(level > first && own.x != ends.x, own.y < ends.y);
@@ -122,24 +123,26 @@ fn peelnet_moment_bounds(moments: vec4f, x: f32) -> vec2f {
     // Cholesky factors of the Hankel matrix, the kernel polynomial, its roots: the extreme measure's points beside x.
     let variance = m.y - m.x * m.x;
     let l21_variance = m.z - m.x * m.y;
-    let l21 = l21_variance / variance;
+    let inverse_variance = 1.0 / variance;
+    let l21 = l21_variance * inverse_variance;
     let d22 = m.w - m.y * m.y - l21_variance * l21;
     let y1 = x - m.x;
     let y2 = x * x - m.y - l21 * y1;
     let c2 = y2 / d22;
-    let c1 = y1 / variance - l21 * c2;
+    let c1 = y1 * inverse_variance - l21 * c2;
     let c0 = 1.0 - m.x * c1 - m.y * c2;
-    let half_p = 0.5 * c1 / c2;
-    let root = sqrt(max(half_p * half_p - c0 / c2, 0.0));
+    let inverse_c2 = 1.0 / c2;
+    let half_p = 0.5 * c1 * inverse_c2;
+    let root = sqrt(max(half_p * half_p - c0 * inverse_c2, 0.0));
     let p1 = -half_p - root;
     let p2 = -half_p + root;
     let f1 = select(0.0, 1.0, p1 < x);
     let f2 = select(0.0, 1.0, p2 < x);
     // The quadratic through the three points, and its mean: without and with what lies at x itself.
     let f0 = vec2f(0.0, 1.0);
-    let f01 = (f1 - f0) / (p1 - x);
+    let f01 = (f1 - f0) * (1.0 / (p1 - x));
     let f12 = (f2 - f1) / (p2 - p1);
-    let f012 = (f12 - f01) / (p2 - x);
+    let f012 = (f12 - f01) * (1.0 / (p2 - x));
     let a0 = f0 - x * (f01 - f012 * p1);
     let a1 = f01 - f012 * (p1 + x);
     let share = a0 + a1 * m.x + f012 * m.y;
@@ -159,8 +162,8 @@ fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> Peeln
     );
     let m0 = max(m.x, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its moments are noise.
-    let total = max(max(m0, moments.x * 0.0009765625), 1e-6);
-    let mean = vec4f(m.yzw, extent.w - dot(place.taken, z2 * z2)) / total;
+    let inverse_total = 1.0 / max(max(m0, moments.x * 0.0009765625), 1e-6);
+    let mean = vec4f(m.yzw, extent.w - dot(place.taken, z2 * z2)) * inverse_total;
     // Moments over the pixel's range as -1 .. 1: of (zeta - middle) * scale.
     let middle = 0.5 * (z.y + z.z);
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);

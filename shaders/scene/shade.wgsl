@@ -20,6 +20,11 @@ struct Light {
 
 const AMBIENT: f32 = 0.1;
 
+// Alpha alone, for passes that need no colour.
+fn opacity(surface: Surface) -> f32 {
+    return materials[surface.material].color.a;
+}
+
 // Un-premultiplied radiance and alpha.
 fn shade(surface: Surface) -> vec4f {
     let material = materials[surface.material];

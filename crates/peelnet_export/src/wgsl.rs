@@ -238,11 +238,15 @@ fn limits(input: &Input) -> [f32; 2] {
 }
 
 /// The lines from the raw inputs to the last layer; returns that layer's name.
+///
+/// With limits the inputs are normalised as the model does it; without, they are known to be small (see
+/// `peelnet_features`), and the first layer takes the normalisation in.
 fn network(t: &mut String, model: &Model, limited: bool) -> String {
+    let inputs = &model.meta.inputs;
     if limited {
         t.push_str("    // The limits never bind on real data and keep everything finite.\n");
     }
-    for (c, here) in model.meta.inputs.chunks(4).enumerate() {
+    for (c, here) in inputs.chunks(4).enumerate() {
         let names: Vec<_> = (0..4)
             .map(|k| here.get(k).map_or("0.0", |i| i.name.as_str()))
             .collect();
@@ -250,13 +254,17 @@ fn network(t: &mut String, model: &Model, limited: bool) -> String {
             let values: Vec<f32> = here.iter().map(value).collect();
             vec4(&values)
         };
-        let mut raw = format!("vec4f({})", names.join(", "));
-        if limited {
+        let raw = format!("vec4f({})", names.join(", "));
+        let _ = if limited {
             let (low, high) = (column(&|i| limits(i)[0]), column(&|i| limits(i)[1]));
-            raw = format!("clamp({raw}, {low}, {high})");
-        }
-        let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
-        let _ = writeln!(t, "    let x{c} = ({raw} - {offset}) * {scale};");
+            let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
+            writeln!(
+                t,
+                "    let x{c} = (clamp({raw}, {low}, {high}) - {offset}) * {scale};"
+            )
+        } else {
+            writeln!(t, "    let x{c} = {raw};")
+        };
     }
     let last = model.mlp.layers.len() - 1;
     let mut before = "x".to_owned();
@@ -267,10 +275,39 @@ fn network(t: &mut String, model: &Model, limited: bool) -> String {
             model.mlp.hidden
         };
         let name = format!("h{l}_");
-        layer_text(t, layer, &before, &name, activation);
+        if l == 0 && !limited {
+            layer_text(
+                t,
+                &for_raw_inputs(layer, inputs),
+                &before,
+                &name,
+                activation,
+            );
+        } else {
+            layer_text(t, layer, &before, &name, activation);
+        }
         before = name;
     }
     before
+}
+
+/// A first layer that normalises its inputs itself: `W s (x − o) + c = (W s) x + (c − W s o)`.
+fn for_raw_inputs(layer: &Layer, inputs: &[Input]) -> Layer {
+    let mut raw = layer.clone();
+    for (row, bias) in raw
+        .weights
+        .chunks_exact_mut(layer.inputs)
+        .zip(&mut raw.bias)
+    {
+        let mut sum = f64::from(*bias);
+        for (w, i) in row.iter_mut().zip(inputs) {
+            let scaled = f64::from(*w) * f64::from(i.scale);
+            sum -= scaled * f64::from(i.offset);
+            *w = scaled as f32;
+        }
+        *bias = sum as f32;
+    }
+    raw
 }
 
 /// One layer: `name0 … ` from `before0 …`, four outputs at a time, or a single one as a number.
@@ -278,7 +315,10 @@ fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activatio
     if layer.outputs == 1 {
         let mut sum = float(layer.bias[0]);
         for (c, weights) in layer.weights.chunks(4).enumerate() {
-            let _ = write!(sum, "\n        + dot({}, {before}{c})", vec4(weights));
+            let _ = match weights {
+                [single] => write!(sum, "\n        + {} * {before}{c}.x", float(*single)),
+                _ => write!(sum, "\n        + dot({}, {before}{c})", vec4(weights)),
+            };
         }
         let _ = writeln!(
             t,
@@ -290,26 +330,26 @@ fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activatio
     for row in 0..layer.outputs.div_ceil(4) {
         let mut sum = vec4(&layer.bias[row * 4..layer.outputs.min(row * 4 + 4)]);
         for column in 0..layer.inputs.div_ceil(4) {
-            let columns: Vec<_> = (0..4)
+            let columns: Vec<_> = (column * 4..column * 4 + 4)
                 .map(|c| {
-                    let values: Vec<_> = (0..4)
-                        .map(|r| {
-                            let (r, c) = (row * 4 + r, column * 4 + c);
-                            if r < layer.outputs && c < layer.inputs {
-                                layer.weights[r * layer.inputs + c]
-                            } else {
-                                0.0
-                            }
-                        })
-                        .collect();
+                    let weight = |r: usize| {
+                        let inside = r < layer.outputs && c < layer.inputs;
+                        inside.then(|| layer.weights[r * layer.inputs + c])
+                    };
+                    let values = [0, 1, 2, 3].map(|r| weight(row * 4 + r).unwrap_or(0.0));
                     vec4(&values)
                 })
                 .collect();
-            let _ = write!(
-                sum,
-                "\n        + mat4x4f({}) * {before}{column}",
-                columns.join(", ")
-            );
+            // A single input left over needs no matrix.
+            let _ = if column * 4 + 1 == layer.inputs {
+                write!(sum, "\n        + {} * {before}{column}.x", columns[0])
+            } else {
+                write!(
+                    sum,
+                    "\n        + mat4x4f({}) * {before}{column}",
+                    columns.join(", ")
+                )
+            };
         }
         let splat = |x| format!("vec4f({})", float(x));
         let _ = writeln!(

@@ -80,7 +80,7 @@ impl Definition {
         let (output, config) = match recipe {
             Recipe::Thesis => (Output::Transmittance, thesis),
             Recipe::Small => (Output::AnchoredShare, pixels(&[8])),
-            Recipe::Medium => (Output::AnchoredShareSeparateEnds, pixels(&[8, 8])),
+            Recipe::Medium => (Output::AnchoredShareSeparateEnds, pixels(&[12])),
             Recipe::Large => (Output::AnchoredShareSeparateEnds, pixels(&[13, 8])),
             Recipe::Nmt => (Output::Transmittance, rows(&[32, 16])),
             Recipe::Dfaoit => (

@@ -1,5 +1,5 @@
 // deep-thesis, pass 1: sum alpha and the number of fragments.
-import package::scene::shade::shade;
+import package::scene::shade::opacity;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -8,5 +8,5 @@ fn fragment_main(surface: Surface) -> @location(0) vec2f {
     if !visible(surface) {
         discard;
     }
-    return vec2f(shade(surface).a, 1.0);
+    return vec2f(opacity(surface), 1.0);
 }

@@ -1,6 +1,6 @@
 // mboit4, pass 1: absorbance and its first four power moments over warped depth.
 import package::helpers::absorbance::{absorbance, warped_depth};
-import package::scene::shade::shade;
+import package::scene::shade::opacity;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -14,7 +14,7 @@ fn fragment_main(surface: Surface) -> Moments {
     if !visible(surface) {
         discard;
     }
-    let b = absorbance(shade(surface).a);
+    let b = absorbance(opacity(surface));
     let z = warped_depth(surface.depth_linear);
     let z2 = z * z;
     return Moments(b, b * vec4f(z, z2, z2 * z, z2 * z2));

@@ -1,7 +1,7 @@
 // nmt, pass 1: absorbance, the number of fragments, and four power moments.
 import package::helpers::absorbance::warped_depth;
 import package::learned::weight::peelnet_statistics;
-import package::scene::shade::shade;
+import package::scene::shade::opacity;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -15,6 +15,6 @@ fn fragment_main(surface: Surface) -> Statistics {
     if !visible(surface) {
         discard;
     }
-    let s = peelnet_statistics(shade(surface).a, warped_depth(surface.depth_linear));
+    let s = peelnet_statistics(opacity(surface), warped_depth(surface.depth_linear));
     return Statistics(s.absorbance, s.moments);
 }
