@@ -15,6 +15,7 @@ cargo xtask <command>
 
   demo [--full]   peel the shipped scenes, train, export, render, compare; ends with a report in out/demo
                   (--full: the thesis's full size, 1.5 M rows and 150 epochs, into out/full)
+  train-models    makes the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   test            formatting, clippy, all tests, documentation: what CI runs
   ci              the same as test
   peers           the training comparison with PyTorch (installs it from PyPI into target/)
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
     let result = match (args.first().map(String::as_str), rest.as_slice()) {
         (Some("demo"), []) => demo(false),
         (Some("demo"), ["--full"]) => demo(true),
+        (Some("train-models"), []) => train_models(),
         (Some("test" | "ci"), []) => test(),
         (Some("peers"), []) => run(
             Command::new("python3").arg("benches/peers/train.py"),
@@ -76,20 +78,19 @@ fn run(command: &mut Command, name: &str) -> Result<(), String> {
     }
 }
 
+/// The release build of `peelnet`, with these arguments.
+fn peelnet(args: &[&str]) -> Command {
+    let mut command = cargo();
+    command
+        .args(["run", "--release", "--quiet", "--package", "peelnet", "--"])
+        .args(args);
+    command
+}
+
 fn demo(full: bool) -> Result<(), String> {
     ensure_driver()?;
     let out = if full { "out/full" } else { "out/demo" };
-    let mut command = cargo();
-    command.args([
-        "run",
-        "--release",
-        "--package",
-        "peelnet",
-        "--",
-        "run",
-        "--out",
-        out,
-    ]);
+    let mut command = peelnet(&["run", "--out", out]);
     if full {
         command.arg("--full");
     }
@@ -99,6 +100,78 @@ fn demo(full: bool) -> Result<(), String> {
         root().join(out).join("report.html").display()
     );
     Ok(())
+}
+
+/// Recipes that learn from synthetic lists and peeled scenes together.
+const PIXEL_RECIPES: [&str; 5] = ["small", "medium", "large", "nmt", "dfaoit"];
+
+/// Makes everything in `models/` from the shipped scenes and the seed.
+fn train_models() -> Result<(), String> {
+    ensure_driver()?;
+    let step = |args: &[&str]| {
+        println!("\n== peelnet {}", args.join(" "));
+        run(&mut peelnet(args), args[0])
+    };
+    // What an earlier run left would be in the way of extraction.
+    let _ = std::fs::remove_dir_all(root().join("out/models"));
+    let scenes = scene_files()?;
+    let (synthetic, peeled) = ("out/models/synthetic", "out/models/peeled");
+    step(&["extract", "--synthetic", "600000", "--out", synthetic])?;
+    let mut peel = vec!["extract"];
+    peel.extend(scenes.iter().map(String::as_str));
+    // Many small views teach more than few large ones.
+    peel.extend(["--size", "256x192", "--augment", "5", "--pixels", "0.12"]);
+    peel.extend(["--out", peeled]);
+    step(&peel)?;
+    step(&["run", "--full", "--out", "out/models/thesis"])?;
+    finish("thesis", &["out/models/thesis/dataset"], &["--resume"])?;
+    for recipe in PIXEL_RECIPES {
+        finish(recipe, &[synthetic, peeled], &[])?;
+    }
+    println!("\nmodels/ is complete; compare with: cargo run --release -- bench data/scenes/*-held.toml --out out/bench");
+    Ok(())
+}
+
+/// Trains a recipe in `out/models` and puts the model, its text and its figures into `models`.
+fn finish(recipe: &str, data: &[&str], more: &[&str]) -> Result<(), String> {
+    let made = format!("out/models/{recipe}/model.safetensors");
+    let shipped = root().join("models").join(recipe);
+    let io = |e: std::io::Error| format!("models/{recipe}: {e}");
+    std::fs::create_dir_all(root().join(format!("out/models/{recipe}"))).map_err(io)?;
+    std::fs::create_dir_all(&shipped).map_err(io)?;
+    let mut args = vec!["train"];
+    args.extend(data);
+    args.extend(["--recipe", recipe, "--out", &made, "--json"]);
+    args.extend(more);
+    println!("\n== peelnet {}", args.join(" "));
+    let output = peelnet(&args)
+        .current_dir(root())
+        .stderr(std::process::Stdio::inherit())
+        .output()
+        .map_err(|e| format!("train: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("training {recipe} failed ({})", output.status));
+    }
+    let text = format!("models/{recipe}/model.wgsl");
+    println!("== peelnet export {made} --out {text}");
+    run(&mut peelnet(&["export", &made, "--out", &text]), "export")?;
+    std::fs::write(shipped.join("metrics.json"), output.stdout).map_err(io)?;
+    std::fs::copy(root().join(made), shipped.join("model.safetensors")).map_err(io)?;
+    Ok(())
+}
+
+/// The shipped scenes, relative to the root, in the order of their names.
+fn scene_files() -> Result<Vec<String>, String> {
+    let folder = root().join("data/scenes");
+    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut files: Vec<String> = entries
+        .flatten()
+        .filter_map(|e| e.file_name().into_string().ok())
+        .filter(|name| name.ends_with(".toml"))
+        .map(|name| format!("data/scenes/{name}"))
+        .collect();
+    files.sort();
+    Ok(files)
 }
 
 fn test() -> Result<(), String> {

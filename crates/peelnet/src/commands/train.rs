@@ -32,6 +32,9 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
             json!({
                 "out": args.out,
                 "recipe": meta.recipe,
+                "topology": outcome.model.mlp.topology(),
+                "parameters": outcome.model.mlp.parameters(),
+                "config": meta.config,
                 "end": end_name(outcome.end),
                 "epochs": outcome.history.len(),
                 "model_epoch": outcome.model_epoch,
