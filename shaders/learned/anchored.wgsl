@@ -43,8 +43,6 @@ struct PeelnetFeatures {
     mean_fraction: f32,
     share_low: f32,
     share_high: f32,
-    depth_deviation: f32,
-    skewness: f32,
     // Mean powers 1 to 3 of the rest's depth, -1 .. 1 from the nearest to the farthest.
     means: vec3f,
 }
@@ -173,9 +171,6 @@ fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> Peeln
     let m3 = (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * s2;
     let m4 = (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * s2 * s2;
     let x = clamp((z.x - middle) * scale, -1.0, 1.0);
-    let sigma = sqrt(max(m2 - m1 * m1, 0.0009765625));
-    let wide = max(sigma, 0.25);
-    let third = m3 - m1 * (3.0 * m2 - 2.0 * m1 * m1);
     let bounds = peelnet_moment_bounds(vec4f(m1, m2, m3, m4), x);
     return PeelnetFeatures(
         sqrt(m0),
@@ -183,8 +178,6 @@ fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> Peeln
         0.5 * m1 + 0.5,
         bounds.x,
         bounds.y,
-        clamp(0.5 * (x - m1) / sigma, -2.0, 2.0),
-        clamp(0.5 * third / (wide * wide * wide), -2.0, 2.0),
         vec3f(m1, m2, m3),
     );
 }

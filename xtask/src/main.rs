@@ -128,7 +128,9 @@ fn train_models() -> Result<(), String> {
     for recipe in PIXEL_RECIPES {
         finish(recipe, &[synthetic, peeled], &[])?;
     }
-    println!("\nmodels/ is complete; compare with: cargo run --release -- bench data/scenes/*-held.toml --out out/bench");
+    println!(
+        "\nmodels/ is complete; compare with: cargo run --release -- bench data/scenes/*-held.toml --out out/bench"
+    );
     Ok(())
 }
 

@@ -199,26 +199,18 @@ impl<F: Float> Statistics<F> {
 }
 
 /// Names and units of [`features`], in order.
-pub const FEATURES: [(&str, &str); 9] = [
+pub const FEATURES: [(&str, &str); 7] = [
     ("root_absorbance", "root of the rest's absorbance"),
     ("depth_fraction", "of the pixel's depth range"),
     ("mean_fraction", "of the pixel's depth range"),
     ("share_low", "of the rest's absorbance"),
     ("share_high", "of the rest's absorbance"),
-    ("depth_deviation", "half standard deviations"),
-    ("skewness", "half skewness"),
     ("interval_low", "of the rest's absorbance"),
     ("interval_high", "of the rest's absorbance"),
 ];
 
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
 const NOISE: f64 = 1.0 / 1024.0;
-
-/// The least standard deviation, in halves of the pixel's depth range.
-const DEVIATION_FLOOR: f64 = 1.0 / 32.0;
-
-/// The same for the skewness, whose third power makes noise of 16-bit sums out of narrow distributions.
-const SKEWNESS_FLOOR: f64 = 1.0 / 4.0;
 
 /// Pull of the moments towards a measure that can be inverted, for [`features`] 3 and 4.
 const BIAS: f64 = 1e-3;
@@ -231,10 +223,8 @@ const BIAS: f64 = 1e-3;
 /// 2. where the rest's mean μ lies, 0 … 1
 /// 3. and 4.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four
 ///    moments (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
-/// 5. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
-/// 6. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
-/// 7. and 8.: the same from three moments and that all of it lies between the ends ([`interval_bounds`])
-pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
+/// 5. and 6.: the same from three moments and that all of it lies between the ends ([`interval_bounds`])
+pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
     // Every constant below is exactly a 32-bit float.
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
     let (one, two) = (F::one(), c(2.0));
@@ -253,12 +243,6 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
         (m4 - middle * (c(4.0) * m3 - middle * inner)) * scale.powi(4)
     };
     let x = ((zeta - middle) * scale).max(-one).min(one);
-    let sigma = (x2 - x1 * x1)
-        .max(c(DEVIATION_FLOOR * DEVIATION_FLOOR))
-        .sqrt();
-    let wide = sigma.max(c(SKEWNESS_FLOOR));
-    let third = x3 - x1 * (c(3.0) * x2 - two * x1 * x1);
-    let half_clamp = |x: F| (x / two).max(-two).min(two);
     let (low, high) = clamped(mboit4::share_bounds([x1, x2, x3, x4], c(BIAS), x));
     let (interval_low, interval_high) = interval_bounds([x1, x2, x3], x);
     [
@@ -267,8 +251,6 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
         (x1 + one) / two,
         low,
         high,
-        half_clamp((x - x1) / sigma),
-        half_clamp(third / wide.powi(3)),
         interval_low,
         interval_high,
     ]
@@ -414,8 +396,7 @@ mod tests {
     }
 
     /// The 32-bit features follow the 64-bit ones. Mean powers err by a few roundings (2⁻²⁴) of values ≤ 1; moving them to the
-    /// pixel's range multiplies by up to its inverse (here 10, as the range is at least a tenth of the frame's), cubed for
-    /// the third, and dividing by σ³ ≥ 8⁻³ by up to 512 more.
+    /// pixel's range multiplies by up to its inverse (here 10, as the range is at least a tenth of the frame's).
     #[test]
     fn both_precisions_agree() {
         let mut state = 9u32;
@@ -443,14 +424,10 @@ mod tests {
                     features(&wide, &m, z),
                     features(&narrow, &narrow.without(&[(b32, z32)]), z32),
                 );
-                for k in [0, 1, 2, 5, 6] {
+                for k in 0..3 {
                     let roundings = 4.0 / f64::from(1 << 24);
                     let width = f64::from(narrow.farthest - narrow.nearest) / 2.0;
-                    let tolerance = match k {
-                        5 => roundings / width.powi(2) * 64.0 * 64.0,
-                        6 => roundings / width.powi(3) * 512.0,
-                        _ => roundings / width * 8.0,
-                    };
+                    let tolerance = roundings / width * 8.0;
                     let noisy = m[0] < 0.1 * wide.moments[0];
                     assert!(
                         noisy || (a[k] - f64::from(c[k])).abs() < tolerance,

@@ -82,8 +82,6 @@ impl Recipe {
                 "mean_fraction",
                 "share_low",
                 "share_high",
-                "depth_deviation",
-                "skewness",
                 "interval_low",
                 "interval_high",
             ],

@@ -81,7 +81,13 @@ impl Definition {
             Recipe::Thesis => (Output::Transmittance, thesis),
             Recipe::Small => (Output::AnchoredShare, pixels(&[8])),
             Recipe::Medium => (Output::AnchoredShareSeparateEnds, pixels(&[12])),
-            Recipe::Large => (Output::AnchoredShareSeparateEnds, pixels(&[13, 8])),
+            Recipe::Large => (
+                Output::AnchoredShareSeparateEnds,
+                Config {
+                    epochs: 80,
+                    ..pixels(&[15, 10])
+                },
+            ),
             Recipe::Nmt => (Output::Transmittance, rows(&[32, 16])),
             Recipe::Dfaoit => (
                 Output::TailColor,
