@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
+use peelnet_eval::{Row, report::Bench};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -96,3 +97,50 @@ fn links_lead_somewhere() {
         }
     }
 }
+
+/// The committed comparison of the learned methods.
+const LEARNED: &str = "docs/results/llvmpipe-epyc-2cores/learned";
+
+fn learned_run() -> Bench {
+    serde_json::from_str(&read(&format!("{LEARNED}/results.json"))).unwrap()
+}
+
+/// The README's table of learned methods is the one that the committed rows give.
+#[test]
+fn the_readme_shows_the_committed_run() {
+    let want = learned_run().markdown();
+    assert_eq!(read(&format!("{LEARNED}/table.md")), want);
+    let readme = read("README.md");
+    let (_, block) = readme.split_once("<!-- learned:begin -->\n").unwrap();
+    let (block, _) = block.split_once("<!-- learned:end -->").unwrap();
+    assert_eq!(
+        block, want,
+        "put {LEARNED}/table.md between the marks in README.md"
+    );
+}
+
+/// The errors under the README's first pictures are the committed ones of that scene.
+#[test]
+fn the_first_pictures_have_their_errors() {
+    let run = learned_run();
+    let readme = read("README.md");
+    let line = readme
+        .lines()
+        .find(|l| l.starts_with("| MSE 0 |"))
+        .expect("a line of errors under the pictures");
+    for method in ["wboit-eq9", "mboit4", "deep-medium"] {
+        let rows: Vec<&Row> = run
+            .rows
+            .iter()
+            .filter(|r| r.scene == PICTURED && r.method == method)
+            .collect();
+        let mean = rows.iter().map(|r| r.mse255).sum::<f64>() / rows.len() as f64;
+        assert!(
+            line.contains(&format!("MSE {mean:.1}")),
+            "{method}: {mean:.1}"
+        );
+    }
+}
+
+/// The scene of the README's first pictures.
+const PICTURED: &str = "foliage-held";
