@@ -32,7 +32,6 @@ fn wrong_usage_is_exit_code_2() {
         "extract a.toml --out d --format xml",
         "extract a.toml --out d --peel onion",
         "train d --out m --recipe huge",
-        "train d --out m --recipe small",
         "train d --out m --loss-curve loss.png",
         "train d --out m --epochs 0",
         "train d --out m --lr -1",

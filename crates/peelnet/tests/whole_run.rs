@@ -127,3 +127,50 @@ fn a_run_writes_everything_it_promises() {
         "run and render draw the same picture"
     );
 }
+
+/// Synthetic lists, a network from them, its export, and a bench of it against another method: from the command line, end to
+/// end.
+#[test]
+fn a_network_from_synthetic_lists_is_benched() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("s.toml"), SCENE).unwrap();
+    peelnet("extract --synthetic 2000 --out d -q", dir.path());
+    peelnet(
+        "train d --recipe medium --epochs 2 --hidden 4 --out m.safetensors -q",
+        dir.path(),
+    );
+    peelnet("export m.safetensors --out w.wgsl -q", dir.path());
+    let output = peelnet(
+        "bench s.toml --out o --size 64x48 --frames 2 --methods wboit-eq9,mboit4 --models m.safetensors --json",
+        dir.path(),
+    );
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = answer["rows"].as_array().unwrap();
+    for method in ["abuffer", "wboit-eq9", "mboit4", "deep-medium"] {
+        let of: Vec<_> = rows.iter().filter(|r| r["method"] == method).collect();
+        assert_eq!(of.len(), 2, "a row for each view of {method}");
+        for row in of {
+            assert_eq!(row["non_finite_pixels"], 0, "{row}");
+            let [least, median, most] =
+                ["time_ms_min", "time_ms", "time_ms_p90"].map(|k| row[k].as_f64().unwrap());
+            assert!(0.0 < least && least <= median && median <= most, "{row}");
+            assert_eq!(row["mse_linear"] == 0.0, method == "abuffer", "{row}");
+        }
+    }
+    let mean = |method: &str| -> f64 {
+        rows.iter()
+            .filter(|r| r["method"] == method)
+            .map(|r| r["mse_linear"].as_f64().unwrap())
+            .sum()
+    };
+    // Three spheres are six layers at most: the anchors alone do better than a fixed weight.
+    assert!(mean("deep-medium") < mean("wboit-eq9"));
+    for name in [
+        "results.json",
+        "results.csv",
+        "table.md",
+        "images/three-spheres-deep-medium.png",
+    ] {
+        assert!(dir.path().join("o").join(name).is_file(), "{name}");
+    }
+}
