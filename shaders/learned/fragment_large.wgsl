@@ -10,10 +10,12 @@
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     let place = peelnet_place(alpha, zeta, moments, extent);
     let f = peelnet_features(place, moments, extent);
-    let bounds = peelnet_interval_bounds(f.means, 2.0 * f.depth_fraction - 1.0);
+    let x = 2.0 * f.depth_fraction - 1.0;
+    let bounds = peelnet_interval_bounds(f.means, x);
+    let shape = peelnet_shape(f.means, x);
     let share = peelnet_share(
         f.root_absorbance, f.depth_fraction, f.mean_fraction, f.share_low, f.share_high,
-        bounds.x, bounds.y);
+        bounds.x, bounds.y, shape.x, shape.y);
     let between = select(f.root_absorbance * f.root_absorbance * share, 0.0, place.end > 0.0);
     return vec2f(exp(-(place.in_front + between)), place.end);
 }

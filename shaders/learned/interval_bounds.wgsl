@@ -15,3 +15,11 @@ fn peelnet_interval_bounds(m: vec3f, x: f32) -> vec2f {
     // Points that coincide give NaN, which no comparison finds true.
     return select(vec2f(0.0), min(share, vec2f(1.0)), share >= vec2f(0.0));
 }
+
+// How many half standard deviations x lies behind the mean, and half the skewness, each in -2 .. 2.
+fn peelnet_shape(m: vec3f, x: f32) -> vec2f {
+    let sigma = sqrt(max(m.y - m.x * m.x, 0.0009765625));
+    let wide = max(sigma, 0.25);
+    let third = m.z - m.x * (3.0 * m.y - 2.0 * m.x * m.x);
+    return clamp(0.5 * vec2f((x - m.x) / sigma, third / (wide * wide * wide)), vec2f(-2.0), vec2f(2.0));
+}

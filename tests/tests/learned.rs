@@ -217,7 +217,7 @@ fn the_exported_text_is_the_twin_of_the_core() {
     let mut random = Random::new(33, &[]);
     for recipe in ANCHORED {
         let model = shipped(recipe);
-        let share = |x: &[f64; 7]| model.forward_raw_f64(&x[..model.meta.inputs.len()])[0];
+        let share = |x: &[f64; 9]| model.forward_raw_f64(&x[..model.meta.inputs.len()])[0];
         for half in [false, true] {
             let answers = on_the_gpu(&gpu, &model, &pixels, half);
             let rounding = if half { HALF } else { 1.0 / f64::from(1 << 24) };

@@ -199,7 +199,7 @@ impl<F: Float> Statistics<F> {
 }
 
 /// Names and units of [`features`], in order.
-pub const FEATURES: [(&str, &str); 7] = [
+pub const FEATURES: [(&str, &str); 9] = [
     ("root_absorbance", "root of the rest's absorbance"),
     ("depth_fraction", "of the pixel's depth range"),
     ("mean_fraction", "of the pixel's depth range"),
@@ -207,10 +207,18 @@ pub const FEATURES: [(&str, &str); 7] = [
     ("share_high", "of the rest's absorbance"),
     ("interval_low", "of the rest's absorbance"),
     ("interval_high", "of the rest's absorbance"),
+    ("depth_deviation", "half standard deviations"),
+    ("skewness", "half skewness"),
 ];
 
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
 const NOISE: f64 = 1.0 / 1024.0;
+
+/// The least standard deviation, in halves of the pixel's depth range.
+const DEVIATION_FLOOR: f64 = 1.0 / 32.0;
+
+/// The same for the skewness, whose third power makes noise of rounded sums out of narrow distributions.
+const SKEWNESS_FLOOR: f64 = 1.0 / 4.0;
 
 /// Pull of the moments towards a measure that can be inverted, for [`features`] 3 and 4.
 const BIAS: f64 = 1e-3;
@@ -224,7 +232,9 @@ const BIAS: f64 = 1e-3;
 /// 3. and 4.: the least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four
 ///    moments (Münstermann et al. 2018, §3.2; overestimation 0 and 1)
 /// 5. and 6.: the same from three moments and that all of it lies between the ends ([`interval_bounds`])
-pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
+/// 7. `clamp((ζ − μ)/2σ, −2, 2)`, σ the rest's standard deviation
+/// 8. `clamp(skewness/2, −2, 2)` of the rest, σ at least an eighth of the range in it
+pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
     // Every constant below is exactly a 32-bit float.
     let c = |x: f64| F::from(x).unwrap_or_else(F::zero);
     let (one, two) = (F::one(), c(2.0));
@@ -244,6 +254,12 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
     };
     let x = ((zeta - middle) * scale).max(-one).min(one);
     let (low, high) = clamped(mboit4::share_bounds([x1, x2, x3, x4], c(BIAS), x));
+    let sigma = (x2 - x1 * x1)
+        .max(c(DEVIATION_FLOOR * DEVIATION_FLOOR))
+        .sqrt();
+    let wide = sigma.max(c(SKEWNESS_FLOOR));
+    let third = x3 - x1 * (c(3.0) * x2 - two * x1 * x1);
+    let half_clamp = |value: F| (value / two).max(-two).min(two);
     let (interval_low, interval_high) = interval_bounds([x1, x2, x3], x);
     [
         m[0].sqrt(),
@@ -253,6 +269,8 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 7] {
         high,
         interval_low,
         interval_high,
+        half_clamp((x - x1) / sigma),
+        half_clamp(third / wide.powi(3)),
     ]
 }
 

@@ -84,6 +84,8 @@ impl Recipe {
                 "share_high",
                 "interval_low",
                 "interval_high",
+                "depth_deviation",
+                "skewness",
             ],
             Self::Nmt => &[
                 "depth",

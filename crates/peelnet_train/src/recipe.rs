@@ -85,7 +85,7 @@ impl Definition {
                 Output::AnchoredShareSeparateEnds,
                 Config {
                     epochs: 80,
-                    ..pixels(&[15, 10])
+                    ..pixels(&[14, 9])
                 },
             ),
             Recipe::Nmt => (Output::Transmittance, rows(&[32, 16])),

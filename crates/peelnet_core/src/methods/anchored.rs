@@ -44,12 +44,12 @@ pub struct Seen {
     /// Absorbance of the rest, `r`.
     pub rest: f64,
     /// What the network reads ([`statistics::features`]).
-    pub features: [f64; 7],
+    pub features: [f64; 9],
 }
 
 impl Seen {
     /// The weight, given what the network answers for a fragment that lies between the ends.
-    pub fn weight(&self, share: impl FnOnce(&[f64; 7]) -> f64) -> f64 {
+    pub fn weight(&self, share: impl FnOnce(&[f64; 9]) -> f64) -> f64 {
         match self.place {
             Place::Nearest => 1.0,
             Place::Between => (-(self.front + self.rest * share(&self.features))).exp(),
@@ -143,7 +143,7 @@ pub fn composite(
     background: [f32; 3],
     warp: &DepthWarp,
     separate_ends: bool,
-    share: impl Fn(&[f64; 7]) -> f64,
+    share: impl Fn(&[f64; 9]) -> f64,
 ) -> [f32; 3] {
     let points: Vec<(f32, f32)> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
     let total: f64 = fragments.iter().map(|f| absorbance(f.alpha)).sum();
@@ -299,11 +299,21 @@ mod tests {
         assert!((s[2].front - half).abs() < near);
         assert!((s[2].rest - 2.0 * half).abs() < near + far);
         // With three moments, the extreme distributions have an eighth at each end and the rest in the middle.
-        let want = [(2.0 * half).sqrt(), 0.5, 0.5, 0.5, 0.5, 0.125, 0.875];
+        let want = [
+            (2.0 * half).sqrt(),
+            0.5,
+            0.5,
+            0.5,
+            0.5,
+            0.125,
+            0.875,
+            0.0,
+            0.0,
+        ];
         for (k, want) in want.into_iter().enumerate() {
             // What is left of the ends weighs 2, 4, 8 and 16 times as much in the moments as the rest, which lies half as far
             // from the middle; the bounds sum up all four.
-            let tolerance = [1.0, 0.0, 2.0, 16.0, 16.0, 8.0, 8.0][k] * (near + far)
+            let tolerance = [1.0, 0.0, 2.0, 16.0, 16.0, 8.0, 8.0, 8.0, 16.0][k] * (near + far)
                 // The farthest fragment's depth is known to half a bin.
                 + 1.0 / f64::from(FAR_END.bins);
             assert!(

@@ -266,7 +266,7 @@ pub const METHODS: &[MethodEntry] = &[
     },
     MethodEntry {
         name: "deep-small",
-        about: "a learned share of the others' absorbance, 5-8-1",
+        about: "a learned share of what lies between the pixel's ends, 5-8-1",
         knobs: &[TARGETS],
         learned: true,
         exact: false,
@@ -274,7 +274,7 @@ pub const METHODS: &[MethodEntry] = &[
     },
     MethodEntry {
         name: "deep-medium",
-        about: "the same with exact ends, 5-8-8-1: the one to ship",
+        about: "the same with exact ends, 5-12-1: the one to ship",
         knobs: &[TARGETS],
         learned: true,
         exact: false,
@@ -282,7 +282,7 @@ pub const METHODS: &[MethodEntry] = &[
     },
     MethodEntry {
         name: "deep-large",
-        about: "the same with the bounds of four moments: the most accurate",
+        about: "the same with more features, 9-14-9-1: the most accurate",
         knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
