@@ -88,7 +88,7 @@ fn pixels() -> Vec<Points> {
         let alpha = match kind {
             0 => random.between(0.01, 0.2),
             1 => random.between(0.7, 1.0),
-            2 => [0.001, 0.3, 1.0][random.below(3) as usize],
+            2 => [0.001, 0.3, 1.0][random.below(3)],
             _ => random.between(0.02, 0.98),
         };
         let t = warp().apply(depth.into()) * 0.5 + 0.5;
@@ -498,7 +498,7 @@ fn every_pixel_is_finite() {
         stack((0..50).map(|_| {
             (
                 10f32.powf(random.between(-1.5, 4.0)),
-                [0.02, 0.98][random.below(2) as usize],
+                [0.02, 0.98][random.below(2)],
             )
         })),
         stack([(2.0, 0.0), (3.0, 0.0)]),

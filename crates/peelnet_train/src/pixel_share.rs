@@ -80,7 +80,7 @@ impl Pixels {
             row += pixels.rows(p as usize, data.rows()).len() as u32;
         }
         first.push(row);
-        let mut fixed = vec![Vec::with_capacity(examples.len()); FIXED];
+        let mut fixed = vec![Vec::new(); FIXED];
         for &p in examples {
             let f = &pixels.fixed[p as usize];
             let [r, g, b] = f.color;

@@ -244,9 +244,9 @@ fn share_pixel(
             left -= a;
         } else {
             fixed.sum += a as f32;
-            for k in 0..3 {
-                fixed.color[k] += a as f32 * color[k];
-                fixed.exact[k] += exact as f32 * color[k];
+            for (k, c) in color.into_iter().enumerate() {
+                fixed.color[k] += a as f32 * c;
+                fixed.exact[k] += exact as f32 * c;
             }
         }
     }
