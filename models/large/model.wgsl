@@ -1,6 +1,6 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
-// Network: 7-15-10-1 (Relu hidden, Sigmoid last), 291 parameters, 265 multiply-adds. Recipe large, seed 1, 80 epochs.
+// Network: 9-14-9-1 (Relu hidden, Sigmoid last), 285 parameters, 261 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
 // Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 22.26442 (what training saw).
 // Input 1: depth_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
@@ -9,12 +9,14 @@
 // Input 4: share_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
 // Input 5: interval_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
 // Input 6: interval_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
+// Input 7: depth_deviation in half standard deviations, valid range -2.0 .. 2.0 (what training saw).
+// Input 8: skewness in half skewness, valid range -2.0 .. 2.0 (what training saw).
 // Trained on 20038556 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset 0599362acca622793292093ff63ae72863fd302015bdf7c35303dc4c52e527db+f44d32a5ff14ca4bf843253253d7571da2829a9e36c000d5dd700fd1b1454788).
-// Loss: training 0.000196, validation 0.000201, test 0.000205.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01763, cups-held 0.02433, foliage-held 0.01002, panes-held 0.00955, sixteen-held 0.02125, smoke-held 0.02913.
-// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(11.13221, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5) = 3.69783e-39
-// Self-test: peelnet_weight(22.26442, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0) = 0.0
+// Loss: training 0.000183, validation 0.000187, test 0.000193.
+// Held-out error, mean |T - T_exact|: boxes-held 0.01465, cups-held 0.02045, foliage-held 0.00833, panes-held 0.00710, sixteen-held 0.01584, smoke-held 0.02332.
+// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0, -2.0) = 1.0
+// Self-test: peelnet_weight(11.13221, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0) = 1.3274311e-29
+// Self-test: peelnet_weight(22.26442, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0) = 0.0
 
 // Statistics pass: draw all transparent surfaces, in any order, into
 //     moments  rgba16float (or rgba32float), cleared to 0, blending ONE, ONE, ADD;
@@ -218,6 +220,14 @@ fn peelnet_interval_bounds(m: vec3f, x: f32) -> vec2f {
     return select(vec2f(0.0), min(share, vec2f(1.0)), share >= vec2f(0.0));
 }
 
+// How many half standard deviations x lies behind the mean, and half the skewness, each in -2 .. 2.
+fn peelnet_shape(m: vec3f, x: f32) -> vec2f {
+    let sigma = sqrt(max(m.y - m.x * m.x, 0.0009765625));
+    let wide = max(sigma, 0.25);
+    let third = m.z - m.x * (3.0 * m.y - 2.0 * m.x * m.x);
+    return clamp(0.5 * vec2f((x - m.x) / sigma, third / (wide * wide * wide)), vec2f(-2.0), vec2f(2.0));
+}
+
 // Weight pass: draw all transparent surfaces again into two rgba16float targets cleared to 0, blending ONE, ONE, ADD.
 // Each fragment reads its pixel's statistics, calls w = peelnet_fragment(..), and writes (alpha * rgb * w.x, alpha * w.x)
 // to the first target, `sums`, if w.y is 0 (it lies between the pixel's ends), else to the second, `ends`; zero to the
@@ -230,55 +240,62 @@ fn peelnet_interval_bounds(m: vec3f, x: f32) -> vec2f {
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     let place = peelnet_place(alpha, zeta, moments, extent);
     let f = peelnet_features(place, moments, extent);
-    let bounds = peelnet_interval_bounds(f.means, 2.0 * f.depth_fraction - 1.0);
+    let x = 2.0 * f.depth_fraction - 1.0;
+    let bounds = peelnet_interval_bounds(f.means, x);
+    let shape = peelnet_shape(f.means, x);
     let share = peelnet_share(
         f.root_absorbance, f.depth_fraction, f.mean_fraction, f.share_low, f.share_high,
-        bounds.x, bounds.y);
+        bounds.x, bounds.y, shape.x, shape.y);
     let between = select(f.root_absorbance * f.root_absorbance * share, 0.0, place.end > 0.0);
     return vec2f(exp(-(place.in_front + between)), place.end);
 }
 
 // The share of the rest's absorbance that lies in front, for inputs as peelnet_features gives them.
-fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, interval_low: f32, interval_high: f32) -> f32 {
+fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, interval_low: f32, interval_high: f32, depth_deviation: f32, skewness: f32) -> f32 {
     let x0 = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
-    let x1 = vec4f(share_high, interval_low, interval_high, 0.0);
-    let h0_0 = max(vec4f(-0.911343, 3.0541487, -8.1637745, 1.5225799)
-        + mat4x4f(vec4f(0.0339215, -0.21341813, 0.08207686, -0.043079387), vec4f(0.06554746, 2.5341513, -2.889149, -0.923673), vec4f(0.9296132, -3.2775407, 3.5041568, -0.9391044), vec4f(3.2363348, 0.05342708, 3.6910138, 1.1546946)) * x0
-        + mat4x4f(vec4f(0.57140636, -1.4451693, 3.9071949, -3.3481846), vec4f(1.274033, -0.1867686, 0.28554523, 1.730838), vec4f(-0.2545092, -1.4209543, 2.960234, 0.1926444), vec4f(0.0, 0.0, 0.0, 0.0)) * x1, vec4f(0.0));
-    let h0_1 = max(vec4f(0.3921617, -2.0459518, 0.3310917, 0.24218863)
-        + mat4x4f(vec4f(0.018482745, -0.06883197, -0.07939925, -0.0018348515), vec4f(-1.437895, 1.3299687, -4.4428062, 0.18666309), vec4f(2.305483, -4.164914, 3.1082175, -0.32396883), vec4f(2.4344509, 3.472801, -1.0387152, 1.7886326)) * x0
-        + mat4x4f(vec4f(0.94431555, 3.5323484, 1.3815985, -3.767002), vec4f(-1.9899687, 0.20867378, 0.35942683, 3.1607106), vec4f(-2.014852, 0.97739893, 0.63187844, 0.4216494), vec4f(0.0, 0.0, 0.0, 0.0)) * x1, vec4f(0.0));
-    let h0_2 = max(vec4f(-3.5800369, 1.5755365, -1.042644, 0.72093666)
-        + mat4x4f(vec4f(0.11309372, -0.004152909, -0.07447291, 0.109097876), vec4f(0.75958556, 0.47402713, 2.8640463, 1.5158749), vec4f(2.8259199, 1.6532582, 0.69031525, -1.7547964), vec4f(-1.6317127, -2.805289, 2.571775, -3.9814353)) * x0
-        + mat4x4f(vec4f(0.64862454, -1.5154284, -0.054249894, -0.9887548), vec4f(4.5881453, 0.19980446, -3.7511437, -0.027281927), vec4f(0.8807141, -1.5541732, 0.4605721, 0.56738275), vec4f(0.0, 0.0, 0.0, 0.0)) * x1, vec4f(0.0));
-    let h0_3 = max(vec4f(-0.2794128, 3.7010217, 0.8563739, 0.0)
-        + mat4x4f(vec4f(0.008719908, -0.008979022, -0.078004785, 0.0), vec4f(-3.8627377, 1.2404208, 0.30928493, 0.0), vec4f(0.47759104, -4.027323, -0.36302668, 0.0), vec4f(-1.4143972, 0.44236246, -3.5244315, 0.0)) * x0
-        + mat4x4f(vec4f(0.8700534, 1.9150102, 1.5846378, 0.0), vec4f(1.1551808, 1.830021, -0.7239776, 0.0), vec4f(2.2425838, -4.237711, 0.16374929, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * x1, vec4f(0.0));
-    let h1_0 = max(vec4f(0.20781672, 0.19340327, -0.76773363, 1.041103)
-        + mat4x4f(vec4f(-0.10996426, 0.7138414, -2.20621, -0.62587494), vec4f(0.27204737, 0.626493, 0.6372826, 0.29390916), vec4f(-0.13781294, 1.2642797, -0.066915825, -1.5553304), vec4f(0.2759206, 0.040172365, -0.2934694, 0.2626704)) * h0_0
-        + mat4x4f(vec4f(0.21082535, 0.32292068, 0.08802299, 0.32991594), vec4f(-0.27716175, -0.093468696, -4.732196, -0.24079107), vec4f(0.22779647, 0.34990802, 0.06317181, -0.56881356), vec4f(-0.47241452, -3.1207502, -2.2222633, -1.3827075)) * h0_1
-        + mat4x4f(vec4f(0.6624454, -0.3963289, 0.59256, 0.9866965), vec4f(0.5998333, 0.17872389, 0.4949784, -0.015524761), vec4f(0.4131998, -1.1495643, -0.33299077, -0.775659), vec4f(0.36169654, 0.19088823, 0.547806, -0.82228225)) * h0_2
-        + mat4x4f(vec4f(0.79140204, 0.042146854, 0.37195745, 0.14312325), vec4f(0.32010397, -0.4461216, -0.983489, 0.21649446), vec4f(0.4454604, 0.6189265, 0.3345864, -0.36141923), vec4f(0.0, 0.0, 0.0, 0.0)) * h0_3, vec4f(0.0));
-    let h1_1 = max(vec4f(0.33505625, 0.12890564, 0.023216972, -0.5367038)
-        + mat4x4f(vec4f(0.6367265, -0.4836024, 0.15815045, -1.3467251), vec4f(0.4828115, -0.1952224, 0.1586456, -1.1165586), vec4f(0.8416288, 0.4980116, -0.38070112, -1.2889172), vec4f(-1.4419537, -1.5838299, -0.08207864, -1.0104504)) * h0_0
-        + mat4x4f(vec4f(0.25695598, 0.63151866, 0.50217277, 0.15321282), vec4f(0.6397786, -0.1346199, -0.018614147, 1.5142317), vec4f(0.70547026, 0.7000566, -0.36026198, -0.42001113), vec4f(1.0550673, -0.80383193, -0.3135395, 1.8824589)) * h0_1
-        + mat4x4f(vec4f(0.55023026, 1.0798317, 0.7680024, -0.74235475), vec4f(-0.2765876, -0.21580754, 0.13268325, 0.14098273), vec4f(0.0368447, 0.121021025, 0.01568237, 0.35410237), vec4f(-0.30403188, -0.22518952, -0.42287266, -0.10773963)) * h0_2
-        + mat4x4f(vec4f(0.14963754, 0.58753026, 0.3892399, -1.3562495), vec4f(-0.19373983, 0.42159837, 0.3878964, -0.62881666), vec4f(-0.12877022, 0.061994795, 0.25757223, 0.51773876), vec4f(0.0, 0.0, 0.0, 0.0)) * h0_3, vec4f(0.0));
-    let h1_2 = max(vec4f(-0.52501637, 0.23033486, 0.0, 0.0)
-        + mat4x4f(vec4f(-2.4508297, 0.096860096, 0.0, 0.0), vec4f(0.21482317, -0.048510637, 0.0, 0.0), vec4f(3.8816707, -0.16929832, 0.0, 0.0), vec4f(0.5105461, 0.2860743, 0.0, 0.0)) * h0_0
-        + mat4x4f(vec4f(-0.66402555, 0.46247193, 0.0, 0.0), vec4f(1.3492857, -0.4407754, 0.0, 0.0), vec4f(-0.9926203, -0.16286606, 0.0, 0.0), vec4f(0.46101588, -0.41319308, 0.0, 0.0)) * h0_1
-        + mat4x4f(vec4f(0.11424991, 0.5443615, 0.0, 0.0), vec4f(0.42798072, 0.36644313, 0.0, 0.0), vec4f(-0.34932813, 0.58272785, 0.0, 0.0), vec4f(0.412623, 0.29490647, 0.0, 0.0)) * h0_2
-        + mat4x4f(vec4f(0.056904275, 0.63250345, 0.0, 0.0), vec4f(-0.21951073, 0.3397382, 0.0, 0.0), vec4f(0.020217787, 0.3392454, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * h0_3, vec4f(0.0));
-    let h2_0 = 1.0 / (1.0 + exp(min(-(-0.16611153
-        + dot(vec4f(-0.34204745, -0.7411193, -1.0996499, 0.36648035), h1_0)
-        + dot(vec4f(0.34412265, 0.682066, -0.1117161, 1.948139), h1_1)
-        + dot(vec4f(1.302477, -0.2686051, 0.0, 0.0), h1_2)), 80.0)));
+    let x1 = vec4f(share_high, interval_low, interval_high, depth_deviation);
+    let x2 = vec4f(skewness, 0.0, 0.0, 0.0);
+    let h0_0 = max(vec4f(-3.4329448, 0.4257574, -0.38236728, 0.35393447)
+        + mat4x4f(vec4f(0.16893324, -0.015885713, 0.003319901, 0.022181597), vec4f(0.73904186, -3.5935516, -1.093767, -3.9295878), vec4f(3.8940587, -0.16252771, 1.9925038, 1.7745312), vec4f(-0.32772526, 1.6596408, -0.4887011, -4.0284243)) * x0
+        + mat4x4f(vec4f(1.0617548, -1.104022, -3.0372758, 2.7761524), vec4f(1.49091, -0.014263286, -0.7324958, 0.745631), vec4f(-0.0857029, 0.34350348, 1.3037059, 0.18845159), vec4f(-0.05093595, -0.07411481, -0.44046843, 0.23923099)) * x1
+        + vec4f(0.5519245, -0.13888931, 0.7239659, 0.56433207) * x2.x, vec4f(0.0));
+    let h0_1 = max(vec4f(2.133184, 0.6183987, -0.830611, -0.9479772)
+        + mat4x4f(vec4f(-0.15036699, -0.02252269, -0.07699534, 0.14239514), vec4f(2.5082452, -1.7370839, 0.7421304, 1.0806661), vec4f(-3.7652328, 0.4970172, 0.9916373, 1.8031406), vec4f(-0.92260474, 3.6954188, 3.1163683, 1.386509)) * x0
+        + mat4x4f(vec4f(-2.3471532, 1.770608, -0.057374734, -0.60207516), vec4f(-0.2062029, -0.26710677, -4.313324, -2.0435584), vec4f(0.7174406, -2.4171762, 1.1130525, -0.59132785), vec4f(-0.8490425, -0.66722095, 0.3707579, 0.14809309)) * x1
+        + vec4f(-0.47435924, 1.0933143, -0.18793602, -0.6559929) * x2.x, vec4f(0.0));
+    let h0_2 = max(vec4f(-4.328684, 1.3590783, -2.3474388, 1.7803392)
+        + mat4x4f(vec4f(0.064386025, 0.061285224, -0.054346036, -0.0031657883), vec4f(-3.264346, 0.33460826, -0.30325836, -0.64627373), vec4f(0.16798227, -0.45244542, 5.826781, 0.4113126), vec4f(3.584061, -3.1686258, -1.6566868, -0.06338985)) * x0
+        + mat4x4f(vec4f(1.9432863, -0.38896838, -0.04990703, -4.051329), vec4f(2.861181, -1.3210126, -2.2987123, 1.2307065), vec4f(2.807255, -1.7623488, 1.7478015, 0.2583005), vec4f(-0.75760406, 0.2490981, 0.18981676, 1.9556252)) * x1
+        + vec4f(-1.7612786, 0.6490365, 0.45720333, -0.18072814) * x2.x, vec4f(0.0));
+    let h0_3 = max(vec4f(-0.5379105, -1.4180809, 0.0, 0.0)
+        + mat4x4f(vec4f(-0.02910298, 0.009979617, 0.0, 0.0), vec4f(0.14556979, 3.0461023, 0.0, 0.0), vec4f(2.1482964, 0.80811286, 0.0, 0.0), vec4f(-1.6413015, -1.9208486, 0.0, 0.0)) * x0
+        + mat4x4f(vec4f(0.61723286, 0.86685133, 0.0, 0.0), vec4f(2.3868225, 3.0058692, 0.0, 0.0), vec4f(-0.974536, -1.4924266, 0.0, 0.0), vec4f(3.0375583, 0.57998383, 0.0, 0.0)) * x1
+        + vec4f(0.84643567, -0.8403569, 0.0, 0.0) * x2.x, vec4f(0.0));
+    let h1_0 = max(vec4f(-0.4463437, -0.3787895, 0.6359637, -0.059887026)
+        + mat4x4f(vec4f(0.10061981, 0.47682652, -0.31207818, 0.0058313687), vec4f(-1.4756205, -1.6086044, -0.43319115, 0.58559066), vec4f(1.605824, 0.7621909, 0.9443154, 1.1583197), vec4f(-0.34426415, 0.23591779, -0.17268713, 0.5961719)) * h0_0
+        + mat4x4f(vec4f(0.2532967, -0.23012674, -0.22211243, -0.27824515), vec4f(-0.8532528, 0.32261387, 0.106130876, -2.0113811), vec4f(0.144674, 0.4094802, 0.62184, -0.6910488), vec4f(-0.117284335, -0.82919556, -0.6724757, 0.13377638)) * h0_1
+        + mat4x4f(vec4f(-0.04012351, 0.6499373, 0.53790545, 0.4268408), vec4f(-0.19940762, -0.78281176, -0.5341983, 0.66455656), vec4f(-0.10683063, -0.026919993, 0.24846801, -0.075744264), vec4f(-1.4480144, -0.11110954, 0.88651484, -0.66836876)) * h0_2
+        + mat4x4f(vec4f(-5.036656, 0.16954166, 0.38980037, -0.62064123), vec4f(0.09103216, 0.8937812, 0.016375229, 0.41407573), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * h0_3, vec4f(0.0));
+    let h1_1 = max(vec4f(0.7001446, 0.8549452, -0.7869372, 0.38279632)
+        + mat4x4f(vec4f(0.31240654, -0.6718273, 0.4963176, 0.5911572), vec4f(-1.3009747, -0.7344296, 1.2097821, -0.2153869), vec4f(-0.88983065, -0.15262419, 0.06625196, -0.7205622), vec4f(0.825422, 0.8772106, 0.18505254, 0.37723404)) * h0_0
+        + mat4x4f(vec4f(-0.36837754, -0.3932257, 0.8366394, 0.76779383), vec4f(-0.073871255, -0.14726996, 0.2252004, 0.21513246), vec4f(0.06755667, -0.8610608, -0.7021018, 0.3834395), vec4f(0.22376043, -0.07781836, -0.25597402, 0.37991416)) * h0_1
+        + mat4x4f(vec4f(0.1060461, 0.58936, -0.5083209, -0.047828972), vec4f(-0.50931245, 0.3092287, 0.19077988, -0.16474856), vec4f(0.22488497, 0.35773838, 0.47025687, 0.667565), vec4f(-0.54916376, -0.25280353, -1.0898602, -0.5482404)) * h0_2
+        + mat4x4f(vec4f(-0.5777269, -0.34591755, -0.31924847, 0.06814068), vec4f(0.09320195, -0.1129812, 0.12061524, 0.61444724), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * h0_3, vec4f(0.0));
+    let h1_2 = max(vec4f(-0.13284211, 0.0, 0.0, 0.0)
+        + mat4x4f(vec4f(0.45111957, 0.0, 0.0, 0.0), vec4f(-1.8018129, 0.0, 0.0, 0.0), vec4f(-0.7673947, 0.0, 0.0, 0.0), vec4f(0.9103956, 0.0, 0.0, 0.0)) * h0_0
+        + mat4x4f(vec4f(0.06295529, 0.0, 0.0, 0.0), vec4f(0.23473684, 0.0, 0.0, 0.0), vec4f(-0.18319139, 0.0, 0.0, 0.0), vec4f(0.056696832, 0.0, 0.0, 0.0)) * h0_1
+        + mat4x4f(vec4f(0.38484162, 0.0, 0.0, 0.0), vec4f(-0.20819232, 0.0, 0.0, 0.0), vec4f(0.1950656, 0.0, 0.0, 0.0), vec4f(-0.10813518, 0.0, 0.0, 0.0)) * h0_2
+        + mat4x4f(vec4f(0.6314189, 0.0, 0.0, 0.0), vec4f(-0.59869134, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * h0_3, vec4f(0.0));
+    let h2_0 = 1.0 / (1.0 + exp(min(-(-0.31414962
+        + dot(vec4f(-0.99496967, 0.60109556, 0.35343206, -0.70867), h1_0)
+        + dot(vec4f(0.63765764, -0.7648497, -0.94688624, -0.5484821), h1_1)
+        + 0.50164104 * h1_2.x), 80.0)));
     return h2_0;
 }
 
 // Its transmittance, for any finite inputs.
-fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, interval_low: f32, interval_high: f32) -> f32 {
+fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, interval_low: f32, interval_high: f32, depth_deviation: f32, skewness: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     return exp(-root * root * peelnet_share(
-        clamp(root_absorbance, -46191.68, 46204.58), clamp(depth_fraction, -2951.244, 2952.2727), clamp(mean_fraction, -1306.9567, 1307.9891), clamp(share_low, -2998.4138, 2999.0276), clamp(share_high, -3082.932, 3084.3035), clamp(interval_low, -2873.3933, 2873.9612), clamp(interval_high, -2573.1853, 2574.6638)));
+        clamp(root_absorbance, -46191.68, 46204.58), clamp(depth_fraction, -2951.244, 2952.2727), clamp(mean_fraction, -1306.9567, 1307.9891), clamp(share_low, -2998.4138, 2999.0276), clamp(share_high, -3082.932, 3084.3035), clamp(interval_low, -2873.3933, 2873.9612), clamp(interval_high, -2573.1853, 2574.6638), clamp(depth_deviation, -6513.9717, 6513.959), clamp(skewness, -3978.4773, 3978.409)));
 }
