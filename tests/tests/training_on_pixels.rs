@@ -5,7 +5,7 @@
 use peelnet_dataset::{Dataset, Format, Summary};
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::synthetic::{SyntheticOptions, synthetic};
-use peelnet_train::{Config, RunOptions, TrainingData, train};
+use peelnet_train::{Config, PixelLoss, RunOptions, TrainingData, train};
 use std::{path::Path, sync::atomic::AtomicBool};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -110,4 +110,32 @@ fn a_network_learns_from_whole_pixels_and_repeats() {
         })
         .collect();
     assert_eq!(bytes[0], bytes[1]);
+}
+
+/// Every loss falls, and by its own measure: the network that minimised one of them is another than those of the others.
+#[test]
+fn every_loss_trains() {
+    let dir = tempfile::tempdir().unwrap();
+    let dataset = lists(&dir.path().join("d"), 4096, 6);
+    let mut files = std::collections::BTreeSet::new();
+    for loss in PixelLoss::ALL {
+        assert_eq!(loss.name().parse(), Ok(loss));
+        let mut config = Config::for_recipe(Recipe::Small);
+        (config.epochs, config.batch, config.loss) = (4, 128, loss);
+        let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
+        let out = dir.path().join(loss.name()).with_extension("safetensors");
+        let outcome = train(&config, &data, &RunOptions::new(&out, &NEVER), |_| {}).unwrap();
+        let losses: Vec<f64> = outcome
+            .history
+            .iter()
+            .filter_map(|e| e.held_out_loss)
+            .collect();
+        assert!(losses[3] < 0.9 * losses[0], "{}: {losses:?}", loss.name());
+        let weights: Vec<u32> = Model::load(&out).unwrap().mlp.layers[0]
+            .weights
+            .iter()
+            .map(|w| w.to_bits())
+            .collect();
+        assert!(files.insert(weights));
+    }
 }

@@ -7,6 +7,7 @@ use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
 use peelnet_peel::Peel;
 use peelnet_render::MethodSpec;
+use peelnet_train::PixelLoss;
 use std::path::PathBuf;
 
 /// Learned order-independent transparency: peel scenes, train a network on their fragments, export it as shader
@@ -195,6 +196,9 @@ pub struct TrainArgs {
     /// Learning rate [default: the recipe's]
     #[arg(long, value_name = "X", value_parser = positive)]
     pub lr: Option<f64>,
+    /// What small, medium and large minimise: image, contributions, weighted-transmittance or transmittance
+    #[arg(long, value_name = "LOSS", default_value = "image")]
+    pub loss: PixelLoss,
     /// Seed of initial weights, order and split
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
@@ -364,7 +368,7 @@ mod tests {
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
             "extract --synthetic 1000 --out d --seed 3",
-            "train d e --out m --recipe thesis --hidden 4,3 --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
+            "train d e --out m --recipe thesis --hidden 4,3 --loss image --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
             "bench s --out d --methods mboit4,wboit-eq9 --models m,n --frames 2 --size 8x8 --views 1",

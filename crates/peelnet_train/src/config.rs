@@ -1,5 +1,7 @@
 //! Every hyper-parameter of a run.
 
+use std::str::FromStr;
+
 use peelnet_core::mlp::Activation;
 use peelnet_model::Recipe;
 use serde::{Deserialize, Serialize};
@@ -45,6 +47,63 @@ pub struct Config {
     pub validation: f64,
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
+    /// What recipes that learn from whole pixels minimise.
+    #[serde(default, skip_serializing_if = "PixelLoss::is_default")]
+    pub loss: PixelLoss,
+}
+
+/// The loss of a whole pixel, with `k_i` a fragment's contribution before normalisation, `p̂_i` after it and `α_i T_i` the exact
+/// one. Sums go over the fragments that the network is asked about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PixelLoss {
+    /// Squared error of the pixel's colour, `|Σ (p̂_i − α_i T_i) c_i|² / 3`.
+    #[default]
+    Image,
+    /// `Σ (p̂_i − α_i T_i)²`.
+    Contributions,
+    /// Squared error of T, weighted by opacity: `Σ (k_i − α_i T_i)²`.
+    WeightedTransmittance,
+    /// Squared error of what the network answers, the transmittance of the rest in front.
+    Transmittance,
+}
+
+impl PixelLoss {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Image,
+        Self::Contributions,
+        Self::WeightedTransmittance,
+        Self::Transmittance,
+    ];
+
+    /// The name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Image => "image",
+            Self::Contributions => "contributions",
+            Self::WeightedTransmittance => "weighted-transmittance",
+            Self::Transmittance => "transmittance",
+        }
+    }
+
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl FromStr for PixelLoss {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|l| l.name() == name);
+        found.ok_or_else(|| {
+            format!(
+                "no such loss; there are {}",
+                Self::ALL.map(Self::name).join(", ")
+            )
+        })
+    }
 }
 
 /// The learning rate over a run.
@@ -142,6 +201,14 @@ impl Config {
         if self.patience == Some(0) {
             return bad("patience", "0".into(), "give at least 1, or leave it out");
         }
+        let whole_pixels = matches!(self.recipe, Recipe::Small | Recipe::Medium | Recipe::Large);
+        if !whole_pixels && self.loss != PixelLoss::default() {
+            return bad(
+                "loss",
+                self.loss.name().into(),
+                "leave it out: this recipe does not learn from whole pixels",
+            );
+        }
         if let Schedule::OneCycle { warmup } = self.schedule
             && !(warmup > 0.0 && warmup < 1.0)
         {
@@ -175,7 +242,7 @@ mod tests {
         let good = Config::for_recipe(Recipe::Thesis);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 8] = [
+        let spoiled: [(&str, Spoil); 9] = [
             ("epochs", |c| c.epochs = 0),
             ("batch", |c| c.batch = 0),
             ("chunk", |c| c.chunk = 0),
@@ -184,6 +251,7 @@ mod tests {
             ("beta2", |c| c.beta2 = 1.0),
             ("held_out", |c| c.held_out = 1.0),
             ("patience", |c| c.patience = Some(0)),
+            ("loss", |c| c.loss = PixelLoss::Contributions),
         ];
         for (name, spoil) in spoiled {
             let mut config = good.clone();

@@ -77,7 +77,7 @@ mod train;
 mod training_data;
 
 pub use checkpoint::folder as checkpoint_folder;
-pub use config::{Config, Schedule};
+pub use config::{Config, PixelLoss, Schedule};
 pub use curve::{CurveFormat, write_curve};
 pub use data::held_out_errors;
 pub use device::Compute;

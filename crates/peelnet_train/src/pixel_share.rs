@@ -4,13 +4,15 @@
 //! `k_i = α_i e^(−b_n − r_i s_i)`, and what of the coverage is left to distribute, `R`, goes to each in proportion:
 //! `p̂_i = R k_i / (A + Σ k)`, where `A` is what the ends contribute when they are normalised with the rest (0 with
 //! separate ends). The loss of a pixel is the squared error of its colour, `|Σ (p̂_i − α_i T_i) c_i|² / 3` over all of its
-//! fragments: what a user of the image sees, surfaces of one object weighing together because they share a colour.
+//! fragments: what a user of the image sees, surfaces of one object weighing together because they share a colour. [`PixelLoss`]
+//! names the others.
 
 use std::ops::Range;
 
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use peelnet_core::guards::SUM_FLOOR;
 
+use crate::config::PixelLoss;
 use crate::network::Network;
 use crate::normalise::Normalisation;
 use crate::task::{Part, Task};
@@ -141,6 +143,7 @@ pub(crate) struct PixelShare {
     validation: Pixels,
     test: Pixels,
     inputs: usize,
+    loss: PixelLoss,
     device: Device,
 }
 
@@ -151,6 +154,7 @@ impl PixelShare {
         pixels: &PixelColumns,
         normalisation: &[Normalisation],
         parts: [&[u32]; 3],
+        loss: PixelLoss,
         device: &Device,
     ) -> Self {
         let [train, validation, test] =
@@ -160,6 +164,7 @@ impl PixelShare {
             validation,
             test,
             inputs: normalisation.len(),
+            loss,
             device: device.clone(),
         }
     }
@@ -198,7 +203,18 @@ impl Task for PixelShare {
         let pixel = t.pixel.clone().narrow(0, from, to - from) - range.start as i32;
 
         let share = network.forward(rows.clone().narrow(0, 0, self.inputs));
-        let contribution = row(1) * (row(0) * share).neg().exp();
+        let through = (row(0) * share).neg().exp();
+        let contribution = row(1) * through.clone();
+        let squares =
+            |error: Tensor<2>| (column(8).select(1, pixel.clone()) * error.clone() * error).sum();
+        match self.loss {
+            PixelLoss::Transmittance => {
+                let exact = (row(2) / row(1).clamp_min(1e-6)).clamp_max(1.0);
+                return squares(through - exact);
+            }
+            PixelLoss::WeightedTransmittance => return squares(contribution - row(2)),
+            PixelLoss::Image | PixelLoss::Contributions => {}
+        }
         let sums = (column(1) + SUM_FLOOR).select_assign(
             1,
             pixel.clone(),
@@ -207,6 +223,9 @@ impl Task for PixelShare {
         );
         let scale = column(0) / sums;
         let error = contribution * scale.clone().select(1, pixel.clone()) - row(2);
+        if self.loss == PixelLoss::Contributions {
+            return squares(error);
+        }
         // Colour by colour: Σ over all fragments of (p̂ − αT) c.
         let image = (fixed.clone().narrow(0, 2, 3) * scale - fixed.clone().narrow(0, 5, 3))
             .select_assign(

@@ -3,7 +3,7 @@
 use peelnet_core::mlp::Activation;
 use peelnet_model::{Output, Recipe};
 
-use crate::config::{Config, Schedule};
+use crate::config::{Config, PixelLoss, Schedule};
 use crate::pixels;
 
 /// An input of the network.
@@ -58,6 +58,7 @@ impl Definition {
             held_out: 1.0 / 3.0,
             validation: 0.0,
             patience: None,
+            loss: PixelLoss::default(),
         };
         let pixels = |hidden: &[usize]| Config {
             hidden: hidden.to_vec(),

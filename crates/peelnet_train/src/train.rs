@@ -112,6 +112,7 @@ pub fn train(
             pixels,
             &normalisation,
             [&split.train, &split.validation, &split.test],
+            config.loss,
             &device,
         )),
         None => Box::new(FragmentMse::new(data, &normalisation, &split, &device)),

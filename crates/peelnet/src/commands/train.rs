@@ -66,6 +66,8 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.learning_rate = args.lr.unwrap_or(config.learning_rate);
     config.hidden = args.hidden.clone().unwrap_or(config.hidden);
     config.patience = args.patience.or(config.patience);
+    config.loss = args.loss;
+    config.check().map_err(usage)?;
     Ok(config)
 }
 
