@@ -75,14 +75,68 @@ fn warp() -> DepthWarp {
     }
 }
 
-/// Pixels of every kind: few and many layers, narrow and wide, faint, opaque.
-///
-/// A depth or opacity that lies on the edge between two levels may be rounded to either, in 32 bits otherwise than in 64:
-/// such values are drawn again, so that the same fragments are the ends on both sides.
+/// Whether depth and opacity lie within their levels. On the edge between two they may be rounded to either, in 32 bits
+/// otherwise than in 64: such values are moved, so that the same fragments are the ends on both sides.
+fn within_levels(depth: f32, alpha: f32) -> bool {
+    let t = warp().apply(depth.into()) * 0.5 + 0.5;
+    let b = absorbance(alpha);
+    let opacity = b / (b + 1.0) * 1.0625;
+    let levels = [
+        t * 61_439.0 + 0.5,
+        t * f64::from(NEAR_END.bins),
+        t * f64::from(FAR_END.bins),
+        opacity * f64::from(NEAR_END.alphas - 1) + 0.5,
+        opacity * f64::from(FAR_END.alphas - 1) + 0.5,
+    ];
+    // A level is 16 roundings of ζ wide at least: a twentieth of it is out of reach of one.
+    levels.into_iter().all(|x| (x - x.round()).abs() > 0.05)
+}
+
+/// The hard cases as lists: invisible, faint, opaque and nearly opaque, deep, coplanar, thin, pairs, at the range's ends.
+fn hard_pixels() -> Vec<Points> {
+    let even = |n: usize, alpha: f32| -> Points {
+        (0..n)
+            .map(|i| ((i as f32 / n as f32 * 1.9 - 0.95).exp(), alpha))
+            .collect()
+    };
+    let at = |layers: &[(f32, f32)]| layers.to_vec();
+    let mut all = vec![
+        even(3, 0.0),
+        at(&[(0.5, 0.0), (0.8, 0.5), (1.9, 0.0)]),
+        even(10, 1e-3),
+        even(4, 1e-5),
+        even(256, 0.005),
+        even(6, 1.0),
+        at(&[(0.7, 1.0), (1.5, 0.5)]),
+        at(&[(0.7, 0.1), (1.5, 1.0)]),
+        at(&[(0.6, 0.99), (0.9, 0.999), (1.4, 1.0 - 1.0 / 1_048_576.0)]),
+        even(200, 0.9),
+        even(300, 0.02),
+        even(1024, 0.01),
+        (0..256)
+            .map(|i| (0.4 + i as f32 * 1e-3, 0.001 + i as f32 / 256.0))
+            .collect(),
+        (0..8).map(|i| (1.1 + i as f32 * 1e-5, 0.4)).collect(),
+        at(&[(1.2, 0.3), (1.2, 0.6), (2.0, 0.3), (2.0, 0.6)]),
+    ];
+    for n in [2, 3, 16] {
+        all.push(vec![(1.3, 0.1); n]);
+    }
+    for i in 1..=8 {
+        all.push(at(&[(1.0, 0.5), ((0.1 * i as f32).exp(), 0.5)]));
+    }
+    for (depth, alpha) in all.iter_mut().flatten() {
+        while !within_levels(*depth, *alpha) {
+            *depth *= 1.000_01;
+            *alpha *= 0.999_9;
+        }
+    }
+    all
+}
+
+/// Pixels of every kind: few and many layers, narrow and wide, faint, opaque, and the hard cases.
 fn pixels() -> Vec<Points> {
     let mut random = Random::new(31, &[]);
-    // A level is 16 roundings of ζ wide at least: a twentieth of it is out of reach of one.
-    let clear = |x: f64| (x - x.round()).abs() > 0.05;
     let mut point = |from: f32, width: f32, kind: usize| loop {
         let depth = (from + width * random.unit()).min(1.0).exp();
         let alpha = match kind {
@@ -91,17 +145,7 @@ fn pixels() -> Vec<Points> {
             2 => [0.001, 0.3, 1.0][random.below(3)],
             _ => random.between(0.02, 0.98),
         };
-        let t = warp().apply(depth.into()) * 0.5 + 0.5;
-        let b = absorbance(alpha);
-        let opacity = b / (b + 1.0) * 1.0625;
-        let levels = [
-            t * 61_439.0 + 0.5,
-            t * f64::from(NEAR_END.bins),
-            t * f64::from(FAR_END.bins),
-            opacity * f64::from(NEAR_END.alphas - 1) + 0.5,
-            opacity * f64::from(FAR_END.alphas - 1) + 0.5,
-        ];
-        if levels.into_iter().all(clear) {
+        if within_levels(depth, alpha) {
             return (depth, alpha);
         }
     };
@@ -113,6 +157,7 @@ fn pixels() -> Vec<Points> {
             let kind = choice.below(4);
             (0..n).map(|_| point(from, width, kind)).collect()
         })
+        .chain(hard_pixels())
         .collect()
 }
 
