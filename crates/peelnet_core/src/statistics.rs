@@ -143,17 +143,7 @@ impl Statistics<f64> {
         fragments: impl IntoIterator<Item = (f64, f64)>,
         precision: SumPrecision,
     ) -> Self {
-        let mut s = Self::empty();
-        for (b, zeta) in fragments {
-            let mut power = b;
-            for m in &mut s.moments {
-                *m = precision.add(*m, power);
-                power *= zeta;
-            }
-            s.nearest = s.nearest.min(zeta);
-            s.farthest = s.farthest.max(zeta);
-        }
-        s
+        Self::summed(fragments, |sum, term| precision.add(sum, term))
     }
 }
 
@@ -169,11 +159,15 @@ impl<F: Float> Statistics<F> {
 
     /// Of a pixel's fragments, as (absorbance, warped depth).
     pub fn of(fragments: impl IntoIterator<Item = (F, F)>) -> Self {
+        Self::summed(fragments, |sum, term| sum + term)
+    }
+
+    fn summed(fragments: impl IntoIterator<Item = (F, F)>, add: impl Fn(F, F) -> F) -> Self {
         let mut s = Self::empty();
         for (b, zeta) in fragments {
             let mut power = b;
             for m in &mut s.moments {
-                *m = *m + power;
+                *m = add(*m, power);
                 power = power * zeta;
             }
             s.nearest = s.nearest.min(zeta);

@@ -201,7 +201,7 @@ impl Config {
         if self.patience == Some(0) {
             return bad("patience", "0".into(), "give at least 1, or leave it out");
         }
-        let whole_pixels = matches!(self.recipe, Recipe::Small | Recipe::Medium | Recipe::Large);
+        let whole_pixels = Definition::of(self.recipe).output.is_share();
         if !whole_pixels && self.loss != PixelLoss::default() {
             return bad(
                 "loss",

@@ -11,6 +11,7 @@ use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Model, Output, Recipe};
 
 use crate::error::TrainError;
+use crate::recipe::Definition;
 use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
 
 /// The precision of the sums that a recipe's method keeps by default: networks train on what they will read.
@@ -143,13 +144,13 @@ pub(crate) fn gather(
     split: &Split,
     datasets: &[Dataset],
 ) -> Result<TrainingData, TrainError> {
+    let definition = Definition::of(recipe);
     let mut data = TrainingData {
         source: String::new(),
         inputs: vec![Vec::new(); recipe.input_names().len()],
-        targets: vec![Vec::new(); if recipe == Recipe::Dfaoit { 3 } else { 1 }],
+        targets: vec![Vec::new(); definition.outputs],
         weights: Some(Vec::new()),
-        pixels: matches!(recipe, Recipe::Small | Recipe::Medium | Recipe::Large)
-            .then(PixelColumns::default),
+        pixels: definition.output.is_share().then(PixelColumns::default),
         subsets: Some(Vec::new()),
         dataset: None,
     };

@@ -60,22 +60,25 @@ impl Seen {
 
 /// What the network knows of each fragment of a pixel, in the order given: fragments are (linear depth, α).
 pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp, precision: SumPrecision) -> Vec<Seen> {
-    let points = fragments
-        .iter()
-        .map(|&(depth, alpha)| (absorbance(alpha), warp.apply(depth.into())));
-    seen_given(
-        fragments,
-        warp,
-        Statistics::rounded(points, precision).moments,
-    )
+    let points = points(fragments, warp);
+    let sums = Statistics::rounded(points.iter().copied(), precision).moments;
+    seen_at(fragments, &points, sums)
 }
 
 /// As [`seen`], with the sums `b_0 … b_4` as something else added them up.
 pub fn seen_given(fragments: &[(f32, f32)], warp: &DepthWarp, moments: [f64; 5]) -> Vec<Seen> {
-    let points: Vec<(f64, f64)> = fragments
+    seen_at(fragments, &points(fragments, warp), moments)
+}
+
+/// Absorbance and warped depth of every fragment.
+fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<(f64, f64)> {
+    fragments
         .iter()
         .map(|&(depth, alpha)| (absorbance(alpha), warp.apply(depth.into())))
-        .collect();
+        .collect()
+}
+
+fn seen_at(fragments: &[(f32, f32)], points: &[(f64, f64)], moments: [f64; 5]) -> Vec<Seen> {
     let mut s = Statistics {
         moments,
         ..Statistics::empty()
@@ -83,7 +86,7 @@ pub fn seen_given(fragments: &[(f32, f32)], warp: &DepthWarp, moments: [f64; 5])
     let visible = || {
         fragments
             .iter()
-            .zip(&points)
+            .zip(points)
             .filter(|((_, alpha), _)| *alpha >= FAINT)
             .map(|(_, &(b, zeta))| (zeta, b))
     };
@@ -100,7 +103,7 @@ pub fn seen_given(fragments: &[(f32, f32)], warp: &DepthWarp, moments: [f64; 5])
     s.farthest = FAR_END.zeta(far);
     fragments
         .iter()
-        .zip(&points)
+        .zip(points)
         .map(|(&(_, alpha), &(b, zeta))| {
             let code = depth_code(zeta);
             let (own_near, own_far) = (NEAR_END.mirrored(zeta, b), FAR_END.level(zeta, b));
