@@ -130,36 +130,33 @@ fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> Peelne
 }
 
 // The least and the most of a distribution that can lie in front of x, given its first four moments, as shares
-// (Muenstermann et al. 2018). All are over -1 .. 1.
-fn peelnet_moment_bounds(moments: vec4f, x: f32) -> vec2f {
-    // A little of a measure that has more than three points, so that nothing is singular.
-    let m = mix(moments, vec4f(0.0, 0.375, 0.0, 0.375), 0.001);
-    // Cholesky factors of the Hankel matrix, the kernel polynomial, its roots: the extreme measure's points beside x.
+// (Muenstermann et al. 2018). All are over -1 .. 1. `bias` pulls the moments towards those of a measure that can always
+// be inverted.
+fn peelnet_moment_bounds(moments: vec4f, x: f32, bias: f32) -> vec2f {
+    let m = mix(moments, vec4f(0.0, 0.375, 0.0, 0.375), bias);
+    // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
+    // its value at x, which is one over what lies at x itself.
     let variance = m.y - m.x * m.x;
-    let l21_variance = m.z - m.x * m.y;
-    let inverse_variance = 1.0 / variance;
-    let l21 = l21_variance * inverse_variance;
-    let d22 = m.w - m.y * m.y - l21_variance * l21;
+    let l21 = m.z - m.x * m.y;
+    let d = variance * (m.w - m.y * m.y) - l21 * l21;
     let y1 = x - m.x;
-    let y2 = x * x - m.y - l21 * y1;
-    let c2 = y2 / d22;
-    let c1 = y1 * inverse_variance - l21 * c2;
-    let c0 = 1.0 - m.x * c1 - m.y * c2;
-    let inverse_c2 = 1.0 / c2;
-    let half_p = 0.5 * c1 * inverse_c2;
-    let root = sqrt(max(half_p * half_p - c0 * inverse_c2, 0.0));
-    let p1 = -half_p - root;
-    let p2 = -half_p + root;
-    let f1 = select(0.0, 1.0, p1 < x);
-    let f2 = select(0.0, 1.0, p2 < x);
-    // The quadratic through the three points, and its mean: without and with what lies at x itself.
-    let f0 = vec2f(0.0, 1.0);
-    let f01 = (f1 - f0) * (1.0 / (p1 - x));
-    let f12 = (f2 - f1) / (p2 - p1);
-    let f012 = (f12 - f01) * (1.0 / (p2 - x));
-    let a0 = f0 - x * (f01 - f012 * p1);
-    let a1 = f01 - f012 * (p1 + x);
-    let share = a0 + a1 * m.x + f012 * m.y;
+    let y2 = (x * x - m.y) * variance - l21 * y1;
+    let determinant = variance * d;
+    let c2 = y2 * variance;
+    let c1 = y1 * d - l21 * y2;
+    let c0 = determinant - m.x * c1 - m.y * c2;
+    let own = determinant / (determinant + y1 * y1 * d + y2 * y2);
+    // Its roots are the extreme measure's other points: the smaller one, and one over the larger, which may be infinite.
+    let half = 0.5 * c1;
+    let root = sqrt(max(half * half - c0 * c2, 0.0));
+    let inverse = -1.0 / (half + select(-root, root, half >= 0.0));
+    let p = c0 * inverse;
+    let q = c2 * inverse;
+    // What lies at either.
+    let at_p = (1.0 - own - q * (m.x - own * x)) / (1.0 - p * q);
+    let at_q = 1.0 - own - at_p;
+    let low = select(0.0, at_p, p < x) + select(0.0, at_q, (1.0 - x * q) * q < 0.0);
+    let share = vec2f(low, low + own);
     // Points that coincide give NaN, which no comparison finds true.
     return select(vec2f(0.0), min(share, vec2f(1.0)), share >= vec2f(0.0));
 }
@@ -187,7 +184,9 @@ fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> Peeln
     let m3 = (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * s2;
     let m4 = (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * s2 * s2;
     let x = clamp((z.x - middle) * scale, -1.0, 1.0);
-    let bounds = peelnet_moment_bounds(vec4f(m1, m2, m3, m4), x);
+    // Moved to a narrow pixel's range, moments lose their last bits.
+    let bias = min(0.0009765625 + s2 * s2 * 0.0000152587890625, 0.25);
+    let bounds = peelnet_moment_bounds(vec4f(m1, m2, m3, m4), x, bias);
     return PeelnetFeatures(
         sqrt(m0),
         0.5 * x + 0.5,

@@ -7,7 +7,7 @@ struct Camera {
     frame: vec4u,
     // x: view number and y: threshold of the pixel sample.
     sample: vec4u,
-    // x: 2^-k with 2^k > far, which maps linear depth to 0..1 without rounding. y, z: the depth warp, ln(near) and
+    // x: 2^-k with 2^k > far, which maps linear depth to 0..1 without rounding. y, z: the depth warp, 1 / near and
     // 2 / (ln(far) - ln(near)) of the range that transparent objects span.
     depth_scale: vec4f,
 }

@@ -53,7 +53,7 @@ fn draw(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, model: &Model, size: [u32; 
 fn draw_exact(gpu: &Gpu, scene: &Scene) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
     let mut prepared = renderer
-        .prepare(&"abuffer".parse().unwrap(), [64, 48], None)
+        .prepare(&"abuffer".parse().unwrap(), [256, 192], None)
         .unwrap();
     renderer.draw(&mut prepared, &scene.views[0]).unwrap().image
 }
@@ -476,7 +476,7 @@ fn scale_changes_nothing_visible() {
         for recipe in ANCHORED {
             let model = shipped(recipe);
             for spec in specs(recipe) {
-                let reference = draw(&gpu, &base, &spec, &model, [64, 48]);
+                let reference = draw(&gpu, &base, &spec, &model, [256, 192]);
                 let exact = draw_exact(&gpu, &base);
                 for factor in [1e-3f32, 1e3] {
                     let mut scene = base.clone();
@@ -493,7 +493,7 @@ fn scale_changes_nothing_visible() {
                         view.near *= factor;
                         view.far *= factor;
                     }
-                    let image = draw(&gpu, &scene, &spec, &model, [64, 48]);
+                    let image = draw(&gpu, &scene, &spec, &model, [256, 192]);
                     let difference = |a: &[f32; 4], b: &[f32; 4]| {
                         let display = |x: f32| srgb_encode(x.clamp(0.0, 1.0)) * 255.0;
                         (0..3).fold(0.0, |d: f32, k| {

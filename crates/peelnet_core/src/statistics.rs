@@ -215,7 +215,14 @@ const DEVIATION_FLOOR: f64 = 1.0 / 32.0;
 const SKEWNESS_FLOOR: f64 = 1.0 / 4.0;
 
 /// Pull of the moments towards a measure that can be inverted, for [`features`] 3 and 4.
-const BIAS: f64 = 1e-3;
+const BIAS: f64 = 1.0 / 1024.0;
+
+/// More of that pull for narrow pixels: moments of the frame's range lose `scale⁴` of their precision where they are moved to
+/// the pixel's, and without it the bounds answer to the last bits of 32-bit sums.
+const BIAS_BY_SCALE: f64 = 1.0 / 65_536.0;
+
+/// The most of that pull.
+const BIAS_MAX: f64 = 0.25;
 
 /// The features of a fragment at depth `zeta`, given the moments `m` of the rest: all fragments but itself and the
 /// pixel's ends.
@@ -247,7 +254,8 @@ pub fn features<F: Float>(s: &Statistics<F>, m: &[F; 5], zeta: F) -> [F; 9] {
         (m4 - middle * (c(4.0) * m3 - middle * inner)) * scale.powi(4)
     };
     let x = ((zeta - middle) * scale).max(-one).min(one);
-    let (low, high) = clamped(mboit4::share_bounds([x1, x2, x3, x4], c(BIAS), x));
+    let bias = (c(BIAS) + c(BIAS_BY_SCALE) * scale.powi(4)).min(c(BIAS_MAX));
+    let (low, high) = clamped(mboit4::share_bounds([x1, x2, x3, x4], bias, x));
     let sigma = (x2 - x1 * x1)
         .max(c(DEVIATION_FLOOR * DEVIATION_FLOOR))
         .sqrt();

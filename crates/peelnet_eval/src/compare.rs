@@ -115,13 +115,15 @@ pub fn compare(
     // In turn, so that whatever else the machine does hits all methods alike.
     for (view, camera) in views.iter().enumerate() {
         let mut times = vec![Vec::new(); timed.len()];
+        let mut by_pass: Vec<Vec<Vec<PassTime>>> = vec![Vec::new(); timed.len()];
         for _ in 0..plan.frames {
-            for ((name, prepared), times) in timed.iter_mut().zip(&mut times) {
+            for (k, (name, prepared)) in timed.iter_mut().enumerate() {
                 if stop.load(Ordering::Relaxed) {
                     return Err(EvalError::Interrupted);
                 }
                 let (passes, wall) = renderer.time(prepared, camera).map_err(failed(name))?;
-                times.push(milliseconds(&passes).unwrap_or(wall / 1e3));
+                times[k].push(milliseconds(&passes).unwrap_or(wall / 1e3));
+                by_pass[k].push(passes);
                 drawn(name);
             }
         }
@@ -136,6 +138,7 @@ pub fn compare(
             row.time_ms = rank(0.5);
             row.time_ms_min = times.first().copied();
             row.time_ms_p90 = rank(0.9);
+            row.time_by_pass = medians_by_pass(&by_pass[k]);
         }
     }
     // Only the exact method knows the fragments of a view for certain.
@@ -150,6 +153,32 @@ pub fn compare(
 fn milliseconds(times: &[PassTime]) -> Option<f64> {
     let micros: f64 = times.iter().map(|t| t.micros).sum();
     (micros > 0.0).then_some(micros / 1e3)
+}
+
+/// Median over frames of each pass's time: `name=ms`, by first appearance, passes of one name summed in each frame.
+fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for pass in frames.iter().flatten() {
+        if !names.contains(&pass.label.as_str()) {
+            names.push(&pass.label);
+        }
+    }
+    let median = |name: &str| {
+        let mut sums: Vec<f64> = frames
+            .iter()
+            .map(|passes| {
+                let of_name = passes.iter().filter(|p| p.label == name);
+                of_name.map(|p| p.micros / 1e3).sum()
+            })
+            .collect();
+        sums.sort_by(f64::total_cmp);
+        sums[(sums.len() - 1) / 2]
+    };
+    let parts: Vec<String> = names
+        .iter()
+        .map(|name| format!("{}={:.4}", name.replace(' ', "-"), median(name)))
+        .collect();
+    parts.join(" ")
 }
 
 fn row(
@@ -181,6 +210,7 @@ fn row(
         time_ms: milliseconds(&frame.times),
         time_ms_min: None,
         time_ms_p90: None,
+        time_by_pass: medians_by_pass(std::slice::from_ref(&frame.times)),
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
         bytes_per_pixel: frame.stats.bytes_per_pixel,
         adapter: gpu.info.name.clone(),

@@ -47,6 +47,10 @@ pub struct Row {
     pub time_ms_min: Option<f64>,
     /// 90th percentile (nearest rank) of the timed frames.
     pub time_ms_p90: Option<f64>,
+    /// Median time of each pass, in order, equal names summed: `moments=1.25 gather=2.5`, milliseconds. Empty where the
+    /// adapter has no timestamps.
+    #[serde(default)]
+    pub time_by_pass: String,
     /// Geometry and full-screen passes.
     pub passes: u32,
     /// Bytes of the method's own targets and storage, per pixel.

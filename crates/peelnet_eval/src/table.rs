@@ -265,6 +265,7 @@ pub(crate) mod tests {
             time_ms: None,
             time_ms_min: None,
             time_ms_p90: None,
+            time_by_pass: String::new(),
             passes: 1,
             bytes_per_pixel: 10.0,
             adapter: "test".to_owned(),

@@ -21,6 +21,7 @@ pub struct Recorder<'g> {
     encoder: wgpu::CommandEncoder,
     timer: Option<wgpu::QuerySet>,
     labels: Vec<String>,
+    cpu: Vec<PassTime>,
     passes: u32,
 }
 
@@ -41,6 +42,7 @@ impl<'g> Recorder<'g> {
                 .create_command_encoder(&wgpu::CommandEncoderDescriptor::default()),
             timer,
             labels: Vec::new(),
+            cpu: Vec::new(),
             passes: 0,
         }
     }
@@ -58,6 +60,14 @@ impl<'g> Recorder<'g> {
     /// Number of passes so far.
     pub const fn passes(&self) -> u32 {
         self.passes
+    }
+
+    /// Adds work of the CPU that the frame waits for to the times of its passes.
+    pub fn on_the_cpu(&mut self, label: &str, time: std::time::Duration) {
+        self.cpu.push(PassTime {
+            label: format!("{label} (CPU)"),
+            micros: time.as_secs_f64() * 1e6,
+        });
     }
 
     fn next_query(&mut self, label: &str) -> Option<u32> {
@@ -119,7 +129,8 @@ impl<'g> Recorder<'g> {
         self.gpu.queue.submit([done.finish()]);
     }
 
-    /// Submits the rest, waits, and returns the time of every measured pass in order (none without timestamps).
+    /// Submits the rest, waits, and returns the time of work on the CPU and of every measured pass in order (none without
+    /// timestamps).
     ///
     /// # Errors
     /// A lost device, or a validation error.
@@ -142,14 +153,14 @@ impl<'g> Recorder<'g> {
         self.submit();
         let ticks: Vec<u64> = self.gpu.read(&resolved, 0..bytes)?;
         let period = f64::from(self.gpu.queue.get_timestamp_period());
-        Ok(self
+        let passes = self
             .labels
             .into_iter()
             .zip(ticks.chunks_exact(2))
             .map(|(label, t)| PassTime {
                 label,
                 micros: t[1].saturating_sub(t[0]) as f64 * period / 1e3,
-            })
-            .collect())
+            });
+        Ok(self.cpu.into_iter().chain(passes).collect())
     }
 }

@@ -154,6 +154,7 @@ impl<'g> Renderer<'g> {
         let stats = prepared.compositor.draw(&mut DrawContext {
             recorder: &mut recorder,
             scene: &self.scene,
+            camera,
             frame: &prepared.frame,
             counting,
         })?;

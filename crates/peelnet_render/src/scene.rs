@@ -1,6 +1,6 @@
 //! The scene on the GPU: corners in world space, materials, lights, and what to draw in which pass.
 
-use crate::RenderError;
+use crate::{RenderError, methods::DrawContext};
 use bytemuck::{Pod, Zeroable};
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
@@ -75,6 +75,27 @@ struct DrawRun {
     culled: bool,
 }
 
+/// A part of a transparent object with one material.
+#[derive(Clone, Debug)]
+struct TransparentPart {
+    run: DrawRun,
+    /// World-space box.
+    bounds: [glam::Vec3; 2],
+    /// World-space centre of every triangle.
+    centroids: Vec<glam::Vec3>,
+}
+
+/// In which order transparent surfaces are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// As the scene lists them.
+    Scene,
+    /// Parts of objects with one material, the farthest centre of a box first.
+    Objects,
+    /// Triangles, the farthest centre first.
+    Triangles,
+}
+
 /// Which half of the scene a geometry pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surfaces {
@@ -94,8 +115,7 @@ pub struct SceneBuffers {
     light_count: u32,
     opaque: Vec<DrawRun>,
     transparent: Vec<DrawRun>,
-    /// World-space boxes of the transparent parts.
-    bounds: Vec<[glam::Vec3; 2]>,
+    parts: Vec<TransparentPart>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
 }
@@ -127,6 +147,15 @@ impl FrameTargets {
 pub struct GeometryPipelines {
     two_sided: wgpu::RenderPipeline,
     culled: Option<wgpu::RenderPipeline>,
+}
+
+impl GeometryPipelines {
+    fn of(&self, culled: bool) -> &wgpu::RenderPipeline {
+        self.culled
+            .as_ref()
+            .filter(|_| culled)
+            .unwrap_or(&self.two_sided)
+    }
 }
 
 /// What a geometry pass is made of.
@@ -168,7 +197,7 @@ impl SceneBuffers {
         let mut corners = Vec::with_capacity(triangles * 3);
         let mut materials = Vec::new();
         let (mut opaque, mut transparent) = (Vec::new(), Vec::new());
-        let mut bounds = Vec::new();
+        let mut parts = Vec::new();
         for object in &scene.objects {
             let world = object.world_from_object;
             let normal_matrix = glam::Mat3::from_mat4(world).inverse().transpose();
@@ -215,8 +244,16 @@ impl SceneBuffers {
                     &mut transparent
                 };
                 push_run(runs, begin..corners.len() as u32, !material.double_sided);
-                if !material.is_opaque() {
-                    bounds.extend(bounding_box(&corners[begin as usize..]));
+                let own = &corners[begin as usize..];
+                if let (false, Some(bounds)) = (material.is_opaque(), bounding_box(own)) {
+                    parts.push(TransparentPart {
+                        run: DrawRun {
+                            vertices: begin..corners.len() as u32,
+                            culled: !material.double_sided,
+                        },
+                        bounds,
+                        centroids: own.chunks_exact(3).map(centroid).collect(),
+                    });
                 }
             }
         }
@@ -251,7 +288,7 @@ impl SceneBuffers {
             light_count: lights.len() as u32,
             opaque,
             transparent,
-            bounds,
+            parts,
             background: scene.background,
         })
     }
@@ -317,7 +354,7 @@ impl SceneBuffers {
             sample: [sample.view, sample.threshold, 0, 0],
             depth_scale: [
                 depth_scale(camera.far),
-                warp.log_near as f32,
+                (-warp.log_near).exp() as f32,
                 warp.scale as f32,
                 0.0,
             ],
@@ -330,8 +367,9 @@ impl SceneBuffers {
     /// range is what moments get their precision from.
     pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
         let view = camera.view_from_world();
-        let corners = self.bounds.iter().flat_map(|[lo, hi]| {
-            (0..8).map(|i| {
+        let boxes = self.parts.iter().map(|part| part.bounds);
+        let corners = boxes.flat_map(|[lo, hi]| {
+            (0..8).map(move |i| {
                 let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
                 glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
             })
@@ -434,11 +472,7 @@ impl SceneBuffers {
         pass.set_bind_group(0, &group.group, &[]);
         pass.set_vertex_buffer(0, self.corners.slice(..));
         for run in runs {
-            let pipeline = match (&pipelines.culled, run.culled) {
-                (Some(culled), true) => culled,
-                _ => &pipelines.two_sided,
-            };
-            pass.set_pipeline(pipeline);
+            pass.set_pipeline(pipelines.of(run.culled));
             pass.draw(run.vertices.clone(), 0..1);
         }
     }
@@ -496,6 +530,122 @@ impl SceneBuffers {
         self.pipelines(gpu, frame, Surfaces::Opaque, &pass)
             .map(Some)
     }
+}
+
+/// The transparent surfaces in an order that depends on the view.
+#[derive(Debug)]
+pub struct Sorted {
+    order: Order,
+    /// Vertex numbers of the sorted triangles; runs are ranges of it.
+    indices: Option<wgpu::Buffer>,
+    runs: Vec<DrawRun>,
+}
+
+impl Sorted {
+    /// Room for the order; none is needed to draw the scene as it is listed.
+    ///
+    /// # Errors
+    /// More triangles than the adapter's largest buffer indexes.
+    pub fn new(gpu: &Gpu, scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RenderError> {
+        let triangles: usize = scene.parts.iter().map(|p| p.centroids.len()).sum();
+        let size = triangles.max(1) as u64 * 12;
+        if order == Order::Triangles && size > gpu.limits.max_buffer_size {
+            return Err(RenderError::Gpu(GpuError::TooLarge {
+                what: format!("the order of {triangles} triangles"),
+                needed: size,
+                limit: gpu.limits.max_buffer_size,
+                adapter: gpu.info.name.clone(),
+                mend: "sort objects instead (painter-object)",
+            }));
+        }
+        let indices = (order == Order::Triangles).then(|| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("sorted triangles"),
+                size,
+                usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        Ok((order != Order::Scene).then_some(Self {
+            order,
+            indices,
+            runs: Vec::new(),
+        }))
+    }
+
+    /// Bytes that the order takes on the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.indices.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+
+    /// Sorts for a view, on the CPU; its time is recorded beside those of the passes.
+    pub fn sort(&mut self, cx: &mut DrawContext<'_, '_>) {
+        let start = std::time::Instant::now();
+        let view = cx.camera.view_from_world();
+        let depth = |p: glam::Vec3| -view.transform_point3(p).z;
+        let parts = &cx.scene.parts;
+        self.runs.clear();
+        if let Some(buffer) = &self.indices {
+            let mut triangles: Vec<(f32, u32, bool)> = parts
+                .iter()
+                .flat_map(|part| {
+                    let first = part.run.vertices.start;
+                    let culled = part.run.culled;
+                    let all = part.centroids.iter().zip(0..);
+                    all.map(move |(&c, i)| (depth(c), first + 3 * i, culled))
+                })
+                .collect();
+            triangles.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut indices = Vec::with_capacity(triangles.len() * 3);
+            for (_, first, culled) in triangles {
+                let at = indices.len() as u32;
+                indices.extend([first, first + 1, first + 2]);
+                push_run(&mut self.runs, at..at + 3, culled);
+            }
+            if !indices.is_empty() {
+                let queue = &cx.recorder.gpu().queue;
+                queue.write_buffer(buffer, 0, bytemuck::cast_slice(&indices));
+            }
+        } else {
+            let middle = |p: &TransparentPart| depth((p.bounds[0] + p.bounds[1]) / 2.0);
+            let mut sorted: Vec<_> = parts.iter().map(|p| (middle(p), &p.run)).collect();
+            sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
+            self.runs
+                .extend(sorted.into_iter().map(|(_, run)| run.clone()));
+        }
+        cx.recorder.on_the_cpu("sort", start.elapsed());
+    }
+
+    /// Draws the transparent half in this order.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        pipelines: &GeometryPipelines,
+    ) {
+        pass.set_bind_group(0, &frame.scene_group.group, &[]);
+        pass.set_vertex_buffer(0, scene.corners.slice(..));
+        if let Some(indices) = &self.indices {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        }
+        for run in &self.runs {
+            pass.set_pipeline(pipelines.of(run.culled));
+            match self.order {
+                Order::Triangles => pass.draw_indexed(run.vertices.clone(), 0, 0..1),
+                _ => pass.draw(run.vertices.clone(), 0..1),
+            }
+        }
+    }
+}
+
+/// The middle of a triangle.
+fn centroid(corners: &[Corner]) -> glam::Vec3 {
+    let sum: glam::Vec3 = corners
+        .iter()
+        .map(|c| glam::Vec3::from_array(c.position))
+        .sum();
+    sum / corners.len() as f32
 }
 
 /// The largest power of two that maps depths up to `far` below 1: multiplying by it loses no bit.

@@ -1,5 +1,6 @@
 // Transmittance in front of a warped depth from four power moments (Muenstermann et al. 2018); the steps are explained
-// in the twin, peelnet_core::methods::mboit4.
+// in the twin, peelnet_core::methods::mboit4, whose products of pivots would be too small for 32 bits at the paper's bias:
+// here they are divided out.
 import package::parameters::{BIAS, OVERESTIMATION};
 
 fn transmittance_from_moments(total: f32, higher: vec4f, zeta: f32) -> f32 {
@@ -17,19 +18,16 @@ fn transmittance_from_moments(total: f32, higher: vec4f, zeta: f32) -> f32 {
     let c2 = y2 / d22;
     let c1 = y1 * inverse_variance - l21 * c2;
     let c0 = 1.0 - m.x * c1 - m.y * c2;
-    let inverse_c2 = 1.0 / c2;
-    let half_p = 0.5 * c1 * inverse_c2;
-    let root = sqrt(max(half_p * half_p - c0 * inverse_c2, 0.0));
-    let z1 = -half_p - root;
-    let z2 = -half_p + root;
-    let f1 = select(0.0, 1.0, z1 < zeta);
-    let f2 = select(0.0, 1.0, z2 < zeta);
-    let f01 = (f1 - OVERESTIMATION) / (z1 - zeta);
-    let f12 = (f2 - f1) / (z2 - z1);
-    let f012 = (f12 - f01) / (z2 - zeta);
-    let a0 = OVERESTIMATION - zeta * (f01 - f012 * z1);
-    let a1 = f01 - f012 * (z1 + zeta);
-    let share = a0 + a1 * m.x + f012 * m.y;
+    let own = 1.0 / (1.0 + y1 * y1 * inverse_variance + y2 * c2);
+    let half = 0.5 * c1;
+    let root = sqrt(max(half * half - c0 * c2, 0.0));
+    let inverse = -1.0 / (half + select(-root, root, half >= 0.0));
+    let p = c0 * inverse;
+    let q = c2 * inverse;
+    let at_p = (1.0 - own - q * (m.x - own * zeta)) / (1.0 - p * q);
+    let at_q = 1.0 - own - at_p;
+    let low = select(0.0, at_p, p < zeta) + select(0.0, at_q, (1.0 - zeta * q) * q < 0.0);
+    let share = low + OVERESTIMATION * own;
     // Degenerate points give NaN, which no comparison finds true.
     let t = exp(-total * share);
     return select(1.0, min(t, 1.0), t >= 0.0);

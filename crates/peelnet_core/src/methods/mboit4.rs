@@ -78,34 +78,30 @@ pub fn share_bounds<F: Float>(moments: [F; 4], bias: F, zeta: F) -> (F, F) {
         moments[2] * (one - bias),
         moments[3] * (one - bias) + neutral * bias,
     ];
-    // Cholesky factors of the Hankel matrix [1 m1 m2; m1 m2 m3; m2 m3 m4].
+    // Factors L D of the Hankel matrix [1 m1 m2; m1 m2 m3; m2 m3 m4], times their denominators.
     let variance = m[1] - m[0] * m[0];
-    let l21_variance = m[2] - m[0] * m[1];
-    let l21 = l21_variance / variance;
-    let d22 = m[3] - m[1] * m[1] - l21_variance * l21;
-    // Coefficients of the kernel polynomial: H c = (1, ζ, ζ²).
+    let l21 = m[2] - m[0] * m[1];
+    let d = variance * (m[3] - m[1] * m[1]) - l21 * l21;
+    let determinant = variance * d;
+    // Coefficients of the kernel polynomial, times the determinant: H c = (1, ζ, ζ²). Its value at ζ is one over what the
+    // measure has there (the Christoffel function), a sum of squares.
     let y1 = zeta - m[0];
-    let y2 = zeta * zeta - m[1] - l21 * y1;
-    let c2 = y2 / d22;
-    let c1 = y1 / variance - l21 * c2;
-    let c0 = one - m[0] * c1 - m[1] * c2;
-    // Its roots are the other two points of the measure.
-    let half_p = half * c1 / c2;
-    let root = (half_p * half_p - c0 / c2).max(zero).sqrt();
-    let (z1, z2) = (-half_p - root, -half_p + root);
-    // The quadratic through (ζ, f0), (z1, is it in front?), (z2, is it in front?), and its mean over the measure: the
-    // share in front when the part f0 of what lies at ζ counts.
-    let in_front = |z: F| if z < zeta { one } else { zero };
-    let (f1, f2) = (in_front(z1), in_front(z2));
-    let share = |f0: F| {
-        let f01 = (f1 - f0) / (z1 - zeta);
-        let f12 = (f2 - f1) / (z2 - z1);
-        let f012 = (f12 - f01) / (z2 - zeta);
-        let a0 = f0 - zeta * (f01 - f012 * z1);
-        let a1 = f01 - f012 * (z1 + zeta);
-        a0 + a1 * m[0] + f012 * m[1]
-    };
-    (share(zero), share(one))
+    let y2 = (zeta * zeta - m[1]) * variance - l21 * y1;
+    let c2 = y2 * variance;
+    let c1 = y1 * d - l21 * y2;
+    let c0 = determinant - m[0] * c1 - m[1] * c2;
+    let own = determinant / (determinant + y1 * y1 * d + y2 * y2);
+    // Its roots are the other two points of the measure: the smaller one, p, and one over the larger, q, so that a point at
+    // infinity is none in particular, and neither is a difference of large numbers.
+    let root = ((half * c1).powi(2) - c0 * c2).max(zero).sqrt();
+    let inverse = -(half * c1 + if c1 >= zero { root } else { -root }).recip();
+    let (p, q) = (c0 * inverse, c2 * inverse);
+    // What lies at either, from the measure's zeroth and first moment.
+    let at_p = (one - own - q * (m[0] - own * zeta)) / (one - p * q);
+    let at_q = one - own - at_p;
+    let in_front = |yes: bool, mass: F| if yes { mass } else { zero };
+    let low = in_front(p < zeta, at_p) + in_front((one - zeta * q) * q < zero, at_q);
+    (low, low + own)
 }
 
 /// Eq 6's composite with the estimated transmittance as the weight.

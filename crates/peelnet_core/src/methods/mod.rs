@@ -5,8 +5,12 @@
 pub mod anchored;
 pub mod blended;
 pub mod deep;
+pub mod kbuffer;
 pub mod mboit4;
+pub mod mboit6;
 pub mod over;
+pub mod stochastic;
+pub mod wavelet;
 pub mod wboit;
 pub mod weighted_average;
 pub mod weighted_sum;

@@ -2,12 +2,17 @@
 
 use crate::fragment::{Fragment, sort_front_to_back};
 
-/// Sorts a copy and composites front to back (under-blending): `C += T·α·c; T *= 1 − α`.
-pub fn composite(fragments: &[Fragment], background: [f32; 3]) -> [f32; 3] {
+/// The fragments, nearest first.
+pub fn sorted(fragments: &[Fragment]) -> Vec<Fragment> {
     let mut sorted = fragments.to_vec();
     sort_front_to_back(&mut sorted);
+    sorted
+}
+
+/// Sorts a copy and composites front to back (under-blending): `C += T·α·c; T *= 1 − α`.
+pub fn composite(fragments: &[Fragment], background: [f32; 3]) -> [f32; 3] {
     let (mut color, mut t) = ([0.0f32; 3], 1.0f32);
-    for f in &sorted {
+    for f in &sorted(fragments) {
         for (acc, c) in color.iter_mut().zip(f.premultiplied()) {
             *acc += t * c;
         }
@@ -18,9 +23,7 @@ pub fn composite(fragments: &[Fragment], background: [f32; 3]) -> [f32; 3] {
 
 /// The same in 64 bits, back to front (over-blending): independent of [`composite`] in order and precision.
 pub fn composite_f64(fragments: &[Fragment], background: [f32; 3]) -> [f64; 3] {
-    let mut sorted = fragments.to_vec();
-    sort_front_to_back(&mut sorted);
-    sorted
+    sorted(fragments)
         .iter()
         .rev()
         .fold(background.map(f64::from), |dst, f| {

@@ -47,7 +47,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                     features,
                     extra: &extra,
                     writes: &[1, 2],
-                    reads: &[],
+                    ..Gather::NONE
                 },
                 Gather {
                     label: "gather",
@@ -56,11 +56,13 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                     extra: &extra,
                     writes: &sums,
                     reads: &[1, 2],
+                    ..Gather::NONE
                 },
             ],
             resolve: "methods::anchored::resolve",
             resolve_features: features,
             resolve_reads: &resolve_reads,
+            ..Plan::NONE
         },
     )
 }

@@ -1,12 +1,15 @@
-//! The driver of every commutative method: geometry passes into blended targets, then one resolve.
+//! The driver of every method with a fixed number of passes: geometry passes into blended targets and storage of so many
+//! values a pixel, then one resolve.
 //!
-//! A method states its targets, its passes and its resolve; their bindings, bytes and passes follow from that.
+//! A method states its targets, its storage, its passes and its resolve; their bindings, bytes and passes follow from that.
+//! All but the painter's methods give the same image whatever the order of drawing.
 
 use super::{Build, Compositor, DrawContext, FrameStats};
 use crate::{
     RenderError,
+    passes::count::{unwritten, unwritten_attachment},
     passes::fullscreen::FullscreenPass,
-    scene::{GeometryPass, GeometryPipelines, Surfaces, clear_color},
+    scene::{GeometryPass, GeometryPipelines, Order, Sorted, Surfaces, clear_color},
 };
 use peelnet_core::guards::HALF_MAX;
 use peelnet_gpu::{
@@ -21,6 +24,8 @@ pub(crate) enum Blend {
     Add,
     /// `dst · (1 − src)`, from 1.
     Transmit,
+    /// `src + dst · (1 − src.a)` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
+    Over,
     /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
     MaxAdd,
 }
@@ -31,6 +36,7 @@ impl Blend {
         let least = -f64::from(HALF_MAX);
         match self {
             Self::Add => [0.0; 4],
+            Self::Over => [0.0, 0.0, 0.0, 1.0],
             Self::Transmit => [1.0; 4],
             Self::MaxAdd => [least, least, least, 0.0],
         }
@@ -47,6 +53,10 @@ impl Blend {
         let transmit = component(F::Zero, F::OneMinusSrc, O::Add);
         let (color, alpha) = match self {
             Self::Add => (add, add),
+            Self::Over => (
+                component(F::One, F::OneMinusSrcAlpha, O::Add),
+                component(F::Zero, F::OneMinusSrcAlpha, O::Add),
+            ),
             Self::Transmit => (transmit, transmit),
             Self::MaxAdd => (component(F::One, F::One, O::Max), add),
         };
@@ -65,7 +75,15 @@ pub(crate) struct Target {
     pub blend: Blend,
 }
 
-/// One geometry pass: its shader, the targets it writes and those (of earlier passes) it reads.
+/// A buffer of so many bytes a pixel, zero at the start of every frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Storage {
+    pub label: &'static str,
+    pub bytes: u32,
+}
+
+/// One geometry pass: its shader and what it writes and reads. In bind group 1: targets (of earlier passes) that it reads,
+/// storage that it reads, storage that it writes.
 #[derive(Debug)]
 pub(crate) struct Gather<'a> {
     pub label: &'static str,
@@ -74,31 +92,72 @@ pub(crate) struct Gather<'a> {
     pub extra: &'a [(&'a str, &'a str)],
     pub writes: &'a [usize],
     pub reads: &'a [usize],
+    pub loads: &'a [usize],
+    pub stores: &'a [usize],
 }
 
-/// A commutative method.
+impl Gather<'_> {
+    /// What most passes leave out.
+    pub(crate) const NONE: Gather<'static> = Gather {
+        label: "gather",
+        shader: "",
+        features: &[],
+        extra: &[],
+        writes: &[],
+        reads: &[],
+        loads: &[],
+        stores: &[],
+    };
+}
+
+/// A method with a fixed number of passes.
 #[derive(Debug)]
 pub(crate) struct Plan<'a> {
     pub targets: &'a [Target],
+    pub storage: &'a [Storage],
     pub passes: &'a [Gather<'a>],
+    /// In which order surfaces are drawn.
+    pub order: Order,
     pub resolve: &'static str,
     /// Compile-time features of the resolve.
     pub resolve_features: &'a [&'a str],
-    /// Targets that the resolve reads, after `C_0`.
+    /// Modules of the resolve that are not in the repository.
+    pub resolve_extra: &'a [(&'a str, &'a str)],
+    /// Targets that the resolve reads, after `C_0`, and storage after those.
     pub resolve_reads: &'a [usize],
+    pub resolve_loads: &'a [usize],
+}
+
+impl Plan<'_> {
+    /// What most methods leave out.
+    pub(crate) const NONE: Plan<'static> = Plan {
+        targets: &[],
+        storage: &[],
+        passes: &[],
+        order: Order::Scene,
+        resolve: "",
+        resolve_features: &[],
+        resolve_extra: &[],
+        resolve_reads: &[],
+        resolve_loads: &[],
+    };
 }
 
 #[derive(Debug)]
 struct BuiltPass {
     label: &'static str,
     pipelines: GeometryPipelines,
-    reads: Option<Bound>,
+    group: Option<Bound>,
     writes: Vec<usize>,
 }
 
 #[derive(Debug)]
 struct Commutative {
     targets: Vec<(wgpu::TextureView, Blend)>,
+    storage: Vec<wgpu::Buffer>,
+    // Of passes that write storage alone.
+    attachment: Option<wgpu::TextureView>,
+    sorted: Option<Sorted>,
     passes: Vec<BuiltPass>,
     resolve: FullscreenPass,
     bytes_per_pixel: f64,
@@ -153,22 +212,38 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         )?;
         targets.push((view, t.blend));
     }
+    let pixels = u64::from(b.frame.pixels());
+    let storage = plan
+        .storage
+        .iter()
+        .map(|s| b.gpu.storage(s.label, pixels * u64::from(s.bytes)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let bare = plan.passes.iter().any(|p| p.writes.is_empty());
+    let no_attachment = || {
+        let format = wgpu::TextureFormat::R8Unorm;
+        let none = wgpu::TextureUsages::empty();
+        b.gpu.texture("no attachment", format, b.frame.size, none)
+    };
+    let attachment = bare.then(no_attachment).transpose()?;
     let mut passes = Vec::new();
     for gather in plan.passes {
-        let reads = (!gather.reads.is_empty()).then(|| {
-            let entries: Vec<_> = gather
-                .reads
-                .iter()
-                .map(|&i| Bind::Texture(&targets[i].0))
-                .collect();
+        let textures = gather.reads.iter().map(|&i| Bind::Texture(&targets[i].0));
+        let entries: Vec<_> = textures
+            .chain(gather.loads.iter().map(|&i| Bind::Read(&storage[i])))
+            .chain(gather.stores.iter().map(|&i| Bind::Write(&storage[i])))
+            .collect();
+        let group = (!entries.is_empty()).then(|| {
             b.gpu
                 .bind(gather.label, wgpu::ShaderStages::FRAGMENT, &entries)
         });
-        let states: Vec<_> = gather
+        let mut states: Vec<_> = gather
             .writes
             .iter()
             .map(|&i| Some(plan.targets[i].state(is_full(&plan.targets[i]))))
             .collect();
+        if states.is_empty() {
+            states.push(unwritten(wgpu::TextureFormat::R8Unorm));
+        }
         let pipelines = b.scene.pipelines(
             b.gpu,
             b.frame,
@@ -178,7 +253,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
                 shader: gather.shader,
                 features: gather.features,
                 extra: gather.extra,
-                group: reads.as_ref().map(|r| &r.layout),
+                group: group.as_ref().map(|g| &g.layout),
                 targets: &states,
                 depth: None,
             },
@@ -186,7 +261,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         passes.push(BuiltPass {
             label: gather.label,
             pipelines,
-            reads,
+            group,
             writes: gather.writes.to_vec(),
         });
     }
@@ -196,32 +271,40 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             .iter()
             .map(|&i| Bind::Texture(&targets[i].0)),
     );
+    entries.extend(plan.resolve_loads.iter().map(|&i| Bind::Read(&storage[i])));
     let resolve = FullscreenPass::new(
         b.gpu,
         plan.resolve,
         plan.resolve_features,
-        &[],
+        plan.resolve_extra,
         &entries,
         &[Some(wgpu::TextureFormat::Rgba32Float.into())],
     )?;
-    let bytes_per_pixel = plan
-        .targets
-        .iter()
-        .map(|t| t.bytes(is_full(t)))
-        .sum::<u32>()
-        .into();
+    let blended: u32 = plan.targets.iter().map(|t| t.bytes(is_full(t))).sum();
+    let stored: u32 = plan.storage.iter().map(|s| s.bytes).sum();
+    let sorted = Sorted::new(b.gpu, b.scene, plan.order)?;
+    let order = sorted.as_ref().map_or(0, Sorted::bytes) as f64 / pixels as f64;
     Ok(Box::new(Commutative {
         targets,
+        storage,
+        attachment,
+        sorted,
         passes,
         resolve,
-        bytes_per_pixel,
+        bytes_per_pixel: f64::from(blended + stored + u32::from(bare)) + order,
     }))
 }
 
 impl Compositor for Commutative {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
+        if let Some(sorted) = &mut self.sorted {
+            sorted.sort(cx);
+        }
+        for buffer in &self.storage {
+            cx.recorder.encoder().clear_buffer(buffer, 0, None);
+        }
         for p in &self.passes {
-            let colors: Vec<_> = p
+            let mut colors: Vec<_> = p
                 .writes
                 .iter()
                 .map(|&i| {
@@ -229,12 +312,19 @@ impl Compositor for Commutative {
                     clear_color(view, blend.start())
                 })
                 .collect();
-            let mut pass = cx.recorder.render(p.label, &colors, None);
-            if let Some(reads) = &p.reads {
-                pass.set_bind_group(1, &reads.group, &[]);
+            if let (true, Some(view)) = (colors.is_empty(), &self.attachment) {
+                colors.push(unwritten_attachment(view));
             }
-            cx.scene
-                .draw(&mut pass, cx.frame, Surfaces::Transparent, &p.pipelines);
+            let mut pass = cx.recorder.render(p.label, &colors, None);
+            if let Some(group) = &p.group {
+                pass.set_bind_group(1, &group.group, &[]);
+            }
+            match &self.sorted {
+                Some(sorted) => sorted.draw(&mut pass, cx.scene, cx.frame, &p.pipelines),
+                None => cx
+                    .scene
+                    .draw(&mut pass, cx.frame, Surfaces::Transparent, &p.pipelines),
+            }
         }
         self.resolve
             .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);

@@ -23,23 +23,21 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Gather {
                     label: "statistics",
                     shader: "methods::deep_thesis::statistics",
-                    features: &[],
-                    extra: &[],
                     writes: &[2],
-                    reads: &[],
+                    ..Gather::NONE
                 },
                 Gather {
                     label: "gather",
                     shader: "methods::deep_thesis::gather",
-                    features: &[],
                     extra: &[("learned::weight", &learned.wgsl)],
                     writes: &[0, 1],
                     reads: &[2],
+                    ..Gather::NONE
                 },
             ],
             resolve: "methods::wboit::resolve",
-            resolve_features: &[],
             resolve_reads: &[0, 1],
+            ..Plan::NONE
         },
     )
 }

@@ -10,8 +10,13 @@ mod deep_thesis;
 pub mod depth_peel;
 mod dfaoit;
 pub mod dual_peel;
-mod mboit4;
+mod kbuffer;
+mod linked_list;
+mod mboit;
 mod nmt;
+mod painter;
+mod stochastic;
+mod wavelet;
 mod weighted;
 
 use crate::{
@@ -20,6 +25,7 @@ use crate::{
 };
 use peelnet_core::weights::Weight;
 use peelnet_gpu::{Gpu, record::Recorder};
+use peelnet_scene::Camera;
 use std::{collections::BTreeMap, fmt, str::FromStr};
 
 /// What a method reports of one frame.
@@ -48,6 +54,8 @@ pub struct DrawContext<'a, 'g> {
     pub recorder: &'a mut Recorder<'g>,
     /// The scene.
     pub scene: &'a SceneBuffers,
+    /// The view.
+    pub camera: &'a Camera,
     /// `C_0` and the image to write.
     pub frame: &'a FrameTargets,
     /// Whether to count what statistics need and compositing does not.
@@ -70,6 +78,10 @@ pub struct MethodEntry {
     pub name: &'static str,
     /// One line for help texts.
     pub about: &'static str,
+    /// What a benchmark of all methods draws: endings of its name, the default first.
+    pub points: &'static [&'static str],
+    /// Largest number that the name ends in, as in `kbuffer-8`; 0 for a name that stands alone.
+    pub most: u32,
     /// Names of its knobs, with the values they take.
     pub knobs: &'static [(&'static str, &'static str)],
     /// Whether it draws with a trained network.
@@ -122,6 +134,8 @@ macro_rules! wboit {
         MethodEntry {
             name: $name,
             about: $about,
+            points: &["", ":targets=f32"],
+            most: 0,
             knobs: &[TARGETS $(, $knob)*],
             learned: false,
             exact: false,
@@ -135,14 +149,28 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "abuffer",
         about: "exact: S-buffer, every fragment stored and sorted",
+        points: &[""],
+        most: 0,
         knobs: &[("budget", "fragments that one tile may hold")],
         learned: false,
         exact: true,
         build: abuffer::build,
     },
     MethodEntry {
+        name: "linked-list",
+        about: "exact: one pass into a list for each pixel, sorted by relinking",
+        points: &[""],
+        most: 0,
+        knobs: &[("nodes", "size of the first pool; it grows as needed")],
+        learned: false,
+        exact: true,
+        build: linked_list::build,
+    },
+    MethodEntry {
         name: "depth-peel",
         about: "exact: front to back, one layer a pass",
+        points: &["", ":passes=2", ":passes=4", ":passes=8"],
+        most: 0,
         knobs: &[PASSES],
         learned: false,
         exact: true,
@@ -151,14 +179,44 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "dual-peel",
         about: "exact but for coplanar fragments: both ends, two layers a pass",
+        points: &["", ":passes=2", ":passes=4"],
+        most: 0,
         knobs: &[PASSES],
         learned: false,
         exact: true,
         build: dual_peel::build,
     },
     MethodEntry {
+        name: "painter-object",
+        about: "objects sorted on the CPU, hardware blending",
+        points: &["", ":sort=off"],
+        most: 0,
+        knobs: &[
+            TARGETS,
+            (
+                "sort",
+                "on (default) or off: hardware blending in the scene's order",
+            ),
+        ],
+        learned: false,
+        exact: false,
+        build: painter::objects,
+    },
+    MethodEntry {
+        name: "painter-triangle",
+        about: "triangles sorted on the CPU, hardware blending",
+        points: &[""],
+        most: 0,
+        knobs: &[TARGETS],
+        learned: false,
+        exact: false,
+        build: painter::triangles,
+    },
+    MethodEntry {
         name: "weighted-sum",
         about: "Meshkin 2007",
+        points: &[""],
+        most: 0,
         knobs: &[TARGETS],
         learned: false,
         exact: false,
@@ -167,6 +225,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "weighted-average",
         about: "Bavoil & Myers 2008",
+        points: &[""],
+        most: 0,
         knobs: &[TARGETS],
         learned: false,
         exact: false,
@@ -175,6 +235,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "blended",
         about: "McGuire & Bavoil 2013, eq 5",
+        points: &[""],
+        most: 0,
         knobs: &[TARGETS],
         learned: false,
         exact: false,
@@ -227,6 +289,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "mboit4",
         about: "Münstermann et al. 2018, four power moments",
+        points: &["", ":targets=f16", ":overestimation=0.5", ":own=out"],
+        most: 0,
         knobs: &[
             MOMENT_TARGETS,
             ("overestimation", "0.25 by default"),
@@ -238,11 +302,74 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
-        build: mboit4::build,
+        build: mboit::four,
+    },
+    MethodEntry {
+        name: "mboit6",
+        about: "Münstermann et al. 2018, six power moments",
+        points: &["", ":own=out"],
+        most: 0,
+        knobs: &[
+            MOMENT_TARGETS,
+            ("overestimation", "0.25 by default"),
+            ("bias", "5e-6 by default, 6e-4 with 16-bit moments"),
+            (
+                "own",
+                "in (default, as published) or out: a fragment's own absorbance",
+            ),
+        ],
+        learned: false,
+        exact: false,
+        build: mboit::six,
+    },
+    MethodEntry {
+        name: "wavelet-3",
+        about: "Aizenshtein, Smal & McGuire 2022, Haar wavelets of rank 3",
+        points: &["", ":own=in"],
+        most: 0,
+        knobs: &[("own", "out (default) or in: a fragment's own absorbance")],
+        learned: false,
+        exact: false,
+        build: wavelet::build,
+    },
+    MethodEntry {
+        name: "kbuffer",
+        about: "the K nearest exactly, the rest blended by eq 5",
+        points: &["-2", "-4", "-8"],
+        most: 64,
+        knobs: &[TARGETS],
+        learned: false,
+        exact: false,
+        build: kbuffer::plain,
+    },
+    MethodEntry {
+        name: "hybrid",
+        about: "the K nearest exactly, the rest blended by eq 6",
+        points: &["-2", "-4", "-8"],
+        most: 64,
+        knobs: &[
+            TARGETS,
+            ("weight", "of the tail: eq9 (default), eq7 or eq8"),
+        ],
+        learned: false,
+        exact: false,
+        build: kbuffer::hybrid,
+    },
+    MethodEntry {
+        name: "stochastic",
+        about: "Enderton et al. 2010, S screen-door samples with alpha correction",
+        points: &["-4", "-16", "-64"],
+        most: 256,
+        knobs: &[TARGETS],
+        learned: false,
+        exact: false,
+        build: stochastic::build,
     },
     MethodEntry {
         name: "deep-thesis",
         about: "Papakostas 2022: eq 6 with a network's weight",
+        points: &[""],
+        most: 0,
         knobs: &[TARGETS],
         learned: true,
         exact: false,
@@ -251,6 +378,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "nmt",
         about: "Tsopouridis et al. 2024: a network reads four moments",
+        points: &["", ":targets=f16"],
+        most: 0,
         knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
@@ -259,6 +388,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "dfaoit",
         about: "Tsopouridis et al. 2024: two layers exact, the colour of the rest from a network",
+        points: &[""],
+        most: 0,
         knobs: &[TARGETS],
         learned: true,
         exact: false,
@@ -267,6 +398,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "deep-small",
         about: "a learned share of what lies between the pixel's ends, 5-8-1",
+        points: &["", ":targets=f32"],
+        most: 0,
         knobs: &[TARGETS],
         learned: true,
         exact: false,
@@ -275,6 +408,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "deep-medium",
         about: "the same with exact ends, 5-12-1: the one to ship",
+        points: &["", ":targets=f32"],
+        most: 0,
         knobs: &[TARGETS],
         learned: true,
         exact: false,
@@ -283,6 +418,8 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "deep-large",
         about: "the same with more features, 9-14-9-1: the most accurate",
+        points: &["", ":targets=f16"],
+        most: 0,
         knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
@@ -294,6 +431,8 @@ pub const METHODS: &[MethodEntry] = &[
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MethodSpec {
     name: &'static str,
+    /// The number that the name ends in, where it ends in one.
+    size: Option<u32>,
     knobs: BTreeMap<String, String>,
 }
 
@@ -303,14 +442,25 @@ impl MethodSpec {
         METHODS
             .iter()
             .filter(|m| !m.learned)
-            .map(|m| Self {
-                name: m.name,
-                knobs: BTreeMap::new(),
-            })
+            .filter_map(|m| Self::points(m).next())
             .collect()
     }
 
-    /// The method's name without knobs.
+    /// Every method with the knobs that belong to its curve of error against time.
+    pub fn curve() -> Vec<Self> {
+        METHODS.iter().flat_map(Self::points).collect()
+    }
+
+    fn points(entry: &'static MethodEntry) -> impl Iterator<Item = Self> {
+        let name = entry.name;
+        // A test parses them all.
+        entry
+            .points
+            .iter()
+            .filter_map(move |ending| format!("{name}{ending}").parse().ok())
+    }
+
+    /// The method's name without number and knobs.
     pub const fn name(&self) -> &'static str {
         self.name
     }
@@ -327,6 +477,11 @@ impl MethodSpec {
             .iter()
             .find(|m| m.name == self.name)
             .unwrap_or(&METHODS[0])
+    }
+
+    /// The number that the name ends in; 0 where it ends in none.
+    pub fn size(&self) -> u32 {
+        self.size.unwrap_or_default()
     }
 
     /// A knob that is a finite number.
@@ -391,20 +546,44 @@ impl FromStr for MethodSpec {
 
     fn from_str(text: &str) -> Result<Self, RenderError> {
         let (name, rest) = text.split_once(':').unwrap_or((text, ""));
-        let Some(entry) = METHODS.iter().find(|m| m.name == name) else {
-            return Err(RenderError::UnknownMethod {
-                name: name.to_owned(),
-                known: METHODS
-                    .iter()
-                    .map(|m| m.name)
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            });
+        let unknown = || RenderError::UnknownMethod {
+            name: name.to_owned(),
+            known: METHODS
+                .iter()
+                .map(|m| format!("{}{}", m.name, if m.most > 0 { "-N" } else { "" }))
+                .collect::<Vec<_>>()
+                .join(", "),
+        };
+        let of = |name: &str, numbered: bool| {
+            METHODS
+                .iter()
+                .find(|m| m.name == name && (m.most > 0) == numbered)
+        };
+        let numbered = || {
+            let (name, size) = name.rsplit_once('-')?;
+            Some((of(name, true)?, size))
+        };
+        let (entry, size) = match (of(name, false), numbered()) {
+            (Some(entry), _) => (entry, None),
+            (None, Some((entry, size))) => (entry, Some(size)),
+            (None, None) => return Err(unknown()),
         };
         let mut spec = Self {
             name: entry.name,
+            size: None,
             knobs: BTreeMap::new(),
         };
+        if let Some(size) = size {
+            match size.parse() {
+                Ok(n) if (1..=entry.most).contains(&n) => spec.size = Some(n),
+                _ => {
+                    return Err(spec.bad(&format!(
+                        "the number behind '{}-' must be 1 to {}, not '{size}'",
+                        entry.name, entry.most
+                    )));
+                }
+            }
+        }
         for pair in rest.split(',').filter(|p| !p.is_empty()) {
             let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
             if !entry.knobs.iter().any(|(k, _)| *k == key) {
@@ -427,6 +606,9 @@ impl FromStr for MethodSpec {
 impl fmt::Display for MethodSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name)?;
+        if let Some(size) = self.size {
+            write!(f, "-{size}")?;
+        }
         for (i, (key, value)) in self.knobs.iter().enumerate() {
             write!(f, "{}{key}={value}", if i == 0 { ':' } else { ',' })?;
         }
@@ -449,6 +631,8 @@ mod tests {
             "abuffer",
             "wboit-eq10:factor=3e4,targets=f32",
             "deep-thesis:targets=f32",
+            "kbuffer-8",
+            "hybrid-4:weight=eq7",
         ] {
             assert_eq!(
                 text.parse::<MethodSpec>().expect("parses").to_string(),
@@ -467,6 +651,22 @@ mod tests {
         assert!(e.to_string().contains("budget"), "{e}");
         let spec: MethodSpec = "depth-peel:passes=0".parse().expect("parses");
         assert!(spec.count("passes").is_err());
+    }
+
+    #[test]
+    fn every_point_of_every_curve_parses() {
+        let points: usize = METHODS.iter().map(|m| m.points.len()).sum();
+        assert_eq!(MethodSpec::curve().len(), points);
+        assert!(METHODS.iter().all(|m| !m.points.is_empty()));
+    }
+
+    #[test]
+    fn numbers_are_checked() {
+        for bad in ["kbuffer", "kbuffer-", "kbuffer-0", "kbuffer-65", "mboit4-2"] {
+            assert!(bad.parse::<MethodSpec>().is_err(), "{bad}");
+        }
+        let e = "kbuffer-900".parse::<MethodSpec>().expect_err("too many");
+        assert!(e.to_string().contains("1 to 64"), "{e}");
     }
 
     #[test]

@@ -25,23 +25,22 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Gather {
                     label: "statistics",
                     shader: "methods::nmt::statistics",
-                    features: &[],
                     extra: &extra,
                     writes: &[1, 2],
-                    reads: &[],
+                    ..Gather::NONE
                 },
                 Gather {
                     label: "gather",
                     shader: "methods::nmt::gather",
-                    features: &[],
                     extra: &extra,
                     writes: &[0],
                     reads: &[1, 2],
+                    ..Gather::NONE
                 },
             ],
             resolve: "methods::mboit4::resolve",
-            resolve_features: &[],
             resolve_reads: &[0, 1],
+            ..Plan::NONE
         },
     )
 }

@@ -27,10 +27,8 @@ const fn gather(shader: &'static str, writes: &'static [usize]) -> Gather<'stati
     Gather {
         label: "gather",
         shader,
-        features: &[],
-        extra: &[],
         writes,
-        reads: &[],
+        ..Gather::NONE
     }
 }
 
@@ -41,8 +39,8 @@ pub(super) fn sum(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             targets: &[SUMS],
             passes: &[gather("methods::weighted_sum::gather", &[0])],
             resolve: "methods::weighted_sum::resolve",
-            resolve_features: &[],
             resolve_reads: &[0],
+            ..Plan::NONE
         },
     )
 }
@@ -60,8 +58,8 @@ pub(super) fn average(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError>
             targets: &[SUMS, count],
             passes: &[gather("methods::weighted_average::gather", &[0, 1])],
             resolve: "methods::weighted_average::resolve",
-            resolve_features: &[],
             resolve_reads: &[0, 1],
+            ..Plan::NONE
         },
     )
 }
@@ -73,8 +71,8 @@ pub(super) fn blended(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError>
             targets: &[SUMS, TRANSMITTANCE],
             passes: &[gather("methods::blended::gather", &[0, 1])],
             resolve: "methods::wboit::resolve",
-            resolve_features: &[],
             resolve_reads: &[0, 1],
+            ..Plan::NONE
         },
     )
 }
@@ -105,8 +103,8 @@ pub(super) fn wboit(
                 ..gather("methods::wboit::gather", &[0, 1])
             }],
             resolve: "methods::wboit::resolve",
-            resolve_features: &[],
             resolve_reads: &[0, 1],
+            ..Plan::NONE
         },
     )
 }

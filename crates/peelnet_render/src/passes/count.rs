@@ -198,7 +198,9 @@ pub(crate) fn unwritten(format: wgpu::TextureFormat) -> Option<wgpu::ColorTarget
     })
 }
 
-fn unwritten_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+pub(crate) fn unwritten_attachment(
+    view: &wgpu::TextureView,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     Some(wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,

@@ -1,0 +1,57 @@
+// kbuffer and hybrid, pass 2: a fragment among the K nearest stores its colour in its place, any other one is blended.
+import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9};
+import package::methods::kbuffer::key::{first_place, nearness};
+import package::parameters::K;
+import package::scene::shade::shade;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@group(1) @binding(0) var<storage, read> nearest: array<u32>;
+// Triangle + 1 of the fragment in each place; 0 while it is free.
+@group(1) @binding(1) var<storage, read_write> triangles: array<atomic<u32>>;
+@group(1) @binding(2) var<storage, read_write> colors: array<vec4f>;
+
+struct Tail {
+    @location(0) color: vec4f,
+    // Blended multiplicatively: dst * (1 - src).
+    @location(1) alpha: f32,
+}
+
+// Takes a place of this nearness; coplanar fragments have several. False where all are taken.
+fn stored(first: u32, own: u32, triangle: u32, color: vec4f) -> bool {
+    for (var i = first; i < first + K; i++) {
+        if nearest[i] != own {
+            continue;
+        }
+        loop {
+            let claim = atomicCompareExchangeWeak(&triangles[i], 0u, triangle + 1u);
+            if claim.exchanged {
+                colors[i] = color;
+                return true;
+            }
+            // Weak: it may fail though the place is free.
+            if claim.old_value != 0u {
+                break;
+            }
+        }
+    }
+    return false;
+}
+
+@fragment
+fn fragment_main(surface: Surface) -> Tail {
+    if !visible(surface) {
+        discard;
+    }
+    let color = shade(surface);
+    let first = first_place(surface);
+    let own = nearness(surface);
+    if own >= nearest[first + K - 1u] && stored(first, own, surface.triangle, color) {
+        return Tail(vec4f(0.0), 0.0);
+    }
+    @if(unweighted) let weight = 1.0;
+    @if(eq7) let weight = weight_eq7(surface.depth_linear, color.a);
+    @if(eq8) let weight = weight_eq8(surface.depth_linear, color.a);
+    @if(eq9) let weight = weight_eq9(surface.depth_linear, color.a);
+    return Tail(vec4f(color.rgb * color.a, color.a) * weight, color.a);
+}

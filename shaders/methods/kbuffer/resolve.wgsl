@@ -1,0 +1,56 @@
+// kbuffer and hybrid: the K nearest exactly, in front of the blended tail, in front of C_0.
+import package::helpers::resolve::normalised;
+import package::helpers::screen::screen_corner;
+import package::parameters::K;
+
+@group(0) @binding(0) var background: texture_2d<f32>;
+@group(0) @binding(1) var sums: texture_2d<f32>;
+@group(0) @binding(2) var transmittances: texture_2d<f32>;
+@group(0) @binding(3) var<storage, read> nearest: array<u32>;
+@group(0) @binding(4) var<storage, read> triangles: array<u32>;
+@group(0) @binding(5) var<storage, read> colors: array<vec4f>;
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
+    let first = (pixel.y * textureDimensions(background).x + pixel.x) * K;
+    var color = vec3f(0.0);
+    var transmittance = 1.0;
+    // Places of one depth follow one another by triangle: of those, the one composited last.
+    var last = 0u;
+    for (var i = first; i < first + K; i++) {
+        if nearest[i] == 0u {
+            break;
+        }
+        if i == first || nearest[i] != nearest[i - 1u] {
+            last = 0u;
+        }
+        var place = i;
+        var least = 0xffffffffu;
+        for (var j = i; j < first + K && nearest[j] == nearest[i]; j++) {
+            if triangles[j] > last && triangles[j] < least {
+                least = triangles[j];
+                place = j;
+            }
+        }
+        // They may lie before this place as well.
+        for (var j = i; j > first && nearest[j - 1u] == nearest[i]; j--) {
+            if triangles[j - 1u] > last && triangles[j - 1u] < least {
+                least = triangles[j - 1u];
+                place = j - 1u;
+            }
+        }
+        last = least;
+        let fragment = colors[place];
+        color += transmittance * (fragment.a * fragment.rgb);
+        transmittance *= 1.0 - fragment.a;
+    }
+    let tail = textureLoad(transmittances, pixel, 0).x;
+    let behind = normalised(textureLoad(sums, pixel, 0), tail, textureLoad(background, pixel, 0).rgb);
+    return vec4f(color + transmittance * behind.rgb, 1.0 - transmittance * tail);
+}

@@ -1,0 +1,90 @@
+// linked-list: sorts each pixel's list by (linear depth, triangle) and composites it front to back over C_0.
+struct Frame {
+    size: vec2u,
+    // Workgroups in a row of the dispatch.
+    groups: u32,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read> heads: array<u32>;
+@group(0) @binding(2) var<storage, read_write> next: array<u32>;
+@group(0) @binding(3) var<storage, read> depths: array<f32>;
+@group(0) @binding(4) var<storage, read> triangles: array<u32>;
+@group(0) @binding(5) var<storage, read> colors: array<vec4f>;
+@group(0) @binding(6) var background: texture_2d<f32>;
+@group(0) @binding(7) var image: texture_storage_2d<rgba32float, write>;
+
+// Whether one node comes before another; nodes are counted from 1.
+fn before(a: u32, b: u32) -> bool {
+    let near = depths[a - 1u];
+    let far = depths[b - 1u];
+    return near < far || (near == far && triangles[a - 1u] < triangles[b - 1u]);
+}
+
+// Merge sort from the bottom up by relinking: in place, n log n whatever the order. Returns the new first node.
+fn sorted(first: u32) -> u32 {
+    var list = first;
+    for (var width = 1u; ; width *= 2u) {
+        var rest = list;
+        var tail = 0u;
+        var merges = 0u;
+        list = 0u;
+        while rest != 0u {
+            merges++;
+            // Runs of `width` nodes: one from `left`, the next from `right`.
+            var left = rest;
+            var right = rest;
+            var left_count = 0u;
+            for (; left_count < width && right != 0u; left_count++) {
+                right = next[right - 1u];
+            }
+            var right_count = width;
+            while left_count > 0u || (right_count > 0u && right != 0u) {
+                let right_empty = right_count == 0u || right == 0u;
+                var node = right;
+                if left_count > 0u && (right_empty || before(left, right)) {
+                    node = left;
+                    left = next[left - 1u];
+                    left_count--;
+                } else {
+                    right = next[right - 1u];
+                    right_count--;
+                }
+                if tail == 0u {
+                    list = node;
+                } else {
+                    next[tail - 1u] = node;
+                }
+                tail = node;
+            }
+            rest = right;
+        }
+        if tail != 0u {
+            next[tail - 1u] = 0u;
+        }
+        if merges <= 1u {
+            break;
+        }
+    }
+    return list;
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let index = id.y * frame.groups * 64u + id.x;
+    if index >= frame.size.x * frame.size.y {
+        return;
+    }
+    let pixel = vec2u(index % frame.size.x, index / frame.size.x);
+    var color = vec3f(0.0);
+    var transmittance = 1.0;
+    var node = sorted(heads[index]);
+    while node != 0u {
+        let fragment = colors[node - 1u];
+        color += transmittance * (fragment.a * fragment.rgb);
+        transmittance *= 1.0 - fragment.a;
+        node = next[node - 1u];
+    }
+    let behind = textureLoad(background, pixel, 0).rgb;
+    textureStore(image, pixel, vec4f(color + transmittance * behind, 1.0 - transmittance));
+}
