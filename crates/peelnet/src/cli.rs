@@ -25,6 +25,7 @@ use std::path::PathBuf;
   peelnet train d --out m.safetensors                   train the thesis's network on it
   peelnet export m.safetensors --out w.wgsl             bake the weights into a shader
   peelnet render data/scenes/sixteen-050.toml --method deep-thesis --model m.safetensors --out a.png
+  peelnet recommend data/scenes/cups.toml --budget-ms 30   which method to take
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage.
 NO_COLOR switches colours off."
@@ -73,6 +74,8 @@ pub enum Command {
     Render(RenderArgs),
     /// Compare many methods: error against time
     Bench(BenchArgs),
+    /// Name the method that a budget of time, error or memory calls for
+    Recommend(RecommendArgs),
     /// Tell what a scene, a dataset or a model is
     Inspect(InspectArgs),
     /// Tell which adapters there are, which one is used and why
@@ -295,7 +298,7 @@ pub struct RenderArgs {
   peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
-DIR gets results.json, results.csv, table.md and images/. A learned method takes the shipped model unless --models names
+DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. A learned method takes the shipped model unless --models names
 another one of its recipe.")]
 pub struct BenchArgs {
     /// Scene files
@@ -319,6 +322,52 @@ pub struct BenchArgs {
     /// Views of each scene
     #[arg(long, value_name = "N|all", default_value = "all")]
     pub views: ViewCount,
+    /// Go on with an interrupted run of the same settings: views that it finished are not drawn again
+    #[arg(long)]
+    pub resume: bool,
+}
+
+/// `peelnet recommend`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet recommend data/scenes/cups.toml --budget-ms 30 --results out/bench
+  peelnet recommend scene.toml --max-error 1e-4
+  peelnet recommend scene.toml --budget-ms 2 --max-bytes 40 --json | jq -r .method
+
+With --max-error the fastest method that keeps it is named, else the most accurate one within the other bounds. Without any bound
+that is the fastest exact one.")]
+pub struct RecommendArgs {
+    /// Scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Longest frame time, milliseconds
+    #[arg(long, value_name = "T", value_parser = positive)]
+    pub budget_ms: Option<f64>,
+    /// Largest mean squared error against the exact image, linear light
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub max_error: Option<f64>,
+    /// Most bytes a pixel beside the colour target
+    #[arg(long, value_name = "B", value_parser = positive)]
+    pub max_bytes: Option<f64>,
+    /// Folder or results.json of a bench; without it the scene is measured now, with all methods
+    #[arg(long, value_name = "DIR|FILE")]
+    pub results: Option<PathBuf>,
+    /// Frame size in pixels, where it is measured now
+    #[arg(
+        long,
+        value_name = "WxH",
+        default_value = "1024x768",
+        conflicts_with = "results"
+    )]
+    pub size: Size,
+    /// Frames of each method and view that are timed, where it is measured now
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 3,
+        conflicts_with = "results"
+    )]
+    pub frames: u32,
 }
 
 /// `peelnet inspect`.
@@ -372,6 +421,8 @@ mod tests {
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
             "bench s --out d --methods mboit4,wboit-eq9 --models m,n --frames 2 --size 8x8 --views 1",
+            "recommend s --budget-ms 3 --max-error 1e-4 --max-bytes 32",
+            "recommend s --results d --json",
             "inspect x --json",
             "doctor --json",
         ] {

@@ -1,6 +1,6 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
-use crate::{EvalError, Row, metrics};
+use crate::{EvalError, Row, metrics, perceptual::Displayed};
 use peelnet_gpu::{Gpu, record::PassTime};
 use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::Scene;
@@ -44,19 +44,28 @@ pub fn image_name(scene: &str, method: &str) -> String {
     format!("{}-{}.png", plain(scene), plain(method))
 }
 
-/// Compares every method of the plan on every view of a scene; the exact method's own rows come first.
-///
-/// `drawn` is called after every frame, with the method's name.
+/// What happens while methods are compared.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// A frame was drawn with this method.
+    Drawn(&'a str),
+    /// A view is done: its rows, the exact method's first.
+    View(Vec<Row>),
+}
+
+/// Compares every method of the plan on every view of a scene but those that `done` names, and tells of frames and views.
 ///
 /// # Errors
-/// If a method cannot draw or a picture cannot be written; [`EvalError::Interrupted`] once `stop` is set.
+/// If a method cannot draw or a picture cannot be written, or what `tell` returns; [`EvalError::Interrupted`] once `stop` is
+/// set.
 pub fn compare(
     gpu: &Gpu,
     scene: &Scene,
     plan: &Plan<'_>,
+    done: &[u32],
     stop: &AtomicBool,
-    drawn: &mut dyn FnMut(&str),
-) -> Result<Vec<Row>, EvalError> {
+    tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+) -> Result<(), EvalError> {
     let failed = |method: &str| {
         let (scene, method) = (scene.name.clone(), method.to_owned());
         move |source| EvalError::Render {
@@ -65,88 +74,102 @@ pub fn compare(
             source: Box::new(source),
         }
     };
+    let views = plan
+        .views
+        .map_or(scene.views.len(), |n| n.min(scene.views.len()));
+    let left: Vec<usize> = (0..views)
+        .filter(|&view| !done.contains(&(view as u32)))
+        .collect();
+    if left.is_empty() {
+        return Ok(());
+    }
     if let Some(folder) = plan.images {
         std::fs::create_dir_all(folder).map_err(EvalError::io(folder, "create the folder"))?;
     }
     let renderer = Renderer::new(gpu, scene).map_err(failed("upload"))?;
     let exact_method: MethodSpec = EXACT.parse().map_err(failed(EXACT))?;
     let others = plan.methods.iter().filter(|m| m.to_string() != EXACT);
-    let mut exact: Vec<Image> = Vec::with_capacity(scene.views.len());
-    let mut rows = Vec::new();
-    let views = &scene.views[..plan
-        .views
-        .map_or(scene.views.len(), |n| n.min(scene.views.len()))];
-    let mut timed = Vec::new();
+    let mut methods = Vec::new();
+    // The exact method comes first, so its image is there for all others.
     for method in std::iter::once(&exact_method).chain(others) {
         let name = method.to_string();
         let learned = plan
             .learned
             .iter()
             .find(|l| l.recipe.method_name() == method.name());
-        let mut prepared = renderer
+        let prepared = renderer
             .prepare(method, plan.size, learned)
             .map_err(failed(&name))?;
-        for (view, camera) in views.iter().enumerate() {
+        methods.push((name, prepared));
+    }
+    for view in left {
+        let camera = &scene.views[view];
+        let mut exact: Option<(Image, Displayed)> = None;
+        let mut rows: Vec<Row> = Vec::new();
+        for (name, prepared) in &mut methods {
             if stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
-            let frame = renderer
-                .draw(&mut prepared, camera)
-                .map_err(failed(&name))?;
+            let frame = renderer.draw(prepared, camera).map_err(failed(name))?;
             if let (0, Some(folder)) = (view, plan.images) {
-                frame
-                    .image
-                    .save(&folder.join(image_name(&scene.name, &name)))
-                    .map_err(failed(&name))?;
+                let path = folder.join(image_name(&scene.name, name));
+                frame.image.save(&path).map_err(failed(name))?;
             }
-            let against = exact.get(view).unwrap_or(&frame.image);
+            let shown = Displayed::new(&frame.image);
+            let (against, displayed) = exact
+                .as_ref()
+                .map_or((&frame.image, &shown), |(image, shown)| (image, shown));
             let differences = metrics::differences(&against.pixels, &frame.image.pixels)?;
-            rows.push(row(gpu, scene, &name, view, &frame, differences));
-            // The exact method comes first, so its images are there for all others.
-            if exact.len() == view {
-                exact.push(frame.image);
+            let mut row = row(gpu, scene, name, view, &frame, differences);
+            row.ssim = shown.ssim(displayed);
+            row.flip = Some(shown.flip(displayed));
+            // Only the exact method knows the fragments of a view for certain.
+            if let Some(first) = rows.first() {
+                (row.fragments, row.max_layers) = (first.fragments, first.max_layers);
             }
-            drawn(&name);
+            rows.push(row);
+            if exact.is_none() {
+                exact = Some((frame.image, shown));
+            }
+            tell(Event::Drawn(name))?;
         }
-        if plan.frames > 0 {
-            timed.push((name, prepared));
-        }
-    }
-    // In turn, so that whatever else the machine does hits all methods alike.
-    for (view, camera) in views.iter().enumerate() {
-        let mut times = vec![Vec::new(); timed.len()];
-        let mut by_pass: Vec<Vec<Vec<PassTime>>> = vec![Vec::new(); timed.len()];
+        // The compared frame was the warm-up. In turn, so that whatever else the machine does hits all methods alike.
+        let mut frames: Vec<Vec<(Vec<PassTime>, f64)>> = vec![Vec::new(); methods.len()];
         for _ in 0..plan.frames {
-            for (k, (name, prepared)) in timed.iter_mut().enumerate() {
+            for ((name, prepared), frames) in methods.iter_mut().zip(&mut frames) {
                 if stop.load(Ordering::Relaxed) {
                     return Err(EvalError::Interrupted);
                 }
-                let (passes, wall) = renderer.time(prepared, camera).map_err(failed(name))?;
-                times[k].push(milliseconds(&passes).unwrap_or(wall / 1e3));
-                by_pass[k].push(passes);
-                drawn(name);
+                frames.push(renderer.time(prepared, camera).map_err(failed(name))?);
+                tell(Event::Drawn(name))?;
             }
         }
-        for (k, mut times) in times.into_iter().enumerate() {
-            times.sort_by(f64::total_cmp);
-            let rank = |share: f64| {
-                let i = (share * times.len() as f64).ceil() as usize;
-                times.get(i.max(1) - 1).copied()
-            };
-            // Rows go method by method, view by view.
-            let row = &mut rows[k * views.len() + view];
-            row.time_ms = rank(0.5);
-            row.time_ms_min = times.first().copied();
-            row.time_ms_p90 = rank(0.9);
-            row.time_by_pass = medians_by_pass(&by_pass[k]);
+        for (row, frames) in rows.iter_mut().zip(&frames) {
+            if !frames.is_empty() {
+                put_times(row, frames);
+            }
         }
+        tell(Event::View(rows))?;
     }
-    // Only the exact method knows the fragments of a view for certain.
-    for k in 0..rows.len() {
-        let view = rows[k].view as usize;
-        (rows[k].fragments, rows[k].max_layers) = (rows[view].fragments, rows[view].max_layers);
-    }
-    Ok(rows)
+    Ok(())
+}
+
+/// Median, least and 90th percentile of a method's frames.
+fn put_times(row: &mut Row, frames: &[(Vec<PassTime>, f64)]) {
+    let mut times: Vec<f64> = frames
+        .iter()
+        .map(|(passes, wall)| milliseconds(passes).unwrap_or(wall / 1e3))
+        .collect();
+    times.sort_by(f64::total_cmp);
+    let rank = |share: f64| {
+        let i = (share * times.len() as f64).ceil() as usize;
+        times.get(i.max(1) - 1).copied()
+    };
+    row.time_ms = rank(0.5);
+    row.time_ms_min = times.first().copied();
+    row.time_ms_p90 = rank(0.9);
+    let passes: Vec<_> = frames.iter().map(|(passes, _)| passes.as_slice()).collect();
+    row.time_by_pass = medians_by_pass(&passes);
 }
 
 /// GPU time of a frame; none without timestamps.
@@ -156,9 +179,9 @@ fn milliseconds(times: &[PassTime]) -> Option<f64> {
 }
 
 /// Median over frames of each pass's time: `name=ms`, by first appearance, passes of one name summed in each frame.
-fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
+fn medians_by_pass(frames: &[&[PassTime]]) -> String {
     let mut names: Vec<&str> = Vec::new();
-    for pass in frames.iter().flatten() {
+    for pass in frames.iter().copied().flatten() {
         if !names.contains(&pass.label.as_str()) {
             names.push(&pass.label);
         }
@@ -202,6 +225,8 @@ fn row(
         mse255: d.mse255,
         mse255_covered: d.mse255_covered,
         psnr: d.psnr,
+        ssim: None,
+        flip: None,
         p99_error: d.p99_error,
         max_error: d.max_error,
         covered_pixels: d.covered_pixels,
@@ -210,7 +235,7 @@ fn row(
         time_ms: milliseconds(&frame.times),
         time_ms_min: None,
         time_ms_p90: None,
-        time_by_pass: medians_by_pass(std::slice::from_ref(&frame.times)),
+        time_by_pass: medians_by_pass(&[&frame.times]),
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
         bytes_per_pixel: frame.stats.bytes_per_pixel,
         adapter: gpu.info.name.clone(),

@@ -43,6 +43,14 @@ pub enum EvalError {
         /// Pixels of the other one.
         approximate: usize,
     },
+    /// An interrupted run cannot be gone on with.
+    #[error("{}: cannot resume: {why}; leave out --resume to start afresh", path.display())]
+    Resume {
+        /// The file of the interrupted run.
+        path: PathBuf,
+        /// What does not fit.
+        why: String,
+    },
     /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,

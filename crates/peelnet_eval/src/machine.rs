@@ -68,6 +68,12 @@ impl Machine {
     }
 }
 
+/// How many programs wanted to run on this machine in the last minute, on average, where the system says it (Linux).
+pub fn load() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/loadavg").ok()?;
+    text.split_whitespace().next()?.parse().ok()
+}
+
 /// The processor's name on Linux; elsewhere no portable source exists.
 fn cpu_name() -> String {
     std::fs::read_to_string("/proc/cpuinfo")

@@ -1,6 +1,6 @@
 //! Methods against one another: the errors of each as ratios to those of two references, over scenes and views.
 
-use crate::{Row, table::geometric_mean};
+use crate::{Row, front::BASE, table::geometric_mean};
 use std::collections::BTreeMap;
 
 /// The weighted blending that errors are compared with.
@@ -21,6 +21,8 @@ pub struct Ratios {
     pub to_moments: Option<f64>,
     /// The scene with the largest ratio of mean error to [`MOMENTS`]'s, and that ratio.
     pub worst: Option<(String, f64)>,
+    /// Geometric mean of the median frame times as a ratio to [`BASE`]'s.
+    pub time_to_base: Option<f64>,
     /// Geometric mean of the median frame times as a ratio to [`MOMENTS`]'s.
     pub time_to_moments: Option<f64>,
     /// The same to [`WEIGHTED`]'s.
@@ -72,6 +74,7 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
                 to_weighted: ratio(mse, mean(WEIGHTED, &error)),
                 to_moments: ratio(mse, mean(MOMENTS, &error)),
                 worst,
+                time_to_base: ratio(mean(method, &time), mean(BASE, &time)),
                 time_to_moments: ratio(mean(method, &time), mean(MOMENTS, &time)),
                 time_to_weighted: ratio(mean(method, &time), mean(WEIGHTED, &time)),
                 bytes_per_pixel: of(method)
@@ -85,12 +88,13 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
 }
 
 /// Headings of [`cells`].
-pub const HEADINGS: [&str; 8] = [
+pub const HEADINGS: [&str; 9] = [
     "method",
     "MSE (linear)",
     "/ wboit-eq9",
     "/ mboit4",
     "worst scene / mboit4",
+    "time / hardware blending",
     "time / mboit4",
     "time / wboit-eq9",
     "bytes a pixel",
@@ -111,6 +115,7 @@ pub fn cells(ratios: &[Ratios]) -> Vec<Vec<String>> {
                 r.worst
                     .as_ref()
                     .map_or_else(|| "–".to_owned(), |(scene, x)| format!("{x:.2} ({scene})")),
+                number(r.time_to_base),
                 number(r.time_to_moments),
                 number(r.time_to_weighted),
                 format!("{:.0}", r.bytes_per_pixel),

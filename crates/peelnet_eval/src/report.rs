@@ -1,9 +1,12 @@
 //! The files of a result: `results.json`, `table.md` and `report.html`.
 
+mod bench_page;
+mod chart;
 mod page;
 
 use crate::{
-    EvalError, Machine, Row, findings::findings, ratios, table, table::Table, write_atomically,
+    EvalError, Machine, Row, findings::findings, front, ratios, table, table::Table,
+    write_atomically,
 };
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -99,16 +102,24 @@ pub struct Bench {
     pub machine: Machine,
     /// The command line.
     pub command: String,
+    /// Mean load of the machine before and after, see [`crate::load`].
+    #[serde(default)]
+    pub load: [Option<f64>; 2],
     /// One row per method, scene and view.
     pub rows: Vec<Row>,
 }
 
 impl Bench {
-    /// Writes `results.json`, `results.csv` and `table.md` into a folder.
+    /// Writes `results.json`, `results.csv`, `table.md`, `pareto.svg` and `report.html` into a folder; pictures are taken from
+    /// `images/` in it.
     ///
     /// # Errors
-    /// If a file cannot be written.
+    /// If a file cannot be written, or a picture not be read.
     pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
+        let svg = chart::chart(&front::points(&self.rows, None));
+        write_atomically(&folder.join("pareto.svg"), svg.as_bytes())?;
+        let page = bench_page::page(self, &folder.join("images"))?;
+        write_atomically(&folder.join("report.html"), page.as_bytes())?;
         let mut json = serde_json::to_vec_pretty(self)
             .expect("a record has string keys only, and floats serialise always");
         json.push(b'\n');

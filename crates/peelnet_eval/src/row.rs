@@ -30,6 +30,12 @@ pub struct Row {
     pub mse255_covered: Option<f64>,
     /// dB; `null` for identical images.
     pub psnr: Option<f64>,
+    /// Mean structural similarity, see [`crate::perceptual`]; `null` for images under 8×8 pixels.
+    #[serde(default)]
+    pub ssim: Option<f64>,
+    /// Mean ꟻLIP, see [`crate::perceptual`].
+    #[serde(default)]
+    pub flip: Option<f64>,
     /// 99th percentile of the pixel error, 0–255.
     pub p99_error: f64,
     /// The largest pixel error, 0–255.

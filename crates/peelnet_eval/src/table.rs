@@ -257,6 +257,8 @@ pub(crate) mod tests {
             mse255,
             mse255_covered: Some(mse255),
             psnr: crate::metrics::psnr(mse255),
+            ssim: None,
+            flip: None,
             p99_error: 0.0,
             max_error: 0.0,
             covered_pixels: 4,

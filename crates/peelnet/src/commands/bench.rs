@@ -8,23 +8,51 @@ use crate::parse::{MethodList, ViewCount, command_line};
 use crate::progress::Progress;
 use crate::shipped;
 use peelnet_eval::{
-    Machine, Row,
-    compare::{Plan, compare},
+    Machine, Partial,
+    compare::{EXACT, Event, Plan, compare},
+    front::BASE,
+    load,
     ratios::{self, ratios},
     report::Bench,
     table::plain,
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
-use peelnet_render::{LearnedWeight, METHODS, MethodSpec};
+use peelnet_render::{LearnedWeight, MethodSpec};
+use peelnet_scene::Scene;
 use serde_json::json;
-use std::path::PathBuf;
+use std::hash::{Hash as _, Hasher as _};
+use std::path::{Path, PathBuf};
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    let bench = measure(context, args, Some(&args.out))?;
+    bench.write(&args.out)?;
+    let table = ratios(&bench.rows);
+    context.console.result(
+        || plain(&ratios::HEADINGS.map(str::to_owned), &ratios::cells(&table)),
+        || json!(bench),
+    )
+}
+
+/// Compares as the arguments say; pictures and what an interrupted run leaves go to `out`.
+///
+/// # Errors
+/// Whatever stopped it.
+pub(super) fn measure(
+    context: &Context<'_>,
+    args: &BenchArgs,
+    out: Option<&Path>,
+) -> Result<Bench, Failure> {
     let scenes = context.scenes(&args.scenes)?;
     let gpu = context.gpu()?;
     let (methods, learned) = methods(context, &gpu, args)?;
-    let images = args.out.join("images");
+    let mut methods = methods;
+    // What times are ratios to.
+    let base: MethodSpec = BASE.parse()?;
+    if !methods.contains(&base) {
+        methods.push(base);
+    }
+    let images = out.map(|folder| folder.join("images"));
     let views = match args.views {
         ViewCount::All => None,
         ViewCount::First(n) => Some(n as usize),
@@ -35,35 +63,63 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         learned: &learned,
         views,
         frames: args.frames,
-        images: Some(&images),
+        images: images.as_deref(),
     };
-    let drawn: usize = scenes
+    let load_before = load();
+    let settings = settings(&gpu, args, &plan, &scenes);
+    let mut partial = match out {
+        Some(folder) if args.resume => Partial::resume(folder, settings)?,
+        _ => Partial::new(out, settings),
+    };
+    let views_of = |scene: &Scene| views.map_or(scene.views.len(), |n| n.min(scene.views.len()));
+    let left: usize = scenes
         .iter()
-        .map(|s| views.map_or(s.views.len(), |n| n.min(s.views.len())))
+        .map(|s| views_of(s).saturating_sub(partial.done(&s.name).len()))
         .sum();
     // The exact method judges whether it is asked for or not.
-    let frames = (drawn * (methods.len() + 1) * (1 + args.frames as usize)) as u64;
+    let judge = usize::from(!methods.iter().any(|m| m.to_string() == EXACT));
+    let frames = (left * (methods.len() + judge) * (1 + args.frames as usize)) as u64;
     let bar = Progress::new(context.console, "bench", frames);
-    let mut done = 0;
-    let mut rows: Vec<Row> = Vec::new();
+    let mut drawn = 0;
     for scene in &scenes {
-        rows.extend(compare(&gpu, scene, &plan, context.stop, &mut |method| {
-            done += 1;
-            bar.set(done, frames, format!("{} with {method}", scene.name));
-        })?);
+        let done = partial.done(&scene.name);
+        compare(&gpu, scene, &plan, &done, context.stop, &mut |event| {
+            match event {
+                Event::Drawn(method) => {
+                    drawn += 1;
+                    bar.set(drawn, frames, format!("{} with {method}", scene.name));
+                }
+                Event::View(rows) => partial.push(rows)?,
+            }
+            Ok(())
+        })?;
     }
     drop(bar);
-    let bench = Bench {
+    Ok(Bench {
         machine: Machine::of(&gpu),
         command: command_line(),
-        rows,
+        load: [load_before, load()],
+        rows: partial.finish(),
+    })
+}
+
+/// What must be the same for an interrupted run to be gone on with.
+fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> serde_json::Value {
+    let hash = |value: &dyn std::fmt::Debug| {
+        let mut hasher = std::hash::DefaultHasher::new();
+        format!("{value:?}").hash(&mut hasher);
+        format!("{:016x}", hasher.finish())
     };
-    bench.write(&args.out)?;
-    let table = ratios(&bench.rows);
-    context.console.result(
-        || plain(&ratios::HEADINGS.map(str::to_owned), &ratios::cells(&table)),
-        || json!(bench),
-    )
+    let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
+    json!({
+        "machine": Machine::of(gpu),
+        "size": plan.size,
+        "frames": plan.frames,
+        "views": format!("{:?}", args.views),
+        "methods": names,
+        "models": hash(&plan.learned),
+        "scenes": scenes.iter().map(|s| (s.name.clone(), hash(s))).collect::<Vec<_>>(),
+    })
 }
 
 /// The methods to compare and the weights of the learned ones among them.
@@ -86,10 +142,7 @@ fn methods(
     }
     let mut wanted = match &args.methods {
         MethodList::These(list) => list.clone(),
-        MethodList::All => METHODS
-            .iter()
-            .map(|m| m.name.parse())
-            .collect::<Result<Vec<MethodSpec>, _>>()?,
+        MethodList::All => MethodSpec::curve(),
     };
     let all = matches!(args.methods, MethodList::All);
     let mut missing: Vec<&str> = Vec::new();

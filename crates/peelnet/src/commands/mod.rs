@@ -5,6 +5,7 @@ mod doctor;
 mod export;
 mod extract;
 mod inspect;
+mod recommend;
 mod render;
 mod run;
 mod train;
@@ -89,6 +90,7 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::Export(args) => export::run(&context, args),
         Command::Render(args) => render::run(&context, args),
         Command::Bench(args) => bench::run(&context, args),
+        Command::Recommend(args) => recommend::run(&context, args),
         Command::Inspect(args) => inspect::run(&context, args),
         Command::Doctor => doctor::run(&context),
     }

@@ -8,7 +8,7 @@ use crate::progress::{Progress, thousands};
 use crate::shipped;
 use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Format, Summary};
-use peelnet_eval::compare::{EXACT, Plan, compare};
+use peelnet_eval::compare::{EXACT, Event, Plan, compare};
 use peelnet_eval::report::Attachments;
 use peelnet_eval::table::{Table, plain};
 use peelnet_eval::{Machine, Record, Row, Stage, write_atomically};
@@ -279,10 +279,16 @@ fn compare_all(
     let mut done = 0;
     let mut rows = Vec::new();
     for scene in scenes {
-        rows.extend(compare(gpu, scene, &plan, context.stop, &mut |method| {
-            done += 1;
-            bar.set(done, frames, format!("{} with {method}", scene.name));
-        })?);
+        compare(gpu, scene, &plan, &[], context.stop, &mut |event| {
+            match event {
+                Event::Drawn(method) => {
+                    done += 1;
+                    bar.set(done, frames, format!("{} with {method}", scene.name));
+                }
+                Event::View(of_view) => rows.extend(of_view),
+            }
+            Ok(())
+        })?;
     }
     Ok(rows)
 }

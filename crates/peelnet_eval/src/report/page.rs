@@ -12,7 +12,7 @@ const PICTURE_BUDGET: usize = 9_000_000;
 /// Widths that are tried for the pictures, pixels.
 const WIDTHS: [u32; 5] = [512, 384, 256, 192, 128];
 
-const STYLE: &str = "
+pub(super) const STYLE: &str = "
 :root { color-scheme: light dark; --ink: #1b1f24; --paper: #ffffff; --line: #d5d9de; --soft: #f4f6f8; --faint: #59636e; }
 @media (prefers-color-scheme: dark) {
   :root { --ink: #e6e9ed; --paper: #14171b; --line: #363c44; --soft: #1d2127; --faint: #9aa4af; }
@@ -52,7 +52,7 @@ pub(super) fn page(record: &Record, attachments: &Attachments<'_>) -> Result<Str
         let _ = writeln!(h, "<li>{}</li>", escape(finding));
     }
     h.push_str("</ul>\n<h2>The table</h2>\n");
-    html_table(&mut h, "", &table.headings(), &table.cells());
+    html_table(&mut h, "", &table.headings(), &table.cells(), &|_| false);
     let _ = writeln!(
         h,
         "<p class=\"note\">{}</p>",
@@ -61,7 +61,7 @@ pub(super) fn page(record: &Record, attachments: &Attachments<'_>) -> Result<Str
 
     h.push_str("<h2>All methods</h2>\n<p class=\"note\">Mean squared error (0–255), mean over the views.</p>\n");
     let (headings, cells) = table.all_methods();
-    html_table(&mut h, "", &headings, &cells);
+    html_table(&mut h, "", &headings, &cells, &|_| false);
     costs(&mut h, record, &table);
 
     if let Some(svg) = attachments.loss_svg {
@@ -95,6 +95,7 @@ pub(super) fn page(record: &Record, attachments: &Attachments<'_>) -> Result<Str
         "text",
         &["property".to_owned(), "value".to_owned()],
         &pairs,
+        &|_| false,
     );
     if !record.stages.is_empty() {
         h.push_str("<h3>Times</h3>\n");
@@ -104,7 +105,7 @@ pub(super) fn page(record: &Record, attachments: &Attachments<'_>) -> Result<Str
             .map(|s| vec![s.name.clone(), format!("{:.1}", s.seconds), s.note.clone()])
             .collect();
         let headings = ["stage", "seconds", "what"].map(str::to_owned);
-        html_table(&mut h, "text", &headings, &stages);
+        html_table(&mut h, "text", &headings, &stages, &|_| false);
     }
     h.push_str("</html>\n");
     Ok(h)
@@ -138,13 +139,20 @@ fn costs(h: &mut String, record: &Record, table: &Table) {
         "most bytes a pixel",
         "GPU ms (median frame)",
     ];
-    html_table(h, "", &headings.map(str::to_owned), &cells);
+    html_table(h, "", &headings.map(str::to_owned), &cells, &|_| false);
     h.push_str(
         "<p class=\"note\">One frame per view, without warm-up: an order of magnitude, not a benchmark.</p>\n",
     );
 }
 
-fn html_table(h: &mut String, class: &str, headings: &[String], cells: &[Vec<String>]) {
+/// A table; lines for which `marked` holds have the class `front`.
+pub(super) fn html_table(
+    h: &mut String,
+    class: &str,
+    headings: &[String],
+    cells: &[Vec<String>],
+    marked: &dyn Fn(usize) -> bool,
+) {
     let _ = write!(
         h,
         "<div class=\"scroll\"><table class=\"{class}\"><thead><tr>"
@@ -153,8 +161,12 @@ fn html_table(h: &mut String, class: &str, headings: &[String], cells: &[Vec<Str
         let _ = write!(h, "<th>{}</th>", escape(heading));
     }
     h.push_str("</tr></thead><tbody>\n");
-    for line in cells {
-        h.push_str("<tr>");
+    for (k, line) in cells.iter().enumerate() {
+        h.push_str(if marked(k) {
+            "<tr class=\"front\">"
+        } else {
+            "<tr>"
+        });
         for cell in line {
             let _ = write!(h, "<td>{}</td>", escape(cell));
         }
@@ -224,7 +236,7 @@ fn gallery(h: &mut String, table: &Table, folder: &Path) -> Result<(), EvalError
 }
 
 /// A picture as `data:` URI, shrunk to at most `width` pixels.
-fn data_uri(picture: &DynamicImage, width: u32) -> Result<String, image::ImageError> {
+pub(super) fn data_uri(picture: &DynamicImage, width: u32) -> Result<String, image::ImageError> {
     let shrunk;
     let picture = if picture.width() > width {
         shrunk = picture.resize(width, u32::MAX, FilterType::Triangle);
@@ -240,7 +252,7 @@ fn data_uri(picture: &DynamicImage, width: u32) -> Result<String, image::ImageEr
     ))
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -248,12 +260,12 @@ fn escape(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::{Machine, table::tests::row};
 
-    fn machine() -> Machine {
+    pub(crate) fn machine() -> Machine {
         Machine {
             os: "linux".into(),
             arch: "x86_64".into(),

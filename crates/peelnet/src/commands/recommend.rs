@@ -1,0 +1,103 @@
+//! `peelnet recommend`: the method that a budget calls for.
+
+use super::{Context, bench};
+use crate::cli::{BenchArgs, RecommendArgs};
+use crate::failure::Failure;
+use crate::parse::{MethodList, ViewCount};
+use peelnet_eval::{
+    front::{Point, points},
+    recommend::Budget,
+    report::Bench,
+};
+use serde_json::json;
+
+pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Failure> {
+    let scene = &context.scenes(std::slice::from_ref(&args.scene))?[0];
+    let measured = match &args.results {
+        Some(path) => read(path)?,
+        None => {
+            let args = BenchArgs {
+                scenes: vec![args.scene.clone()],
+                // Nothing is written.
+                out: std::path::PathBuf::new(),
+                methods: MethodList::All,
+                models: Vec::new(),
+                frames: args.frames,
+                size: args.size,
+                views: ViewCount::All,
+                resume: false,
+            };
+            bench::measure(context, &args, None)?
+        }
+    };
+    let own = points(&measured.rows, Some(&scene.name));
+    let (from, points) = if own.is_empty() {
+        let message = format!(
+            "scene '{}' is not among the results: judged by the geometric means over all scenes of them",
+            scene.name
+        );
+        context.console.warn(message);
+        ("all scenes of the results", points(&measured.rows, None))
+    } else {
+        ("this scene", own)
+    };
+    let budget = Budget {
+        ms: args.budget_ms,
+        error: args.max_error,
+        bytes: args.max_bytes,
+    };
+    let chosen = budget.choose(&points).map_err(Failure::Failed)?;
+    let line = |p: &Point| {
+        format!(
+            "{}: {:.2} ms ({:.2} x hardware blending), {}, {:.0} bytes a pixel",
+            p.method,
+            p.time_ms,
+            p.time,
+            if p.is_exact() {
+                "exact".to_owned()
+            } else {
+                format!("MSE {:.2e}", p.error)
+            },
+            p.bytes
+        )
+    };
+    context.console.result(
+        || {
+            let mut text = format!("{}\n  {}\n", line(chosen.best), chosen.why);
+            if let Some(next) = chosen.runner_up {
+                text.push_str(&format!("runner-up\n  {}\n", line(next)));
+            }
+            text.push_str(&format!("measured on {} with {from}\n", measured.machine.adapter));
+            text
+        },
+        || {
+            let point = |p: &Point| {
+                json!({"method": p.method, "time_ms": p.time_ms, "mse_linear": p.error, "bytes_per_pixel": p.bytes})
+            };
+            json!({
+                "method": chosen.best.method,
+                "best": point(chosen.best),
+                "runner_up": chosen.runner_up.map(point),
+                "why": chosen.why,
+                "adapter": measured.machine.adapter,
+            })
+        },
+    )
+}
+
+/// A bench's `results.json`, or the folder that holds it.
+fn read(path: &std::path::Path) -> Result<Bench, Failure> {
+    let file = if path.is_dir() {
+        path.join("results.json")
+    } else {
+        path.to_owned()
+    };
+    let failed = |why: String| {
+        Failure::Failed(format!(
+            "{}: {why}; make it with: peelnet bench SCENE --out DIR",
+            file.display()
+        ))
+    };
+    let bytes = std::fs::read(&file).map_err(|e| failed(format!("cannot be read: {e}")))?;
+    serde_json::from_slice(&bytes).map_err(|e| failed(format!("is no result of a bench: {e}")))
+}

@@ -1,0 +1,137 @@
+//! Error against time: a point for every method and its knobs, and the Pareto front of them.
+
+use crate::{Row, table::geometric_mean};
+
+/// What times are ratios to: hardware blending in the scene's order, without sorting. The ratio travels between machines.
+pub const BASE: &str = "painter-object:sort=off";
+
+/// Errors below count as this: a mean squared error of (1e-5)², the agreement that exact methods are held to, in linear
+/// light. It keeps geometric means and logarithmic axes finite.
+pub const EXACT_MSE: f64 = 1e-10;
+
+/// A method with its knobs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The method's name with its knobs.
+    pub method: String,
+    /// Geometric mean of `mse_linear`, at least [`EXACT_MSE`].
+    pub error: f64,
+    /// Geometric mean of the frame time as a ratio to [`BASE`]'s; milliseconds where that was not drawn.
+    pub time: f64,
+    /// Geometric mean of the frame time, milliseconds.
+    pub time_ms: f64,
+    /// Most bytes a pixel.
+    pub bytes: f64,
+    /// Whether no other method is both faster and at least as accurate.
+    pub on_front: bool,
+}
+
+impl Point {
+    /// Whether its error is no larger than that of exact methods.
+    pub fn is_exact(&self) -> bool {
+        self.error <= EXACT_MSE
+    }
+}
+
+/// The points of all rows, or of one scene's, by time. Methods without a time are left out.
+pub fn points(rows: &[Row], scene: Option<&str>) -> Vec<Point> {
+    let rows: Vec<&Row> = rows
+        .iter()
+        .filter(|r| scene.is_none_or(|s| r.scene == s))
+        .collect();
+    let mut methods: Vec<&str> = Vec::new();
+    for row in &rows {
+        if !methods.contains(&row.method.as_str()) {
+            methods.push(&row.method);
+        }
+    }
+    let of = |method: &str| -> Vec<&Row> {
+        let all = rows.iter().copied();
+        all.filter(|r| r.method == method).collect()
+    };
+    let time = |method: &str| {
+        let times: Option<Vec<f64>> = of(method).iter().map(|r| r.time_ms).collect();
+        geometric_mean(times?)
+    };
+    let base = time(BASE).unwrap_or(1.0);
+    let mut points: Vec<Point> = methods
+        .iter()
+        .filter_map(|&method| {
+            let time_ms = time(method)?;
+            Some(Point {
+                method: method.to_owned(),
+                error: geometric_mean(of(method).iter().map(|r| r.mse_linear.max(EXACT_MSE)))?,
+                time: time_ms / base,
+                time_ms,
+                bytes: of(method)
+                    .iter()
+                    .map(|r| r.bytes_per_pixel)
+                    .fold(0.0, f64::max),
+                on_front: false,
+            })
+        })
+        .collect();
+    points.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error)));
+    let mut least = f64::INFINITY;
+    for p in &mut points {
+        p.on_front = p.error < least;
+        least = least.min(p.error);
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use crate::table::tests::row;
+
+    fn rows(of: &[(&str, f64, f64)]) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (k, scene) in ["a", "b"].into_iter().enumerate() {
+            for &(method, mse, ms) in of {
+                let mut r = row(scene, 0, method, 0.0);
+                // Another factor on every scene leaves ratios of geometric means as they are.
+                r.mse_linear = mse * [1.0, 4.0][k];
+                r.time_ms = Some(ms * [1.0, 9.0][k]);
+                rows.push(r);
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let all = points(
+            &rows(&[
+                ("exact", 0.0, 5.0),
+                (BASE, 1.0, 1.0),
+                ("good", 1e-3, 2.0),
+                ("worse and slower", 1e-2, 3.0),
+                ("as good, slower", 1e-3, 2.5),
+            ]),
+            None,
+        );
+        let front: Vec<&str> = all
+            .iter()
+            .filter(|p| p.on_front)
+            .map(|p| p.method.as_str())
+            .collect();
+        assert_eq!(front, [BASE, "good", "exact"]);
+        let good = all.iter().find(|p| p.method == "good").unwrap();
+        assert!((good.time - 2.0).abs() < 1e-12 && (good.error - 2e-3).abs() < 1e-12);
+        assert!((good.time_ms - 6.0).abs() < 1e-12);
+        assert!(all.last().unwrap().is_exact());
+    }
+
+    #[test]
+    fn one_scene_and_no_time() {
+        let mut all = rows(&[(BASE, 1.0, 2.0), ("x", 0.5, 3.0)]);
+        all[1].time_ms = None;
+        assert_eq!(points(&all, Some("a")).len(), 1);
+        assert_eq!(points(&all, Some("b")).len(), 2);
+        // A method that was not timed everywhere has no mean.
+        assert_eq!(points(&all, None).len(), 1);
+        assert!(points(&[], None).is_empty());
+    }
+}

@@ -1,0 +1,101 @@
+//! Differences as people see them, from well-kept crates, on 8-bit sRGB images.
+
+use image::{GrayImage, Luma};
+use peelnet_render::Image;
+
+/// An image as both crates read it.
+#[derive(Debug)]
+pub struct Displayed {
+    luma: GrayImage,
+    /// Three bytes a pixel.
+    rgb: Vec<u8>,
+}
+
+impl Displayed {
+    /// Encodes an image for a display.
+    pub fn new(image: &Image) -> Self {
+        let bytes = image.to_srgb8();
+        let mut luma = GrayImage::new(image.width, image.height);
+        for (gray, p) in luma.pixels_mut().zip(bytes.chunks_exact(3)) {
+            // BT.709 weights on encoded values.
+            let [r, g, b] = [p[0], p[1], p[2]].map(f64::from);
+            *gray = Luma([(0.2126 * r + 0.7152 * g + 0.0722 * b).round() as u8]);
+        }
+        Self { luma, rgb: bytes }
+    }
+
+    /// Mean structural similarity (Wang et al. 2004) of the luma: `image-compare`'s, over windows of 8×8 pixels; 1 for equal
+    /// images. `None` for images smaller than a window, or of different sizes.
+    pub fn ssim(&self, exact: &Self) -> Option<f64> {
+        let algorithm = image_compare::Algorithm::MSSIMSimple;
+        let (width, height) = self.luma.dimensions();
+        if width < 8 || height < 8 {
+            return None;
+        }
+        image_compare::gray_similarity_structure(&algorithm, &exact.luma, &self.luma)
+            .ok()
+            .map(|s| s.score)
+    }
+
+    /// Mean ꟻLIP (Andersson et al. 2020): NVIDIA's own code in `nv-flip`, for a display seen at 67 pixels a degree; 0 for
+    /// equal images, at most 1.
+    pub fn flip(&self, exact: &Self) -> f64 {
+        let of = |image: &Self| {
+            let (width, height) = image.luma.dimensions();
+            nv_flip::FlipImageRgb8::with_data(width, height, &image.rgb)
+        };
+        let map = nv_flip::flip(of(exact), of(self), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+        let all = map.to_vec();
+        all.iter().map(|&x| f64::from(x)).sum::<f64>() / all.len().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    fn image(color: impl Fn(u32, u32) -> [f32; 3]) -> Displayed {
+        let pixels = (0..48 * 64)
+            .map(|i| {
+                let [r, g, b] = color(i % 64, i / 64);
+                [r, g, b, 1.0]
+            })
+            .collect();
+        Displayed::new(&Image {
+            width: 64,
+            height: 48,
+            pixels,
+        })
+    }
+
+    #[test]
+    fn equal_images() {
+        let a = image(|x, y| [x as f32 / 64.0, y as f32 / 48.0, 0.3]);
+        assert_eq!(a.flip(&a), 0.0);
+        assert!((a.ssim(&a).unwrap() - 1.0).abs() < 1e-6);
+    }
+
+    /// Constant images have no structure: what is left of SSIM is its luminance term
+    /// `(2 μ ν + c) / (μ² + ν² + c)`, c = (0.01 · 255)².
+    #[test]
+    fn ssim_of_constant_images() {
+        let (black, white) = (image(|_, _| [0.0; 3]), image(|_, _| [1.0; 3]));
+        let c = 2.55f64 * 2.55;
+        let want = c / (255.0 * 255.0 + c);
+        assert!((white.ssim(&black).unwrap() - want).abs() < 1e-6);
+    }
+
+    /// ꟻLIP of white against black is 1 but for the borders' filters, and grows with the difference.
+    #[test]
+    fn flip_grows_with_the_difference() {
+        let black = image(|_, _| [0.0; 3]);
+        let of = |v: f32| image(|_, _| [v; 3]).flip(&black);
+        let (small, large, all) = (of(0.02), of(0.2), of(1.0));
+        assert!(
+            0.0 < small && small < large && large < all,
+            "{small} {large} {all}"
+        );
+        assert!((0.95..=1.0).contains(&all), "{all}");
+    }
+}

@@ -1,0 +1,161 @@
+//! Which method a budget calls for.
+
+use crate::front::Point;
+
+/// What must hold; `None` sets no bound.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Budget {
+    /// Frame time, milliseconds.
+    pub ms: Option<f64>,
+    /// Mean squared error, linear light.
+    pub error: Option<f64>,
+    /// Bytes a pixel.
+    pub bytes: Option<f64>,
+}
+
+/// The method to take, the next best, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recommendation<'a> {
+    /// The method.
+    pub best: &'a Point,
+    /// What would be taken if that were not there.
+    pub runner_up: Option<&'a Point>,
+    /// One sentence.
+    pub why: String,
+}
+
+impl Budget {
+    fn allows(&self, p: &Point) -> bool {
+        let within = |limit: Option<f64>, value: f64| limit.is_none_or(|l| value <= l);
+        within(self.ms, p.time_ms) && within(self.error, p.error) && within(self.bytes, p.bytes)
+    }
+
+    /// The best of the points within the budget: the fastest where an error is asked for, else the most accurate (the faster
+    /// of equally accurate ones). `Err` says which point comes nearest where none is within it.
+    ///
+    /// # Errors
+    /// A sentence for the user.
+    pub fn choose<'a>(&self, points: &'a [Point]) -> Result<Recommendation<'a>, String> {
+        let mut within: Vec<&Point> = points.iter().filter(|p| self.allows(p)).collect();
+        let by_time = |a: &&Point, b: &&Point| a.time_ms.total_cmp(&b.time_ms);
+        let by_error = |a: &&Point, b: &&Point| a.error.total_cmp(&b.error);
+        if self.error.is_some() {
+            within.sort_by(|a, b| by_time(a, b).then(by_error(a, b)));
+        } else {
+            within.sort_by(|a, b| by_error(a, b).then(by_time(a, b)));
+        }
+        let Some((&best, others)) = within.split_first() else {
+            return Err(self.nearest(points));
+        };
+        let ties = if points.len() == within.len() {
+            "of all"
+        } else {
+            "within the budget"
+        };
+        let what = if self.error.is_some() {
+            "the fastest"
+        } else if best.is_exact() {
+            "the fastest exact one"
+        } else {
+            "the most accurate"
+        };
+        let mut why = format!(
+            "{what} of the {} methods and settings {ties} ({} were measured)",
+            within.len(),
+            points.len()
+        );
+        let runner_up = others.first().copied();
+        if let Some(next) = runner_up {
+            why.push_str(&format!(
+                "; {} takes {:.2} x its time{}",
+                next.method,
+                next.time_ms / best.time_ms,
+                if best.is_exact() && next.is_exact() {
+                    " and is exact as well".to_owned()
+                } else {
+                    format!(" and has {:.2} x its error", next.error / best.error)
+                }
+            ));
+        }
+        Ok(Recommendation {
+            best,
+            runner_up,
+            why,
+        })
+    }
+
+    /// What to say where nothing is within the budget.
+    fn nearest(&self, points: &[Point]) -> String {
+        // The largest factor by which a limit is exceeded.
+        let excess = |p: &Point| {
+            let over = |limit: Option<f64>, value: f64| limit.map_or(0.0, |l| value / l);
+            over(self.ms, p.time_ms)
+                .max(over(self.error, p.error))
+                .max(over(self.bytes, p.bytes))
+        };
+        points
+            .iter()
+            .min_by(|a, b| excess(a).total_cmp(&excess(b)))
+            .map_or_else(
+                || "there is no timed method to choose from".to_owned(),
+                |p| {
+                    format!(
+                        "no method is within the budget; the nearest is {}: {:.2} ms, error {:.2e}, {:.0} bytes a pixel",
+                        p.method, p.time_ms, p.error, p.bytes
+                    )
+                },
+            )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    fn points() -> Vec<Point> {
+        [
+            ("fast", 1e-2, 1.0, 8.0),
+            ("good", 1e-4, 2.0, 24.0),
+            ("fat", 1e-5, 2.5, 200.0),
+            ("exact", 1e-10, 5.0, 400.0),
+        ]
+        .into_iter()
+        .map(|(method, error, time_ms, bytes)| Point {
+            method: method.to_owned(),
+            error,
+            time: time_ms,
+            time_ms,
+            bytes,
+            on_front: true,
+        })
+        .collect()
+    }
+
+    #[test]
+    fn budgets_choose() {
+        let points = points();
+        let choose = |ms, error, bytes| {
+            let r = Budget { ms, error, bytes }.choose(&points).unwrap();
+            (r.best.method.clone(), r.runner_up.map(|p| p.method.clone()))
+        };
+        let pair = |a: &str, b: Option<&str>| (a.to_owned(), b.map(str::to_owned));
+        assert_eq!(choose(None, None, None), pair("exact", Some("fat")));
+        assert_eq!(choose(Some(3.0), None, None), pair("fat", Some("good")));
+        assert_eq!(choose(None, Some(1e-3), None), pair("good", Some("fat")));
+        assert_eq!(choose(None, None, Some(50.0)), pair("good", Some("fast")));
+        assert_eq!(choose(Some(1.0), None, None), pair("fast", None));
+    }
+
+    #[test]
+    fn an_empty_budget_names_the_nearest() {
+        let budget = Budget {
+            ms: Some(1.5),
+            error: Some(1e-4),
+            bytes: None,
+        };
+        let e = budget.choose(&points()).unwrap_err();
+        assert!(e.contains("nearest is good"), "{e}");
+        assert!(budget.choose(&[]).unwrap_err().contains("no timed method"));
+    }
+}
