@@ -1,7 +1,9 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
+use crate::transmittance::Stacks;
 use crate::{EvalError, Row, metrics, perceptual::Displayed};
 use peelnet_gpu::{Gpu, record::PassTime};
+use peelnet_model::Model;
 use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::Scene;
 use std::path::Path;
@@ -19,6 +21,8 @@ pub struct Plan<'a> {
     pub methods: &'a [MethodSpec],
     /// Weights for the learned methods among them, found by recipe.
     pub learned: &'a [LearnedWeight],
+    /// The models that those weights come from, as far as their estimates shall be judged fragment by fragment.
+    pub models: &'a [Model],
     /// Views of each scene; all of them when none.
     pub views: Option<usize>,
     /// Frames of each method and view that are timed, after the comparison and all methods in turn.
@@ -89,7 +93,7 @@ pub fn compare(
     let renderer = Renderer::new(gpu, scene).map_err(failed("upload"))?;
     let exact_method: MethodSpec = EXACT.parse().map_err(failed(EXACT))?;
     let others = plan.methods.iter().filter(|m| m.to_string() != EXACT);
-    let mut methods = Vec::new();
+    let (mut methods, mut judged) = (Vec::new(), Vec::new());
     // The exact method comes first, so its image is there for all others.
     for method in std::iter::once(&exact_method).chain(others) {
         let name = method.to_string();
@@ -100,13 +104,19 @@ pub fn compare(
         let prepared = renderer
             .prepare(method, plan.size, learned)
             .map_err(failed(&name))?;
+        let model = plan
+            .models
+            .iter()
+            .find(|m| m.meta.recipe.method_name() == method.name());
         methods.push((name, prepared));
+        judged.push((method, model));
     }
     for view in left {
         let camera = &scene.views[view];
+        let stacks = Stacks::peel(gpu, scene, view, plan.size)?;
         let mut exact: Option<(Image, Displayed)> = None;
         let mut rows: Vec<Row> = Vec::new();
-        for (name, prepared) in &mut methods {
+        for ((name, prepared), (method, model)) in methods.iter_mut().zip(&judged) {
             if stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
@@ -122,6 +132,7 @@ pub fn compare(
             let differences = metrics::differences(&against.pixels, &frame.image.pixels)?;
             let mut row = row(gpu, scene, name, view, &frame, differences);
             row.ssim = shown.ssim(displayed);
+            row.transmittance_error = stacks.error(method, *model);
             row.flip = Some(shown.flip(displayed));
             // Only the exact method knows the fragments of a view for certain.
             if let Some(first) = rows.first() {
@@ -173,7 +184,7 @@ fn put_times(row: &mut Row, frames: &[(Vec<PassTime>, f64)]) {
 }
 
 /// GPU time of a frame; none without timestamps.
-fn milliseconds(times: &[PassTime]) -> Option<f64> {
+pub(crate) fn milliseconds(times: &[PassTime]) -> Option<f64> {
     let micros: f64 = times.iter().map(|t| t.micros).sum();
     (micros > 0.0).then_some(micros / 1e3)
 }
@@ -227,6 +238,7 @@ fn row(
         psnr: d.psnr,
         ssim: None,
         flip: None,
+        transmittance_error: None,
         p99_error: d.p99_error,
         max_error: d.max_error,
         covered_pixels: d.covered_pixels,

@@ -33,6 +33,14 @@ pub enum EvalError {
         /// The renderer's reason.
         source: Box<peelnet_render::RenderError>,
     },
+    /// Peeling failed.
+    #[error("scene '{scene}': {source}")]
+    Peel {
+        /// The scene's name.
+        scene: String,
+        /// The peeler's reason.
+        source: Box<peelnet_peel::PeelError>,
+    },
     /// Two images that should be compared differ in size: a bug of the caller.
     #[error(
         "an image of {approximate} pixels was compared with one of {exact} pixels; draw both with the same size"

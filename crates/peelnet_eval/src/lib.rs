@@ -29,8 +29,10 @@ pub mod ratios;
 pub mod recommend;
 pub mod report;
 mod row;
+pub mod scaling;
 pub mod table;
 pub mod thesis;
+pub mod transmittance;
 
 pub use error::EvalError;
 pub use files::write_atomically;

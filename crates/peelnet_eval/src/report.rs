@@ -4,6 +4,9 @@ mod bench_page;
 mod chart;
 mod page;
 
+#[cfg(test)]
+pub(crate) use page::tests::machine as machine_of_tests;
+
 use crate::{
     EvalError, Machine, Row, findings::findings, front, ratios, table, table::Table,
     write_atomically,

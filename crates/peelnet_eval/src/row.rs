@@ -36,6 +36,9 @@ pub struct Row {
     /// Mean ꟻLIP, see [`crate::perceptual`].
     #[serde(default)]
     pub flip: Option<f64>,
+    /// Mean `|T̂ − T|` over fragments, see [`crate::transmittance`]; `null` for methods that estimate no transmittance.
+    #[serde(default)]
+    pub transmittance_error: Option<f64>,
     /// 99th percentile of the pixel error, 0–255.
     pub p99_error: f64,
     /// The largest pixel error, 0–255.

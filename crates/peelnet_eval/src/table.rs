@@ -259,6 +259,7 @@ pub(crate) mod tests {
             psnr: crate::metrics::psnr(mse255),
             ssim: None,
             flip: None,
+            transmittance_error: None,
             p99_error: 0.0,
             max_error: 0.0,
             covered_pixels: 4,

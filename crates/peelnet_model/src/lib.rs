@@ -22,6 +22,7 @@ mod error;
 mod file;
 mod metadata;
 mod model;
+mod weights;
 
 pub use error::{ModelError, Problem};
 pub use metadata::{DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output, Recipe};

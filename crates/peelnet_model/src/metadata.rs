@@ -1,5 +1,6 @@
 //! What a model knows about itself.
 
+use peelnet_core::statistics::SumPrecision;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
@@ -62,6 +63,14 @@ impl Recipe {
             Self::Large => "deep-large",
             Self::Nmt => "nmt",
             Self::Dfaoit => "dfaoit",
+        }
+    }
+
+    /// How the recipe's method keeps its sums unless told otherwise; networks train on what they will read.
+    pub const fn sum_precision(self) -> SumPrecision {
+        match self {
+            Self::Small | Self::Medium => SumPrecision::Half,
+            _ => SumPrecision::Exact,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::{PeelError, rows::RawTile};
 use bytemuck::{Pod, Zeroable};
+use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
@@ -134,6 +135,11 @@ impl<'g> Harvester<'g> {
             frame,
             peeler,
         })
+    }
+
+    /// The warp that methods take a view's depths through.
+    pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
+        self.scene.depth_warp(camera)
     }
 
     /// Finds a view's fragments and hands each tile over. `next` gives an empty tile to fill (so that memory is used

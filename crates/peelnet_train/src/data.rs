@@ -115,7 +115,8 @@ pub fn held_out_errors(
                 .or_default();
             let warp = pixels::warp(dataset, part)?;
             pixels::for_each_pixel(dataset, part, |_, pixel| {
-                let weights = pixels::weights(model, pixel, &warp);
+                let precision = model.meta.recipe.sum_precision();
+                let weights = model.transmittances(pixel.points, &warp, precision);
                 for (w, &t) in weights.iter().zip(pixel.transmittance) {
                     sum.0 += (w - f64::from(t)).abs();
                     sum.1 += 1;

@@ -5,22 +5,14 @@ use std::ops::Range;
 
 use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::methods::anchored::{Place, seen};
-use peelnet_core::methods::mboit4;
-use peelnet_core::statistics::{self, SumPrecision};
+use peelnet_core::methods::{mboit4, nmt};
+use peelnet_core::statistics;
 use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
-use peelnet_model::{Model, Output, Recipe};
+use peelnet_model::Recipe;
 
 use crate::error::TrainError;
 use crate::recipe::Definition;
 use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
-
-/// The precision of the sums that a recipe's method keeps by default: networks train on what they will read.
-const fn precision(recipe: Recipe) -> SumPrecision {
-    match recipe {
-        Recipe::Small | Recipe::Medium => SumPrecision::Half,
-        _ => SumPrecision::Exact,
-    }
-}
 
 /// Rows that are read at once.
 const ROWS_AT_A_TIME: usize = 1 << 16;
@@ -217,7 +209,7 @@ fn share_pixel(
         return;
     };
     let separate_ends = recipe != Recipe::Small;
-    let all = seen(pixel.points, warp, precision(recipe));
+    let all = seen(pixel.points, warp, recipe.sum_precision());
     let between = all.iter().filter(|s| s.place == Place::Between).count();
     // Exact whatever the network says: nothing to learn.
     if between == 0 || (separate_ends && between == 1) {
@@ -260,21 +252,6 @@ fn share_pixel(
     }
 }
 
-/// `nmt`'s inputs of a fragment.
-fn nmt_inputs(moments: &mboit4::Moments, n: usize, zeta: f64) -> [f64; 7] {
-    let [b0, b1, b2, b3, b4] = moments.0;
-    let total = b0.max(1e-6);
-    [
-        zeta,
-        n as f64,
-        b0,
-        b1 / total,
-        b2 / total,
-        b3 / total,
-        b4 / total,
-    ]
-}
-
 fn transmittance_rows(
     data: &mut TrainingData,
     pixel: &Pixel<'_>,
@@ -289,7 +266,7 @@ fn transmittance_rows(
     for (&(depth, alpha), &t) in pixel.points.iter().zip(pixel.transmittance) {
         push(
             &mut data.inputs,
-            nmt_inputs(&moments, n, warp.apply(depth.into())),
+            nmt::inputs(&moments, n, warp.apply(depth.into())),
         );
         data.targets[0].push(t);
         if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
@@ -346,45 +323,6 @@ fn tail_row(data: &mut TrainingData, pixel: &Pixel<'_>, subset: Subset) {
     if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
         weights.push((covered * covered) as f32);
         subsets.push(subset);
-    }
-}
-
-/// The weight `T̂` of every fragment of a pixel; empty for a network that predicts none.
-pub(crate) fn weights(model: &Model, pixel: &Pixel<'_>, warp: &DepthWarp) -> Vec<f64> {
-    let inputs = model.meta.inputs.len();
-    match model.meta.output {
-        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
-            seen(pixel.points, warp, precision(model.meta.recipe))
-                .iter()
-                .map(|s| s.weight(|features| model.forward_raw_f64(&features[..inputs])[0]))
-                .collect()
-        }
-        Output::Transmittance if model.meta.recipe == Recipe::Nmt => {
-            let mut moments = mboit4::Moments::default();
-            for &(depth, alpha) in pixel.points {
-                moments.add(absorbance(alpha), warp.apply(depth.into()));
-            }
-            let n = pixel.points.len();
-            pixel
-                .points
-                .iter()
-                .map(|&(depth, _)| {
-                    let inputs = nmt_inputs(&moments, n, warp.apply(depth.into()));
-                    model.forward_raw_f64(&inputs)[0]
-                })
-                .collect()
-        }
-        Output::Transmittance => {
-            let sum: f32 = pixel.points.iter().map(|(_, alpha)| alpha).sum();
-            pixel
-                .points
-                .iter()
-                .map(|&(depth, _)| {
-                    model.forward_raw(&[depth, sum, pixel.points.len() as f32])[0].into()
-                })
-                .collect()
-        }
-        Output::TailColor => Vec::new(),
     }
 }
 

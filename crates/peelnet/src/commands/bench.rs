@@ -14,6 +14,7 @@ use peelnet_eval::{
     load,
     ratios::{self, ratios},
     report::Bench,
+    scaling::{self, Scaling},
     table::plain,
 };
 use peelnet_gpu::Gpu;
@@ -21,10 +22,12 @@ use peelnet_model::{Model, Recipe};
 use peelnet_render::{LearnedWeight, MethodSpec};
 use peelnet_scene::Scene;
 use serde_json::json;
-use std::hash::{Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    if args.scaling {
+        return scale(context, args);
+    }
     let bench = measure(context, args, Some(&args.out))?;
     bench.write(&args.out)?;
     let table = ratios(&bench.rows);
@@ -32,6 +35,34 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         || plain(&ratios::HEADINGS.map(str::to_owned), &ratios::cells(&table)),
         || json!(bench),
     )
+}
+
+/// How time and memory grow.
+fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    let gpu = context.gpu()?;
+    let (mut methods, learned, _) = methods(context, &gpu, args)?;
+    if matches!(args.methods, MethodList::All) {
+        // Knobs change what a method costs, hardly how that grows.
+        let mut seen = Vec::new();
+        methods.retain(|m| !seen.contains(&m.name()) && (seen.push(m.name()), true).1);
+    }
+    let bar = Progress::new(context.console, "scaling", 0);
+    let mut told = |done, total, method: &str| bar.set(done, total, method.to_owned());
+    let rows = scaling::measure(
+        &gpu,
+        &methods,
+        &learned,
+        args.frames,
+        context.stop,
+        &mut told,
+    )?;
+    drop(bar);
+    let scaling = Scaling::new(Machine::of(&gpu), command_line(), rows);
+    scaling.write(&args.out)?;
+    let (headings, cells) = scaling.table();
+    context
+        .console
+        .result(|| plain(&headings, &cells), || json!(scaling))
 }
 
 /// Compares as the arguments say; pictures and what an interrupted run leaves go to `out`.
@@ -45,8 +76,7 @@ pub(super) fn measure(
 ) -> Result<Bench, Failure> {
     let scenes = context.scenes(&args.scenes)?;
     let gpu = context.gpu()?;
-    let (methods, learned) = methods(context, &gpu, args)?;
-    let mut methods = methods;
+    let (mut methods, learned, models) = methods(context, &gpu, args)?;
     // What times are ratios to.
     let base: MethodSpec = BASE.parse()?;
     if !methods.contains(&base) {
@@ -61,6 +91,7 @@ pub(super) fn measure(
         size: args.size.0,
         methods: &methods,
         learned: &learned,
+        models: &models,
         views,
         frames: args.frames,
         images: images.as_deref(),
@@ -105,11 +136,6 @@ pub(super) fn measure(
 
 /// What must be the same for an interrupted run to be gone on with.
 fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> serde_json::Value {
-    let hash = |value: &dyn std::fmt::Debug| {
-        let mut hasher = std::hash::DefaultHasher::new();
-        format!("{value:?}").hash(&mut hasher);
-        format!("{:016x}", hasher.finish())
-    };
     let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
     json!({
         "machine": Machine::of(gpu),
@@ -117,8 +143,8 @@ fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> s
         "frames": plan.frames,
         "views": format!("{:?}", args.views),
         "methods": names,
-        "models": hash(&plan.learned),
-        "scenes": scenes.iter().map(|s| (s.name.clone(), hash(s))).collect::<Vec<_>>(),
+        "models": plan.learned.iter().map(|l| &l.wgsl).collect::<Vec<_>>(),
+        "scenes": scenes.iter().map(|s| &s.hash).collect::<Vec<_>>(),
     })
 }
 
@@ -127,18 +153,18 @@ fn methods(
     context: &Context<'_>,
     gpu: &Gpu,
     args: &BenchArgs,
-) -> Result<(Vec<MethodSpec>, Vec<LearnedWeight>), Failure> {
-    let mut learned: Vec<LearnedWeight> = Vec::new();
+) -> Result<(Vec<MethodSpec>, Vec<LearnedWeight>, Vec<Model>), Failure> {
+    let mut models: Vec<Model> = Vec::new();
     for path in &args.models {
         let model = Model::load(path)?;
-        if learned.iter().any(|l| l.recipe == model.meta.recipe) {
+        if models.iter().any(|m| m.meta.recipe == model.meta.recipe) {
             return Err(Failure::Usage(format!(
                 "--models: {} is a second model of recipe {}; one run compares one of each",
                 path.display(),
                 model.meta.recipe
             )));
         }
-        learned.push(learned::text_of(gpu, &model)?);
+        models.push(model);
     }
     let mut wanted = match &args.methods {
         MethodList::These(list) => list.clone(),
@@ -148,12 +174,14 @@ fn methods(
     let mut missing: Vec<&str> = Vec::new();
     for recipe in Recipe::ALL {
         let name = recipe.method_name();
-        if !wanted.iter().any(|m| m.name() == name) || learned.iter().any(|l| l.recipe == recipe) {
+        if !wanted.iter().any(|m| m.name() == name)
+            || models.iter().any(|m| m.meta.recipe == recipe)
+        {
             continue;
         }
         let shipped: Result<PathBuf, Failure> = shipped::model(recipe.name());
         match shipped {
-            Ok(path) => learned.push(learned::text_of(gpu, &Model::load(&path)?)?),
+            Ok(path) => models.push(Model::load(&path)?),
             // Only what was named must be there.
             Err(_) if all => missing.push(name),
             Err(e) => return Err(e),
@@ -166,11 +194,15 @@ fn methods(
             missing.join(", ")
         ));
     }
-    for l in &learned {
-        let name = l.recipe.method_name();
+    for model in &models {
+        let name = model.meta.recipe.method_name();
         if !wanted.iter().any(|m| m.name() == name) {
             wanted.push(name.parse()?);
         }
     }
-    Ok((wanted, learned))
+    let learned = models
+        .iter()
+        .map(|model| learned::text_of(gpu, model))
+        .collect::<Result<_, _>>()?;
+    Ok((wanted, learned, models))
 }

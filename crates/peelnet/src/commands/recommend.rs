@@ -20,6 +20,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 scenes: vec![args.scene.clone()],
                 // Nothing is written.
                 out: std::path::PathBuf::new(),
+                scaling: false,
                 methods: MethodList::All,
                 models: Vec::new(),
                 frames: args.frames,

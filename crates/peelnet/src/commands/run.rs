@@ -264,6 +264,7 @@ fn compare_all(
         size: frame.0,
         methods: &methods,
         learned: &learned,
+        models: &[],
         views: None,
         frames: 0,
         images: Some(images),

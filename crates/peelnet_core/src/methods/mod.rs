@@ -8,6 +8,7 @@ pub mod deep;
 pub mod kbuffer;
 pub mod mboit4;
 pub mod mboit6;
+pub mod nmt;
 pub mod over;
 pub mod stochastic;
 pub mod wavelet;

@@ -122,7 +122,8 @@ pub(super) fn page(bench: &Bench, images: &Path) -> Result<String, EvalError> {
     h.push_str(
         "<p class=\"note\">Times are medians of frames that were drawn method after method in turn, measured by the GPU's timestamps \
          where it has them, sorting on the CPU included. Errors are against abuffer. SSIM: image-compare, windows of 8×8 on 8-bit \
-         luma. ꟻLIP: nv-flip, 67 pixels a degree.</p>\n",
+         luma. ꟻLIP: nv-flip, 67 pixels a degree. T error: mean difference of the transmittance that weights stand for, over the \
+         fragments of a sample of pixels.</p>\n",
     );
     let _ = write!(h, "<script>{SCRIPT}</script>\n</html>\n");
     Ok(h)
@@ -153,6 +154,7 @@ fn points_table(h: &mut String, rows: &[Row], points: &[Point]) {
         "SSIM",
         "ꟻLIP",
         "99 % error",
+        "T error",
         "passes",
         "bytes a pixel",
     ]
@@ -188,6 +190,7 @@ fn points_table(h: &mut String, rows: &[Row], points: &[Point]) {
                 text(mean(&|r| r.ssim), 4),
                 text(mean(&|r| r.flip), 4),
                 text(mean(&|r| Some(r.p99_error)), 1),
+                text(mean(&|r| r.transmittance_error), 4),
                 own.iter().map(|r| r.passes).max().unwrap_or(0).to_string(),
                 format!("{:.0}", p.bytes),
             ]
@@ -319,7 +322,7 @@ mod tests {
                 .unwrap();
         }
         let bench = Bench {
-            machine: crate::report::page::tests::machine(),
+            machine: crate::report::machine_of_tests(),
             command: "peelnet bench \"a&b\"".into(),
             load: [Some(0.5), None],
             rows,

@@ -7,12 +7,13 @@ use super::{
     weighted::SUMS,
 };
 use crate::RenderError;
+use peelnet_core::statistics::SumPrecision;
 use peelnet_model::Recipe;
 
 pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
     let separate_ends = learned.recipe != Recipe::Small;
-    let full = learned.recipe == Recipe::Large;
+    let full = learned.recipe.sum_precision() == SumPrecision::Exact;
     let target = |label, blend| Target {
         label,
         channels: 4,

@@ -484,6 +484,11 @@ impl MethodSpec {
         self.size.unwrap_or_default()
     }
 
+    /// The text of a knob that was given.
+    pub fn knob(&self, name: &str) -> Option<&str> {
+        self.knobs.get(name).map(String::as_str)
+    }
+
     /// A knob that is a finite number.
     pub(crate) fn number(&self, knob: &str, default: f32) -> Result<f32, RenderError> {
         let Some(text) = self.knobs.get(knob) else {

@@ -1,0 +1,528 @@
+//! How every method's time and memory grow: with fragments a pixel, with pixels, and with triangles.
+//!
+//! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
+//! changes at a time.
+
+use crate::{EvalError, Machine, table, write_atomically};
+use glam::{Mat4, Vec3};
+use peelnet_gpu::Gpu;
+use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
+use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
+use plotters::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+/// A method whose frame takes longer is not drawn in the larger steps of that series.
+pub const PATIENCE_MS: f64 = 3000.0;
+
+/// What grows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Series {
+    /// Fragments of every pixel, 1 … 256, at 256×192.
+    Fragments,
+    /// Pixels of the frame, 64×48 … 1024×768, with eight fragments each.
+    Pixels,
+    /// Triangles, 16 … 2²⁰, with eight fragments a pixel at 256×192.
+    Triangles,
+}
+
+/// One step of a series.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Step {
+    series: Series,
+    size: [u32; 2],
+    layers: u32,
+    /// Squares along each side of a wall.
+    cells: u32,
+}
+
+impl Step {
+    fn value(&self) -> u64 {
+        match self.series {
+            Series::Fragments => self.layers.into(),
+            Series::Pixels => u64::from(self.size[0]) * u64::from(self.size[1]),
+            Series::Triangles => 2 * u64::from(self.cells).pow(2) * u64::from(self.layers),
+        }
+    }
+}
+
+fn steps() -> Vec<Step> {
+    const SIZE: [u32; 2] = [256, 192];
+    let fragments = (0..=8).map(|k| Step {
+        series: Series::Fragments,
+        size: SIZE,
+        layers: 1 << k,
+        cells: 1,
+    });
+    let pixels = (0..=4).map(|k| Step {
+        series: Series::Pixels,
+        size: [64 << k, 48 << k],
+        layers: 8,
+        cells: 1,
+    });
+    let triangles = (0..=8).step_by(2).map(|k| Step {
+        series: Series::Triangles,
+        size: SIZE,
+        layers: 8,
+        cells: 1 << k,
+    });
+    fragments.chain(pixels).chain(triangles).collect()
+}
+
+/// What one method took in one step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Growth {
+    /// The method's name with its knobs.
+    pub method: String,
+    /// What grows.
+    pub series: Series,
+    /// How much of it there is.
+    pub value: u64,
+    /// Median frame time, milliseconds.
+    pub time_ms: f64,
+    /// Bytes a pixel.
+    pub bytes_per_pixel: f64,
+}
+
+/// How a method's time and memory grow with a series.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Exponent {
+    /// The method's name with its knobs.
+    pub method: String,
+    /// What grows.
+    pub series: Series,
+    /// Exponent of the frame time, fitted to the upper half of the steps.
+    pub time: Option<f64>,
+    /// The same of the bytes of the whole frame.
+    pub bytes: Option<f64>,
+}
+
+/// A finished measurement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scaling {
+    /// What it was measured on.
+    pub machine: Machine,
+    /// The command line.
+    pub command: String,
+    /// Fitted growth.
+    pub exponents: Vec<Exponent>,
+    /// Every step.
+    pub rows: Vec<Growth>,
+}
+
+/// Measures all steps; `told` hears of each frame: frames so far, frames in all at most, and the method.
+///
+/// # Errors
+/// If a method cannot draw; [`EvalError::Interrupted`] once `stop` is set.
+pub fn measure(
+    gpu: &Gpu,
+    methods: &[MethodSpec],
+    learned: &[LearnedWeight],
+    frames: u32,
+    stop: &AtomicBool,
+    told: &mut dyn FnMut(u64, u64, &str),
+) -> Result<Vec<Growth>, EvalError> {
+    let mut rows: Vec<Growth> = Vec::new();
+    let steps = steps();
+    let total = (steps.len() * methods.len() * (frames as usize + 1)) as u64;
+    let mut done = 0;
+    for step in steps {
+        let scene = stack(step.layers, step.cells);
+        let failed = |method: &str| {
+            let (scene, method) = (scene.name.clone(), method.to_owned());
+            move |source| EvalError::Render {
+                scene,
+                method,
+                source: Box::new(source),
+            }
+        };
+        let renderer = Renderer::new(gpu, &scene).map_err(failed("upload"))?;
+        let camera = &scene.views[0];
+        let mut ready = Vec::new();
+        for method in methods {
+            let name = method.to_string();
+            let slow = rows
+                .iter()
+                .any(|r| r.method == name && r.series == step.series && r.time_ms > PATIENCE_MS);
+            if slow {
+                done += u64::from(frames) + 1;
+                continue;
+            }
+            let weight = learned
+                .iter()
+                .find(|l| l.recipe.method_name() == method.name());
+            let mut prepared = renderer
+                .prepare(method, step.size, weight)
+                .map_err(failed(&name))?;
+            // The first frame warms up, and tells the bytes.
+            let first = renderer
+                .draw(&mut prepared, camera)
+                .map_err(failed(&name))?;
+            done += 1;
+            told(done, total, &name);
+            ready.push((name, prepared, first.stats.bytes_per_pixel, Vec::new()));
+        }
+        for _ in 0..frames.max(1) {
+            for (name, prepared, _, times) in &mut ready {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(EvalError::Interrupted);
+                }
+                let (passes, wall) = renderer.time(prepared, camera).map_err(failed(name))?;
+                times.push(crate::compare::milliseconds(&passes).unwrap_or(wall / 1e3));
+                done += 1;
+                told(done, total, name);
+            }
+        }
+        for (method, _, bytes_per_pixel, mut times) in ready {
+            times.sort_by(f64::total_cmp);
+            rows.push(Growth {
+                method,
+                series: step.series,
+                value: step.value(),
+                time_ms: times[(times.len() - 1) / 2],
+                bytes_per_pixel,
+            });
+        }
+    }
+    Ok(rows)
+}
+
+/// Walls that fill the frame, nearest first in the list, so that sorting has something to do.
+fn stack(layers: u32, cells: u32) -> Scene {
+    let objects = (0..layers)
+        .map(|i| {
+            let t = i as f32 / layers as f32;
+            let material = Material {
+                color: [t, 1.0 - t, 0.5],
+                // The last layer of the deepest stack is still seen a little.
+                alpha: (2.0 / layers as f32).min(0.5),
+                blend: true,
+                double_sided: true,
+                ..Material::default_with(Lighting::Unlit)
+            };
+            wall(1.0 + 9.0 * t, cells, material)
+        })
+        .collect();
+    Scene {
+        name: format!("stack of {layers} walls of {cells}×{cells} squares"),
+        source: PathBuf::from("made by the bench"),
+        hash: String::new(),
+        background: [0.2, 0.3, 0.4],
+        views: vec![Camera {
+            position: Vec3::ZERO,
+            target: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y_degrees: 60.0,
+            near: 0.1,
+            far: 100.0,
+        }],
+        lights: Vec::new(),
+        objects,
+        held_out: true,
+        warnings: Vec::new(),
+    }
+}
+
+fn wall(depth: f32, cells: u32, material: Material) -> Object {
+    // The frame is 4:3, and tan 30° is 0.577.
+    let half = Vec3::new(0.8 * depth, 0.6 * depth, 0.0);
+    let corner = |x: u32, y: u32| {
+        let at = |k: u32| 2.0 * k as f32 / cells as f32 - 1.0;
+        Vec3::new(at(x) * half.x, at(y) * half.y, -depth)
+    };
+    let row = cells + 1;
+    let positions: Vec<Vec3> = (0..row * row).map(|i| corner(i % row, i / row)).collect();
+    let triangles: Vec<[u32; 3]> = (0..cells * cells)
+        .flat_map(|i| {
+            let a = i / cells * row + i % cells;
+            [[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]
+        })
+        .collect();
+    let mesh = Mesh {
+        normals: vec![Vec3::Z; positions.len()],
+        parts: vec![Part {
+            name: "wall".to_owned(),
+            triangles: 0..triangles.len(),
+            material: material.clone(),
+        }],
+        positions,
+        triangles,
+    };
+    Object {
+        name: format!("wall at {depth}"),
+        mesh: Arc::new(mesh),
+        world_from_object: Mat4::IDENTITY,
+        layer: 0,
+        materials: vec![material],
+    }
+}
+
+/// Exponents of every method and series, by least squares of logarithms over the upper half of the steps: constant costs hide
+/// growth in the lower.
+pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
+    let mut all: Vec<Exponent> = Vec::new();
+    for row in rows {
+        if all
+            .iter()
+            .any(|e| e.method == row.method && e.series == row.series)
+        {
+            continue;
+        }
+        let own: Vec<&Growth> = rows
+            .iter()
+            .filter(|r| r.method == row.method && r.series == row.series)
+            .collect();
+        let upper = &own[own.len() / 2..];
+        let fit = |value: &dyn Fn(&Growth) -> f64| {
+            slope(upper.iter().map(|r| ((r.value as f64).ln(), value(r).ln())))
+        };
+        // Of the whole frame, where the frame grows.
+        let pixels = |r: &Growth| match r.series {
+            Series::Pixels => r.value as f64,
+            _ => 1.0,
+        };
+        all.push(Exponent {
+            method: row.method.clone(),
+            series: row.series,
+            time: fit(&|r| r.time_ms),
+            bytes: fit(&|r| r.bytes_per_pixel * pixels(r)),
+        });
+    }
+    all
+}
+
+/// Slope of the line nearest to some points; `None` of fewer than two.
+fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let points: Vec<(f64, f64)> = points.collect();
+    let n = points.len() as f64;
+    let (sx, sy) = points
+        .iter()
+        .fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
+    let (mx, my) = (sx / n, sy / n);
+    let xy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
+    let xx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+    (xx > 0.0).then(|| xy / xx)
+}
+
+impl Scaling {
+    /// With the exponents of the rows.
+    pub fn new(machine: Machine, command: String, rows: Vec<Growth>) -> Self {
+        Self {
+            machine,
+            command,
+            exponents: exponents(&rows),
+            rows,
+        }
+    }
+
+    /// Headings and cells of the exponents.
+    pub fn table(&self) -> (Vec<String>, Vec<Vec<String>>) {
+        let headings = [
+            "method",
+            "time ~ fragments^",
+            "time ~ pixels^",
+            "time ~ triangles^",
+            "bytes ~ fragments^",
+            "bytes ~ pixels^",
+            "bytes ~ triangles^",
+        ];
+        let mut methods: Vec<&str> = Vec::new();
+        for e in &self.exponents {
+            if !methods.contains(&e.method.as_str()) {
+                methods.push(&e.method);
+            }
+        }
+        let all = [Series::Fragments, Series::Pixels, Series::Triangles];
+        let cells = methods
+            .into_iter()
+            .map(|method| {
+                let of = |series: Series, pick: &dyn Fn(&Exponent) -> Option<f64>| {
+                    self.exponents
+                        .iter()
+                        .find(|e| e.method == method && e.series == series)
+                        .and_then(pick)
+                        .map_or_else(|| "–".to_owned(), |x| format!("{x:.2}"))
+                };
+                std::iter::once(method.to_owned())
+                    .chain(all.map(|s| of(s, &|e| e.time)))
+                    .chain(all.map(|s| of(s, &|e| e.bytes)))
+                    .collect()
+            })
+            .collect();
+        (headings.map(str::to_owned).to_vec(), cells)
+    }
+
+    /// Writes `scaling.json`, `scaling.csv`, `scaling.md` and a chart of each series, `scaling-<series>.svg`.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
+        let mut json = serde_json::to_vec_pretty(self).expect("rows have string keys only");
+        json.push(b'\n');
+        write_atomically(&folder.join("scaling.json"), &json)?;
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        for row in &self.rows {
+            csv.serialize(row).expect("a row has flat fields");
+        }
+        let csv = csv.into_inner().expect("memory can be written");
+        write_atomically(&folder.join("scaling.csv"), &csv)?;
+        let (headings, cells) = self.table();
+        let text = format!(
+            "{}\nExponents fitted to the upper half of the steps; – where a frame took longer than {} s before that. Measured on {} \
+             ({}, {} cores) with `{}`.\n",
+            table::markdown(&headings, &cells),
+            PATIENCE_MS / 1e3,
+            self.machine.adapter,
+            self.machine.cpu,
+            self.machine.cores,
+            self.command,
+        );
+        write_atomically(&folder.join("scaling.md"), text.as_bytes())?;
+        for (series, name, unit) in [
+            (Series::Fragments, "fragments", "fragments a pixel"),
+            (Series::Pixels, "pixels", "pixels"),
+            (Series::Triangles, "triangles", "triangles"),
+        ] {
+            let svg = self
+                .chart(series, unit)
+                .unwrap_or_else(|e| unreachable!("drawing into a string cannot fail: {e}"));
+            write_atomically(&folder.join(format!("scaling-{name}.svg")), svg.as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Frame time of every method against the series, on logarithmic axes, the name at each line's end.
+    fn chart(&self, series: Series, unit: &str) -> Result<String, Box<dyn std::error::Error>> {
+        let rows: Vec<&Growth> = self.rows.iter().filter(|r| r.series == series).collect();
+        let mut methods: Vec<&str> = Vec::new();
+        for row in &rows {
+            if !methods.contains(&row.method.as_str()) {
+                methods.push(&row.method);
+            }
+        }
+        let range = |value: &dyn Fn(&Growth) -> f64| {
+            let low = rows.iter().map(|r| value(r)).fold(f64::INFINITY, f64::min);
+            let high = rows.iter().map(|r| value(r)).fold(0.0, f64::max);
+            if high > 0.0 { (low, high) } else { (1.0, 10.0) }
+        };
+        let (few, many) = range(&|r| r.value as f64);
+        let (fast, slow) = range(&|r| r.time_ms);
+        let mut text = String::new();
+        {
+            let area = SVGBackend::with_string(&mut text, (960, 600)).into_drawing_area();
+            area.fill(&WHITE)?;
+            let mut chart = ChartBuilder::on(&area)
+                .margin(16)
+                .x_label_area_size(48)
+                .y_label_area_size(72)
+                .build_cartesian_2d(
+                    (few..many * (many / few).powf(0.3)).log_scale(),
+                    (fast / 1.5..slow * 1.5).log_scale(),
+                )?;
+            chart
+                .configure_mesh()
+                .x_desc(unit)
+                .y_desc("frame time, ms")
+                .light_line_style(TRANSPARENT)
+                .draw()?;
+            for (k, method) in methods.into_iter().enumerate() {
+                let color = Palette99::pick(k).to_rgba();
+                let points: Vec<(f64, f64)> = rows
+                    .iter()
+                    .filter(|r| r.method == method)
+                    .map(|r| (r.value as f64, r.time_ms))
+                    .collect();
+                let last = points.last().copied();
+                chart.draw_series(LineSeries::new(points, color.stroke_width(2)))?;
+                let style = ("sans-serif", 11).into_font().color(&color);
+                chart.draw_series(
+                    last.map(|(x, y)| Text::new(method.to_owned(), (x * 1.02, y), style)),
+                )?;
+            }
+            area.present()?;
+        }
+        Ok(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    fn row(method: &str, series: Series, value: u64, time_ms: f64, bytes: f64) -> Growth {
+        Growth {
+            method: method.to_owned(),
+            series,
+            value,
+            time_ms,
+            bytes_per_pixel: bytes,
+        }
+    }
+
+    /// t = n² and bytes = 24 n; a constant cost in the lower steps is not fitted.
+    #[test]
+    fn powers_are_found() {
+        let rows: Vec<Growth> = [1u64, 2, 4, 8, 16, 32]
+            .into_iter()
+            .map(|n| {
+                let t = if n < 8 { 50.0 } else { (n * n) as f64 };
+                row("x", Series::Fragments, n, t, 24.0 * n as f64)
+            })
+            .collect();
+        let e = &exponents(&rows)[0];
+        assert!((e.time.unwrap() - 2.0).abs() < 1e-9 && (e.bytes.unwrap() - 1.0).abs() < 1e-9);
+        // Of the whole frame, where that grows.
+        let pixels = [64u64, 256, 1024].map(|n| row("x", Series::Pixels, n, n as f64, 10.0));
+        assert!((exponents(&pixels)[0].bytes.unwrap() - 1.0).abs() < 1e-9);
+        assert_eq!(exponents(&rows[..1])[0].time, None);
+    }
+
+    /// Every step is what its series says, in order of growth, and the walls have as many triangles.
+    #[test]
+    fn steps_grow() {
+        for series in [Series::Fragments, Series::Pixels, Series::Triangles] {
+            let own: Vec<Step> = steps().into_iter().filter(|s| s.series == series).collect();
+            assert!(own.windows(2).all(|w| w[0].value() < w[1].value()));
+            assert!(own.len() >= 5);
+        }
+        for step in steps()
+            .iter()
+            .filter(|s| s.series == Series::Triangles)
+            .take(3)
+        {
+            let scene = stack(step.layers, step.cells);
+            assert_eq!(scene.triangles() as u64, step.value());
+        }
+    }
+
+    #[test]
+    fn files_are_written() {
+        let dir = tempfile::tempdir().unwrap();
+        let rows = vec![
+            row("a", Series::Fragments, 1, 1.0, 8.0),
+            row("a", Series::Fragments, 2, 2.0, 8.0),
+            row("b", Series::Pixels, 64, 2.0, 8.0),
+        ];
+        let machine = crate::report::machine_of_tests();
+        let scaling = Scaling::new(machine, "peelnet bench --scaling".into(), rows);
+        scaling.write(dir.path()).unwrap();
+        let text = std::fs::read_to_string(dir.path().join("scaling.md")).unwrap();
+        assert!(text.contains("| b |") && text.contains("–"), "{text}");
+        let csv = std::fs::read_to_string(dir.path().join("scaling.csv")).unwrap();
+        assert!(csv.contains("a,fragments,2,2.0,8.0"), "{csv}");
+        assert!(
+            std::fs::metadata(dir.path().join("scaling-pixels.svg"))
+                .unwrap()
+                .len()
+                > 1000
+        );
+    }
+}

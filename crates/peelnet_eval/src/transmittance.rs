@@ -1,0 +1,206 @@
+//! How far the transmittance that a method's weights stand for is from the exact one, fragment by fragment.
+//!
+//! Computed by the methods' CPU twins in 64 bits, over the fragments of a sample of pixels: the method's own error, but for the
+//! learned methods without that of its targets, whose sums are rounded as the method rounds them.
+
+use crate::EvalError;
+use peelnet_core::{
+    absorbance::{DepthWarp, absorbance},
+    hash::sample_threshold,
+    methods::{mboit4, mboit6, wavelet},
+    statistics::SumPrecision,
+};
+use peelnet_gpu::Gpu;
+use peelnet_model::Model;
+use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_render::{MethodSpec, scene::PixelSample};
+use peelnet_scene::{Camera, Scene};
+
+/// The share of pixels that is looked at.
+pub const SHARE: f64 = 0.02;
+
+/// The fragments of a view's sampled pixels.
+#[derive(Debug)]
+pub struct Stacks {
+    /// (linear depth, α), nearest first, pixel by pixel.
+    pixels: Vec<Vec<(f32, f32)>>,
+    warp: DepthWarp,
+}
+
+impl Stacks {
+    /// Peels a sample of a view's pixels.
+    ///
+    /// # Errors
+    /// If the scene cannot be drawn.
+    pub fn peel(gpu: &Gpu, scene: &Scene, view: usize, size: [u32; 2]) -> Result<Self, EvalError> {
+        let failed = |source| EvalError::Peel {
+            scene: scene.name.clone(),
+            source: Box::new(source),
+        };
+        let camera: &Camera = &scene.views[view];
+        let mut harvester =
+            Harvester::new(gpu, scene, size, Peel::SBuffer, true, None).map_err(failed)?;
+        let sample = PixelSample {
+            seed: 0,
+            view: view as u32,
+            threshold: sample_threshold(SHARE),
+        };
+        let mut pixels = Vec::new();
+        let mut take = |tile: RawTile| {
+            for run in tile.offsets.windows(2) {
+                let run = run[0] as usize..run[1] as usize;
+                if !run.is_empty() {
+                    let fragments = tile.depths[run.clone()].iter().zip(&tile.colors[run]);
+                    pixels.push(fragments.map(|(&z, color)| (z, color[3])).collect());
+                }
+            }
+            Ok(())
+        };
+        harvester
+            .harvest(camera, sample, None, RawTile::default, &mut take)
+            .map_err(failed)?;
+        Ok(Self {
+            pixels,
+            warp: harvester.depth_warp(camera),
+        })
+    }
+
+    /// Mean `|T̂_i − T_i|` over all fragments; `None` for a method whose weights are no transmittance, and of no fragment.
+    pub fn error(&self, method: &MethodSpec, model: Option<&Model>) -> Option<f64> {
+        let (mut sum, mut n) = (0.0, 0u64);
+        for points in &self.pixels {
+            let estimates = estimates(method, points, &self.warp, model)?;
+            let mut exact = 1.0;
+            for (estimate, &(_, alpha)) in estimates.iter().zip(points) {
+                sum += (estimate - exact).abs();
+                exact *= 1.0 - f64::from(alpha);
+                n += 1;
+            }
+        }
+        (n > 0).then(|| sum / n as f64)
+    }
+}
+
+/// The transmittance in front of every fragment as a method's weights tell it.
+fn estimates(
+    method: &MethodSpec,
+    points: &[(f32, f32)],
+    warp: &DepthWarp,
+    model: Option<&Model>,
+) -> Option<Vec<f64>> {
+    let zeta = |depth: f32| warp.apply(depth.into());
+    let own_out = |default: bool| method.knob("own").map_or(default, |word| word == "out");
+    let settings = |paper: mboit4::Settings| {
+        let number = |knob: &str, default: f64| {
+            let given = method.knob(knob).and_then(|text| text.parse().ok());
+            given.unwrap_or(default)
+        };
+        mboit4::Settings {
+            overestimation: number("overestimation", paper.overestimation),
+            bias: number("bias", paper.bias),
+            own_share_out: own_out(paper.own_share_out),
+        }
+    };
+    // Adds and takes away fragments, and tells what the sums say.
+    fn with_own<S: Copy>(
+        points: &[(f64, f64)],
+        empty: S,
+        own_out: bool,
+        add: impl Fn(&mut S, f64, f64),
+        tell: impl Fn(&S, f64) -> f64,
+    ) -> Vec<f64> {
+        let mut sums = empty;
+        for &(b, zeta) in points {
+            add(&mut sums, b, zeta);
+        }
+        points
+            .iter()
+            .map(|&(b, zeta)| {
+                let mut seen = sums;
+                if own_out {
+                    add(&mut seen, -b, zeta);
+                }
+                tell(&seen, zeta)
+            })
+            .collect()
+    }
+    let warped: Vec<(f64, f64)> = points
+        .iter()
+        .map(|&(depth, alpha)| (absorbance(alpha), zeta(depth)))
+        .collect();
+    match method.name() {
+        "mboit4" => {
+            let s = settings(mboit4::Settings::PAPER);
+            let none = mboit4::Moments::default();
+            let tell = |m: &mboit4::Moments, z| m.transmittance(z, &s);
+            Some(with_own(
+                &warped,
+                none,
+                s.own_share_out,
+                mboit4::Moments::add,
+                tell,
+            ))
+        }
+        "mboit6" => {
+            let s = settings(mboit6::PAPER);
+            let none = mboit6::Moments::default();
+            let tell = |m: &mboit6::Moments, z| m.transmittance(z, &s);
+            Some(with_own(
+                &warped,
+                none,
+                s.own_share_out,
+                mboit6::Moments::add,
+                tell,
+            ))
+        }
+        "wavelet-3" => {
+            let none = wavelet::Averages::default();
+            let tell = |a: &wavelet::Averages, z| (-a.in_front(z)).exp().min(1.0);
+            Some(with_own(
+                &warped,
+                none,
+                own_out(true),
+                wavelet::Averages::add,
+                tell,
+            ))
+        }
+        _ => {
+            let model = model?;
+            let precision = match method.knob("targets") {
+                Some("f32") => SumPrecision::Exact,
+                Some(_) => SumPrecision::Half,
+                None => model.meta.recipe.sum_precision(),
+            };
+            let all = model.transmittances(points, warp, precision);
+            (!all.is_empty()).then_some(all)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    fn stacks(pixels: &[&[(f32, f32)]]) -> Stacks {
+        Stacks {
+            pixels: pixels.iter().map(|p| p.to_vec()).collect(),
+            warp: DepthWarp::new(1.0, 100.0),
+        }
+    }
+
+    /// A lone fragment: T is 1, moments with their own share in say e^(−b/4), with it out 1.
+    #[test]
+    fn of_a_single_fragment() {
+        let one = stacks(&[&[(10.0, 0.5)]]);
+        let error = |name: &str| one.error(&name.parse().unwrap(), None);
+        let quarter = 1.0 - 0.5f64.powf(0.25);
+        assert!((error("mboit4").unwrap() - quarter).abs() < 1e-3);
+        assert!((error("mboit6").unwrap() - quarter).abs() < 2e-3);
+        assert!(error("mboit4:own=out").unwrap() < 1e-9);
+        assert!(error("wavelet-3").unwrap() < 1e-9);
+        assert!(error("mboit4:overestimation=0").unwrap() < error("mboit4").unwrap());
+        assert_eq!(error("wboit-eq9"), None);
+        assert_eq!(stacks(&[]).error(&"mboit4".parse().unwrap(), None), None);
+    }
+}
