@@ -410,7 +410,11 @@ impl Scaling {
         let range = |value: &dyn Fn(&Growth) -> f64| {
             let low = rows.iter().map(|r| value(r)).fold(f64::INFINITY, f64::min);
             let high = rows.iter().map(|r| value(r)).fold(0.0, f64::max);
-            if high > 0.0 { (low, high) } else { (1.0, 10.0) }
+            if high > 0.0 {
+                (low, high.max(2.0 * low))
+            } else {
+                (1.0, 10.0)
+            }
         };
         let (few, many) = range(&|r| r.value as f64);
         let (fast, slow) = range(&|r| r.time_ms);

@@ -40,7 +40,11 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
 /// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let gpu = context.gpu()?;
-    let (mut methods, learned, _) = methods(context, &gpu, args)?;
+    let Chosen {
+        mut methods,
+        learned,
+        ..
+    } = chosen(context, &gpu, args)?;
     if matches!(args.methods, MethodList::All) {
         // Knobs change what a method costs, hardly how that grows.
         let mut seen = Vec::new();
@@ -76,7 +80,11 @@ pub(super) fn measure(
 ) -> Result<Bench, Failure> {
     let scenes = context.scenes(&args.scenes)?;
     let gpu = context.gpu()?;
-    let (mut methods, learned, models) = methods(context, &gpu, args)?;
+    let Chosen {
+        mut methods,
+        learned,
+        models,
+    } = chosen(context, &gpu, args)?;
     // What times are ratios to.
     let base: MethodSpec = BASE.parse()?;
     if !methods.contains(&base) {
@@ -148,12 +156,17 @@ fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> s
     })
 }
 
-/// The methods to compare and the weights of the learned ones among them.
-fn methods(
-    context: &Context<'_>,
-    gpu: &Gpu,
-    args: &BenchArgs,
-) -> Result<(Vec<MethodSpec>, Vec<LearnedWeight>, Vec<Model>), Failure> {
+/// What is compared.
+struct Chosen {
+    methods: Vec<MethodSpec>,
+    /// Weights of the learned ones among them.
+    learned: Vec<LearnedWeight>,
+    /// The models of those weights.
+    models: Vec<Model>,
+}
+
+/// The methods to compare, with the models of the learned ones among them.
+fn chosen(context: &Context<'_>, gpu: &Gpu, args: &BenchArgs) -> Result<Chosen, Failure> {
     let mut models: Vec<Model> = Vec::new();
     for path in &args.models {
         let model = Model::load(path)?;
@@ -204,5 +217,9 @@ fn methods(
         .iter()
         .map(|model| learned::text_of(gpu, model))
         .collect::<Result<_, _>>()?;
-    Ok((wanted, learned, models))
+    Ok(Chosen {
+        methods: wanted,
+        learned,
+        models,
+    })
 }
