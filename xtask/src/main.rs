@@ -178,6 +178,7 @@ fn scene_files() -> Result<Vec<String>, String> {
 
 fn test() -> Result<(), String> {
     ensure_driver()?;
+    ensure_browser()?;
     let nextest = cargo()
         .args(["nextest", "--version"])
         .output()
@@ -252,6 +253,15 @@ fn ensure_driver() -> Result<(), String> {
         "No Vulkan driver is installed: installing Mesa's software rasteriser with apt-get ({}).",
         PACKAGES.join(", ")
     );
+    match apt_install(&PACKAGES) {
+        Ok(()) if driver_exists() => Ok(()),
+        Ok(()) => Err(format!("apt-get installed no Vulkan driver; {how}")),
+        Err(e) => Err(format!("{e}; {how}")),
+    }
+}
+
+/// Installs packages, as root or through sudo.
+fn apt_install(packages: &[&str]) -> Result<(), String> {
     let is_root = Command::new("id")
         .arg("-u")
         .output()
@@ -270,13 +280,28 @@ fn ensure_driver() -> Result<(), String> {
             "apt-get",
         )
     };
-    let installed = apt(&["update", "-qq"])
-        .and_then(|()| apt(&[["install", "-y", "-qq"].as_slice(), &PACKAGES].concat()));
-    match installed {
-        Ok(()) if driver_exists() => Ok(()),
-        Ok(()) => Err(format!("apt-get installed no Vulkan driver; {how}")),
-        Err(e) => Err(format!("{e}; {how}")),
+    apt(&["update", "-qq"])?;
+    apt(&[["install", "-y", "-qq"].as_slice(), packages].concat())
+}
+
+/// Makes sure that a browser is there for the test of the report: installs Chromium through apt where none is and apt exists,
+/// saying so. Elsewhere the test itself says what it needs.
+fn ensure_browser() -> Result<(), String> {
+    let found = ["chromium", "chromium-browser", "google-chrome", "chrome"]
+        .into_iter()
+        .any(|name| {
+            Command::new(name)
+                .arg("--version")
+                .output()
+                .is_ok_and(|o| o.status.success())
+        });
+    if found || !Path::new("/usr/bin/apt-get").exists() {
+        return Ok(());
     }
+    println!(
+        "No Chromium is installed: installing it with apt-get (chromium), for the test of the report."
+    );
+    apt_install(&["chromium"])
 }
 
 /// Whether the Vulkan loader and at least one driver's manifest are in the places that the loader searches.
