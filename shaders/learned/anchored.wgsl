@@ -5,7 +5,7 @@
 // each fragment writing what peelnet_statistics(alpha, zeta) returns.
 // zeta is depth on a logarithmic scale: with z the distance along the view axis, and near and far the range that the
 // bounding boxes of the transparent objects in view span (clipped to the camera's),
-//     zeta = clamp(2 * (log(z) - log(near)) / (log(far) - log(near)) - 1, -1, 1).
+//     zeta = clamp(2 * log(z / near) / log(far / near) - 1, -1, 1).
 // Compute it with one function in both passes: the nearest and the farthest fragment are recognised by their zeta.
 
 // Fragments of less opacity are composited, but are never a pixel's nearest or farthest.

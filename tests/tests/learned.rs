@@ -464,9 +464,9 @@ fn the_ends_are_recognised() {
 
 /// A scene that is a thousand times as large, or as small, looks the same: within one step of an 8-bit display.
 ///
-/// But for a pixel in two thousand, by sixteen steps at most: a thousand is no power of two, so that depths are rounded
+/// But for a pixel in ten thousand, by sixteen steps at most: a thousand is no power of two, so that depths are rounded
 /// otherwise, a sum in 16 bits falls on the other side of a rounding, and where little is left of it without the fragment's
-/// own share and the ends that is a large part.
+/// own share and the ends that is a large part. docs/learned-weights.md tells what was measured and tried.
 #[test]
 fn scale_changes_nothing_visible() {
     let gpu = gpu();
@@ -523,7 +523,7 @@ fn scale_changes_nothing_visible() {
         }
     }
     println!("{visible} of {total} pixels differ by more than 1/255, by {worst}/255 at most");
-    assert!(visible * 2000 <= total, "{visible} of {total}");
+    assert!(visible * 10_000 <= total, "{visible} of {total}");
     assert!(worst <= 16.0, "{worst}/255");
 }
 

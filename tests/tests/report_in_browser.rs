@@ -14,6 +14,7 @@ fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
         height: 8,
         fragments: Some(128),
         max_layers: Some(4),
+        lost: None,
         mse_linear: mse,
         mse_linear_covered: Some(mse),
         mse255: mse * 65025.0,
@@ -30,6 +31,7 @@ fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
         time_ms: Some(ms),
         time_ms_min: Some(ms),
         time_ms_p90: Some(ms),
+        wall_ms: None,
         time_by_pass: format!("gather={ms}"),
         passes: 2,
         bytes_per_pixel: 24.0,
@@ -138,10 +140,10 @@ document.body.dataset.found = found.join('; ');
         .and_then(|(_, rest)| rest.split_once('"'))
         .map(|(found, _)| found.to_owned())
         .unwrap_or_else(|| panic!("the check did not run: {}", &dom[..300.min(dom.len())]));
-    // Three charts: all scenes, and one a scene.
+    // Four charts: all scenes in two means, and one a scene.
     assert_eq!(
         found,
-        "bubbles 12; drawn true; up 9.00 10.00 20.00 90.00; down 90.00 20.00 10.00 9.00; \
+        "bubbles 16; drawn true; up 9.00 10.00 20.00 90.00; down 90.00 20.00 10.00 9.00; \
          names abuffer mboit4 painter-object:sort=off wboit-eq9"
     );
 }

@@ -297,13 +297,14 @@ pub struct RenderArgs {
   peelnet bench data/scenes/cups.toml --out out/bench
   peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
   peelnet bench --scaling --out out/scaling
+  peelnet bench --training out/synthetic data/scenes/*-held.toml --out out/training
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
 DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. A learned method takes the shipped model unless --models names
 another one of its recipe.")]
 pub struct BenchArgs {
     /// Scene files
-    #[arg(value_name = "SCENE", required_unless_present = "scaling")]
+    #[arg(value_name = "SCENE", required_unless_present_any = ["scaling", "redraw"])]
     pub scenes: Vec<PathBuf>,
     /// Folder for everything that is written
     #[arg(long, value_name = "DIR")]
@@ -311,6 +312,13 @@ pub struct BenchArgs {
     /// Instead of scenes: how time and memory grow with fragments a pixel, pixels and triangles
     #[arg(long, conflicts_with_all = ["scenes", "size", "views", "resume"])]
     pub scaling: bool,
+    /// Instead of methods: the error of networks on the scenes against parameters, training examples and epochs, trained on these
+    /// datasets
+    #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "methods", "models", "frames", "resume"])]
+    pub training: Vec<PathBuf>,
+    /// Nothing is measured: report, chart and tables are made anew from DIR/results.json
+    #[arg(long, conflicts_with_all = ["scenes", "scaling", "training"])]
+    pub redraw: bool,
     /// Methods to compare, with commas between them; a knob follows a colon
     #[arg(long, value_name = "all|A,B", default_value = "all")]
     pub methods: MethodList,
@@ -426,6 +434,8 @@ mod tests {
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
             "bench s --out d --methods mboit4,wboit-eq9 --models m,n --frames 2 --size 8x8 --views 1",
             "bench --scaling --out d",
+            "bench --redraw --out d",
+            "bench --training d,e s --out o --size 64x48",
             "bench s --out d --resume",
             "recommend s --budget-ms 3 --max-error 1e-4 --max-bytes 32",
             "recommend s --results d --json",

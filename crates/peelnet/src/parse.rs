@@ -41,6 +41,16 @@ pub enum ViewCount {
     First(u32),
 }
 
+impl ViewCount {
+    /// The number of views; `None` for all.
+    pub const fn limit(self) -> Option<usize> {
+        match self {
+            Self::All => None,
+            Self::First(n) => Some(n as usize),
+        }
+    }
+}
+
 impl FromStr for ViewCount {
     type Err = String;
 

@@ -145,7 +145,7 @@ pub fn compare(
             tell(Event::Drawn(name))?;
         }
         // The compared frame was the warm-up. In turn, so that whatever else the machine does hits all methods alike.
-        let mut frames: Vec<Vec<(Vec<PassTime>, f64)>> = vec![Vec::new(); methods.len()];
+        let mut frames: Vec<Vec<Timed>> = vec![Vec::new(); methods.len()];
         for _ in 0..plan.frames {
             for ((name, prepared), frames) in methods.iter_mut().zip(&mut frames) {
                 if stop.load(Ordering::Relaxed) {
@@ -165,20 +165,26 @@ pub fn compare(
     Ok(())
 }
 
+/// A frame's time by pass, and its clock time in microseconds.
+type Timed = (Vec<PassTime>, f64);
+
 /// Median, least and 90th percentile of a method's frames.
-fn put_times(row: &mut Row, frames: &[(Vec<PassTime>, f64)]) {
-    let mut times: Vec<f64> = frames
-        .iter()
-        .map(|(passes, wall)| milliseconds(passes).unwrap_or(wall / 1e3))
-        .collect();
-    times.sort_by(f64::total_cmp);
-    let rank = |share: f64| {
+fn put_times(row: &mut Row, frames: &[Timed]) {
+    let sorted = |time: &dyn Fn(&Timed) -> f64| {
+        let mut times: Vec<f64> = frames.iter().map(time).collect();
+        times.sort_by(f64::total_cmp);
+        times
+    };
+    // Nearest rank.
+    let rank = |times: &[f64], share: f64| {
         let i = (share * times.len() as f64).ceil() as usize;
         times.get(i.max(1) - 1).copied()
     };
-    row.time_ms = rank(0.5);
+    let times = sorted(&|(passes, wall)| milliseconds(passes).unwrap_or(wall / 1e3));
+    row.time_ms = rank(&times, 0.5);
     row.time_ms_min = times.first().copied();
-    row.time_ms_p90 = rank(0.9);
+    row.time_ms_p90 = rank(&times, 0.9);
+    row.wall_ms = rank(&sorted(&|(_, wall)| wall / 1e3), 0.5);
     let passes: Vec<_> = frames.iter().map(|(passes, _)| passes.as_slice()).collect();
     row.time_by_pass = medians_by_pass(&passes);
 }
@@ -231,6 +237,7 @@ fn row(
         height: frame.image.height,
         fragments: frame.stats.fragments,
         max_layers: frame.stats.max_layers,
+        lost: frame.stats.fragments.map(|_| frame.stats.lost),
         mse_linear: d.mse_linear,
         mse_linear_covered: d.mse_linear_covered,
         mse255: d.mse255,
@@ -247,6 +254,7 @@ fn row(
         time_ms: milliseconds(&frame.times),
         time_ms_min: None,
         time_ms_p90: None,
+        wall_ms: Some(frame.wall_micros / 1e3),
         time_by_pass: medians_by_pass(&[&frame.times]),
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
         bytes_per_pixel: frame.stats.bytes_per_pixel,

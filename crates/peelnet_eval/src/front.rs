@@ -9,12 +9,21 @@ pub const BASE: &str = "painter-object:sort=off";
 /// light. It keeps geometric means and logarithmic axes finite.
 pub const EXACT_MSE: f64 = 1e-10;
 
+/// How errors of several views become one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mean {
+    /// Every view counts by its ratio, however small its errors are.
+    Geometric,
+    /// Every view counts by its error: one bad scene is not outweighed by many good ones.
+    Arithmetic,
+}
+
 /// A method with its knobs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// The method's name with its knobs.
     pub method: String,
-    /// Geometric mean of `mse_linear`, at least [`EXACT_MSE`].
+    /// Mean of `mse_linear`, at least [`EXACT_MSE`].
     pub error: f64,
     /// Geometric mean of the frame time as a ratio to [`BASE`]'s; milliseconds where that was not drawn.
     pub time: f64,
@@ -33,8 +42,8 @@ impl Point {
     }
 }
 
-/// The points of all rows, or of one scene's, by time. Methods without a time are left out.
-pub fn points(rows: &[Row], scene: Option<&str>) -> Vec<Point> {
+/// The points of all rows, or of one scene's, by time; times are always geometric means. Methods without a time are left out.
+pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
     let rows: Vec<&Row> = rows
         .iter()
         .filter(|r| scene.is_none_or(|s| r.scene == s))
@@ -58,9 +67,16 @@ pub fn points(rows: &[Row], scene: Option<&str>) -> Vec<Point> {
         .iter()
         .filter_map(|&method| {
             let time_ms = time(method)?;
+            let errors: Vec<f64> = of(method)
+                .iter()
+                .map(|r| r.mse_linear.max(EXACT_MSE))
+                .collect();
             Some(Point {
                 method: method.to_owned(),
-                error: geometric_mean(of(method).iter().map(|r| r.mse_linear.max(EXACT_MSE)))?,
+                error: match mean {
+                    Mean::Geometric => geometric_mean(errors)?,
+                    Mean::Arithmetic => errors.iter().sum::<f64>() / errors.len() as f64,
+                },
                 time: time_ms / base,
                 time_ms,
                 bytes: of(method)
@@ -111,6 +127,7 @@ mod tests {
                 ("as good, slower", 1e-3, 2.5),
             ]),
             None,
+            Mean::Geometric,
         );
         let front: Vec<&str> = all
             .iter()
@@ -124,14 +141,23 @@ mod tests {
         assert!(all.last().unwrap().is_exact());
     }
 
+    /// Errors 1 and 4 of the two scenes: 2 by ratio, 2.5 by size.
+    #[test]
+    fn means_differ() {
+        let all = rows(&[("x", 1.0, 1.0)]);
+        let error = |mean| points(&all, None, mean)[0].error;
+        assert!((error(Mean::Geometric) - 2.0).abs() < 1e-12);
+        assert!((error(Mean::Arithmetic) - 2.5).abs() < 1e-12);
+    }
+
     #[test]
     fn one_scene_and_no_time() {
         let mut all = rows(&[(BASE, 1.0, 2.0), ("x", 0.5, 3.0)]);
         all[1].time_ms = None;
-        assert_eq!(points(&all, Some("a")).len(), 1);
-        assert_eq!(points(&all, Some("b")).len(), 2);
+        assert_eq!(points(&all, Some("a"), Mean::Geometric).len(), 1);
+        assert_eq!(points(&all, Some("b"), Mean::Geometric).len(), 2);
         // A method that was not timed everywhere has no mean.
-        assert_eq!(points(&all, None).len(), 1);
-        assert!(points(&[], None).is_empty());
+        assert_eq!(points(&all, None, Mean::Geometric).len(), 1);
+        assert!(points(&[], None, Mean::Geometric).is_empty());
     }
 }

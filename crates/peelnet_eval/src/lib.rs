@@ -21,6 +21,8 @@ mod error;
 mod files;
 pub mod findings;
 pub mod front;
+pub mod learning;
+mod lines;
 mod machine;
 pub mod metrics;
 mod partial;

@@ -8,7 +8,11 @@ mod page;
 pub(crate) use page::tests::machine as machine_of_tests;
 
 use crate::{
-    EvalError, Machine, Row, findings::findings, front, ratios, table, table::Table,
+    EvalError, Machine, Row,
+    findings::findings,
+    front::{self, Mean},
+    ratios, table,
+    table::Table,
     write_atomically,
 };
 use serde::{Deserialize, Serialize};
@@ -113,14 +117,22 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Writes `results.json`, `results.csv`, `table.md`, `pareto.svg` and `report.html` into a folder; pictures are taken from
+    /// Writes `results.json`, `results.csv`, `table.md`, `pareto.svg`, `pareto-mean.svg` and `report.html` into a folder; pictures are taken from
     /// `images/` in it.
     ///
     /// # Errors
     /// If a file cannot be written, or a picture not be read.
     pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        let svg = chart::chart(&front::points(&self.rows, None));
-        write_atomically(&folder.join("pareto.svg"), svg.as_bytes())?;
+        for (name, mean) in [
+            ("pareto", Mean::Geometric),
+            ("pareto-mean", Mean::Arithmetic),
+        ] {
+            let svg = chart::chart(&front::points(&self.rows, None, mean));
+            // White paper under it; in the page it takes the page's colours.
+            let paper = ">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n<";
+            let svg = svg.replacen(">\n<", paper, 1);
+            write_atomically(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+        }
         let page = bench_page::page(self, &folder.join("images"))?;
         write_atomically(&folder.join("report.html"), page.as_bytes())?;
         let mut json = serde_json::to_vec_pretty(self)

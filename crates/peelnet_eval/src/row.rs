@@ -20,6 +20,10 @@ pub struct Row {
     pub fragments: Option<u64>,
     /// The most fragments of one pixel.
     pub max_layers: Option<u32>,
+    /// Fragments that the method did not composite: coplanar ones in dual peeling, those beyond a cap on passes. `null` where it
+    /// does not count them.
+    #[serde(default)]
+    pub lost: Option<u64>,
     /// Linear light, whole frame.
     pub mse_linear: f64,
     /// Linear light, covered pixels.
@@ -56,6 +60,9 @@ pub struct Row {
     pub time_ms_min: Option<f64>,
     /// 90th percentile (nearest rank) of the timed frames.
     pub time_ms_p90: Option<f64>,
+    /// Clock time from the first command to the last result, the median of the timed frames: what the CPU waits for as well.
+    #[serde(default)]
+    pub wall_ms: Option<f64>,
     /// Median time of each pass, in order, equal names summed: `moments=1.25 gather=2.5`, milliseconds. Empty where the
     /// adapter has no timestamps.
     #[serde(default)]

@@ -3,12 +3,11 @@
 //! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
 //! changes at a time.
 
-use crate::{EvalError, Machine, table, write_atomically};
+use crate::{EvalError, Machine, lines, table, write_atomically};
 use glam::{Mat4, Vec3};
-use peelnet_gpu::Gpu;
-use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
+use peelnet_gpu::{Gpu, GpuError};
+use peelnet_render::{LearnedWeight, MethodSpec, RenderError, Renderer};
 use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
-use plotters::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::{
     path::{Path, PathBuf},
@@ -91,6 +90,19 @@ pub struct Growth {
     pub bytes_per_pixel: f64,
 }
 
+/// A step that a method was not measured in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// The method's name with its knobs.
+    pub method: String,
+    /// What grows.
+    pub series: Series,
+    /// How much of it there is.
+    pub value: u64,
+    /// Why.
+    pub why: String,
+}
+
 /// How a method's time and memory grow with a series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Exponent {
@@ -115,6 +127,8 @@ pub struct Scaling {
     pub exponents: Vec<Exponent>,
     /// Every step.
     pub rows: Vec<Growth>,
+    /// Steps that methods were not measured in.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// Measures all steps; `told` hears of each frame: frames so far, frames in all at most, and the method.
@@ -128,8 +142,8 @@ pub fn measure(
     frames: u32,
     stop: &AtomicBool,
     told: &mut dyn FnMut(u64, u64, &str),
-) -> Result<Vec<Growth>, EvalError> {
-    let mut rows: Vec<Growth> = Vec::new();
+) -> Result<(Vec<Growth>, Vec<LeftOut>), EvalError> {
+    let (mut rows, mut left_out): (Vec<Growth>, Vec<LeftOut>) = (Vec::new(), Vec::new());
     let steps = steps();
     let total = (steps.len() * methods.len() * (frames as usize + 1)) as u64;
     let mut done = 0;
@@ -151,23 +165,43 @@ pub fn measure(
             let slow = rows
                 .iter()
                 .any(|r| r.method == name && r.series == step.series && r.time_ms > PATIENCE_MS);
+            let mut leave_out = |why: String| {
+                left_out.push(LeftOut {
+                    method: name.clone(),
+                    series: step.series,
+                    value: step.value(),
+                    why,
+                });
+            };
             if slow {
                 done += u64::from(frames) + 1;
+                leave_out(format!(
+                    "a frame took longer than {} s before",
+                    PATIENCE_MS / 1e3
+                ));
                 continue;
             }
             let weight = learned
                 .iter()
                 .find(|l| l.recipe.method_name() == method.name());
-            let mut prepared = renderer
-                .prepare(method, step.size, weight)
-                .map_err(failed(&name))?;
             // The first frame warms up, and tells the bytes.
             let first = renderer
-                .draw(&mut prepared, camera)
-                .map_err(failed(&name))?;
+                .prepare(method, step.size, weight)
+                .and_then(|mut prepared| {
+                    let frame = renderer.draw(&mut prepared, camera)?;
+                    Ok((prepared, frame.stats.bytes_per_pixel))
+                });
             done += 1;
             told(done, total, &name);
-            ready.push((name, prepared, first.stats.bytes_per_pixel, Vec::new()));
+            match first {
+                Ok((prepared, bytes)) => ready.push((name, prepared, bytes, Vec::new())),
+                // Memory is what grows: that it ends is a result.
+                Err(RenderError::Gpu(e @ GpuError::TooLarge { .. })) => {
+                    done += u64::from(frames);
+                    leave_out(e.to_string());
+                }
+                Err(e) => return Err(failed(&name)(e)),
+            }
         }
         for _ in 0..frames.max(1) {
             for (name, prepared, _, times) in &mut ready {
@@ -191,7 +225,7 @@ pub fn measure(
             });
         }
     }
-    Ok(rows)
+    Ok((rows, left_out))
 }
 
 /// Walls that fill the frame, nearest first in the list, so that sorting has something to do.
@@ -313,12 +347,18 @@ fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
 
 impl Scaling {
     /// With the exponents of the rows.
-    pub fn new(machine: Machine, command: String, rows: Vec<Growth>) -> Self {
+    pub fn new(
+        machine: Machine,
+        command: String,
+        rows: Vec<Growth>,
+        left_out: Vec<LeftOut>,
+    ) -> Self {
         Self {
             machine,
             command,
             exponents: exponents(&rows),
             rows,
+            left_out,
         }
     }
 
@@ -374,11 +414,23 @@ impl Scaling {
         let csv = csv.into_inner().expect("memory can be written");
         write_atomically(&folder.join("scaling.csv"), &csv)?;
         let (headings, cells) = self.table();
+        let series = |s: Series| format!("{s:?}").to_lowercase();
+        let left_out: String = self
+            .left_out
+            .iter()
+            .map(|l| {
+                format!(
+                    "- {} at {} {}: {}\n",
+                    l.method,
+                    l.value,
+                    series(l.series),
+                    l.why
+                )
+            })
+            .collect();
         let text = format!(
-            "{}\nExponents fitted to the upper half of the steps; – where a frame took longer than {} s before that. Measured on {} \
-             ({}, {} cores) with `{}`.\n",
+            "{}\nExponents fitted to the upper half of the steps. Measured on {} ({}, {} cores) with `{}`.\n\nNot measured:\n\n{left_out}",
             table::markdown(&headings, &cells),
-            PATIENCE_MS / 1e3,
             self.machine.adapter,
             self.machine.cpu,
             self.machine.cores,
@@ -390,69 +442,23 @@ impl Scaling {
             (Series::Pixels, "pixels", "pixels"),
             (Series::Triangles, "triangles", "triangles"),
         ] {
-            let svg = self
-                .chart(series, unit)
-                .unwrap_or_else(|e| unreachable!("drawing into a string cannot fail: {e}"));
+            let svg = lines::chart(&self.lines(series), unit, "frame time, ms");
             write_atomically(&folder.join(format!("scaling-{name}.svg")), svg.as_bytes())?;
         }
         Ok(())
     }
 
-    /// Frame time of every method against the series, on logarithmic axes, the name at each line's end.
-    fn chart(&self, series: Series, unit: &str) -> Result<String, Box<dyn std::error::Error>> {
-        let rows: Vec<&Growth> = self.rows.iter().filter(|r| r.series == series).collect();
-        let mut methods: Vec<&str> = Vec::new();
-        for row in &rows {
-            if !methods.contains(&row.method.as_str()) {
-                methods.push(&row.method);
+    /// Frame time of every method against a series.
+    fn lines(&self, series: Series) -> Vec<lines::Line> {
+        let mut all: Vec<lines::Line> = Vec::new();
+        for row in self.rows.iter().filter(|r| r.series == series) {
+            let point = (row.value as f64, row.time_ms);
+            match all.iter_mut().find(|(name, _)| *name == row.method) {
+                Some((_, points)) => points.push(point),
+                None => all.push((row.method.clone(), vec![point])),
             }
         }
-        let range = |value: &dyn Fn(&Growth) -> f64| {
-            let low = rows.iter().map(|r| value(r)).fold(f64::INFINITY, f64::min);
-            let high = rows.iter().map(|r| value(r)).fold(0.0, f64::max);
-            if high > 0.0 {
-                (low, high.max(2.0 * low))
-            } else {
-                (1.0, 10.0)
-            }
-        };
-        let (few, many) = range(&|r| r.value as f64);
-        let (fast, slow) = range(&|r| r.time_ms);
-        let mut text = String::new();
-        {
-            let area = SVGBackend::with_string(&mut text, (960, 600)).into_drawing_area();
-            area.fill(&WHITE)?;
-            let mut chart = ChartBuilder::on(&area)
-                .margin(16)
-                .x_label_area_size(48)
-                .y_label_area_size(72)
-                .build_cartesian_2d(
-                    (few..many * (many / few).powf(0.3)).log_scale(),
-                    (fast / 1.5..slow * 1.5).log_scale(),
-                )?;
-            chart
-                .configure_mesh()
-                .x_desc(unit)
-                .y_desc("frame time, ms")
-                .light_line_style(TRANSPARENT)
-                .draw()?;
-            for (k, method) in methods.into_iter().enumerate() {
-                let color = Palette99::pick(k).to_rgba();
-                let points: Vec<(f64, f64)> = rows
-                    .iter()
-                    .filter(|r| r.method == method)
-                    .map(|r| (r.value as f64, r.time_ms))
-                    .collect();
-                let last = points.last().copied();
-                chart.draw_series(LineSeries::new(points, color.stroke_width(2)))?;
-                let style = ("sans-serif", 11).into_font().color(&color);
-                chart.draw_series(
-                    last.map(|(x, y)| Text::new(method.to_owned(), (x * 1.02, y), style)),
-                )?;
-            }
-            area.present()?;
-        }
-        Ok(text)
+        all
     }
 }
 
@@ -516,7 +522,7 @@ mod tests {
             row("b", Series::Pixels, 64, 2.0, 8.0),
         ];
         let machine = crate::report::machine_of_tests();
-        let scaling = Scaling::new(machine, "peelnet bench --scaling".into(), rows);
+        let scaling = Scaling::new(machine, "peelnet bench --scaling".into(), rows, Vec::new());
         scaling.write(dir.path()).unwrap();
         let text = std::fs::read_to_string(dir.path().join("scaling.md")).unwrap();
         assert!(text.contains("| b |") && text.contains("–"), "{text}");

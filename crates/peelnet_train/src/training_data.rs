@@ -77,6 +77,30 @@ impl TrainingData {
         self.pixels.as_ref().map_or(self.rows(), |p| p.first.len())
     }
 
+    /// Examples that gradients come from, where the split is given.
+    pub fn training_examples(&self) -> usize {
+        self.subsets.as_ref().map_or(self.examples(), |subsets| {
+            subsets.iter().filter(|s| **s == Subset::Train).count()
+        })
+    }
+
+    /// The same data with only a share of its training examples, evenly spread, left to train on; the others are for testing.
+    pub fn with_share(&self, share: f64) -> Self {
+        let mut data = self.clone();
+        let mut seen = 0u64;
+        for subset in data.subsets.iter_mut().flatten() {
+            if *subset == Subset::Train {
+                let before = (seen as f64 * share) as u64;
+                seen += 1;
+                // At every step of the integer part one is kept.
+                if (seen as f64 * share) as u64 == before {
+                    *subset = Subset::Test;
+                }
+            }
+        }
+        data
+    }
+
     /// # Errors
     /// A missing column, columns of different lengths, no rows at all, more rows than 32-bit indices can name, or a
     /// value that is not finite.

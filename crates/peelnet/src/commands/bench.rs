@@ -1,10 +1,10 @@
 //! `peelnet bench`: error against time for many methods.
 
-use super::Context;
+use super::{Context, bench_training};
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::learned;
-use crate::parse::{MethodList, ViewCount, command_line};
+use crate::parse::{MethodList, command_line};
 use crate::progress::Progress;
 use crate::shipped;
 use peelnet_eval::{
@@ -25,10 +25,17 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    if !args.training.is_empty() {
+        return bench_training::run(context, args);
+    }
     if args.scaling {
         return scale(context, args);
     }
-    let bench = measure(context, args, Some(&args.out))?;
+    let bench = if args.redraw {
+        read(&args.out)?
+    } else {
+        measure(context, args, Some(&args.out))?
+    };
     bench.write(&args.out)?;
     let table = ratios(&bench.rows);
     context.console.result(
@@ -52,7 +59,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     }
     let bar = Progress::new(context.console, "scaling", 0);
     let mut told = |done, total, method: &str| bar.set(done, total, method.to_owned());
-    let rows = scaling::measure(
+    let (rows, left_out) = scaling::measure(
         &gpu,
         &methods,
         &learned,
@@ -61,7 +68,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         &mut told,
     )?;
     drop(bar);
-    let scaling = Scaling::new(Machine::of(&gpu), command_line(), rows);
+    let scaling = Scaling::new(Machine::of(&gpu), command_line(), rows, left_out);
     scaling.write(&args.out)?;
     let (headings, cells) = scaling.table();
     context
@@ -91,10 +98,7 @@ pub(super) fn measure(
         methods.push(base);
     }
     let images = out.map(|folder| folder.join("images"));
-    let views = match args.views {
-        ViewCount::All => None,
-        ViewCount::First(n) => Some(n as usize),
-    };
+    let views = args.views.limit();
     let plan = Plan {
         size: args.size.0,
         methods: &methods,
@@ -222,4 +226,24 @@ fn chosen(context: &Context<'_>, gpu: &Gpu, args: &BenchArgs) -> Result<Chosen, 
         learned,
         models,
     })
+}
+
+/// A bench's `results.json`, or the folder that holds it.
+///
+/// # Errors
+/// If there is none.
+pub(super) fn read(path: &Path) -> Result<Bench, Failure> {
+    let file = if path.is_dir() {
+        path.join("results.json")
+    } else {
+        path.to_owned()
+    };
+    let failed = |why: String| {
+        Failure::Failed(format!(
+            "{}: {why}; make it with: peelnet bench SCENE --out DIR",
+            file.display()
+        ))
+    };
+    let bytes = std::fs::read(&file).map_err(|e| failed(format!("cannot be read: {e}")))?;
+    serde_json::from_slice(&bytes).map_err(|e| failed(format!("is no result of a bench: {e}")))
 }

@@ -5,22 +5,23 @@ use crate::cli::{BenchArgs, RecommendArgs};
 use crate::failure::Failure;
 use crate::parse::{MethodList, ViewCount};
 use peelnet_eval::{
-    front::{Point, points},
+    front::{Mean, Point, points},
     recommend::Budget,
-    report::Bench,
 };
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Failure> {
     let scene = &context.scenes(std::slice::from_ref(&args.scene))?[0];
     let measured = match &args.results {
-        Some(path) => read(path)?,
+        Some(path) => bench::read(path)?,
         None => {
             let args = BenchArgs {
                 scenes: vec![args.scene.clone()],
                 // Nothing is written.
                 out: std::path::PathBuf::new(),
                 scaling: false,
+                training: Vec::new(),
+                redraw: false,
                 methods: MethodList::All,
                 models: Vec::new(),
                 frames: args.frames,
@@ -31,14 +32,17 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             bench::measure(context, &args, None)?
         }
     };
-    let own = points(&measured.rows, Some(&scene.name));
+    let own = points(&measured.rows, Some(&scene.name), Mean::Geometric);
     let (from, points) = if own.is_empty() {
         let message = format!(
             "scene '{}' is not among the results: judged by the geometric means over all scenes of them",
             scene.name
         );
         context.console.warn(message);
-        ("all scenes of the results", points(&measured.rows, None))
+        (
+            "all scenes of the results",
+            points(&measured.rows, None, Mean::Geometric),
+        )
     } else {
         ("this scene", own)
     };
@@ -84,21 +88,4 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             })
         },
     )
-}
-
-/// A bench's `results.json`, or the folder that holds it.
-fn read(path: &std::path::Path) -> Result<Bench, Failure> {
-    let file = if path.is_dir() {
-        path.join("results.json")
-    } else {
-        path.to_owned()
-    };
-    let failed = |why: String| {
-        Failure::Failed(format!(
-            "{}: {why}; make it with: peelnet bench SCENE --out DIR",
-            file.display()
-        ))
-    };
-    let bytes = std::fs::read(&file).map_err(|e| failed(format!("cannot be read: {e}")))?;
-    serde_json::from_slice(&bytes).map_err(|e| failed(format!("is no result of a bench: {e}")))
 }

@@ -82,10 +82,17 @@ fn draw(points: &[Point]) -> Result<String, Box<dyn std::error::Error>> {
         // The large ones first, so that they hide no small one.
         let mut order: Vec<&Point> = points.iter().collect();
         order.sort_by(|a, b| b.bytes.total_cmp(&a.bytes));
-        let mut labels: Vec<(i32, i32)> = Vec::new();
+        let mut placed = Vec::new();
         for p in order {
             let (x, y) = chart.backend_coord(&(p.time, p.error));
-            bubble(&mut overlay, p, x, y, &mut labels);
+            bubble(&mut overlay, p, x, y);
+            placed.push((p, x, y));
+        }
+        // Names of the front first: the others stand where there is room.
+        placed.sort_by_key(|(p, ..)| !p.on_front);
+        let mut names = Vec::new();
+        for (p, x, y) in placed {
+            name(&mut overlay, p, x, y, &mut names);
         }
         area.present()?;
     }
@@ -94,8 +101,8 @@ fn draw(points: &[Point]) -> Result<String, Box<dyn std::error::Error>> {
     Ok(text)
 }
 
-/// A circle with a title, and a name beside it where there is room or the method is on the front.
-fn bubble(svg: &mut String, p: &Point, x: i32, y: i32, labels: &mut Vec<(i32, i32)>) {
+/// A circle with a title.
+fn bubble(svg: &mut String, p: &Point, x: i32, y: i32) {
     let name = super::page::escape(&p.method);
     let color = if p.on_front { "#d55e00" } else { "#0072b2" };
     let error = if p.is_exact() {
@@ -103,30 +110,64 @@ fn bubble(svg: &mut String, p: &Point, x: i32, y: i32, labels: &mut Vec<(i32, i3
     } else {
         format!("MSE {:.2e}", p.error)
     };
-    let r = radius(p.bytes);
     let _ = writeln!(
         svg,
-        "<circle class=\"point\" cx=\"{x}\" cy=\"{y}\" r=\"{r:.1}\" fill=\"{color}\" fill-opacity=\"0.45\" stroke=\"{color}\">\
+        "<circle class=\"point\" cx=\"{x}\" cy=\"{y}\" r=\"{:.1}\" fill=\"{color}\" fill-opacity=\"0.45\" stroke=\"{color}\">\
          <title>{name}: {error}, {:.2} x hardware blending, {:.0} bytes a pixel</title></circle>",
-        p.time, p.bytes
+        radius(p.bytes),
+        p.time,
+        p.bytes
     );
-    let crowded = labels
+}
+
+/// Left, top, right, bottom.
+type Area = [f64; 4];
+
+/// A name beside its bubble, or above or below where that is taken by another; none where all is taken, but on the front.
+fn name(svg: &mut String, p: &Point, x: i32, y: i32, taken: &mut Vec<Area>) {
+    const HEIGHT: f64 = 12.0;
+    let (x, y, r) = (f64::from(x), f64::from(y), radius(p.bytes));
+    // Sans-serif letters are about 0.56 as wide as high.
+    let width = p.method.chars().count() as f64 * 11.0 * 0.56;
+    let area = |left: f64, shift: f64| {
+        [
+            left,
+            y + shift - HEIGHT / 2.0,
+            left + width,
+            y + shift + HEIGHT / 2.0,
+        ]
+    };
+    let shifts: &[f64] = if p.on_front {
+        &[0.0, -13.0, 13.0, -26.0, 26.0, -39.0, 39.0, -52.0, 52.0]
+    } else {
+        &[0.0]
+    };
+    let sides = [x + r + 3.0, x - r - 3.0 - width];
+    let free = |a: &Area| {
+        let apart = |b: &Area| a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1];
+        // Not over the axis, nor beyond the edge.
+        a[0] > 102.0 && a[2] < f64::from(SIZE.0) - 4.0 && taken.iter().all(apart)
+    };
+    let place = shifts
         .iter()
-        .any(|&(a, b)| (a - x).abs() < 110 && (b - y).abs() < 13);
-    if p.on_front || !crowded {
-        let _ = writeln!(
-            svg,
-            "<text class=\"name\" x=\"{:.0}\" y=\"{}\" font-family=\"sans-serif\" font-size=\"11\"{}>{name}</text>",
-            f64::from(x) + r + 3.0,
-            y + 4,
-            if p.on_front {
-                " font-weight=\"bold\""
-            } else {
-                ""
-            },
-        );
-        labels.push((x, y));
-    }
+        .flat_map(|&shift| sides.map(|left| area(left, shift)))
+        .find(free);
+    let Some(place) = place.or_else(|| p.on_front.then(|| area(sides[0], 0.0))) else {
+        return;
+    };
+    let _ = writeln!(
+        svg,
+        "<text class=\"name\" x=\"{:.0}\" y=\"{:.0}\" font-family=\"sans-serif\" font-size=\"11\"{}>{}</text>",
+        place[0],
+        place[3] - 2.0,
+        if p.on_front {
+            " font-weight=\"bold\""
+        } else {
+            ""
+        },
+        super::page::escape(&p.method),
+    );
+    taken.push(place);
 }
 
 #[cfg(test)]

@@ -1,0 +1,131 @@
+//! `peelnet bench --training`: what accuracy costs in training.
+
+use super::Context;
+use crate::cli::BenchArgs;
+use crate::failure::Failure;
+use crate::learned;
+use crate::parse::command_line;
+use crate::progress::Progress;
+use peelnet_dataset::Dataset;
+use peelnet_eval::{
+    Machine,
+    compare::{Event, Plan, compare},
+    learning::{Learning, Lesson, Varied},
+    ratios::{MOMENTS, ratios},
+    table::plain,
+};
+use peelnet_gpu::Gpu;
+use peelnet_model::{Model, Recipe};
+use peelnet_scene::Scene;
+use peelnet_train::{Config, RunOptions, TrainingData, train};
+use serde_json::json;
+
+/// The recipe whose inputs and output form all networks have.
+const RECIPE: Recipe = Recipe::Medium;
+
+/// Hidden layers from next to nothing to more than anyone ships.
+const HIDDEN: [&[usize]; 7] = [&[2], &[4], &[8], &[12], &[24], &[8, 8], &[16, 16]];
+
+/// Shares of the training examples.
+const SHARES: [f64; 5] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 1.0];
+
+/// Epochs, as shares of the recipe's.
+const EPOCHS: [f64; 5] = [1.0 / 24.0, 1.0 / 12.0, 0.25, 0.5, 2.0];
+
+pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    let scenes = context.scenes(&args.scenes)?;
+    let gpu = context.gpu()?;
+    let datasets = args
+        .training
+        .iter()
+        .map(Dataset::open)
+        .collect::<Result<Vec<_>, _>>()?;
+    let base = Config::for_recipe(RECIPE);
+    let data = TrainingData::from_datasets(&base, &datasets)?;
+    let mut plans: Vec<(Varied, Config, f64)> = Vec::new();
+    for hidden in HIDDEN {
+        let config = Config {
+            hidden: hidden.to_vec(),
+            ..base.clone()
+        };
+        plans.push((Varied::Parameters, config, 1.0));
+    }
+    plans.extend(SHARES.map(|share| (Varied::Examples, base.clone(), share)));
+    for share in EPOCHS {
+        let config = Config {
+            epochs: (f64::from(base.epochs) * share).round().max(1.0) as u32,
+            ..base.clone()
+        };
+        plans.push((Varied::Epochs, config, 1.0));
+    }
+    let bar = Progress::new(context.console, "training", plans.len() as u64);
+    let folder = args.out.join("networks");
+    let mut rows: Vec<Lesson> = Vec::new();
+    let total = plans.len() as u64;
+    for (k, (varied, config, share)) in plans.into_iter().enumerate() {
+        bar.set(k as u64, total, format!("{varied:?}").to_lowercase());
+        let own = data.with_share(share);
+        let options = RunOptions::new(folder.join(format!("{k}.safetensors")), context.stop);
+        let outcome = train(&config, &own, &options, |_| {})?;
+        context.check_interrupt()?;
+        let (mse_linear, to_moments) = judge(context, &gpu, &scenes, args, outcome.model.clone())?;
+        rows.push(Lesson {
+            varied,
+            topology: outcome.model.mlp.topology(),
+            parameters: outcome.model.mlp.parameters() as u64,
+            examples: own.training_examples() as u64,
+            epochs: config.epochs,
+            seconds: super::train::seconds(&outcome),
+            mse_linear,
+            to_moments,
+        });
+    }
+    drop(bar);
+    let learning = Learning {
+        machine: Machine::of(&gpu),
+        command: command_line(),
+        recipe: RECIPE.name().to_owned(),
+        rows,
+    };
+    learning.write(&args.out)?;
+    let (headings, cells) = learning.table();
+    context
+        .console
+        .result(|| plain(&headings, &cells), || json!(learning))
+}
+
+/// A network's error on the scenes: geometric mean, and over that of the moments.
+fn judge(
+    context: &Context<'_>,
+    gpu: &Gpu,
+    scenes: &[Scene],
+    args: &BenchArgs,
+    model: Model,
+) -> Result<(f64, f64), Failure> {
+    let name = model.meta.recipe.method_name();
+    let learned = [learned::text_of(gpu, &model)?];
+    let plan = Plan {
+        size: args.size.0,
+        methods: &[MOMENTS.parse()?, name.parse()?],
+        learned: &learned,
+        models: &[],
+        views: args.views.limit(),
+        frames: 0,
+        images: None,
+    };
+    let mut rows = Vec::new();
+    for scene in scenes {
+        compare(gpu, scene, &plan, &[], context.stop, &mut |event| {
+            if let Event::View(of_view) = event {
+                rows.extend(of_view);
+            }
+            Ok(())
+        })?;
+    }
+    let found = ratios(&rows).into_iter().find(|r| r.method == name);
+    found
+        .and_then(|r| Some((r.mse_linear?, r.to_moments?)))
+        .ok_or_else(|| {
+            Failure::Failed("the scenes hold nothing that the network errs on".to_owned())
+        })
+}
