@@ -18,5 +18,6 @@ result = {"share": float(flat.mean())}
 for path in sorted(folder.glob("*.npy")):
     image = numpy.load(path)[..., :3]
     difference = numpy.abs(image - exact).max(axis=2)[flat] * 255.0
-    result[path.stem] = {"most": float(difference.max()), "mean": float(difference.mean()), "mse": float(((image - exact) ** 2).mean())}
+    result[path.stem] = {"most": float(difference.max()), "mean": float(difference.mean()), "over": float((difference > 2.0).mean()),
+                         "mse": float(((image - exact) ** 2).mean())}
 print(json.dumps(result))

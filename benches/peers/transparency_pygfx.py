@@ -1,6 +1,7 @@
 """Draws a scene with pygfx's weighted blending: `scene.json WxH frames`; called by transparency.py."""
 
 import json
+import math
 import os
 import pathlib
 import statistics
@@ -46,7 +47,10 @@ for mesh in scene["meshes"]:
     material = pygfx.MeshBasicMaterial(color=physical(mesh["color"]), opacity=mesh["alpha"], side="both", alpha_mode="weighted_blend")
     world.add(pygfx.Mesh(pygfx.Geometry(positions=points, indices=triangles), material))
 given = scene["camera"]
-camera = pygfx.PerspectiveCamera(given["fov_y"], width / height, depth_range=(given["near"], given["far"]))
+# pygfx takes the angle of the mean of width and height, not of the height.
+aspect = width / height
+angle = 2.0 * math.degrees(math.atan(math.tan(math.radians(given["fov_y"]) / 2.0) * (1.0 + aspect) / 2.0))
+camera = pygfx.PerspectiveCamera(angle, aspect, depth_range=(given["near"], given["far"]))
 camera.maintain_aspect = False
 camera.local.position = given["position"]
 camera.look_at(given["target"])

@@ -157,6 +157,46 @@ fn a_network_from_synthetic_lists_is_benched() {
             assert_eq!(row["mse_linear"] == 0.0, method == "abuffer", "{row}");
         }
     }
+    // What times are ratios to is always there; a pass that took time has a name.
+    let base = rows
+        .iter()
+        .find(|r| r["method"] == "painter-object:sort=off")
+        .unwrap();
+    assert!(
+        base["time_by_pass"].as_str().unwrap().contains("blend="),
+        "{base}"
+    );
+    for name in [
+        "report.html",
+        "pareto.svg",
+        "pareto-mean.svg",
+        "results.csv",
+        "table.md",
+    ] {
+        assert!(dir.path().join("o").join(name).exists(), "{name}");
+    }
+    assert!(!dir.path().join("o/partial.json").exists());
+    // The same rows give the same files again.
+    let chart = std::fs::read(dir.path().join("o/pareto.svg")).unwrap();
+    std::fs::remove_file(dir.path().join("o/pareto.svg")).unwrap();
+    peelnet("bench --redraw --out o -q", dir.path());
+    assert_eq!(
+        std::fs::read(dir.path().join("o/pareto.svg")).unwrap(),
+        chart
+    );
+    // What is exact is named where nothing bounds it, and what is small where bytes do.
+    let named = |flags: &str| {
+        let line = format!("recommend s.toml --results o --json {flags}");
+        let answer: serde_json::Value =
+            serde_json::from_slice(&peelnet(&line, dir.path()).stdout).unwrap();
+        answer["method"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(named(""), "abuffer");
+    let small = named("--max-bytes 12");
+    assert!(
+        ["wboit-eq9", "painter-object:sort=off"].contains(&small.as_str()),
+        "{small}"
+    );
     let mean = |method: &str| -> f64 {
         rows.iter()
             .filter(|r| r["method"] == method)

@@ -1,0 +1,115 @@
+//! The comparison of methods as a library: what is drawn again after an interruption, and how memory grows.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use peelnet_core::fragment::worked_example;
+use peelnet_eval::{
+    Row,
+    compare::{Event, Plan, compare},
+    scaling::{self, Series},
+};
+use peelnet_render::MethodSpec;
+use peelnet_tests::{gpu, walls};
+use std::sync::atomic::AtomicBool;
+
+fn rows(methods: &[MethodSpec], views: usize, done: &[u32]) -> (Vec<Row>, usize) {
+    let gpu = gpu();
+    let mut scene = walls(&worked_example(), [0.0; 3]);
+    scene.views = vec![scene.views[0]; views];
+    let plan = Plan {
+        size: [16, 12],
+        methods,
+        learned: &[],
+        models: &[],
+        views: None,
+        frames: 2,
+        images: None,
+    };
+    let (mut rows, mut drawn) = (Vec::new(), 0);
+    compare(
+        &gpu,
+        &scene,
+        &plan,
+        done,
+        &AtomicBool::new(false),
+        &mut |event| {
+            match event {
+                Event::Drawn(_) => drawn += 1,
+                Event::View(of_view) => rows.extend(of_view),
+            }
+            Ok(())
+        },
+    )
+    .unwrap();
+    (rows, drawn)
+}
+
+/// Views that are done are not drawn again; the others have the rows that they would have had.
+#[test]
+fn a_resumed_comparison_draws_what_is_left() {
+    let methods: Vec<MethodSpec> = ["mboit4", "dual-peel"].map(|m| m.parse().unwrap()).to_vec();
+    let (all, drawn) = rows(&methods, 3, &[]);
+    // The exact method and two others, on three views: one compared frame and two timed ones each.
+    assert_eq!((all.len(), drawn), (9, 27));
+    let (left, drawn) = rows(&methods, 3, &[0, 2]);
+    assert_eq!((left.len(), drawn), (3, 9));
+    for (a, b) in all.iter().filter(|r| r.view == 1).zip(&left) {
+        assert_eq!((&a.method, a.view), (&b.method, b.view));
+        // Errors agree to the bit.
+        assert_eq!(a.mse_linear.to_bits(), b.mse_linear.to_bits());
+        assert_eq!(
+            (a.ssim, a.flip, a.transmittance_error),
+            (b.ssim, b.flip, b.transmittance_error)
+        );
+    }
+    assert!(
+        all.iter()
+            .all(|r| (r.method == "mboit4") == r.transmittance_error.is_some())
+    );
+    assert!(
+        all.iter()
+            .all(|r| r.lost.unwrap_or_default() == 0 && r.flip.is_some())
+    );
+    assert_eq!(rows(&methods, 3, &[0, 1, 2]).1, 0);
+}
+
+/// Bytes follow from what is allocated: per-fragment storage grows with the fragments, targets do not; both grow with pixels.
+#[test]
+fn memory_grows_as_it_is_allocated() {
+    let methods: Vec<MethodSpec> = ["abuffer", "wboit-eq9", "kbuffer-4"]
+        .map(|m| m.parse().unwrap())
+        .to_vec();
+    let stop = AtomicBool::new(false);
+    let (rows, left_out) =
+        scaling::measure(&gpu(), &methods, &[], 1, &stop, &mut |_, _, _| ()).unwrap();
+    assert!(left_out.is_empty(), "{left_out:?}");
+    let of = |method: &str, series: Series, value: u64| {
+        let found = rows
+            .iter()
+            .find(|r| r.method == method && r.series == series && r.value == value);
+        found
+            .unwrap_or_else(|| panic!("{method} at {value} {series:?}"))
+            .bytes_per_pixel
+    };
+    // RGBA16F and R16F; and four depths, triangles and colours with an attachment that nothing is written to.
+    assert_eq!(of("wboit-eq9", Series::Fragments, 256), 10.0);
+    assert_eq!(
+        of("kbuffer-4", Series::Fragments, 1),
+        10.0 + 4.0 * 24.0 + 1.0
+    );
+    // Count, offset, attachment, and 24 bytes a fragment.
+    assert_eq!(of("abuffer", Series::Fragments, 64), 9.0 + 64.0 * 24.0);
+    let fits = scaling::exponents(&rows);
+    for fit in &fits {
+        let bytes = fit.bytes.unwrap();
+        let want = match (fit.series, fit.method.as_str()) {
+            (Series::Pixels, _) => 1.0,
+            (Series::Fragments, "abuffer") => 1.0,
+            _ => 0.0,
+        };
+        // The constant 9 bytes bend the abuffer's curve.
+        assert!((bytes - want).abs() < 0.03, "{fit:?}");
+        assert!(fit.time.is_some());
+    }
+    assert_eq!(fits.len(), 9);
+}
