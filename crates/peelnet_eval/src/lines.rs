@@ -73,12 +73,12 @@ mod tests {
                     vec![(1.0, 2.0), (10.0, 0.0), (100.0, 4.0)],
                 ),
                 ("two".to_owned(), vec![(1.0, 1.0)]),
-                ("none".to_owned(), vec![]),
+                ("nowhere".to_owned(), vec![]),
             ],
             "x",
             "y",
         );
-        assert!(svg.contains("one") && svg.contains("two") && !svg.contains("none"));
+        assert!(svg.contains("one") && svg.contains("two") && !svg.contains("nowhere"));
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
         assert!(chart(&[], "x", "y").contains("<svg"));
     }

@@ -180,7 +180,7 @@ mod tests {
         )
     }
 
-    const PARAMETERS: &str = "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\nconst BIAS: f32 = 5e-7;\nconst OVERESTIMATION: f32 = 0.25;\n";
+    const PARAMETERS: &str = "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\nconst BIAS: f32 = 5e-7;\nconst OVERESTIMATION: f32 = 0.25;\nconst K: u32 = 4u;\nconst SAMPLES: u32 = 8u;\n";
 
     /// Every root (a module with an entry point) links and validates in every feature it names; all failures are
     /// reported at once.
@@ -200,7 +200,14 @@ mod tests {
                 ["eq7", "eq8", "eq9", "eq10", "inverse_power", "papakostas"]
                     .map(|w| vec![w, "opaque"])
                     .to_vec()
-            } else if *path == "methods::mboit4::gather" {
+            } else if *path == "methods::kbuffer::gather" {
+                ["unweighted", "eq7", "eq8", "eq9"]
+                    .map(|w| vec![w, "opaque"])
+                    .to_vec()
+            } else if ["mboit4", "mboit6", "wavelet"]
+                .iter()
+                .any(|m| *path == format!("methods::{m}::gather"))
+            {
                 vec![vec![], vec!["own_share_out", "opaque"]]
             } else if path.starts_with("methods::anchored") {
                 vec![
