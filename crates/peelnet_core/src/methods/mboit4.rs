@@ -33,11 +33,20 @@ impl Settings {
     };
 }
 
-/// `b_0 … b_4` of a pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments(pub [f64; 5]);
+/// The absorbance of a pixel and its power moments, `b_0 … b_{N−1}`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerMoments<const N: usize>(pub [f64; N]);
 
-impl Moments {
+/// `b_0 … b_4` of a pixel.
+pub type Moments = PowerMoments<5>;
+
+impl<const N: usize> Default for PowerMoments<N> {
+    fn default() -> Self {
+        Self([0.0; N])
+    }
+}
+
+impl<const N: usize> PowerMoments<N> {
     /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
     pub fn add(&mut self, b: f64, zeta: f64) {
         let mut power = b;
@@ -47,19 +56,30 @@ impl Moments {
         }
     }
 
-    /// The estimate of the transmittance in front of `zeta`.
-    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+    /// The estimate of the transmittance in front of a depth, from the share of the absorbance that can lie there: its `bounds`
+    /// given `b_k / b_0`, `k` from 1.
+    pub(super) fn estimate<const M: usize>(
+        &self,
+        settings: &Settings,
+        bounds: impl FnOnce([f64; M]) -> (f64, f64),
+    ) -> f64 {
         let total = self.0[0];
         // Less than that is invisible (1 − e^−x ≈ x) and its normalised moments are noise.
         if total < 1e-4 {
             return 1.0;
         }
-        let m: [f64; 4] = std::array::from_fn(|k| self.0[k + 1] / total);
-        let (low, high) = share_bounds(m, settings.bias, zeta);
+        let (low, high) = bounds(std::array::from_fn(|k| self.0[k + 1] / total));
         let share = low + settings.overestimation * (high - low);
         let t = (-total * share).exp();
         // Degenerate points give NaN; nothing in front is the harmless answer.
         if t.is_nan() { 1.0 } else { t.min(1.0) }
+    }
+}
+
+impl Moments {
+    /// The estimate of the transmittance in front of `zeta`.
+    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+        self.estimate(settings, |m| share_bounds(m, settings.bias, zeta))
     }
 }
 

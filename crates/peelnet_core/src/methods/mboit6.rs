@@ -1,7 +1,10 @@
 //! `mboit6`: moment-based order-independent transparency with six power moments (Münstermann, Krumpen, Klein & Peters,
 //! 2018). As [`mboit4`](super::mboit4), with bounds that measures of four points meet. The shader twin is `methods/mboit6/`.
 
-use super::{deep, mboit4::Settings};
+use super::{
+    deep,
+    mboit4::{PowerMoments, Settings},
+};
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
@@ -16,31 +19,12 @@ pub const PAPER: Settings = Settings {
 };
 
 /// `b_0 … b_6` of a pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments(pub [f64; 7]);
+pub type Moments = PowerMoments<7>;
 
 impl Moments {
-    /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
-    pub fn add(&mut self, b: f64, zeta: f64) {
-        let mut power = b;
-        for m in &mut self.0 {
-            *m += power;
-            power *= zeta;
-        }
-    }
-
     /// The estimate of the transmittance in front of `zeta`.
     pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
-        let total = self.0[0];
-        // As for four moments.
-        if total < 1e-4 {
-            return 1.0;
-        }
-        let m = std::array::from_fn(|k| self.0[k + 1] / total);
-        let (low, high) = share_bounds(m, settings.bias, zeta);
-        let share = low + settings.overestimation * (high - low);
-        let t = (-total * share).exp();
-        if t.is_nan() { 1.0 } else { t.min(1.0) }
+        self.estimate(settings, |m| share_bounds(m, settings.bias, zeta))
     }
 }
 
