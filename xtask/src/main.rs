@@ -18,7 +18,7 @@ cargo xtask <command>
   train-models    makes the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   test            formatting, clippy, all tests, documentation: what CI runs
   ci              the same as test
-  peers           the training comparison with PyTorch (installs it from PyPI into target/)
+  peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
 ";
 
 fn main() -> ExitCode {
@@ -29,10 +29,12 @@ fn main() -> ExitCode {
         (Some("demo"), ["--full"]) => demo(true),
         (Some("train-models"), []) => train_models(),
         (Some("test" | "ci"), []) => test(),
-        (Some("peers"), []) => run(
-            Command::new("python3").arg("benches/peers/train.py"),
-            "peers",
-        ),
+        (Some("peers"), []) => ["train", "transparency"].into_iter().try_for_each(|name| {
+            run(
+                Command::new("python3").arg(format!("benches/peers/{name}.py")),
+                "peers",
+            )
+        }),
         (None | Some("help" | "--help" | "-h"), _) => {
             print!("{HELP}");
             Ok(())
