@@ -93,11 +93,9 @@ fn gpu_ms(frame: &Frame) -> Option<f64> {
 
 fn text(args: &RenderArgs, adapter: &str, frame: &Frame) -> String {
     let fragments = frame.stats.fragments.map_or_else(String::new, |n| {
-        format!(
-            ", {} fragments, up to {} a pixel",
-            thousands(n),
-            frame.stats.max_layers.unwrap_or(0)
-        )
+        let most = frame.stats.max_layers;
+        let most = most.map_or_else(String::new, |most| format!(", up to {most} a pixel"));
+        format!(", {} fragments{most}", thousands(n))
     });
     let time = gpu_ms(frame).map_or_else(
         || format!("{:.1} ms by the clock", frame.wall_micros / 1e3),
