@@ -1,6 +1,6 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
-use crate::transmittance::Stacks;
+use crate::transmittance::Sample;
 use crate::{EvalError, Row, metrics, perceptual::Displayed};
 use peelnet_gpu::{Gpu, record::PassTime};
 use peelnet_model::Model;
@@ -29,6 +29,14 @@ pub struct Plan<'a> {
     pub frames: u32,
     /// Where view 0 of every method is saved as `<scene>-<method>.png`.
     pub images: Option<&'a Path>,
+}
+
+impl Plan<'_> {
+    /// How many views of a scene are drawn.
+    pub fn views_of(&self, scene: &Scene) -> usize {
+        let all = scene.views.len();
+        self.views.map_or(all, |n| n.min(all))
+    }
 }
 
 /// File name of a method's picture of a scene.
@@ -70,18 +78,8 @@ pub fn compare(
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
 ) -> Result<(), EvalError> {
-    let failed = |method: &str| {
-        let (scene, method) = (scene.name.clone(), method.to_owned());
-        move |source| EvalError::Render {
-            scene,
-            method,
-            source: Box::new(source),
-        }
-    };
-    let views = plan
-        .views
-        .map_or(scene.views.len(), |n| n.min(scene.views.len()));
-    let left: Vec<usize> = (0..views)
+    let failed = |method: &str| EvalError::render(&scene.name, method);
+    let left: Vec<usize> = (0..plan.views_of(scene))
         .filter(|&view| !done.contains(&(view as u32)))
         .collect();
     if left.is_empty() {
@@ -111,9 +109,10 @@ pub fn compare(
         methods.push((name, prepared));
         judged.push((method, model));
     }
+    let mut sample = Sample::new(gpu, scene, plan.size)?;
     for view in left {
         let camera = &scene.views[view];
-        let stacks = Stacks::peel(gpu, scene, view, plan.size)?;
+        let stacks = sample.peel(view)?;
         let mut exact: Option<(Image, Displayed)> = None;
         let mut rows: Vec<Row> = Vec::new();
         for ((name, prepared), (method, model)) in methods.iter_mut().zip(&judged) {

@@ -1,3 +1,4 @@
+use peelnet_render::RenderError;
 use std::path::PathBuf;
 
 /// What can go wrong when methods are compared or a report is written.
@@ -31,7 +32,7 @@ pub enum EvalError {
         /// The method's name.
         method: String,
         /// The renderer's reason.
-        source: Box<peelnet_render::RenderError>,
+        source: Box<RenderError>,
     },
     /// Peeling failed.
     #[error("scene '{scene}': {source}")]
@@ -75,6 +76,25 @@ impl EvalError {
             path,
             action,
             source,
+        }
+    }
+
+    /// For `map_err` on drawing a scene with a method.
+    pub(crate) fn render(scene: &str, method: &str) -> impl FnOnce(RenderError) -> Self + use<> {
+        let (scene, method) = (scene.to_owned(), method.to_owned());
+        move |source| Self::Render {
+            scene,
+            method,
+            source: Box::new(source),
+        }
+    }
+
+    /// For `map_err` on peeling a scene.
+    pub(crate) fn peel(scene: &str) -> impl FnOnce(peelnet_peel::PeelError) -> Self + use<> {
+        let scene = scene.to_owned();
+        move |source| Self::Peel {
+            scene,
+            source: Box::new(source),
         }
     }
 }

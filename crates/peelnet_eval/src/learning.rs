@@ -1,6 +1,6 @@
 //! What accuracy costs in training: error against the number of parameters, of training examples, and of epochs.
 
-use crate::{EvalError, Machine, lines, table, write_atomically};
+use crate::{EvalError, Machine, lines, table, write_atomically, write_csv, write_json};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -98,24 +98,14 @@ impl Learning {
     /// # Errors
     /// If a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        let mut json = serde_json::to_vec_pretty(self).expect("rows have string keys only");
-        json.push(b'\n');
-        write_atomically(&folder.join("training.json"), &json)?;
-        let mut csv = csv::Writer::from_writer(Vec::new());
-        for row in &self.rows {
-            csv.serialize(row).expect("a row has flat fields");
-        }
-        let csv = csv.into_inner().expect("memory can be written");
-        write_atomically(&folder.join("training.csv"), &csv)?;
+        write_json(&folder.join("training.json"), self)?;
+        write_csv(&folder.join("training.csv"), &self.rows)?;
         let (headings, cells) = self.table();
         let text = format!(
-            "{}\nNetworks with the inputs of `{}`, errors on the scenes of the command. Measured on {} ({}, {} cores) with `{}`.\n",
+            "{}\nNetworks with the inputs of `{}`, errors on the scenes of the command. {}\n",
             table::markdown(&headings, &cells),
             self.recipe,
-            self.machine.adapter,
-            self.machine.cpu,
-            self.machine.cores,
-            self.command,
+            self.machine.credit(&self.command),
         );
         write_atomically(&folder.join("training.md"), text.as_bytes())?;
         let line = |varied: Varied, name: &str, x: &dyn Fn(&Lesson) -> f64| -> lines::Line {

@@ -38,6 +38,7 @@ pub mod transmittance;
 
 pub use error::EvalError;
 pub use files::write_atomically;
+use files::{write_csv, write_json};
 pub use machine::{Machine, load};
 pub use partial::Partial;
 pub use report::{Record, Stage};

@@ -50,6 +50,14 @@ impl Machine {
         }
     }
 
+    /// The sentence under a table of figures.
+    pub(crate) fn credit(&self, command: &str) -> String {
+        format!(
+            "Measured on {} ({}, {} cores) with `{command}`.",
+            self.adapter, self.cpu, self.cores
+        )
+    }
+
     /// Name and value of each property, for tables.
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         vec![

@@ -13,7 +13,7 @@ use crate::{
     front::{self, Mean},
     ratios, table,
     table::Table,
-    write_atomically,
+    write_atomically, write_csv, write_json,
 };
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -75,10 +75,7 @@ impl Record {
     /// # Errors
     /// If a file cannot be written or a picture cannot be read.
     pub fn write(&self, folder: &Path, attachments: &Attachments<'_>) -> Result<(), EvalError> {
-        let mut json = serde_json::to_vec_pretty(self)
-            .expect("a record has string keys only, and floats serialise always");
-        json.push(b'\n');
-        write_atomically(&folder.join("results.json"), &json)?;
+        write_json(&folder.join("results.json"), self)?;
         write_atomically(&folder.join("table.md"), self.markdown().as_bytes())?;
         let page = page::page(self, attachments)?;
         write_atomically(&folder.join("report.html"), page.as_bytes())
@@ -135,32 +132,20 @@ impl Bench {
         }
         let page = bench_page::page(self, &folder.join("images"))?;
         write_atomically(&folder.join("report.html"), page.as_bytes())?;
-        let mut json = serde_json::to_vec_pretty(self)
-            .expect("a record has string keys only, and floats serialise always");
-        json.push(b'\n');
-        write_atomically(&folder.join("results.json"), &json)?;
-        let mut table = csv::Writer::from_writer(Vec::new());
-        for row in &self.rows {
-            table.serialize(row).expect("a row has flat fields");
-        }
-        let csv = table.into_inner().expect("memory can be written");
-        write_atomically(&folder.join("results.csv"), &csv)?;
+        write_json(&folder.join("results.json"), self)?;
+        write_csv(&folder.join("results.csv"), &self.rows)?;
         write_atomically(&folder.join("table.md"), self.markdown().as_bytes())
     }
 
     /// `table.md`: every method as ratios to the references.
     pub fn markdown(&self) -> String {
         format!(
-            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. Measured on \
-             {} ({}, {} cores) with `{}`.\n",
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. {}\n",
             table::markdown(
                 &ratios::HEADINGS.map(str::to_owned),
                 &ratios::cells(&ratios::ratios(&self.rows))
             ),
-            self.machine.adapter,
-            self.machine.cpu,
-            self.machine.cores,
-            self.command,
+            self.machine.credit(&self.command),
         )
     }
 }

@@ -3,7 +3,7 @@
 //! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
 //! changes at a time.
 
-use crate::{EvalError, Machine, lines, table, write_atomically};
+use crate::{EvalError, Machine, lines, table, write_atomically, write_csv, write_json};
 use glam::{Mat4, Vec3};
 use peelnet_gpu::{Gpu, GpuError};
 use peelnet_render::{LearnedWeight, MethodSpec, RenderError, Renderer};
@@ -149,14 +149,7 @@ pub fn measure(
     let mut done = 0;
     for step in steps {
         let scene = stack(step.layers, step.cells);
-        let failed = |method: &str| {
-            let (scene, method) = (scene.name.clone(), method.to_owned());
-            move |source| EvalError::Render {
-                scene,
-                method,
-                source: Box::new(source),
-            }
-        };
+        let failed = |method: &str| EvalError::render(&scene.name, method);
         let renderer = Renderer::new(gpu, &scene).map_err(failed("upload"))?;
         let camera = &scene.views[0];
         let mut ready = Vec::new();
@@ -404,15 +397,8 @@ impl Scaling {
     /// # Errors
     /// If a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        let mut json = serde_json::to_vec_pretty(self).expect("rows have string keys only");
-        json.push(b'\n');
-        write_atomically(&folder.join("scaling.json"), &json)?;
-        let mut csv = csv::Writer::from_writer(Vec::new());
-        for row in &self.rows {
-            csv.serialize(row).expect("a row has flat fields");
-        }
-        let csv = csv.into_inner().expect("memory can be written");
-        write_atomically(&folder.join("scaling.csv"), &csv)?;
+        write_json(&folder.join("scaling.json"), self)?;
+        write_csv(&folder.join("scaling.csv"), &self.rows)?;
         let (headings, cells) = self.table();
         let series = |s: Series| format!("{s:?}").to_lowercase();
         let left_out: String = self
@@ -429,12 +415,9 @@ impl Scaling {
             })
             .collect();
         let text = format!(
-            "{}\nExponents fitted to the upper half of the steps. Measured on {} ({}, {} cores) with `{}`.\n\nNot measured:\n\n{left_out}",
+            "{}\nExponents fitted to the upper half of the steps. {}\n\nNot measured:\n\n{left_out}",
             table::markdown(&headings, &cells),
-            self.machine.adapter,
-            self.machine.cpu,
-            self.machine.cores,
-            self.command,
+            self.machine.credit(&self.command),
         );
         write_atomically(&folder.join("scaling.md"), text.as_bytes())?;
         for (series, name, unit) in [

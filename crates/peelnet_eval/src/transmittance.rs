@@ -14,7 +14,7 @@ use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{MethodSpec, scene::PixelSample};
-use peelnet_scene::{Camera, Scene};
+use peelnet_scene::Scene;
 
 /// The share of pixels that is looked at.
 pub const SHARE: f64 = 0.02;
@@ -27,19 +27,30 @@ pub struct Stacks {
     warp: DepthWarp,
 }
 
-impl Stacks {
-    /// Peels a sample of a view's pixels.
+/// A scene made ready for peeling a sample of its views' pixels.
+#[derive(Debug)]
+pub struct Sample<'a> {
+    scene: &'a Scene,
+    harvester: Harvester<'a>,
+}
+
+impl<'a> Sample<'a> {
+    /// Uploads a scene.
     ///
     /// # Errors
-    /// If the scene cannot be drawn.
-    pub fn peel(gpu: &Gpu, scene: &Scene, view: usize, size: [u32; 2]) -> Result<Self, EvalError> {
-        let failed = |source| EvalError::Peel {
-            scene: scene.name.clone(),
-            source: Box::new(source),
-        };
-        let camera: &Camera = &scene.views[view];
-        let mut harvester =
-            Harvester::new(gpu, scene, size, Peel::SBuffer, true, None).map_err(failed)?;
+    /// If it cannot be drawn.
+    pub fn new(gpu: &'a Gpu, scene: &'a Scene, size: [u32; 2]) -> Result<Self, EvalError> {
+        let harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, true, None)
+            .map_err(EvalError::peel(&scene.name))?;
+        Ok(Self { scene, harvester })
+    }
+
+    /// The fragments of a view's sampled pixels.
+    ///
+    /// # Errors
+    /// If the view cannot be drawn.
+    pub fn peel(&mut self, view: usize) -> Result<Stacks, EvalError> {
+        let camera = &self.scene.views[view];
         let sample = PixelSample {
             seed: 0,
             view: view as u32,
@@ -56,15 +67,17 @@ impl Stacks {
             }
             Ok(())
         };
-        harvester
+        self.harvester
             .harvest(camera, sample, None, RawTile::default, &mut take)
-            .map_err(failed)?;
-        Ok(Self {
+            .map_err(EvalError::peel(&self.scene.name))?;
+        Ok(Stacks {
             pixels,
-            warp: harvester.depth_warp(camera),
+            warp: self.harvester.depth_warp(camera),
         })
     }
+}
 
+impl Stacks {
     /// Mean `|T̂_i − T_i|` over all fragments; `None` for a method whose weights are no transmittance, and of no fragment.
     pub fn error(&self, method: &MethodSpec, model: Option<&Model>) -> Option<f64> {
         let (mut sum, mut n) = (0.0, 0u64);

@@ -21,28 +21,20 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let first = (pixel.y * textureDimensions(background).x + pixel.x) * K;
     var color = vec3f(0.0);
     var transmittance = 1.0;
-    // Places of one depth follow one another by triangle: of those, the one composited last.
+    // Places of one depth, from `run` on, are composited by triangle: `last` is that of the one before.
+    var run = first;
     var last = 0u;
-    for (var i = first; i < first + K; i++) {
-        if nearest[i] == 0u {
-            break;
-        }
-        if i == first || nearest[i] != nearest[i - 1u] {
+    for (var i = first; i < first + K && nearest[i] != 0u; i++) {
+        if nearest[i] != nearest[run] {
+            run = i;
             last = 0u;
         }
         var place = i;
         var least = 0xffffffffu;
-        for (var j = i; j < first + K && nearest[j] == nearest[i]; j++) {
+        for (var j = run; j < first + K && nearest[j] == nearest[i]; j++) {
             if triangles[j] > last && triangles[j] < least {
                 least = triangles[j];
                 place = j;
-            }
-        }
-        // They may lie before this place as well.
-        for (var j = i; j > first && nearest[j - 1u] == nearest[i]; j--) {
-            if triangles[j - 1u] > last && triangles[j - 1u] < least {
-                least = triangles[j - 1u];
-                place = j - 1u;
             }
         }
         last = least;

@@ -34,7 +34,8 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     let bench = if args.redraw {
         read(&args.out)?
     } else {
-        measure(context, args, Some(&args.out))?
+        let scenes = context.scenes(&args.scenes)?;
+        measure(context, args, &scenes, Some(&args.out))?
     };
     bench.write(&args.out)?;
     let table = ratios(&bench.rows);
@@ -54,8 +55,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     } = chosen(context, &gpu, args)?;
     if matches!(args.methods, MethodList::All) {
         // Knobs change what a method costs, hardly how that grows.
-        let mut seen = Vec::new();
-        methods.retain(|m| !seen.contains(&m.name()) && (seen.push(m.name()), true).1);
+        methods.dedup_by_key(|m| m.name());
     }
     let bar = Progress::new(context.console, "scaling", 0);
     let mut told = |done, total, method: &str| bar.set(done, total, method.to_owned());
@@ -83,9 +83,9 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
 pub(super) fn measure(
     context: &Context<'_>,
     args: &BenchArgs,
+    scenes: &[Scene],
     out: Option<&Path>,
 ) -> Result<Bench, Failure> {
-    let scenes = context.scenes(&args.scenes)?;
     let gpu = context.gpu()?;
     let Chosen {
         mut methods,
@@ -98,33 +98,31 @@ pub(super) fn measure(
         methods.push(base);
     }
     let images = out.map(|folder| folder.join("images"));
-    let views = args.views.limit();
     let plan = Plan {
         size: args.size.0,
         methods: &methods,
         learned: &learned,
         models: &models,
-        views,
+        views: args.views.limit(),
         frames: args.frames,
         images: images.as_deref(),
     };
     let load_before = load();
-    let settings = settings(&gpu, args, &plan, &scenes);
+    let settings = settings(&gpu, args, &plan, scenes);
     let mut partial = match out {
         Some(folder) if args.resume => Partial::resume(folder, settings)?,
         _ => Partial::new(out, settings),
     };
-    let views_of = |scene: &Scene| views.map_or(scene.views.len(), |n| n.min(scene.views.len()));
     let left: usize = scenes
         .iter()
-        .map(|s| views_of(s).saturating_sub(partial.done(&s.name).len()))
+        .map(|s| plan.views_of(s).saturating_sub(partial.done(&s.name).len()))
         .sum();
     // The exact method judges whether it is asked for or not.
     let judge = usize::from(!methods.iter().any(|m| m.to_string() == EXACT));
     let frames = (left * (methods.len() + judge) * (1 + args.frames as usize)) as u64;
     let bar = Progress::new(context.console, "bench", frames);
     let mut drawn = 0;
-    for scene in &scenes {
+    for scene in scenes {
         let done = partial.done(&scene.name);
         compare(&gpu, scene, &plan, &done, context.stop, &mut |event| {
             match event {

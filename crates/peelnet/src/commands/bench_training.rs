@@ -64,9 +64,11 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     let total = plans.len() as u64;
     for (k, (varied, config, share)) in plans.into_iter().enumerate() {
         bar.set(k as u64, total, format!("{varied:?}").to_lowercase());
-        let own = data.with_share(share);
+        // A copy of all data only where a part of it is used.
+        let part = (share < 1.0).then(|| data.with_share(share));
+        let own = part.as_ref().unwrap_or(&data);
         let options = RunOptions::new(folder.join(format!("{k}.safetensors")), context.stop);
-        let outcome = train(&config, &own, &options, |_| {})?;
+        let outcome = train(&config, own, &options, |_| {})?;
         context.check_interrupt()?;
         let (mse_linear, to_moments) = judge(context, &gpu, &scenes, args, outcome.model.clone())?;
         rows.push(Lesson {

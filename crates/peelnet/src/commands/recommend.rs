@@ -11,7 +11,8 @@ use peelnet_eval::{
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Failure> {
-    let scene = &context.scenes(std::slice::from_ref(&args.scene))?[0];
+    let scenes = context.scenes(std::slice::from_ref(&args.scene))?;
+    let scene = &scenes[0];
     let measured = match &args.results {
         Some(path) => bench::read(path)?,
         None => {
@@ -29,7 +30,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 views: ViewCount::All,
                 resume: false,
             };
-            bench::measure(context, &args, None)?
+            bench::measure(context, &args, &scenes, None)?
         }
     };
     let own = points(&measured.rows, Some(&scene.name), Mean::Geometric);

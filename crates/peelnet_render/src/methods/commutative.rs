@@ -7,7 +7,7 @@
 use super::{Build, Compositor, DrawContext, FrameStats};
 use crate::{
     RenderError,
-    passes::count::{unwritten, unwritten_attachment},
+    passes::count::{unwritten, unwritten_attachment, unwritten_texture},
     passes::fullscreen::FullscreenPass,
     scene::{GeometryPass, GeometryPipelines, Order, Sorted, Surfaces, clear_color},
 };
@@ -219,12 +219,9 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         .map(|s| b.gpu.storage(s.label, pixels * u64::from(s.bytes)))
         .collect::<Result<Vec<_>, _>>()?;
     let bare = plan.passes.iter().any(|p| p.writes.is_empty());
-    let no_attachment = || {
-        let format = wgpu::TextureFormat::R8Unorm;
-        let none = wgpu::TextureUsages::empty();
-        b.gpu.texture("no attachment", format, b.frame.size, none)
-    };
-    let attachment = bare.then(no_attachment).transpose()?;
+    let attachment = bare
+        .then(|| unwritten_texture(b.gpu, b.frame))
+        .transpose()?;
     let mut passes = Vec::new();
     for gather in plan.passes {
         let textures = gather.reads.iter().map(|&i| Bind::Texture(&targets[i].0));
@@ -242,7 +239,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             .map(|&i| Some(plan.targets[i].state(is_full(&plan.targets[i]))))
             .collect();
         if states.is_empty() {
-            states.push(unwritten(wgpu::TextureFormat::R8Unorm));
+            states.push(unwritten());
         }
         let pipelines = b.scene.pipelines(
             b.gpu,

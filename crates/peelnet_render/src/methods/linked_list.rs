@@ -6,8 +6,8 @@ use super::{Build, Compositor, DrawContext, FrameStats};
 use crate::{
     RenderError,
     passes::{
-        count::{groups_2d, unwritten, unwritten_attachment},
-        sbuffer::FragmentStorage,
+        count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
+        sbuffer::{BYTES_PER_FRAGMENT, FragmentStorage},
     },
     scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
 };
@@ -20,11 +20,8 @@ use peelnet_gpu::{
 /// Nodes that the first frame gets for each pixel.
 const FIRST_GUESS: u64 = 4;
 
-/// Room above what a frame needed, in quarters of it, so that a moving camera does not redo every frame.
-const HEADROOM_QUARTERS: u64 = 1;
-
-/// Bytes of a node: next, depth, triangle, colour.
-const BYTES_PER_NODE: u64 = 4 + 4 + 4 + 16;
+/// Bytes of a node: the fragment and a link.
+const BYTES_PER_NODE: u64 = BYTES_PER_FRAGMENT + 4;
 
 #[derive(Debug)]
 struct LinkedList {
@@ -55,13 +52,11 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         &[width, height, groups_2d(pixels)[0], 0],
         wgpu::BufferUsages::UNIFORM,
     );
-    let none = wgpu::TextureUsages::empty();
-    let format = wgpu::TextureFormat::R8Unorm;
     let nodes = b.spec.count("nodes")?;
     let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);
     let pool = Pool::new(gpu, b.scene, frame, [&heads, &used, &extent], first)?;
     Ok(Box::new(LinkedList {
-        attachment: gpu.texture("no attachment", format, frame.size, none)?,
+        attachment: unwritten_texture(gpu, frame)?,
         heads,
         used,
         extent,
@@ -101,7 +96,7 @@ impl Pool {
                 features: &[],
                 extra: &[],
                 group: Some(&build_group.layout),
-                targets: &[unwritten(wgpu::TextureFormat::R8Unorm)],
+                targets: &[unwritten()],
                 depth: None,
             },
         )?;
@@ -152,7 +147,8 @@ impl Compositor for LinkedList {
             if needed <= self.pool.nodes {
                 break needed;
             }
-            let nodes = needed + needed / 4 * HEADROOM_QUARTERS;
+            // A quarter more, so that a moving camera does not redo every frame.
+            let nodes = needed + needed / 4;
             let shared = [&self.heads, &self.used, &self.extent];
             self.pool = Pool::new(gpu, cx.scene, cx.frame, shared, nodes)?;
         };

@@ -55,13 +55,7 @@ impl CountPass {
         let blocks_count = pixels.div_ceil(BLOCK);
         let blocks = gpu.storage("prefix-sum blocks", u64::from(blocks_count) * 8)?;
         let total = gpu.storage("fragment total", 8)?;
-        let format = wgpu::TextureFormat::R8Unorm;
-        let attachment = gpu.texture(
-            "no attachment",
-            format,
-            frame.size,
-            wgpu::TextureUsages::empty(),
-        )?;
+        let attachment = unwritten_texture(gpu, frame)?;
         let group = gpu.bind(
             "count",
             wgpu::ShaderStages::FRAGMENT,
@@ -77,7 +71,7 @@ impl CountPass {
                 features,
                 extra: &[],
                 group: Some(&group.layout),
-                targets: &[unwritten(format)],
+                targets: &[unwritten()],
                 depth: None,
             },
         )?;
@@ -189,10 +183,22 @@ pub fn groups_2d(items: u32) -> [u32; 2] {
     [x, groups.div_ceil(x)]
 }
 
+/// Format of the attachment that passes have which write storage alone: WebGPU wants one.
+const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// That attachment's texture, a byte a pixel.
+pub(crate) fn unwritten_texture(
+    gpu: &Gpu,
+    frame: &FrameTargets,
+) -> Result<wgpu::TextureView, RenderError> {
+    let none = wgpu::TextureUsages::empty();
+    Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, none)?)
+}
+
 /// A colour target that nothing is written to.
-pub(crate) fn unwritten(format: wgpu::TextureFormat) -> Option<wgpu::ColorTargetState> {
+pub(crate) fn unwritten() -> Option<wgpu::ColorTargetState> {
     Some(wgpu::ColorTargetState {
-        format,
+        format: UNWRITTEN,
         blend: None,
         write_mask: wgpu::ColorWrites::empty(),
     })

@@ -243,7 +243,7 @@ impl SBuffer {
                 features: &features,
                 extra: &[],
                 group: Some(&store_group.layout),
-                targets: &[unwritten(wgpu::TextureFormat::R8Unorm)],
+                targets: &[unwritten()],
                 depth: None,
             },
         )?;
