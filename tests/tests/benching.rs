@@ -21,6 +21,7 @@ fn rows(methods: &[MethodSpec], views: usize, done: &[u32]) -> (Vec<Row>, usize)
         methods,
         learned: &[],
         models: &[],
+        lenient: false,
         views: None,
         frames: 2,
         images: None,
@@ -35,6 +36,7 @@ fn rows(methods: &[MethodSpec], views: usize, done: &[u32]) -> (Vec<Row>, usize)
         &mut |event| {
             match event {
                 Event::Drawn(_) => drawn += 1,
+                Event::LeftOut(method, why) => panic!("{method}: {why}"),
                 Event::View(of_view) => rows.extend(of_view),
             }
             Ok(())
@@ -71,6 +73,56 @@ fn a_resumed_comparison_draws_what_is_left() {
             .all(|r| r.lost.unwrap_or_default() == 0 && r.flip.is_some())
     );
     assert_eq!(rows(&methods, 3, &[0, 1, 2]).1, 0);
+}
+
+/// A method whose storage the adapter does not allow is told of where all are asked for, and ends the comparison where it was
+/// asked for itself; the others have their rows either way.
+#[test]
+fn what_is_too_large_is_left_out_and_told() {
+    let gpu = gpu();
+    let scene = walls(&worked_example(), [0.0; 3]);
+    let methods: Vec<MethodSpec> = ["kbuffer-64", "wboit-eq9"]
+        .map(|m| m.parse().unwrap())
+        .to_vec();
+    // 16 bytes of colour in each of 64 places: more than the binding holds by a row of pixels.
+    let height = gpu.limits.max_storage_buffer_binding_size / (64 * 16 * 2048) + 1;
+    let run = |lenient| {
+        let plan = Plan {
+            size: [2048, height as u32],
+            methods: &methods,
+            learned: &[],
+            models: &[],
+            lenient,
+            views: None,
+            frames: 0,
+            images: None,
+        };
+        let (mut rows, mut left_out) = (Vec::new(), Vec::new());
+        let done = compare(
+            &gpu,
+            &scene,
+            &plan,
+            &[],
+            &AtomicBool::new(false),
+            &mut |event| {
+                match event {
+                    Event::Drawn(_) => {}
+                    Event::LeftOut(method, why) => left_out.push((method.to_owned(), why)),
+                    Event::View(of_view) => rows.extend(of_view.into_iter().map(|r| r.method)),
+                }
+                Ok(())
+            },
+        );
+        (done.is_ok(), rows, left_out)
+    };
+    let (ok, rows, left_out) = run(true);
+    assert!(ok && rows == ["abuffer", "wboit-eq9"], "{rows:?}");
+    assert!(
+        left_out.len() == 1 && left_out[0].0 == "kbuffer-64",
+        "{left_out:?}"
+    );
+    assert!(left_out[0].1.contains("allows"), "{left_out:?}");
+    assert!(!run(false).0);
 }
 
 /// Bytes follow from what is allocated: per-fragment storage grows with the fragments, targets do not; both grow with pixels.

@@ -2,9 +2,9 @@
 
 use crate::transmittance::Sample;
 use crate::{EvalError, Row, metrics, perceptual::Displayed};
-use peelnet_gpu::{Gpu, record::PassTime};
+use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
-use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, Renderer};
+use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, RenderError, Renderer};
 use peelnet_scene::Scene;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,6 +23,8 @@ pub struct Plan<'a> {
     pub learned: &'a [LearnedWeight],
     /// The models that those weights come from, as far as their estimates shall be judged fragment by fragment.
     pub models: &'a [Model],
+    /// Whether a method that needs more than this adapter allows is left out, and told of, instead of ending the comparison.
+    pub lenient: bool,
     /// Views of each scene; all of them when none.
     pub views: Option<usize>,
     /// Frames of each method and view that are timed, after the comparison and all methods in turn.
@@ -61,6 +63,8 @@ pub fn image_name(scene: &str, method: &str) -> String {
 pub enum Event<'a> {
     /// A frame was drawn with this method.
     Drawn(&'a str),
+    /// A method was left out from here on, and why.
+    LeftOut(&'a str, String),
     /// A view is done: its rows, the exact method's first.
     View(Vec<Row>),
 }
@@ -99,9 +103,13 @@ pub fn compare(
             .learned
             .iter()
             .find(|l| l.recipe.method_name() == method.name());
-        let prepared = renderer
-            .prepare(method, plan.size, learned)
-            .map_err(failed(&name))?;
+        let prepared = match renderer.prepare(method, plan.size, learned) {
+            Err(e) if plan.lenient && is_too_large(&e) && !methods.is_empty() => {
+                tell(Event::LeftOut(&name, e.to_string()))?;
+                continue;
+            }
+            prepared => prepared.map_err(failed(&name))?,
+        };
         let model = plan
             .models
             .iter()
@@ -115,11 +123,21 @@ pub fn compare(
         let stacks = sample.peel(view)?;
         let mut exact: Option<(Image, Displayed)> = None;
         let mut rows: Vec<Row> = Vec::new();
-        for ((name, prepared), (method, model)) in methods.iter_mut().zip(&judged) {
+        // One that is left out takes its place in both lists with it.
+        while let Some((name, prepared)) = methods.get_mut(rows.len()) {
+            let (method, model) = judged[rows.len()];
             if stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
-            let frame = renderer.draw(prepared, camera).map_err(failed(name))?;
+            let frame = match renderer.draw(prepared, camera) {
+                Err(e) if plan.lenient && is_too_large(&e) && !rows.is_empty() => {
+                    tell(Event::LeftOut(name, e.to_string()))?;
+                    methods.remove(rows.len());
+                    judged.remove(rows.len());
+                    continue;
+                }
+                frame => frame.map_err(failed(name))?,
+            };
             if let (0, Some(folder)) = (view, plan.images) {
                 let path = folder.join(image_name(&scene.name, name));
                 frame.image.save(&path).map_err(failed(name))?;
@@ -131,7 +149,7 @@ pub fn compare(
             let differences = metrics::differences(&against.pixels, &frame.image.pixels)?;
             let mut row = row(gpu, scene, name, view, &frame, differences);
             row.ssim = shown.ssim(displayed);
-            row.transmittance_error = stacks.error(method, *model);
+            row.transmittance_error = stacks.error(method, model);
             row.flip = Some(shown.flip(displayed));
             // Only the exact method knows the fragments of a view for certain.
             if let Some(first) = rows.first() {
@@ -162,6 +180,11 @@ pub fn compare(
         tell(Event::View(rows))?;
     }
     Ok(())
+}
+
+/// Whether it is memory that a frame lacks: another adapter, or a smaller frame, has it.
+pub(crate) fn is_too_large(error: &RenderError) -> bool {
+    matches!(error, RenderError::Gpu(GpuError::TooLarge { .. }))
 }
 
 /// A frame's time by pass, and its clock time in microseconds.

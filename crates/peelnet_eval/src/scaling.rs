@@ -5,8 +5,8 @@
 
 use crate::{EvalError, Machine, lines, table, write_atomically, write_csv, write_json};
 use glam::{Mat4, Vec3};
-use peelnet_gpu::{Gpu, GpuError};
-use peelnet_render::{LearnedWeight, MethodSpec, RenderError, Renderer};
+use peelnet_gpu::Gpu;
+use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
@@ -189,7 +189,7 @@ pub fn measure(
             match first {
                 Ok((prepared, bytes)) => ready.push((name, prepared, bytes, Vec::new())),
                 // Memory is what grows: that it ends is a result.
-                Err(RenderError::Gpu(e @ GpuError::TooLarge { .. })) => {
+                Err(e) if crate::compare::is_too_large(&e) => {
                     done += u64::from(frames);
                     leave_out(e.to_string());
                 }

@@ -103,6 +103,7 @@ pub(super) fn measure(
         methods: &methods,
         learned: &learned,
         models: &models,
+        lenient: matches!(args.methods, MethodList::All),
         views: args.views.limit(),
         frames: args.frames,
         images: images.as_deref(),
@@ -130,6 +131,9 @@ pub(super) fn measure(
                     drawn += 1;
                     bar.set(drawn, frames, format!("{} with {method}", scene.name));
                 }
+                Event::LeftOut(method, why) => context
+                    .console
+                    .warn(format!("{method} is left out of {}: {why}", scene.name)),
                 Event::View(rows) => partial.push(rows)?,
             }
             Ok(())

@@ -111,6 +111,7 @@ fn judge(
         methods: &[MOMENTS.parse()?, name.parse()?],
         learned: &learned,
         models: &[],
+        lenient: false,
         views: args.views.limit(),
         frames: 0,
         images: None,

@@ -265,6 +265,7 @@ fn compare_all(
         methods: &methods,
         learned: &learned,
         models: &[],
+        lenient: true,
         views: None,
         frames: 0,
         images: Some(images),
@@ -286,6 +287,9 @@ fn compare_all(
                     done += 1;
                     bar.set(done, frames, format!("{} with {method}", scene.name));
                 }
+                Event::LeftOut(method, why) => context
+                    .console
+                    .warn(format!("{method} is left out of {}: {why}", scene.name)),
                 Event::View(of_view) => rows.extend(of_view),
             }
             Ok(())
