@@ -8,7 +8,7 @@ struct Camera {
     // x: view number and y: threshold of the pixel sample.
     sample: vec4u,
     // x: 2^-k with 2^k > far, which maps linear depth to 0..1 without rounding. y, z: the depth warp, 1 / near and
-    // 2 / (ln(far) - ln(near)) of the range that transparent objects span.
+    // 2 / (ln(far) - ln(near)) of the range that transparent objects span. w: far / (far - near), which less the window depth is proportional to 1 / z.
     depth_scale: vec4f,
 }
 

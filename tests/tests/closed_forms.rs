@@ -113,7 +113,7 @@ fn every_method_agrees_with_its_twin() {
         let renderer = Renderer::new(&gpu, &scene).unwrap();
         for spec in MethodSpec::all() {
             let mut variants = vec![spec.clone()];
-            if spec.entry().knobs.iter().any(|(k, _)| *k == "targets") {
+            if spec.entry().knobs().any(|(k, _)| k == "targets") {
                 variants.push(format!("{spec}:targets=f32").parse().unwrap());
             }
             for spec in variants {

@@ -80,6 +80,10 @@ impl<'a> Sample<'a> {
 impl Stacks {
     /// Mean `|T̂_i − T_i|` over all fragments; `None` for a method whose weights are no transmittance, and of no fragment.
     pub fn error(&self, method: &MethodSpec, model: Option<&Model>) -> Option<f64> {
+        if method.knob("scale").is_some() {
+            // A pixel is then mixed of others', and has no transmittance of its own.
+            return None;
+        }
         let (mut sum, mut n) = (0.0, 0u64);
         for points in &self.pixels {
             let estimates = estimates(method, points, &self.warp, model)?;

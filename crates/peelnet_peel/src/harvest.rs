@@ -156,7 +156,7 @@ impl<'g> Harvester<'g> {
         mut ready: impl FnMut(RawTile) -> Result<(), PeelError>,
     ) -> Result<Harvest, PeelError> {
         let gpu = self.gpu;
-        self.scene.set_view(gpu, camera, self.frame.size, sample);
+        self.scene.set_view(gpu, camera, &self.frame, sample);
         let mut recorder = Recorder::new(gpu, true);
         self.scene
             .draw_background(&mut recorder, &self.frame, self.opaque.as_ref());

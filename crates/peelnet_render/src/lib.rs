@@ -147,7 +147,7 @@ impl<'g> Renderer<'g> {
     ) -> Result<(FrameStats, Vec<PassTime>, f64), RenderError> {
         let start = Instant::now();
         self.scene
-            .set_view(self.gpu, camera, prepared.frame.size, PixelSample::ALL);
+            .set_view(self.gpu, camera, &prepared.frame, PixelSample::ALL);
         let mut recorder = Recorder::new(self.gpu, true);
         self.scene
             .draw_background(&mut recorder, &prepared.frame, prepared.opaque.as_ref());

@@ -125,10 +125,12 @@ pub struct SceneBuffers {
 pub struct FrameTargets {
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Width over height of what is seen; not that of `size` where a lower resolution was rounded.
+    pub aspect: f32,
     /// `C_0`: the opaque image over the background, RGBA32F.
     pub background: wgpu::TextureView,
     /// Depth of the opaque image.
-    depth: Option<wgpu::TextureView>,
+    pub depth: Option<wgpu::TextureView>,
     /// The finished image, RGBA32F.
     pub image: wgpu::TextureView,
     scene_group: Bound,
@@ -293,6 +295,11 @@ impl SceneBuffers {
         })
     }
 
+    /// The view's uniform.
+    pub(crate) const fn camera_buffer(&self) -> &wgpu::Buffer {
+        &self.camera
+    }
+
     /// Whether anything opaque can hide transparent fragments.
     pub fn has_opaque(&self) -> bool {
         !self.opaque.is_empty()
@@ -303,6 +310,16 @@ impl SceneBuffers {
     /// # Errors
     /// A frame without pixels, or larger than the adapter allows.
     pub fn targets(&self, gpu: &Gpu, size: [u32; 2]) -> Result<FrameTargets, RenderError> {
+        self.targets_of(gpu, size, size[0] as f32 / size[1] as f32)
+    }
+
+    /// The same for pixels that need not be square: `aspect` is the width of what is seen over its height.
+    pub(crate) fn targets_of(
+        &self,
+        gpu: &Gpu,
+        size: [u32; 2],
+        aspect: f32,
+    ) -> Result<FrameTargets, RenderError> {
         if size[0] == 0 || size[1] == 0 {
             return Err(RenderError::EmptyFrame {
                 width: size[0],
@@ -334,6 +351,7 @@ impl SceneBuffers {
         let scene_group = gpu.bind("scene", stages, &entries);
         Ok(FrameTargets {
             size,
+            aspect,
             background: gpu.texture("background", format, size, none)?,
             image: gpu.texture("image", format, size, wgpu::TextureUsages::STORAGE_BINDING)?,
             depth,
@@ -343,20 +361,19 @@ impl SceneBuffers {
     }
 
     /// Points the camera uniform at a view.
-    pub fn set_view(&self, gpu: &Gpu, camera: &Camera, size: [u32; 2], sample: PixelSample) {
-        let clip_from_world =
-            camera.clip_from_view(size[0] as f32 / size[1] as f32) * camera.view_from_world();
+    pub fn set_view(&self, gpu: &Gpu, camera: &Camera, frame: &FrameTargets, sample: PixelSample) {
+        let clip_from_world = camera.clip_from_view(frame.aspect) * camera.view_from_world();
         let warp = self.depth_warp(camera);
         let uniform = CameraUniform {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             eye: camera.position.extend(1.0).to_array(),
-            frame: [size[0], size[1], self.light_count, sample.seed],
+            frame: [frame.size[0], frame.size[1], self.light_count, sample.seed],
             sample: [sample.view, sample.threshold, 0, 0],
             depth_scale: [
                 depth_scale(camera.far),
                 (-warp.log_near).exp() as f32,
                 warp.scale as f32,
-                0.0,
+                camera.far / (camera.far - camera.near),
             ],
         };
         gpu.queue

@@ -55,6 +55,7 @@ sources! {
     "methods::wavelet::haar" = "methods/wavelet/haar.wgsl",
     "methods::linked_list::build" = "methods/linked_list/build.wgsl",
     "methods::linked_list::composite" = "methods/linked_list/composite.wgsl",
+    "methods::low_resolution::upsample" = "methods/low_resolution/upsample.wgsl",
     "methods::mboit4::gather" = "methods/mboit4/gather.wgsl",
     "methods::mboit4::moments" = "methods/mboit4/moments.wgsl",
     "methods::mboit4::reconstruct" = "methods/mboit4/reconstruct.wgsl",

@@ -12,6 +12,7 @@ mod dfaoit;
 pub mod dual_peel;
 mod kbuffer;
 mod linked_list;
+mod low_resolution;
 mod mboit;
 mod nmt;
 mod painter;
@@ -82,13 +83,20 @@ pub struct MethodEntry {
     pub points: &'static [&'static str],
     /// Largest number that the name ends in, as in `kbuffer-8`; 0 for a name that stands alone.
     pub most: u32,
-    /// Names of its knobs, with the values they take.
-    pub knobs: &'static [(&'static str, &'static str)],
+    /// Names of its own knobs, with the values they take; see [`MethodEntry::knobs`] for all.
+    own_knobs: &'static [(&'static str, &'static str)],
     /// Whether it draws with a trained network.
     pub learned: bool,
     /// Whether it is exact by definition.
     pub exact: bool,
     build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
+}
+
+impl MethodEntry {
+    /// Names of its knobs, with the values they take: its own, and what every method has.
+    pub fn knobs(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.own_knobs.iter().copied().chain([SCALE])
+    }
 }
 
 /// What a method is built from.
@@ -127,16 +135,20 @@ const MOMENT_TARGETS: (&str, &str) = (
     "targets",
     "f16 or f32 for all; by default 32-bit moments and 16-bit sums",
 );
+const SCALE: (&str, &str) = (
+    "scale",
+    "of the resolution that transparency is drawn at, 1 by default; upsampled by depth",
+);
 const PASSES: (&str, &str) = ("passes", "a cap on the number of peeling passes");
 
 macro_rules! wboit {
-    ($name:literal, $weight:expr, $about:literal, [$($knob:expr),*]) => {
+    ($name:literal, $weight:expr, $about:literal, [$($knob:expr),*] $(, $point:literal)*) => {
         MethodEntry {
             name: $name,
             about: $about,
-            points: &["", ":targets=f32"],
+            points: &["", ":targets=f32" $(, $point)*],
             most: 0,
-            knobs: &[TARGETS $(, $knob)*],
+            own_knobs: &[TARGETS $(, $knob)*],
             learned: false,
             exact: false,
             build: |b| weighted::wboit(b, $weight),
@@ -149,9 +161,9 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "abuffer",
         about: "exact: S-buffer, every fragment stored and sorted",
-        points: &[""],
+        points: &["", ":scale=0.5"],
         most: 0,
-        knobs: &[("budget", "fragments that one tile may hold")],
+        own_knobs: &[("budget", "fragments that one tile may hold")],
         learned: false,
         exact: true,
         build: abuffer::build,
@@ -161,7 +173,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "exact: one pass into a list for each pixel, sorted by relinking",
         points: &[""],
         most: 0,
-        knobs: &[("nodes", "size of the first pool; it grows as needed")],
+        own_knobs: &[("nodes", "size of the first pool; it grows as needed")],
         learned: false,
         exact: true,
         build: linked_list::build,
@@ -171,7 +183,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "exact: front to back, one layer a pass",
         points: &["", ":passes=2", ":passes=4", ":passes=8"],
         most: 0,
-        knobs: &[PASSES],
+        own_knobs: &[PASSES],
         learned: false,
         exact: true,
         build: depth_peel::build,
@@ -181,7 +193,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "exact but for coplanar fragments: both ends, two layers a pass",
         points: &["", ":passes=2", ":passes=4"],
         most: 0,
-        knobs: &[PASSES],
+        own_knobs: &[PASSES],
         learned: false,
         exact: true,
         build: dual_peel::build,
@@ -191,7 +203,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "objects sorted on the CPU, hardware blending",
         points: &["", ":sort=off"],
         most: 0,
-        knobs: &[
+        own_knobs: &[
             TARGETS,
             (
                 "sort",
@@ -207,7 +219,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "triangles sorted on the CPU, hardware blending",
         points: &[""],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: false,
         exact: false,
         build: painter::triangles,
@@ -217,7 +229,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Meshkin 2007",
         points: &[""],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: false,
         exact: false,
         build: weighted::sum,
@@ -227,7 +239,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Bavoil & Myers 2008",
         points: &[""],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: false,
         exact: false,
         build: weighted::average,
@@ -237,7 +249,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "McGuire & Bavoil 2013, eq 5",
         points: &[""],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: false,
         exact: false,
         build: weighted::blended,
@@ -258,7 +270,8 @@ pub const METHODS: &[MethodEntry] = &[
         "wboit-eq9",
         |_| Ok(Weight::Eq9),
         "McGuire & Bavoil 2013, eq 6 with weight 9",
-        []
+        [],
+        ":scale=0.5"
     ),
     wboit!(
         "wboit-eq10",
@@ -289,9 +302,15 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "mboit4",
         about: "Münstermann et al. 2018, four power moments",
-        points: &["", ":targets=f16", ":overestimation=0.5", ":own=out"],
+        points: &[
+            "",
+            ":targets=f16",
+            ":overestimation=0.5",
+            ":own=out",
+            ":scale=0.5",
+        ],
         most: 0,
-        knobs: &[
+        own_knobs: &[
             MOMENT_TARGETS,
             ("overestimation", "0.25 by default"),
             ("bias", "5e-7 by default, 6e-5 with 16-bit moments"),
@@ -309,7 +328,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Münstermann et al. 2018, six power moments",
         points: &["", ":own=out"],
         most: 0,
-        knobs: &[
+        own_knobs: &[
             MOMENT_TARGETS,
             ("overestimation", "0.25 by default"),
             ("bias", "5e-6 by default, 6e-4 with 16-bit moments"),
@@ -327,7 +346,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Aizenshtein, Smal & McGuire 2022, Haar wavelets of rank 3",
         points: &["", ":own=in"],
         most: 0,
-        knobs: &[("own", "out (default) or in: a fragment's own absorbance")],
+        own_knobs: &[("own", "out (default) or in: a fragment's own absorbance")],
         learned: false,
         exact: false,
         build: wavelet::build,
@@ -337,7 +356,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "the K nearest exactly, the rest blended by eq 5",
         points: &["-2", "-4", "-8"],
         most: 64,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: false,
         exact: false,
         build: kbuffer::plain,
@@ -347,7 +366,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "the K nearest exactly, the rest blended by eq 6",
         points: &["-2", "-4", "-8"],
         most: 64,
-        knobs: &[
+        own_knobs: &[
             TARGETS,
             ("weight", "of the tail: eq9 (default), eq7 or eq8"),
         ],
@@ -360,7 +379,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Enderton et al. 2010, S screen-door samples with alpha correction",
         points: &["-4", "-16", "-64"],
         most: 256,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: false,
         exact: false,
         build: stochastic::build,
@@ -370,7 +389,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Papakostas 2022: eq 6 with a network's weight",
         points: &[""],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: true,
         exact: false,
         build: deep_thesis::build,
@@ -380,7 +399,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Tsopouridis et al. 2024: a network reads four moments",
         points: &["", ":targets=f16"],
         most: 0,
-        knobs: &[MOMENT_TARGETS],
+        own_knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
         build: nmt::build,
@@ -390,7 +409,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "Tsopouridis et al. 2024: two layers exact, the colour of the rest from a network",
         points: &[""],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: true,
         exact: false,
         build: dfaoit::build,
@@ -400,7 +419,7 @@ pub const METHODS: &[MethodEntry] = &[
         about: "a learned share of what lies between the pixel's ends, 5-8-1",
         points: &["", ":targets=f32"],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: true,
         exact: false,
         build: anchored::build,
@@ -408,9 +427,9 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "deep-medium",
         about: "the same with exact ends, 5-12-1: the one to ship",
-        points: &["", ":targets=f32"],
+        points: &["", ":targets=f32", ":scale=0.5"],
         most: 0,
-        knobs: &[TARGETS],
+        own_knobs: &[TARGETS],
         learned: true,
         exact: false,
         build: anchored::build,
@@ -418,9 +437,9 @@ pub const METHODS: &[MethodEntry] = &[
     MethodEntry {
         name: "deep-large",
         about: "the same with more features, 9-14-9-1: the most accurate",
-        points: &["", ":targets=f16"],
+        points: &["", ":targets=f16", ":scale=0.5"],
         most: 0,
-        knobs: &[MOMENT_TARGETS],
+        own_knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
         build: anchored::build,
@@ -591,12 +610,8 @@ impl FromStr for MethodSpec {
         }
         for pair in rest.split(',').filter(|p| !p.is_empty()) {
             let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
-            if !entry.knobs.iter().any(|(k, _)| *k == key) {
-                let known: Vec<_> = entry
-                    .knobs
-                    .iter()
-                    .map(|(k, v)| format!("{k} ({v})"))
-                    .collect();
+            if !entry.knobs().any(|(k, _)| k == key) {
+                let known: Vec<_> = entry.knobs().map(|(k, v)| format!("{k} ({v})")).collect();
                 return Err(spec.bad(&format!(
                     "there is no knob '{key}'; there are: {}",
                     known.join(", ")
@@ -623,7 +638,17 @@ impl fmt::Display for MethodSpec {
 
 /// Makes a method ready.
 pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    (b.spec.entry().build)(b)
+    let scale = b.spec.number("scale", 1.0)?;
+    if !(scale > 0.0 && scale <= 1.0) {
+        return Err(b
+            .spec
+            .bad("scale must be above 0 and at most 1, such as 0.5"));
+    }
+    if scale < 1.0 {
+        low_resolution::build(b, scale)
+    } else {
+        (b.spec.entry().build)(b)
+    }
 }
 
 #[cfg(test)]

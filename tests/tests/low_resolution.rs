@@ -1,0 +1,115 @@
+//! Transparency at a lower resolution: nothing changes where nothing varies, and opaque edges stay sharp.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use glam::Vec3;
+use peelnet_core::fragment::worked_example;
+use peelnet_gpu::Gpu;
+use peelnet_render::{Image, MethodSpec, Renderer};
+use peelnet_scene::Scene;
+use peelnet_tests::{gpu, object, scene, unlit, wall, walls};
+
+fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
+    let renderer = Renderer::new(gpu, scene).unwrap();
+    let spec = method.parse().unwrap();
+    let mut prepared = renderer.prepare(&spec, size, None).unwrap();
+    let camera = scene.views[0];
+    renderer.draw(&mut prepared, &camera).unwrap().image
+}
+
+fn furthest(a: &Image, b: &Image) -> f32 {
+    let channels = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    channels.map(|(x, y)| (x - y).abs()).fold(0.0, f32::max)
+}
+
+/// Compositing over black and then over `C_0` rounds a few times more than compositing over `C_0`.
+const ROUNDING: f32 = 1e-5;
+
+/// Where every pixel holds the same fragments, any scale gives the image of the full resolution, for frames of odd sizes too.
+#[test]
+fn what_does_not_vary_is_unchanged() {
+    let gpu = gpu();
+    let walls = walls(&worked_example(), [0.25, 0.5, 0.75]);
+    for spec in MethodSpec::all() {
+        // Its samples differ from pixel to pixel by design.
+        if spec.name() == "stochastic" {
+            continue;
+        }
+        let full = draw(&gpu, &walls, &spec.to_string(), [7, 5]);
+        for scale in ["0.5", "0.3", "1"] {
+            let low = draw(&gpu, &walls, &format!("{spec}:scale={scale}"), [7, 5]);
+            let apart = furthest(&full, &low);
+            assert!(apart <= ROUNDING, "{spec} at {scale}: {apart}");
+            if scale == "1" {
+                assert_eq!(full, low, "{spec}");
+            }
+        }
+    }
+}
+
+/// An opaque post before a transparent wall: no transparency leaks onto the post, and none is missing beside it.
+#[test]
+fn opaque_edges_stay_sharp() {
+    let gpu = gpu();
+    let quad = |x: [f32; 2], z: f32| {
+        let v = |x: f32, y: f32| Vec3::new(x * z, y * z, -z);
+        let (a, b, c, d) = (v(x[0], -2.0), v(x[1], -2.0), v(x[1], 2.0), v(x[0], 2.0));
+        [[a, b, c], [a, c, d]]
+    };
+    let post = object("post", &quad([-0.35, 0.4], 2.0), unlit([0.0; 3], 1.0));
+    let scene = scene(
+        "post",
+        [0.0; 3],
+        vec![post, wall(6.0, unlit([1.0, 1.0, 1.0], 0.5))],
+    );
+    let size = [33, 29];
+    let full = draw(&gpu, &scene, "abuffer", size);
+    let low = draw(&gpu, &scene, "abuffer:scale=0.5", size);
+    // Depths of 2 and 6, or of 6 and the far plane, differ by 2 relative to the nearer: a wrong sample weighs at most
+    // (1 + 2^-10) / 4 against 2^-10 / 0.02^2 of one that is right.
+    let right = 2f32.powi(-10) / 4e-4;
+    let leak = 3.0 * 0.25 / right;
+    assert!(furthest(&full, &low) <= leak, "{}", furthest(&full, &low));
+    // Both are seen.
+    let row = |x: usize| full.pixels[14 * 33 + x][0];
+    assert_eq!((row(1), row(16)), (0.5, 0.0));
+}
+
+/// Where there is detail, half the resolution costs accuracy, and a quarter more.
+#[test]
+fn detail_is_lost_by_degrees() {
+    let gpu = gpu();
+    let quads: Vec<_> = (0..6)
+        .map(|i| {
+            let x = -1.0 + 0.3 * i as f32;
+            let v = |x: f32, y: f32| Vec3::new(x * 3.0, y * 3.0, -3.0);
+            let t = [v(x, -0.7), v(x + 0.4, -0.5), v(x + 0.1, 0.8)];
+            object("leaf", &[t], unlit([1.0, 0.5, 0.1 * i as f32], 0.6))
+        })
+        .collect();
+    let scene = scene("leaves", [0.0, 0.1, 0.2], quads);
+    let full = draw(&gpu, &scene, "abuffer", [64, 48]);
+    let mean = |method: &str| {
+        let low = draw(&gpu, &scene, method, [64, 48]);
+        let channels = full
+            .pixels
+            .iter()
+            .flatten()
+            .zip(low.pixels.iter().flatten());
+        channels.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>()
+    };
+    let (half, quarter) = (mean("abuffer:scale=0.5"), mean("abuffer:scale=0.25"));
+    assert!(0.0 < half && half < quarter, "{half} {quarter}");
+}
+
+#[test]
+fn other_scales_are_refused() {
+    let gpu = gpu();
+    let walls = walls(&worked_example(), [0.0; 3]);
+    let renderer = Renderer::new(&gpu, &walls).unwrap();
+    for scale in ["0", "-1", "1.5", "nan", "half"] {
+        let spec: MethodSpec = format!("blended:scale={scale}").parse().unwrap();
+        let e = renderer.prepare(&spec, [4, 4], None).unwrap_err();
+        assert!(e.to_string().contains("scale"), "{e}");
+    }
+}
