@@ -2,15 +2,35 @@
 // Twin of peelnet_core::methods::wboit::normalised.
 import package::helpers::guards::{SUM_FLOOR, HALF_MAX};
 
+// What is left of sums where their targets ended: colours of 16-bit targets stop at the largest half, and some GPUs give
+// infinity there. 32-bit targets do not end.
+fn within(sums: vec4f) -> vec4f {
+    @if(full_sums) {
+        return sums;
+    }
+    @else {
+        return min(sums, vec4f(HALF_MAX));
+    }
+}
+
+// The sum of weights as a divisor: not below the smallest number that its target can hold.
+fn divisor(weights: f32) -> f32 {
+    @if(full_sums) {
+        return max(weights, 1.17549435e-38);
+    }
+    @else {
+        return max(weights, SUM_FLOOR);
+    }
+}
+
 // `sums` holds sum C w and sum alpha w, `transmittance` T of the whole pixel. Returns colour and coverage.
 fn normalised(sums: vec4f, transmittance: f32, background: vec3f) -> vec4f {
     // A pixel that nothing covers keeps C_0 bit for bit.
     if transmittance == 1.0 {
         return vec4f(background, 0.0);
     }
-    // Where a 16-bit target overflowed every component is at its ceiling at best: grey of the average is the best
-    // guess left. Some GPUs give infinity there, some the largest half.
-    let finite = min(sums, vec4f(HALF_MAX));
-    let average = finite.rgb / max(finite.a, SUM_FLOOR);
+    // Where a 16-bit target overflowed every component is at its ceiling at best: grey of the average is the best guess left.
+    let finite = within(sums);
+    let average = finite.rgb / divisor(finite.a);
     return vec4f(average * (1.0 - transmittance) + background * transmittance, 1.0 - transmittance);
 }

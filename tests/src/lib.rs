@@ -1,10 +1,11 @@
 //! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 use peelnet_core::{fragment::Fragment, scanline};
 use peelnet_gpu::{AdapterRequest, Gpu};
-use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
-use std::{path::PathBuf, sync::Arc};
+use peelnet_model::{Model, Recipe};
+use peelnet_scene::{Camera, Material, Object, Scene};
+use std::path::Path;
 
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
@@ -12,6 +13,15 @@ pub fn gpu() -> Gpu {
     Gpu::new(&AdapterRequest::Software)
         .or_else(|_| Gpu::new(&AdapterRequest::Auto))
         .unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The network that ships for a recipe.
+pub fn shipped(recipe: Recipe) -> Model {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
+    let file = root
+        .unwrap_or(Path::new("."))
+        .join(format!("models/{recipe}/model.safetensors"));
+    Model::load(&file).unwrap_or_else(|e| panic!("{e}; make it with: cargo xtask train-models"))
 }
 
 /// A camera at the origin that looks along −z with a square frame of 90°, so that a quad of half side `z` at depth
@@ -27,68 +37,17 @@ pub fn camera() -> Camera {
     }
 }
 
-/// An unlit material.
-pub fn unlit(color: [f32; 3], alpha: f32) -> Material {
-    Material {
-        name: String::new(),
-        color,
-        alpha,
-        lighting: Lighting::Unlit,
-        specular: 0.0,
-        shininess: 1.0,
-        double_sided: true,
-        blend: true,
-    }
-}
-
-/// An object from triangles in world space.
-pub fn object(name: &str, corners: &[[Vec3; 3]], material: Material) -> Object {
-    let positions: Vec<Vec3> = corners.iter().flatten().copied().collect();
-    let mesh = Mesh {
-        normals: corners
-            .iter()
-            .flat_map(|[a, b, c]| [(*b - *a).cross(*c - *a).normalize_or(Vec3::Z); 3])
-            .collect(),
-        triangles: (0..corners.len() as u32)
-            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-            .collect(),
-        parts: vec![Part {
-            name: name.to_owned(),
-            triangles: 0..corners.len(),
-            material: material.clone(),
-        }],
-        positions,
-    };
-    Object {
-        name: name.to_owned(),
-        mesh: Arc::new(mesh),
-        world_from_object: Mat4::IDENTITY,
-        layer: 0,
-        materials: vec![material],
-    }
-}
-
 /// A quad facing the camera at depth `z` that covers the whole frame, and more.
 pub fn wall(z: f32, material: Material) -> Object {
     let s = 1.5 * z;
     let v = |x: f32, y: f32| Vec3::new(x * s, y * s, -z);
     let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
-    object(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material)
+    Object::of_triangles(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material)
 }
 
 /// A scene of these objects.
 pub fn scene(name: &str, background: [f32; 3], objects: Vec<Object>) -> Scene {
-    Scene {
-        name: name.to_owned(),
-        source: PathBuf::from(format!("{name} (made by a test)")),
-        hash: String::new(),
-        background,
-        views: vec![camera()],
-        lights: Vec::new(),
-        objects,
-        held_out: false,
-        warnings: Vec::new(),
-    }
+    Scene::generated(name, "a test", background, camera(), objects)
 }
 
 /// Every pixel of it holds exactly these fragments.
@@ -98,7 +57,7 @@ pub fn walls(fragments: &[Fragment], background: [f32; 3]) -> Scene {
         background,
         fragments
             .iter()
-            .map(|f| wall(f.depth, unlit(f.color, f.alpha)))
+            .map(|f| wall(f.depth, Material::unlit(f.color, f.alpha)))
             .collect(),
     )
 }

@@ -306,14 +306,14 @@ fn painters_have_their_known_flaw() {
 #[test]
 fn opaque_walls_hide() {
     let gpu = gpu();
-    let mut opaque = peelnet_tests::unlit([0.1, 0.6, 0.3], 1.0);
+    let mut opaque = peelnet_scene::Material::unlit([0.1, 0.6, 0.3], 1.0);
     opaque.blend = false;
     let front = [Fragment::new(1.0, 0.5, [1.0, 0.0, 0.0])];
     let mut scene = walls(&front, [0.0; 3]);
     scene.objects.push(peelnet_tests::wall(2.0, opaque));
     scene.objects.push(peelnet_tests::wall(
         3.0,
-        peelnet_tests::unlit([0.0, 0.0, 1.0], 0.9),
+        peelnet_scene::Material::unlit([0.0, 0.0, 1.0], 0.9),
     ));
     let renderer = Renderer::new(&gpu, &scene).unwrap();
     let want = over::composite(&front, [0.1, 0.6, 0.3]);

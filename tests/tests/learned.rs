@@ -17,16 +17,9 @@ use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodSpec, Renderer, srgb_encode};
 use peelnet_scene::{Scene, suite};
-use peelnet_tests::{gpu, walls};
-use std::path::Path;
+use peelnet_tests::{gpu, shipped, walls};
 
 const ANCHORED: [Recipe; 3] = [Recipe::Small, Recipe::Medium, Recipe::Large];
-
-fn shipped(recipe: Recipe) -> Model {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let file = root.join(format!("models/{recipe}/model.safetensors"));
-    Model::load(&file).unwrap_or_else(|e| panic!("{e}; make it with: cargo xtask train-models"))
-}
 
 fn learned(model: &Model) -> LearnedWeight {
     LearnedWeight {
@@ -479,20 +472,7 @@ fn scale_changes_nothing_visible() {
                 let reference = draw(&gpu, &base, &spec, &model, [256, 192]);
                 let exact = draw_exact(&gpu, &base);
                 for factor in [1e-3f32, 1e3] {
-                    let mut scene = base.clone();
-                    let scaling = glam::Mat4::from_scale(glam::Vec3::splat(factor));
-                    for object in &mut scene.objects {
-                        object.world_from_object = scaling * object.world_from_object;
-                    }
-                    for light in &mut scene.lights {
-                        light.position *= factor;
-                    }
-                    for view in &mut scene.views {
-                        view.position *= factor;
-                        view.target *= factor;
-                        view.near *= factor;
-                        view.far *= factor;
-                    }
+                    let scene = base.scaled(factor);
                     let image = draw(&gpu, &scene, &spec, &model, [256, 192]);
                     let difference = |a: &[f32; 4], b: &[f32; 4]| {
                         let display = |x: f32| srgb_encode(x.clamp(0.0, 1.0)) * 255.0;

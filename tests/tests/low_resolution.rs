@@ -6,8 +6,8 @@ use glam::Vec3;
 use peelnet_core::fragment::worked_example;
 use peelnet_gpu::Gpu;
 use peelnet_render::{Image, MethodSpec, Renderer};
-use peelnet_scene::Scene;
-use peelnet_tests::{gpu, object, scene, unlit, wall, walls};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{gpu, scene, wall, walls};
 
 fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
@@ -56,11 +56,15 @@ fn opaque_edges_stay_sharp() {
         let (a, b, c, d) = (v(x[0], -2.0), v(x[1], -2.0), v(x[1], 2.0), v(x[0], 2.0));
         [[a, b, c], [a, c, d]]
     };
-    let post = object("post", &quad([-0.35, 0.4], 2.0), unlit([0.0; 3], 1.0));
+    let post = Object::of_triangles(
+        "post",
+        &quad([-0.35, 0.4], 2.0),
+        Material::unlit([0.0; 3], 1.0),
+    );
     let scene = scene(
         "post",
         [0.0; 3],
-        vec![post, wall(6.0, unlit([1.0, 1.0, 1.0], 0.5))],
+        vec![post, wall(6.0, Material::unlit([1.0, 1.0, 1.0], 0.5))],
     );
     let size = [33, 29];
     let full = draw(&gpu, &scene, "abuffer", size);
@@ -84,7 +88,11 @@ fn detail_is_lost_by_degrees() {
             let x = -1.0 + 0.3 * i as f32;
             let v = |x: f32, y: f32| Vec3::new(x * 3.0, y * 3.0, -3.0);
             let t = [v(x, -0.7), v(x + 0.4, -0.5), v(x + 0.1, 0.8)];
-            object("leaf", &[t], unlit([1.0, 0.5, 0.1 * i as f32], 0.6))
+            Object::of_triangles(
+                "leaf",
+                &[t],
+                Material::unlit([1.0, 0.5, 0.1 * i as f32], 0.6),
+            )
         })
         .collect();
     let scene = scene("leaves", [0.0, 0.1, 0.2], quads);

@@ -7,8 +7,8 @@ use peelnet_core::{hash, scanline, tolerance::UNIT_ROUNDOFF};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::scene::PixelSample;
-use peelnet_scene::{Object, Scene};
-use peelnet_tests::{clip_triangles, gpu, object, scene, unlit};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{clip_triangles, gpu, scene};
 
 const SIZE: [u32; 2] = [61, 47];
 
@@ -37,10 +37,10 @@ fn soup(objects: usize, seed: u32) -> Scene {
                 })
                 .collect();
             let color = [random(), random(), random()];
-            object(
+            Object::of_triangles(
                 &format!("soup {i}"),
                 &corners,
-                unlit(color, 0.05 + 0.9 * random()),
+                Material::unlit(color, 0.05 + 0.9 * random()),
             )
         })
         .collect();

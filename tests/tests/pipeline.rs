@@ -13,8 +13,8 @@ use peelnet_gpu::Gpu;
 use peelnet_model::{FORMAT_VERSION, Input, Losses, Metadata, Model, Output, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views, extract};
 use peelnet_render::{LearnedWeight, Renderer};
-use peelnet_scene::Scene;
-use peelnet_tests::{gpu, object, scene, unlit, walls};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{gpu, scene, walls};
 use std::{path::Path, sync::atomic::AtomicBool};
 
 fn options(out: &Path) -> ExtractOptions {
@@ -56,7 +56,11 @@ fn scenes() -> Vec<Scene> {
                         glam::Vec3::new((2.0 * random() - 1.0) * z, (2.0 * random() - 1.0) * z, -z)
                     });
                     let color = [random(), random(), random()];
-                    object(&format!("pane {i}"), &[corners], unlit(color, random()))
+                    Object::of_triangles(
+                        &format!("pane {i}"),
+                        &[corners],
+                        Material::unlit(color, random()),
+                    )
                 })
                 .collect();
             let mut s = scene(name, [0.0; 3], objects);

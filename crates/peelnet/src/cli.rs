@@ -74,6 +74,8 @@ pub enum Command {
     Render(RenderArgs),
     /// Compare many methods: error against time
     Bench(BenchArgs),
+    /// Draw the cases where transparency is known to break, and tell what holds
+    Stress(StressArgs),
     /// Name the method that a budget of time, error or memory calls for
     Recommend(RecommendArgs),
     /// Tell what a scene, a dataset or a model is
@@ -339,6 +341,36 @@ pub struct BenchArgs {
     pub resume: bool,
 }
 
+/// `peelnet stress`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet stress                                        every method, with the shipped networks
+  peelnet stress --model m.safetensors --out out/mine   a network of your own, before it ships
+  peelnet stress --methods mboit4,deep-medium --cases deep,coplanar
+  peelnet stress --json | jq '.rows[] | select(.result == \"fail\")'
+
+Exit code 1 where a property does not hold that is not declared as a flaw, or where a declared flaw is gone. DIR gets stress.json,
+stress.csv, stress.md, stress.html, and pictures of what fails in images/.")]
+pub struct StressArgs {
+    /// Methods, with commas between them; all means every method in every precision
+    #[arg(long, value_name = "all|A,B", default_value = "all")]
+    pub methods: MethodList,
+    /// Model files of learned methods, with commas between them; without --methods they alone are judged
+    #[arg(
+        long,
+        visible_alias = "model",
+        value_name = "MODEL,MODEL",
+        value_delimiter = ','
+    )]
+    pub models: Vec<PathBuf>,
+    /// Names of cases, with commas between them [default: all]
+    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',')]
+    pub cases: Vec<String>,
+    /// Folder for the results, and for pictures of what fails
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
 /// `peelnet recommend`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
@@ -437,6 +469,8 @@ mod tests {
             "bench --redraw --out d",
             "bench --training d,e s --out o --size 64x48",
             "bench s --out d --resume",
+            "stress --methods mboit4,deep-small --models m --json",
+            "stress --model m --cases deep --out d",
             "recommend s --budget-ms 3 --max-error 1e-4 --max-bytes 32",
             "recommend s --results d --json",
             "inspect x --json",

@@ -224,6 +224,58 @@ impl Mlp {
         x
     }
 
+    /// The forward pass as a half-float unit does it: every product, sum and activation rounded to 16 bits.
+    ///
+    /// # Panics
+    /// If `input` does not have [`Mlp::inputs`] values.
+    pub fn forward_half(&self, input: &[f32]) -> Vec<f32> {
+        assert_eq!(input.len(), self.inputs(), "network input length");
+        let half = |x: f32| half::f16::from_f32(x).to_f32();
+        let mut x: Vec<f32> = input.iter().map(|&v| half(v)).collect();
+        for (i, layer) in self.layers.iter().enumerate() {
+            let f = self.activation(i);
+            x = layer
+                .weights
+                .chunks_exact(layer.inputs)
+                .zip(&layer.bias)
+                .map(|(row, &b)| {
+                    let products = row.iter().zip(&x).map(|(&w, v)| half(half(w) * v));
+                    half(f.apply(products.fold(half(b), |sum, p| half(sum + p))))
+                })
+                .collect();
+        }
+        x
+    }
+
+    /// The size that rounding errors of the last layer are relative to, the largest of its outputs': `Σ|w||x| + |b|`. A dot
+    /// product in floating point errs by a multiple of that sum, not of its possibly cancelled result (Higham, "Accuracy and
+    /// Stability of Numerical Algorithms", 2002, §3.1).
+    ///
+    /// # Panics
+    /// If `input` does not have [`Mlp::inputs`] values.
+    pub fn magnitude(&self, input: &[f64]) -> f64 {
+        let Some((last, before)) = self.layers.split_last() else {
+            return 0.0;
+        };
+        let hidden = Self {
+            layers: before.to_vec(),
+            hidden: self.hidden,
+            output: self.hidden,
+        };
+        let x = if before.is_empty() {
+            input.to_vec()
+        } else {
+            hidden.forward_f64(input)
+        };
+        let sizes = last.weights.chunks_exact(last.inputs).zip(&last.bias);
+        sizes
+            .map(|(row, &b)| {
+                let terms = row.iter().zip(&x).map(|(&w, v)| (f64::from(w) * v).abs());
+                f64::from(b).abs() + terms.sum::<f64>()
+            })
+            .fold(0.0, f64::max)
+    }
+
     fn activation(&self, layer: usize) -> Activation {
         if layer + 1 == self.layers.len() {
             self.output

@@ -42,6 +42,17 @@ pub enum EvalError {
         /// The peeler's reason.
         source: Box<peelnet_peel::PeelError>,
     },
+    /// A scene of the suite could not be loaded.
+    #[error(transparent)]
+    Scene(#[from] peelnet_scene::SceneError),
+    /// An exported function could not be run.
+    #[error("the network of {method}: {source}")]
+    Network {
+        /// The method that draws with it.
+        method: String,
+        /// The exporter's reason.
+        source: Box<peelnet_export::ExportError>,
+    },
     /// Two images that should be compared differ in size: a bug of the caller.
     #[error(
         "an image of {approximate} pixels was compared with one of {exact} pixels; draw both with the same size"

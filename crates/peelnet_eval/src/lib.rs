@@ -32,6 +32,7 @@ pub mod recommend;
 pub mod report;
 mod row;
 pub mod scaling;
+pub mod stress;
 pub mod table;
 pub mod thesis;
 pub mod transmittance;

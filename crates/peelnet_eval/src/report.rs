@@ -3,9 +3,11 @@
 mod bench_page;
 mod chart;
 mod page;
+mod stress_page;
 
 #[cfg(test)]
 pub(crate) use page::tests::machine as machine_of_tests;
+pub(crate) use stress_page::page as stress_page;
 
 use crate::{
     EvalError, Machine, Row,

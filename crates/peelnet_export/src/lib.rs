@@ -10,7 +10,7 @@ mod literal;
 mod verify;
 mod wgsl;
 
-pub use verify::{Verification, verify};
+pub use verify::{Verification, evaluate, verify};
 pub use wgsl::{multiply_adds, wgsl};
 
 use peelnet_gpu::Gpu;

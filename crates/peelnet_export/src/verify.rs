@@ -4,7 +4,7 @@ use crate::{
     ExportError,
     wgsl::{function_name, self_test_inputs},
 };
-use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, hash::pcg, mlp::Mlp, tolerance::EXPORT_F32};
+use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, hash::pcg, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
@@ -50,34 +50,7 @@ impl fmt::Display for Verification {
     }
 }
 
-/// The size that rounding errors of the last layer are relative to: the largest of the answer's own size and
-/// `Σ|w||x| + |b|`. A dot product in floating point errs by a multiple of that sum, not of its possibly cancelled result
-/// (Higham, "Accuracy and Stability of Numerical Algorithms", 2002, §3.1).
-fn magnitude(mlp: &Mlp, normalised: &[f64]) -> f64 {
-    let mut x = normalised.to_vec();
-    let mut size = 0.0f64;
-    for (i, layer) in mlp.layers.iter().enumerate() {
-        let activation = if i + 1 == mlp.layers.len() {
-            mlp.output
-        } else {
-            mlp.hidden
-        };
-        let mut next = Vec::with_capacity(layer.outputs);
-        size = 0.0;
-        for (row, &b) in layer.weights.chunks_exact(layer.inputs).zip(&layer.bias) {
-            let terms = row.iter().zip(&x).map(|(&w, v)| f64::from(w) * v);
-            let (sum, absolute) = terms.fold((f64::from(b), f64::from(b).abs()), |(s, a), t| {
-                (s + t, a + t.abs())
-            });
-            size = size.max(absolute);
-            next.push(activation.apply_f64(sum));
-        }
-        x = next;
-    }
-    size
-}
-
-/// The difference that is allowed of an answer: [`EXPORT_F32`] of [`magnitude`]. A weight `exp(−r s)` may differ as
+/// The difference that is allowed of an answer: [`EXPORT_F32`] of [`Mlp::magnitude`](peelnet_core::mlp::Mlp::magnitude). A weight `exp(−r s)` may differ as
 /// much as its share may, and by [`EXPORT_F32`] more for the rounding of `r` and of the exponential.
 fn tolerance(model: &Model, raw: &[f64]) -> f64 {
     let normalised: Vec<f64> = model
@@ -87,7 +60,7 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
         .zip(raw)
         .map(|(i, &x)| i.normalise_f64(x))
         .collect();
-    let sum = EXPORT_F32 * magnitude(&model.mlp, &normalised);
+    let sum = EXPORT_F32 * model.mlp.magnitude(&normalised);
     if !model.meta.output.is_share() {
         return sum;
     }
@@ -167,8 +140,11 @@ fn samples(model: &Model) -> Vec<Vec<f32>> {
     all
 }
 
-/// Evaluates the exported function on the GPU.
-fn evaluate(
+/// Evaluates the exported function on the GPU: as many answers for each sample as the model has outputs.
+///
+/// # Errors
+/// A text that does not link, or a GPU that fails.
+pub fn evaluate(
     gpu: &Gpu,
     model: &Model,
     wgsl: &str,
@@ -234,7 +210,7 @@ fn evaluate(
 mod tests {
     use super::*;
     use crate::{Options, export, wgsl};
-    use peelnet_core::mlp::{Activation, Layer};
+    use peelnet_core::mlp::{Activation, Layer, Mlp};
     use peelnet_gpu::AdapterRequest;
     use peelnet_model::{DatasetRef, Input, Losses, Metadata, Output, Recipe};
 

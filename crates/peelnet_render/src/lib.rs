@@ -78,6 +78,16 @@ impl<'g> Renderer<'g> {
         })
     }
 
+    /// Hands transparent surfaces to the GPU in another order from now on.
+    pub fn submit(&mut self, order: scene::Submission) {
+        self.scene.submit(order);
+    }
+
+    /// The warp that methods take a view's depths through.
+    pub fn depth_warp(&self, camera: &Camera) -> peelnet_core::absorbance::DepthWarp {
+        self.scene.depth_warp(camera)
+    }
+
     /// Makes a method ready for frames of `size` (width, height).
     ///
     /// # Errors

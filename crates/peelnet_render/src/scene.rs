@@ -96,6 +96,18 @@ pub enum Order {
     Triangles,
 }
 
+/// In which order the transparent parts of objects are handed to the GPU. Depths, numbers of triangles and everything that is
+/// computed of them stay as they are: only what depends on the order of drawing may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Submission {
+    /// As the scene lists them.
+    Listed,
+    /// The last first.
+    Reversed,
+    /// By a hash of their places and this seed.
+    Shuffled(u32),
+}
+
 /// Which half of the scene a geometry pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surfaces {
@@ -293,6 +305,22 @@ impl SceneBuffers {
             parts,
             background: scene.background,
         })
+    }
+
+    /// Hands the transparent parts to the GPU in another order from now on.
+    pub fn submit(&mut self, order: Submission) {
+        self.parts.sort_by_key(|part| {
+            let place = part.run.vertices.start;
+            match order {
+                Submission::Listed => place,
+                Submission::Reversed => u32::MAX - place,
+                Submission::Shuffled(seed) => peelnet_core::hash::pixel_hash(seed, 0, place, 0),
+            }
+        });
+        self.transparent.clear();
+        for TransparentPart { run, .. } in &self.parts {
+            push_run(&mut self.transparent, run.vertices.clone(), run.culled);
+        }
     }
 
     /// The view's uniform.
@@ -612,7 +640,8 @@ impl Sorted {
                     all.map(move |(&c, i)| (depth(c), first + 3 * i, culled))
                 })
                 .collect();
-            triangles.sort_by(|a, b| b.0.total_cmp(&a.0));
+            // Ties by place, so that the image does not depend on the order in which parts are handed over.
+            triangles.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let mut indices = Vec::with_capacity(triangles.len() * 3);
             for (_, first, culled) in triangles {
                 let at = indices.len() as u32;
@@ -626,7 +655,10 @@ impl Sorted {
         } else {
             let middle = |p: &TransparentPart| depth((p.bounds[0] + p.bounds[1]) / 2.0);
             let mut sorted: Vec<_> = parts.iter().map(|p| (middle(p), &p.run)).collect();
-            sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
+            sorted.sort_by(|a, b| {
+                let place = |run: &DrawRun| run.vertices.start;
+                b.0.total_cmp(&a.0).then(place(a.1).cmp(&place(b.1)))
+            });
             self.runs
                 .extend(sorted.into_iter().map(|(_, run)| run.clone()));
         }

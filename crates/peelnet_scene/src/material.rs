@@ -46,6 +46,20 @@ impl Material {
         }
     }
 
+    /// A transparent surface whose colour is its radiance; drawn as a transparent one even where `alpha` is 1.
+    pub const fn unlit(color: [f32; 3], alpha: f32) -> Self {
+        Self {
+            name: String::new(),
+            color,
+            alpha,
+            lighting: Lighting::Unlit,
+            specular: 0.0,
+            shininess: 1.0,
+            double_sided: true,
+            blend: true,
+        }
+    }
+
     /// Whether it is drawn by the opaque pass.
     pub fn is_opaque(&self) -> bool {
         self.alpha >= 1.0 && !self.blend

@@ -1,4 +1,4 @@
-use crate::{Camera, Material, Mesh};
+use crate::{Camera, Material, Mesh, Part};
 use glam::{Mat4, Vec3};
 use std::{path::PathBuf, sync::Arc};
 
@@ -28,6 +28,32 @@ pub struct Object {
     pub materials: Vec<Material>,
 }
 
+impl Object {
+    /// Triangles in world space, each with its own corners and normal.
+    pub fn of_triangles(name: &str, corners: &[[Vec3; 3]], material: Material) -> Self {
+        let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).normalize_or(Vec3::Z);
+        let mesh = Mesh {
+            positions: corners.iter().flatten().copied().collect(),
+            normals: corners.iter().flat_map(|t| [normal(t); 3]).collect(),
+            triangles: (0..corners.len() as u32)
+                .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+                .collect(),
+            parts: vec![Part {
+                name: name.to_owned(),
+                triangles: 0..corners.len(),
+                material: material.clone(),
+            }],
+        };
+        Self {
+            name: name.to_owned(),
+            mesh: Arc::new(mesh),
+            world_from_object: Mat4::IDENTITY,
+            layer: 0,
+            materials: vec![material],
+        }
+    }
+}
+
 /// Everything that is drawn.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -52,6 +78,46 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A scene that code makes, without lights; `maker` stands in messages where a file's name would.
+    pub fn generated(
+        name: &str,
+        maker: &str,
+        background: [f32; 3],
+        camera: Camera,
+        objects: Vec<Object>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            source: PathBuf::from(format!("{name} (made by {maker})")),
+            hash: String::new(),
+            background,
+            views: vec![camera],
+            lights: Vec::new(),
+            objects,
+            held_out: false,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The same scene with all of its lengths multiplied, the planes of its cameras too.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut scene = self.clone();
+        let scaling = Mat4::from_scale(Vec3::splat(factor));
+        for object in &mut scene.objects {
+            object.world_from_object = scaling * object.world_from_object;
+        }
+        for light in &mut scene.lights {
+            light.position *= factor;
+        }
+        for view in &mut scene.views {
+            view.position *= factor;
+            view.target *= factor;
+            view.near *= factor;
+            view.far *= factor;
+        }
+        scene
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.objects.iter().map(|o| o.mesh.triangles.len()).sum()

@@ -1,7 +1,6 @@
 // Learned methods with anchors: eq 6's resolve, or the ends exact and the rest normalised to what they leave.
 // Twin of peelnet_core::methods::anchored.
-import package::helpers::guards::{SUM_FLOOR, HALF_MAX};
-import package::helpers::resolve::normalised;
+import package::helpers::resolve::{divisor, normalised, within};
 import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
@@ -28,12 +27,12 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             return vec4f(behind, 0.0);
         }
         let coverage = 1.0 - transmittance;
-        let rest = min(sums, vec4f(HALF_MAX));
-        let exact = min(textureLoad(ends, pixel, 0), vec4f(HALF_MAX));
+        let rest = within(sums);
+        let exact = within(textureLoad(ends, pixel, 0));
         // All of it where nothing lies between; never more than there is.
-        let share = select(min(1.0, coverage / max(exact.a, SUM_FLOOR)), coverage / max(exact.a, SUM_FLOOR), rest.a == 0.0);
+        let share = select(min(1.0, coverage / divisor(exact.a)), coverage / divisor(exact.a), rest.a == 0.0);
         let left = max(coverage - exact.a * share, 0.0);
-        let color = exact.rgb * share + rest.rgb * (left / max(rest.a, SUM_FLOOR)) + behind * transmittance;
+        let color = exact.rgb * share + rest.rgb * (left / divisor(rest.a)) + behind * transmittance;
         return vec4f(color, coverage);
     }
 }

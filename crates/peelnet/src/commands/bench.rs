@@ -52,7 +52,13 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         mut methods,
         learned,
         ..
-    } = chosen(context, &gpu, args)?;
+    } = chosen(
+        context,
+        &gpu,
+        &args.methods,
+        &args.models,
+        MethodSpec::curve,
+    )?;
     if matches!(args.methods, MethodList::All) {
         // Knobs change what a method costs, hardly how that grows.
         methods.dedup_by_key(|m| m.name());
@@ -91,7 +97,13 @@ pub(super) fn measure(
         mut methods,
         learned,
         models,
-    } = chosen(context, &gpu, args)?;
+    } = chosen(
+        context,
+        &gpu,
+        &args.methods,
+        &args.models,
+        MethodSpec::curve,
+    )?;
     // What times are ratios to.
     let base: MethodSpec = BASE.parse()?;
     if !methods.contains(&base) {
@@ -163,18 +175,27 @@ fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> s
 }
 
 /// What is compared.
-struct Chosen {
-    methods: Vec<MethodSpec>,
+pub(super) struct Chosen {
+    pub(super) methods: Vec<MethodSpec>,
     /// Weights of the learned ones among them.
-    learned: Vec<LearnedWeight>,
-    /// The models of those weights.
-    models: Vec<Model>,
+    pub(super) learned: Vec<LearnedWeight>,
+    /// The models of those weights, those that were named first.
+    pub(super) models: Vec<Model>,
 }
 
 /// The methods to compare, with the models of the learned ones among them.
-fn chosen(context: &Context<'_>, gpu: &Gpu, args: &BenchArgs) -> Result<Chosen, Failure> {
+///
+/// # Errors
+/// A model that cannot be loaded or exported, two of one recipe, or a method that was named and has none.
+pub(super) fn chosen(
+    context: &Context<'_>,
+    gpu: &Gpu,
+    methods: &MethodList,
+    named: &[PathBuf],
+    every: impl Fn() -> Vec<MethodSpec>,
+) -> Result<Chosen, Failure> {
     let mut models: Vec<Model> = Vec::new();
-    for path in &args.models {
+    for path in named {
         let model = Model::load(path)?;
         if models.iter().any(|m| m.meta.recipe == model.meta.recipe) {
             return Err(Failure::Usage(format!(
@@ -185,11 +206,11 @@ fn chosen(context: &Context<'_>, gpu: &Gpu, args: &BenchArgs) -> Result<Chosen, 
         }
         models.push(model);
     }
-    let mut wanted = match &args.methods {
+    let mut wanted = match methods {
         MethodList::These(list) => list.clone(),
-        MethodList::All => MethodSpec::curve(),
+        MethodList::All => every(),
     };
-    let all = matches!(args.methods, MethodList::All);
+    let all = matches!(methods, MethodList::All);
     let mut missing: Vec<&str> = Vec::new();
     for recipe in Recipe::ALL {
         let name = recipe.method_name();

@@ -9,6 +9,7 @@ mod inspect;
 mod recommend;
 mod render;
 mod run;
+mod stress;
 mod train;
 
 use crate::cli::{Cli, Command, Global};
@@ -92,6 +93,7 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::Render(args) => render::run(&context, args),
         Command::Bench(args) => bench::run(&context, args),
         Command::Recommend(args) => recommend::run(&context, args),
+        Command::Stress(args) => stress::run(&context, args),
         Command::Inspect(args) => inspect::run(&context, args),
         Command::Doctor => doctor::run(&context),
     }

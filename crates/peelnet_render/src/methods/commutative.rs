@@ -269,10 +269,15 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             .map(|&i| Bind::Texture(&targets[i].0)),
     );
     entries.extend(plan.resolve_loads.iter().map(|&i| Bind::Read(&storage[i])));
+    let mut resolve_features = plan.resolve_features.to_vec();
+    let full_sums = |t: &Target| t.label == super::weighted::SUMS.label && is_full(t);
+    if plan.targets.iter().any(full_sums) {
+        resolve_features.push("full_sums");
+    }
     let resolve = FullscreenPass::new(
         b.gpu,
         plan.resolve,
-        plan.resolve_features,
+        &resolve_features,
         plan.resolve_extra,
         &entries,
         &[Some(wgpu::TextureFormat::Rgba32Float.into())],

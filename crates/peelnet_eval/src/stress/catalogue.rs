@@ -1,0 +1,572 @@
+//! The hard cases: small generated scenes, most of them stacks of quads whose every pixel is known.
+
+use super::{
+    Note,
+    network::{self, Network},
+    trial::{Stack, Trial},
+};
+use crate::EvalError;
+use glam::Vec3;
+use peelnet_core::fragment::Fragment;
+use peelnet_gpu::Gpu;
+use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, suite};
+
+/// One hard case.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name.
+    pub id: &'static str,
+    /// What is drawn.
+    pub what: &'static str,
+    /// What is known to break there.
+    pub breaks: &'static str,
+    /// What is done.
+    pub work: Work,
+}
+
+/// What a case consists of.
+#[derive(Clone, Copy, Debug)]
+pub enum Work {
+    /// Scenes are drawn.
+    Frames(fn() -> Result<Vec<Trial>, EvalError>),
+    /// The network itself is evaluated, of learned methods only.
+    Network(Examine),
+}
+
+/// Evaluates a network and tells what it finds.
+pub type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
+
+/// Every hard case, in the order of the specification.
+pub const CASES: &[Case] = &[
+    Case {
+        id: "alpha-zero",
+        what: "fragments of α = 0, alone and mixed with α = 0.5",
+        breaks: "0/0 in every normalisation",
+        work: Work::Frames(|| {
+            stacks(&[
+                ("one of 0", &[(2.0, 0.0)]),
+                ("three of 0", &[(2.0, 0.0), (3.0, 0.0), (4.0, 0.0)]),
+                ("0 before 0.5", &[(2.0, 0.0), (3.0, 0.5)]),
+                ("0 behind 0.5", &[(2.0, 0.5), (3.0, 0.0)]),
+                ("0 between", &[(2.0, 0.5), (3.0, 0.0), (4.0, 0.5)]),
+            ])
+        }),
+    },
+    Case {
+        id: "alpha-tiny",
+        what: "10 layers of α = 1e-3, 4 of 1e-5, 256 of 0.005",
+        breaks: "8-bit transmittance: 256 of 0.005 must cover 0.723",
+        work: Work::Frames(|| {
+            Ok(vec![trial(vec![
+                stack("10 of 1e-3", even(10, 1.0, 10.0, |_| 1e-3)),
+                stack("4 of 1e-5", even(4, 1.0, 10.0, |_| 1e-5)),
+                stack("256 of 0.005", even(256, 1.0, 10.0, |_| 0.005)),
+            ])])
+        }),
+    },
+    Case {
+        id: "alpha-one",
+        what: "all α = 1; the front with 0.5 behind; the back behind 0.1",
+        breaks: "−ln(0), division by 1 − α",
+        work: Work::Frames(|| {
+            stacks(&[
+                ("one", &[(2.0, 1.0)]),
+                ("all", &[(2.0, 1.0), (3.0, 1.0), (5.0, 1.0), (9.0, 1.0)]),
+                ("front", &[(2.0, 1.0), (3.0, 0.5)]),
+                ("back", &[(2.0, 0.1), (3.0, 1.0)]),
+                ("middle", &[(2.0, 0.25), (3.0, 1.0), (4.0, 0.5)]),
+            ])
+        }),
+    },
+    Case {
+        id: "alpha-near-one",
+        what: "rectangles of α = 0.99, 0.999 and 1 − 2⁻²⁰ one behind the other",
+        breaks: "weighted blending shows what is behind",
+        work: Work::Frames(|| {
+            let almost = 1.0 - 1.0 / 1_048_576.0;
+            stacks(&[
+                ("0.99 twice", &[(2.0, 0.99), (2.5, 0.99)]),
+                ("0.99 thrice", &[(2.0, 0.99), (2.5, 0.99), (3.0, 0.99)]),
+                (
+                    "0.99 four times",
+                    &[(2.0, 0.99), (2.1, 0.99), (2.2, 0.99), (2.3, 0.99)],
+                ),
+                ("growing", &[(2.0, 0.99), (3.0, 0.999), (4.0, almost)]),
+                ("falling", &[(2.0, almost), (3.0, 0.999), (4.0, 0.99)]),
+            ])
+        }),
+    },
+    Case {
+        id: "high-alpha",
+        what: "sixteen models of α = 0.85 and 0.95",
+        breaks: "black artefacts of learned weights (Papakostas 2022)",
+        work: Work::Frames(|| [0.85, 0.95].map(sixteen).into_iter().collect()),
+    },
+    Case {
+        id: "deep",
+        what: "200 layers of α = 0.9, 300 of 0.02, 1024 of 0.01",
+        breaks: "counters in half floats stop at 2048, pools overflow",
+        work: Work::Frames(|| {
+            Ok(vec![trial(vec![
+                stack("200 of 0.9", even(200, 1.0, 20.0, |_| 0.9)),
+                stack("300 of 0.02", even(300, 1.0, 20.0, |_| 0.02)),
+                stack("1024 of 0.01", even(1024, 1.0, 20.0, |_| 0.01)),
+            ])])
+        }),
+    },
+    Case {
+        id: "near-overflow",
+        what: "256 layers at the near plane, of equal α and of α from 0.001 to 1",
+        breaks: "RGBA16F overflows after 22 layers of weight 3e3",
+        work: Work::Frames(|| {
+            Ok(vec![trial(vec![
+                stack("of 0.5", even(256, 0.011, 0.012, |_| 0.5)),
+                stack("rising", even(256, 0.011, 0.012, |t| 0.001 + 0.999 * t)),
+                stack("falling", even(256, 0.011, 0.012, |t| 1.0 - 0.999 * t)),
+            ])])
+        }),
+    },
+    Case {
+        id: "far",
+        what: "layers at depths 500, 1e4 and 1e6",
+        breaks: "weights underflow, moments lose bits",
+        work: Work::Frames(|| {
+            let far = |name: &str, layers: &[(f32, f32)]| stack(name, layers.to_vec());
+            Ok(vec![Trial::of_stacks(
+                [0.1, 2e6],
+                BACKGROUND,
+                2,
+                vec![
+                    far("500", &[(500.0, 0.5)]),
+                    far("1e4", &[(1e4, 0.5)]),
+                    far("1e6", &[(1e6, 0.5)]),
+                    far("all", &[(500.0, 0.3), (1e4, 0.4), (1e6, 0.5)]),
+                ],
+            )])
+        }),
+    },
+    Case {
+        id: "wide-range",
+        what: "depths from 1e-2 to 1e4 in one pixel",
+        breaks: "the depth warp, moments",
+        work: Work::Frames(|| {
+            let decade = |t: f32| 0.0101 * (1e4f32 / 0.0101).powf(t);
+            let layers = |n: usize, alpha: f32| {
+                let at = move |i: usize| decade(i as f32 / (n - 1) as f32);
+                (0..n).map(|i| (at(i), alpha)).collect::<Vec<_>>()
+            };
+            Ok(vec![trial(vec![
+                stack("13 of 0.3", layers(13, 0.3)),
+                stack("7 of 0.8", layers(7, 0.8)),
+                stack("the ends", layers(2, 0.5)),
+            ])])
+        }),
+    },
+    Case {
+        id: "coplanar",
+        what: "2, 3 and 16 coincident layers, two coincident pairs",
+        breaks: "peeling drops layers, flicker",
+        work: Work::Frames(|| {
+            // Eight red ones and eight blue ones, with layers before and behind whose transmittance tells what the sixteen
+            // count for.
+            let among = |name: &str, before: &[(f32, f32)], behind: &[(f32, f32)]| {
+                let one = |i: usize| {
+                    let color = [[0.9, 0.1, 0.1], [0.1, 0.1, 0.9]][i / 8];
+                    Fragment::new(3.0, 0.1, color)
+                };
+                let sixteen = (0..16).map(one).collect();
+                Stack::new(name, [rainbow(before), sixteen, rainbow(behind)].concat())
+            };
+            Ok(vec![trial(vec![
+                among("sixteen and one", &[], &[(5.0, 0.5)]),
+                among("sixteen before two", &[], &[(5.0, 0.5), (9.0, 0.5)]),
+                among("sixteen between", &[(1.0, 0.3)], &[(5.0, 0.5), (9.0, 0.5)]),
+                stack("two", vec![(3.0, 0.5); 2]),
+                stack("three", vec![(3.0, 0.4); 3]),
+                stack("sixteen", vec![(3.0, 0.1); 16]),
+                stack(
+                    "pairs",
+                    vec![(2.0, 0.3), (2.0, 0.6), (5.0, 0.3), (5.0, 0.6)],
+                ),
+            ])])
+        }),
+    },
+    Case {
+        id: "thin-slab",
+        what: "8 layers within 1e-5 of relative depth, alone and beside a deep scene",
+        breaks: "the variance of the moments goes negative",
+        work: Work::Frames(|| {
+            let slab = || stack("slab", even(8, 3.0, 3.000_03, |_| 0.4));
+            Ok(vec![
+                trial(vec![slab()]),
+                trial(vec![slab(), stack("range", vec![(0.5, 0.3), (300.0, 0.3)])]),
+            ])
+        }),
+    },
+    Case {
+        id: "isolated",
+        what: "one surface of α = 0.5 at 801 depths across the range",
+        breaks: "moment solvers (bands of NaN)",
+        work: Work::Frames(|| {
+            let at = |i: usize| 0.5 * 200f32.powf(i as f32 / 800.0);
+            let one = |i: usize| stack(&format!("depth {}", at(i)), vec![(at(i), 0.5)]);
+            Ok(vec![Trial::of_stacks(
+                PLANES,
+                BACKGROUND,
+                1,
+                (0..801).map(one).collect(),
+            )])
+        }),
+    },
+    Case {
+        id: "two-layers",
+        what: "pairs at distances of 0.02 to 0.4 of the range",
+        breaks: "moments blur",
+        work: Work::Frames(|| {
+            let mut all = vec![stack("range", vec![(1.0, 0.5), (11.0, 0.5)])];
+            for i in 1..=20 {
+                let apart = 0.02 * i as f32;
+                for near in [1.0, 3.0, 6.0] {
+                    let name = format!("{near} and {apart:.2} further");
+                    all.push(stack(&name, vec![(near, 0.5), (near + 10.0 * apart, 0.5)]));
+                }
+            }
+            Ok(vec![trial(all)])
+        }),
+    },
+    Case {
+        id: "intersecting",
+        what: "quads that reach through one another, three in a cycle",
+        breaks: "sorting of objects and triangles",
+        work: Work::Frames(|| Ok(vec![crossing(), cycle()])),
+    },
+    Case {
+        id: "grazing",
+        what: "slivers, degenerate triangles, zero normals, triangles through the near plane, lit",
+        breaks: "normals that are NaN",
+        work: Work::Frames(|| Ok(vec![grazing()])),
+    },
+    Case {
+        id: "emissive",
+        what: "radiance far above 1, at α from 0 to 1",
+        breaks: "half floats, division of premultiplied colour by 0",
+        work: Work::Frames(|| {
+            let bright = |name: &str, layers: &[(f32, f32, f32)]| {
+                let of = |&(depth, alpha, radiance): &(f32, f32, f32)| {
+                    Fragment::new(depth, alpha, [radiance, 0.5 * radiance, 0.1])
+                };
+                Stack::new(name, layers.iter().map(of).collect())
+            };
+            Ok(vec![trial(vec![
+                bright("lamp", &[(2.0, 0.1, 20.0)]),
+                bright("invisible lamp", &[(2.0, 0.0, 20.0), (3.0, 0.5, 0.5)]),
+                bright(
+                    "lamp behind",
+                    &[(2.0, 0.5, 0.2), (3.0, 0.3, 20.0), (4.0, 0.5, 0.4)],
+                ),
+                bright(
+                    "lamp before",
+                    &[(2.0, 0.02, 20.0), (3.0, 0.5, 0.3), (4.0, 0.9, 0.1)],
+                ),
+            ])])
+        }),
+    },
+    Case {
+        id: "opaque-mix",
+        what: "opaque surfaces before, between and behind transparent layers",
+        breaks: "fragments behind opaque surfaces count",
+        work: Work::Frames(|| {
+            let layers = || rainbow(&[(2.0, 0.5), (4.0, 0.5), (6.0, 0.5)]);
+            let at = |name: &str, depth: f32| {
+                let mut stack = Stack::new(name, layers());
+                stack.opaque = Some((depth, [0.1, 0.7, 0.3]));
+                stack
+            };
+            Ok(vec![trial(vec![
+                at("before", 1.0),
+                at("after one", 3.0),
+                at("after two", 5.0),
+                at("behind", 8.0),
+                Stack::new("none", layers()),
+            ])])
+        }),
+    },
+    Case {
+        id: "empty",
+        what: "no object in view, a mesh without triangles",
+        breaks: "a prefix sum of nothing",
+        work: Work::Frames(|| {
+            let behind = Vec3::new(0.0, 0.0, 3.0);
+            let triangle = [[behind, behind + Vec3::X, behind + Vec3::Y]];
+            let material = Material::unlit([1.0; 3], 0.5);
+            let of = |name: &str, objects: Vec<Object>| {
+                Trial::peeled(Scene::generated(
+                    name,
+                    "the stress catalogue",
+                    BACKGROUND,
+                    camera(PLANES),
+                    objects,
+                ))
+            };
+            Ok(vec![
+                of(
+                    "behind the camera",
+                    vec![Object::of_triangles("behind", &triangle, material.clone())],
+                ),
+                of(
+                    "no triangle",
+                    vec![Object::of_triangles("none", &[], material)],
+                ),
+                of("no object", vec![]),
+            ])
+        }),
+    },
+    Case {
+        id: "half-float",
+        what: "every network in half floats, on inputs like those it was trained on",
+        breaks: "overflow of exponentials, cancellation",
+        work: Work::Network(network::in_half_floats),
+    },
+    Case {
+        id: "hostile-inputs",
+        what: "the exported function on any finite input: 0, denormals, 1e±30, random bits",
+        breaks: "NaN out of the network",
+        work: Work::Network(network::on_hostile_inputs),
+    },
+    Case {
+        id: "moving-camera",
+        what: "a camera that moves by a tenth of a pixel, eleven times",
+        breaks: "noise that lives in the image",
+        work: Work::Frames(|| {
+            let mut trial = crossing();
+            let base = trial.scene.views[0];
+            // At distance 3 a frame of 90° is 6 units high.
+            let tenth = 6.0 / trial.size[1] as f32 / 10.0;
+            trial.scene.views = (0..12)
+                .map(|i| {
+                    let step = Vec3::new(tenth * i as f32, 0.5 * tenth * i as f32, 0.0);
+                    Camera {
+                        position: base.position + step,
+                        target: base.target + step,
+                        ..base
+                    }
+                })
+                .collect();
+            trial.moves = true;
+            Ok(vec![trial])
+        }),
+    },
+    Case {
+        id: "passing",
+        what: "one surface passes through another between others, in steps of a thousandth of its depth",
+        breaks: "popping: an order that flips at once for a whole object",
+        work: Work::Frames(|| {
+            let steps = (0..5).map(|i| {
+                let t = (i as f32 - 2.0) * 0.003;
+                let v = |x: f32, y: f32, z: f32| Vec3::new(x, y, -z);
+                let quad = |a: Vec3, b: Vec3, c: Vec3, d: Vec3| [[a, b, c], [a, c, d]];
+                let upright = |z: f32| {
+                    quad(
+                        v(-2.0, -2.0, z),
+                        v(2.0, -2.0, z),
+                        v(2.0, 2.0, z),
+                        v(-2.0, 2.0, z),
+                    )
+                };
+                // Leaning by a fifth of a unit, so that the line in which it meets the other one wanders over the frame.
+                let leaning = quad(
+                    v(-2.0, -2.0, 2.95 + t),
+                    v(2.0, -2.0, 3.05 + t),
+                    v(2.0, 2.0, 3.05 + t),
+                    v(-2.0, 2.0, 2.95 + t),
+                );
+                let object = |name: &str, corners: &[[Vec3; 3]], color, alpha| {
+                    Object::of_triangles(name, corners, Material::unlit(color, alpha))
+                };
+                vec![
+                    object("near", &upright(2.0), [0.9, 0.9, 0.2], 0.2),
+                    object("standing", &upright(3.0), [0.9, 0.1, 0.1], 0.6),
+                    object("leaning", &leaning, [0.1, 0.2, 0.9], 0.6),
+                    object("far", &upright(5.0), [0.2, 0.9, 0.3], 0.5),
+                ]
+            });
+            let mut frames: Vec<Trial> =
+                steps.map(|objects| generated("passing", objects)).collect();
+            frames.iter_mut().for_each(|f| f.moves = true);
+            Ok(frames)
+        }),
+    },
+];
+
+/// Near and far plane of most cases.
+const PLANES: [f32; 2] = [0.01, 2e4];
+
+const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
+
+/// At the origin, looking along −z, 90° high.
+pub(super) fn camera([near, far]: [f32; 2]) -> Camera {
+    Camera {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y_degrees: 90.0,
+        near,
+        far,
+    }
+}
+
+/// (depth, α) with colours by a rule.
+fn rainbow(layers: &[(f32, f32)]) -> Vec<Fragment> {
+    let color = |i: usize| {
+        let t = i as f32 * 0.37 + 0.1;
+        [t.fract(), (2.3 * t).fract(), 1.0 - t.fract()]
+    };
+    let layers = layers.iter().enumerate();
+    layers
+        .map(|(i, &(depth, alpha))| Fragment::new(depth, alpha, color(i)))
+        .collect()
+}
+
+fn stack(name: &str, layers: Vec<(f32, f32)>) -> Stack {
+    Stack::new(name, rainbow(&layers))
+}
+
+/// `n` layers from one depth to another; `alpha` is told how far along each is.
+fn even(n: usize, from: f32, to: f32, alpha: impl Fn(f32) -> f32) -> Vec<(f32, f32)> {
+    (0..n)
+        .map(|i| {
+            let t = i as f32 / (n - 1) as f32;
+            (from + (to - from) * t, alpha(t))
+        })
+        .collect()
+}
+
+fn trial(stacks: Vec<Stack>) -> Trial {
+    Trial::of_stacks(PLANES, BACKGROUND, 3, stacks)
+}
+
+fn stacks(of: &[(&str, &[(f32, f32)])]) -> Result<Vec<Trial>, EvalError> {
+    let all = of.iter().map(|(name, layers)| stack(name, layers.to_vec()));
+    Ok(vec![trial(all.collect())])
+}
+
+fn generated(name: &str, objects: Vec<Object>) -> Trial {
+    let maker = "the stress catalogue";
+    Trial::peeled(Scene::generated(
+        name,
+        maker,
+        BACKGROUND,
+        camera([0.1, 100.0]),
+        objects,
+    ))
+}
+
+fn sixteen(alpha: f32) -> Result<Trial, EvalError> {
+    let file = suite::directory()?.join("sixteen-050.toml");
+    let mut scene = Scene::load(&file)?;
+    for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
+        material.alpha = alpha;
+    }
+    scene.name = format!("sixteen at {alpha}");
+    scene.views.truncate(1);
+    Ok(Trial::peeled(scene))
+}
+
+/// Five quads that stand across one another like the leaves of a book, before a sixth.
+fn crossing() -> Trial {
+    let mut objects: Vec<Object> = (0..5)
+        .map(|i| {
+            let (sin, cos) = (0.3 + 0.6 * i as f32).sin_cos();
+            let v = |s: f32, y: f32| Vec3::new(1.6 * s * cos, 1.4 * y, -3.0 + 1.6 * s * sin);
+            let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
+            let t = i as f32 / 5.0;
+            let material = Material::unlit([t, 1.0 - t, (3.0 * t).fract()], 0.3 + 0.12 * i as f32);
+            Object::of_triangles(&format!("leaf {i}"), &[[a, b, c], [a, c, d]], material)
+        })
+        .collect();
+    let v = |x: f32, y: f32| Vec3::new(x, y, -6.0);
+    objects.push(Object::of_triangles(
+        "wall",
+        &[[v(-4.0, -5.0), v(5.0, -4.0), v(0.0, 5.0)]],
+        Material::unlit([0.9, 0.8, 0.1], 0.7),
+    ));
+    generated("crossing", objects)
+}
+
+/// Three bars that overlap in a cycle: no order of the triangles is right.
+fn cycle() -> Trial {
+    let bar = |i: usize| {
+        let turn = glam::Quat::from_rotation_z(i as f32 * std::f32::consts::TAU / 3.0);
+        // One end in front, the other behind.
+        let v = |x: f32, y: f32, z: f32| turn * Vec3::new(x, y, 0.0) - Vec3::Z * z;
+        let corners = [
+            v(-1.6, -0.9, 2.6),
+            v(1.6, -0.9, 3.4),
+            v(1.6, -0.2, 3.4),
+            v(-1.6, -0.2, 2.6),
+        ];
+        let [a, b, c, d] = corners;
+        let color = [[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9]][i];
+        Object::of_triangles(
+            &format!("bar {i}"),
+            &[[a, b, c], [a, c, d]],
+            Material::unlit(color, 0.6),
+        )
+    };
+    generated("cycle", (0..3).map(bar).collect())
+}
+
+/// Triangles that break normals and clipping, lit.
+fn grazing() -> Trial {
+    let phong = |color: [f32; 3], alpha: f32| Material {
+        lighting: Lighting::Phong,
+        specular: 0.5,
+        shininess: 40.0,
+        ..Material::unlit(color, alpha)
+    };
+    let v = Vec3::new;
+    let slivers: Vec<[Vec3; 3]> = (0..40)
+        .map(|i| {
+            let x = -1.5 + 0.075 * i as f32;
+            [
+                v(x, -1.5, -3.0),
+                v(x + 1e-4, 1.5, -3.0),
+                v(x + 0.05, 1.5, -3.1),
+            ]
+        })
+        .collect();
+    let point = v(0.2, 0.1, -2.0);
+    let degenerate = [
+        [point; 3],
+        [point, point + Vec3::X, point],
+        [point, point + Vec3::X, point + 2.0 * Vec3::X],
+    ];
+    // Seen along its own plane, but for a hair's breadth.
+    let edge_on = [[v(-2.0, 1e-4, -1.0), v(2.0, 1e-4, -1.0), v(0.0, -1e-3, -8.0)]];
+    let through = [
+        [v(-3.0, -1.0, 2.0), v(3.0, -1.0, 2.0), v(0.0, 0.5, -6.0)],
+        [v(-1.0, 3.0, 1.0), v(0.0, -0.5, -4.0), v(1.0, 3.0, 1.0)],
+    ];
+    let mut objects = vec![
+        Object::of_triangles("slivers", &slivers, phong([0.9, 0.5, 0.2], 0.4)),
+        Object::of_triangles("degenerate", &degenerate, phong([0.2, 0.9, 0.5], 0.5)),
+        Object::of_triangles("edge-on", &edge_on, phong([0.9; 3], 0.5)),
+        Object::of_triangles("through", &through, phong([0.3, 0.4, 0.9], 0.5)),
+    ];
+    let mut flat = Object::of_triangles(
+        "no normal",
+        &[[v(-2.0, -1.0, -4.0), v(2.0, -1.0, -4.0), v(0.0, 1.5, -4.0)]],
+        phong([0.7, 0.2, 0.6], 0.5),
+    );
+    let mut mesh = (*flat.mesh).clone();
+    mesh.normals.fill(Vec3::ZERO);
+    flat.mesh = mesh.into();
+    objects.push(flat);
+    let mut trial = generated("grazing", objects);
+    trial.scene.lights.push(Light {
+        position: v(1.0, 2.0, 1.0),
+        color: [1.0; 3],
+        intensity: 1.0,
+    });
+    trial
+}

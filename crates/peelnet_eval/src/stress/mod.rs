@@ -1,0 +1,355 @@
+//! Hard cases: every method drawn where transparency is known to break, and what must hold of it there.
+//!
+//! [`CASES`] makes the scenes, [`Property`] says what must hold, with its limit, and [`FLAWS`] what is known not to.
+//! [`stress`] draws a case with a list of methods and gives a [`Row`] for each method and property.
+//!
+//! ```text
+//! case ─► trials (scene, and the fragments of its pixels: known, or peeled)
+//!           ├─► exact frames, in 64 bits where fragments are known
+//!           └─► each method's frames: as listed, reversed, shuffled, scaled, moved ─► findings ─► rows
+//! ```
+
+mod catalogue;
+mod flaws;
+mod network;
+mod properties;
+mod result;
+mod subject;
+mod trial;
+
+pub use catalogue::{CASES, Case, Examine, Work};
+pub use flaws::{FLAWS, Flaw};
+pub use network::Network;
+pub use properties::{Finding, Property};
+pub use result::Stressed;
+pub use subject::Subject;
+pub use trial::{Kind, Stack, Trial, Truth};
+
+use crate::{EvalError, compare::EXACT, compare::image_name, transmittance};
+use peelnet_core::fragment::Fragment;
+use peelnet_gpu::Gpu;
+use peelnet_render::{Image, Renderer, scene::Submission};
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, path::Path};
+
+/// What became of a property.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// It holds.
+    Pass,
+    /// It does not, as [`FLAWS`] says.
+    Declared,
+    /// It does not, or it does although [`FLAWS`] says that it does not.
+    Fail,
+}
+
+/// One property of one method in one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The method with its knobs.
+    pub method: String,
+    /// The case's name.
+    pub case: String,
+    /// The property.
+    pub property: Property,
+    /// What became of it.
+    pub result: Outcome,
+    /// The value that comes nearest to its limit, or goes farthest beyond it; none where it is not finite.
+    pub value: Option<f64>,
+    /// The largest that passes.
+    pub limit: f64,
+    /// Where in which scene the value is.
+    pub place: String,
+    /// Of a declared flaw: its reason. Of one that stopped failing: that it did.
+    pub reason: Option<String>,
+}
+
+/// Orders of drawing beside the scene's own.
+const ORDERS: [Submission; 2] = [Submission::Reversed, Submission::Shuffled(7)];
+
+/// Factors of [`Property::Scale`].
+const SCALES: [f32; 2] = [1e-3, 1e3];
+
+/// What a case found of every subject and property.
+type Findings = BTreeMap<(usize, Property), Finding>;
+
+/// A frame that was drawn: by which method, of which scene.
+struct Picture {
+    method: String,
+    scene: String,
+    image: Image,
+}
+
+/// Draws a case with every subject and judges what is seen; `tell` learns of every subject before it is drawn, and may end the
+/// run. `strict` asks that declared flaws fail: it is meant for shipped networks, not for a user's own. Pictures of what fails are
+/// saved in the folder `images`, beside the exact ones.
+///
+/// # Errors
+/// If a scene cannot be made, a method cannot draw, or a picture cannot be written.
+pub fn stress(
+    gpu: &Gpu,
+    case: &Case,
+    subjects: &[Subject],
+    strict: bool,
+    images: Option<&Path>,
+    tell: &mut dyn FnMut(&str) -> Result<(), EvalError>,
+) -> Result<Vec<Row>, EvalError> {
+    let mut findings = Findings::new();
+    let mut pictures: Vec<Picture> = Vec::new();
+    // The frame before, where trials are a sequence: the exact one and every subject's.
+    let mut before: Option<Vec<Image>> = None;
+    let trials = match case.work {
+        Work::Frames(make) => make()?,
+        Work::Network(examine) => {
+            examine_networks(gpu, examine, subjects, &mut findings, tell)?;
+            Vec::new()
+        }
+    };
+    for (trial, number) in trials.iter().zip(0..) {
+        let mut stage = Stage::new(gpu, trial)?;
+        let exact = stage.exact()?;
+        let scene = format!("{}-{number}-{}", case.id, trial.scene.name);
+        let mut frames = vec![exact[0].clone()];
+        for (i, subject) in subjects.iter().enumerate() {
+            let method = subject.method.to_string();
+            tell(&method)?;
+            let mut note = |property, value, limit, place: &dyn Fn() -> String| {
+                let finding: &mut Finding = findings.entry((i, property)).or_default();
+                finding.worsen(value, limit, || {
+                    format!("{}: {}", trial.scene.name, place())
+                });
+            };
+            let image = stage.draw(subject, case, &exact, &mut note)?;
+            if let (true, Some(before)) = (trial.moves, &before) {
+                let moved = [&before[1 + i], &image];
+                properties::compare_frames(moved, [&before[0], &exact[0]], &mut note);
+            }
+            frames.push(image);
+        }
+        let names = subjects.iter().map(|s| s.method.to_string());
+        for (method, image) in [EXACT.to_owned()].into_iter().chain(names).zip(&frames) {
+            pictures.push(Picture {
+                method,
+                scene: scene.clone(),
+                image: image.clone(),
+            });
+        }
+        before = Some(frames);
+    }
+    let rows = rows(case, subjects, &findings, strict);
+    if let Some(folder) = images {
+        let failed = |method: &str| {
+            let of_method = |r: &Row| r.result == Outcome::Fail && r.method == method;
+            rows.iter().any(of_method)
+        };
+        let any = rows.iter().any(|r| r.result == Outcome::Fail);
+        for p in &pictures {
+            if failed(&p.method) || (any && p.method == EXACT) {
+                let path = folder.join(image_name(&p.scene, &p.method));
+                let saved = p.image.save(&path);
+                saved.map_err(EvalError::render(&p.scene, &p.method))?;
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Looks at the networks of those subjects that have one.
+fn examine_networks(
+    gpu: &Gpu,
+    examine: Examine,
+    subjects: &[Subject],
+    findings: &mut Findings,
+    tell: &mut dyn FnMut(&str) -> Result<(), EvalError>,
+) -> Result<(), EvalError> {
+    for (i, subject) in subjects.iter().enumerate() {
+        let method = subject.method.to_string();
+        tell(&method)?;
+        if let Some((text, model)) = &subject.learned {
+            let network = Network {
+                method: &method,
+                model,
+                wgsl: &text.wgsl,
+            };
+            examine(gpu, &network, &mut |property, value, limit, place| {
+                let finding: &mut Finding = findings.entry((i, property)).or_default();
+                finding.worsen(value, limit, place);
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// What became of every property that was looked at.
+fn rows(case: &Case, subjects: &[Subject], findings: &Findings, strict: bool) -> Vec<Row> {
+    findings
+        .iter()
+        .map(|(&(i, property), finding)| {
+            let method = subjects[i].method.to_string();
+            let flaw = flaws::declared(&method, case.id, property);
+            let (result, reason) = match (finding.holds(), flaw) {
+                (true, None) => (Outcome::Pass, None),
+                (true, Some(flaw)) if strict => (
+                    Outcome::Fail,
+                    Some(format!("holds, but is declared as a flaw: {}", flaw.reason)),
+                ),
+                (true, Some(_)) => (Outcome::Pass, None),
+                (false, Some(flaw)) => (Outcome::Declared, Some(flaw.reason.to_owned())),
+                (false, None) => (Outcome::Fail, None),
+            };
+            Row {
+                method,
+                case: case.id.to_owned(),
+                property,
+                result,
+                value: finding.value.is_finite().then_some(finding.value),
+                limit: finding.limit,
+                place: finding.place.clone(),
+                reason,
+            }
+        })
+        .collect()
+}
+
+/// Tells a property's value, its limit and where it is.
+pub type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
+
+/// A trial made ready to be drawn with any method.
+struct Stage<'a> {
+    trial: &'a Trial,
+    truth: Truth,
+    renderer: Renderer<'a>,
+    /// The scene at other scales, with the exact image; made when first asked for.
+    scaled: Vec<(Renderer<'a>, peelnet_scene::Camera, Image)>,
+    gpu: &'a Gpu,
+}
+
+impl<'a> Stage<'a> {
+    fn new(gpu: &'a Gpu, trial: &'a Trial) -> Result<Self, EvalError> {
+        let renderer = Renderer::new(gpu, &trial.scene);
+        Ok(Self {
+            truth: trial.truth(gpu)?,
+            renderer: renderer.map_err(EvalError::render(&trial.scene.name, EXACT))?,
+            scaled: Vec::new(),
+            trial,
+            gpu,
+        })
+    }
+
+    /// The exact image of every view.
+    fn exact(&self) -> Result<Vec<Image>, EvalError> {
+        let failed = || EvalError::render(&self.trial.scene.name, EXACT);
+        // The name is in the list.
+        let method = EXACT.parse().map_err(failed())?;
+        let prepared = self.renderer.prepare(&method, self.trial.size, None);
+        let mut prepared = prepared.map_err(failed())?;
+        let views = &self.trial.scene.views;
+        views
+            .iter()
+            .map(|camera| {
+                let frame = self.renderer.draw(&mut prepared, camera);
+                frame.map(|f| f.image).map_err(failed())
+            })
+            .collect()
+    }
+
+    /// Draws a subject in every way that its properties ask for; gives the first view's frame.
+    fn draw(
+        &mut self,
+        subject: &Subject,
+        case: &Case,
+        exact: &[Image],
+        note: &mut Note<'_>,
+    ) -> Result<Image, EvalError> {
+        let method = subject.method.to_string();
+        let failed = || EvalError::render(&self.trial.scene.name, &method);
+        let learned = subject.learned.as_ref().map(|(text, _)| text);
+        let views = &self.trial.scene.views;
+        let prepared = self
+            .renderer
+            .prepare(&subject.method, self.trial.size, learned);
+        let mut prepared = prepared.map_err(failed())?;
+        let drawn = self.renderer.draw(&mut prepared, &views[0]);
+        let first = drawn.map_err(failed())?.image;
+        properties::judge(subject, case.id, self.trial, &self.truth, &first, note);
+        let mut last = first.clone();
+        for (k, camera) in views.iter().enumerate().skip(1) {
+            let next = self.renderer.draw(&mut prepared, camera);
+            let next = next.map_err(failed())?.image;
+            let exact = [&exact[k - 1], &exact[k]];
+            properties::compare_frames([&last, &next], exact, note);
+            last = next;
+        }
+        if !subject.is_scaled() {
+            for order in ORDERS {
+                self.renderer.submit(order);
+                let other = self.renderer.draw(&mut prepared, &views[0]);
+                let other = other.map_err(failed())?.image;
+                properties::compare_orders(subject, &self.truth, [&first, &other], note);
+            }
+            self.renderer.submit(Submission::Listed);
+        }
+        if let Some((text, model)) = &subject.learned {
+            self.scale()?;
+            for (renderer, camera, exact_scaled) in &self.scaled {
+                let prepared = renderer.prepare(&subject.method, self.trial.size, Some(text));
+                let mut prepared = prepared.map_err(failed())?;
+                let other = renderer.draw(&mut prepared, camera);
+                let other = other.map_err(failed())?.image;
+                let exact = [&exact[0], exact_scaled];
+                properties::compare_scales([&first, &other], exact, note);
+            }
+            self.transmittance(subject, case, Some(model), note);
+        } else {
+            self.transmittance(subject, case, None, note);
+        }
+        Ok(first)
+    }
+
+    /// Makes the scene ready at other scales.
+    fn scale(&mut self) -> Result<(), EvalError> {
+        if !self.scaled.is_empty() {
+            return Ok(());
+        }
+        for factor in SCALES {
+            let scene = self.trial.scene.scaled(factor);
+            let failed = || EvalError::render(&scene.name, EXACT);
+            let renderer = Renderer::new(self.gpu, &scene).map_err(failed())?;
+            let method = EXACT.parse().map_err(failed())?;
+            let prepared = renderer.prepare(&method, self.trial.size, None);
+            let mut prepared = prepared.map_err(failed())?;
+            let camera = scene.views[0];
+            let frame = renderer.draw(&mut prepared, &camera).map_err(failed())?;
+            self.scaled.push((renderer, camera, frame.image));
+        }
+        Ok(())
+    }
+
+    /// What the weights stand for, fragment by fragment, by the CPU twins.
+    fn transmittance(
+        &self,
+        subject: &Subject,
+        case: &Case,
+        model: Option<&peelnet_model::Model>,
+        note: &mut Note<'_>,
+    ) {
+        let Some(limit) = properties::transmittance_limit(case.id, subject) else {
+            return;
+        };
+        let warp = self.renderer.depth_warp(&self.trial.scene.views[0]);
+        for kind in &self.truth.kinds {
+            let points: Vec<(f32, f32)> =
+                kind.fragments.iter().map(|f| (f.depth, f.alpha)).collect();
+            // What lies in front of coincident ones is a matter of the rule for ties, which no sum can know.
+            let alone = |i: usize| {
+                let same = |f: &Fragment| f.depth == points[i].0;
+                kind.fragments.iter().filter(|f| same(f)).count() == 1
+            };
+            let error = transmittance::worst(&subject.method, &points, &warp, model, &alone);
+            if let Some(error) = error {
+                note(Property::Transmittance, error, limit, &|| kind.name.clone());
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! The hard cases: every method and every shipped network, case by case.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use peelnet_eval::stress::{CASES, Outcome, Row, Subject, Work, stress};
+use peelnet_model::{Model, Recipe};
+use peelnet_render::LearnedWeight;
+use peelnet_tests::{gpu, shipped};
+
+/// Every method with its precisions, learned ones with the shipped network.
+fn subjects() -> Vec<Subject> {
+    let mut subjects = Vec::new();
+    for method in Subject::all_methods() {
+        let recipe = Recipe::ALL
+            .into_iter()
+            .find(|r| method.needs_model() && r.method_name() == method.name());
+        let learned = recipe.map(|r| {
+            let model: Model = shipped(r);
+            let wgsl = peelnet_export::wgsl(&model, &Default::default()).unwrap();
+            (LearnedWeight { recipe: r, wgsl }, model)
+        });
+        subjects.push(Subject::new(method, learned));
+    }
+    subjects
+}
+
+fn run(id: &str) {
+    let gpu = gpu();
+    let case = CASES.iter().find(|c| c.id == id).unwrap();
+    let rows = stress(&gpu, case, &subjects(), true, None, &mut |_| Ok(())).unwrap();
+    let failed: Vec<&Row> = rows.iter().filter(|r| r.result == Outcome::Fail).collect();
+    for r in &failed {
+        println!(
+            "{} {} {}: {:?} > {:.3e} at {} {}",
+            r.method,
+            r.case,
+            r.property,
+            r.value,
+            r.limit,
+            r.place,
+            r.reason.as_deref().unwrap_or_default()
+        );
+    }
+    assert!(
+        failed.is_empty(),
+        "{} of {} rows fail",
+        failed.len(),
+        rows.len()
+    );
+    let learned = |s: &&Subject| matches!(case.work, Work::Frames(_)) || s.learned.is_some();
+    for s in subjects().iter().filter(learned) {
+        let method = s.method.to_string();
+        assert!(
+            rows.iter().any(|r| r.method == method),
+            "{method} is judged"
+        );
+    }
+}
+
+macro_rules! cases {
+    ($($test:ident = $id:literal),* $(,)?) => {
+        $(#[test] fn $test() { run($id); })*
+
+        /// Every case of the catalogue has its test, so that they run side by side.
+        #[test]
+        fn every_case_has_its_test() {
+            let ids: Vec<&str> = CASES.iter().map(|c| c.id).collect();
+            assert_eq!(ids, [$($id),*]);
+        }
+    };
+}
+
+cases! {
+    alpha_zero = "alpha-zero",
+    alpha_tiny = "alpha-tiny",
+    alpha_one = "alpha-one",
+    alpha_near_one = "alpha-near-one",
+    high_alpha = "high-alpha",
+    deep = "deep",
+    near_overflow = "near-overflow",
+    far = "far",
+    wide_range = "wide-range",
+    coplanar = "coplanar",
+    thin_slab = "thin-slab",
+    isolated = "isolated",
+    two_layers = "two-layers",
+    intersecting = "intersecting",
+    grazing = "grazing",
+    emissive = "emissive",
+    opaque_mix = "opaque-mix",
+    empty = "empty",
+    half_float = "half-float",
+    hostile_inputs = "hostile-inputs",
+    moving_camera = "moving-camera",
+    passing = "passing",
+}
