@@ -96,7 +96,13 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
 /// The matrix, the flaws' reasons, and what fails.
 fn text(stressed: &Stressed) -> String {
     let mut text = String::new();
-    let (headings, cells) = stressed.matrix();
+    let (mut headings, cells) = stressed.matrix();
+    // Letters, so that the table fits a terminal.
+    for (heading, letter) in headings.iter_mut().skip(1).zip('a'..) {
+        text.push_str(&format!("{letter} {heading}\n"));
+        *heading = letter.to_string();
+    }
+    text.push('\n');
     text.push_str(&plain(&headings, &cells));
     text.push_str("\n· all properties hold   d declared flaws   F failures\n");
     for (title, (headings, cells)) in [

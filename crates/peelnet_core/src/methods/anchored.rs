@@ -10,7 +10,6 @@
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
-    guards::SUM_FLOOR,
     statistics::{
         self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, features,
         zeta_of_code,
@@ -169,7 +168,7 @@ pub fn composite(
     }
     let [between, ends] = sums;
     let t = (-total).exp();
-    let floor = f64::from(SUM_FLOOR);
+    let floor = f64::MIN_POSITIVE;
     // All of the coverage is the ends' where nothing lies between; never more than there is.
     let all = (1.0 - t) / ends[3].max(floor);
     let share = if between[3] == 0.0 { all } else { all.min(1.0) };

@@ -8,7 +8,7 @@
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
-    guards::{SUM_FLOOR, WEIGHT_FLOOR},
+    guards::WEIGHT_FLOOR,
 };
 use num_traits::Float;
 
@@ -154,7 +154,7 @@ pub fn composite(
     }
     let t = (-total).exp();
     std::array::from_fn(|k| {
-        let average = color[k] / alpha.max(SUM_FLOOR.into());
+        let average = color[k] / alpha.max(f64::MIN_POSITIVE);
         (average * (1.0 - t) + f64::from(background[k]) * t) as f32
     })
 }

@@ -3,7 +3,6 @@
 
 use crate::{
     fragment::Fragment,
-    guards::SUM_FLOOR,
     hash::{pcg, pixel_hash},
 };
 
@@ -56,7 +55,7 @@ pub fn composite(
     if transmittance == 1.0 {
         return background;
     }
-    let scale = (1.0 - transmittance) / sums[3].max(SUM_FLOOR);
+    let scale = (1.0 - transmittance) / sums[3].max(f32::MIN_POSITIVE);
     std::array::from_fn(|k| sums[k] * scale + background[k] * transmittance)
 }
 

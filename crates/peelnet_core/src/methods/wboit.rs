@@ -1,7 +1,6 @@
 //! `wboit-*`: McGuire & Bavoil 2013, eq 6 — weighted average colour with the exact coverage.
 
 use crate::fragment::Fragment;
-use crate::guards::SUM_FLOOR;
 use crate::weights::Weight;
 
 /// What one geometry pass accumulates.
@@ -43,7 +42,7 @@ pub fn normalised(sums: &Sums, background: [f32; 3]) -> [f32; 3] {
     if t == 1.0 {
         return background;
     }
-    let average = sums.color.map(|c| c / sums.alpha.max(SUM_FLOOR));
+    let average = sums.color.map(|c| c / sums.alpha.max(f32::MIN_POSITIVE));
     std::array::from_fn(|k| average[k] * (1.0 - t) + background[k] * t)
 }
 

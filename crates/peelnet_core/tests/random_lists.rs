@@ -1,0 +1,274 @@
+//! Properties that hold of any list of fragments, searched for counterexamples: 10,000 lists for each, or as many as the
+//! environment's `PROPTEST_CASES` says (`cargo xtask search` asks for a million).
+//!
+//! proptest chooses a list's seed, length and kind, and shrinks the last two: a list of 512 fragments is then made in microseconds.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use peelnet_core::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::{Fragment, transmittances},
+    methods::{
+        anchored, blended, kbuffer, mboit4, mboit6, over, stochastic, wavelet, wboit,
+        weighted_average,
+    },
+    random::Random,
+    statistics::{Statistics, SumPrecision, features},
+    tolerance,
+    weights::Weight,
+};
+use proptest::prelude::*;
+
+fn config() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok();
+    ProptestConfig {
+        cases: asked.and_then(|n| n.parse().ok()).unwrap_or(10_000),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+/// What a list is made of.
+#[derive(Clone, Copy, Debug)]
+struct Kind {
+    depths: u8,
+    alphas: u8,
+}
+
+/// Seed, length and kind of a list.
+fn lists() -> impl Strategy<Value = (u64, usize, Kind)> {
+    let length = prop_oneof![0usize..=4, 0usize..=32, 0usize..=512];
+    (any::<u64>(), length, 0u8..6, 0u8..6)
+        .prop_map(|(seed, n, depths, alphas)| (seed, n, Kind { depths, alphas }))
+}
+
+fn list((seed, n, kind): (u64, usize, Kind)) -> Vec<Fragment> {
+    let mut random = Random::new(seed, &[]);
+    let depth = |r: &mut Random| match kind.depths {
+        // All over what floats hold, denormals included; a decade; a thin slab; one depth; a few depths; a scene's.
+        0 => [1e-42, 1e-38, 1e-30, 1.0, 1e30][r.below(5)] * r.between(0.5, 2.0),
+        1 => r.between(1.0, 10.0),
+        2 => r.between(5.0, 5.000_05),
+        3 => 2.5,
+        4 => [1.0, 1.000_000_1, 7.0][r.below(3)],
+        _ => r.log_between(0.01, 1e4),
+    };
+    let alpha = |r: &mut Random| match kind.alphas {
+        0 => 0.0,
+        1 => 1.0,
+        2 => [
+            0.0,
+            1e-45,
+            1e-20,
+            1e-5,
+            0.5,
+            0.99,
+            1.0 - f32::EPSILON / 2.0,
+            1.0,
+        ][r.below(8)],
+        3 => r.between(0.9, 1.0),
+        4 => r.between(0.0, 0.01),
+        _ => r.unit(),
+    };
+    (0..n)
+        .map(|i| Fragment {
+            window_depth: random.unit(),
+            triangle: i as u32,
+            ..Fragment::new(depth(&mut random), alpha(&mut random), random.color())
+        })
+        .collect()
+}
+
+/// The warp over a list's depths, as the renderer takes it.
+fn warp(list: &[Fragment]) -> DepthWarp {
+    let depths = || list.iter().map(|f| f64::from(f.depth));
+    let near = depths().fold(f64::INFINITY, f64::min);
+    if near.is_finite() {
+        DepthWarp::new(near, depths().fold(near, f64::max))
+    } else {
+        DepthWarp::new(0.1, 100.0)
+    }
+}
+
+/// A share that no network would answer: anything in 0 … 1.
+fn share(features: &[f64; 9]) -> f64 {
+    (features.iter().sum::<f64>() * 12.9898).sin().abs()
+}
+
+/// Every normalised method's colour of a pixel.
+fn normalised(f: &[Fragment], c0: [f32; 3]) -> Vec<(String, [f32; 3])> {
+    let warp = warp(f);
+    let mut all = vec![
+        ("over".to_owned(), over::composite(f, c0)),
+        (
+            "weighted-average".to_owned(),
+            weighted_average::composite(f, c0),
+        ),
+        ("blended".to_owned(), blended::composite(f, c0)),
+        ("kbuffer-4".to_owned(), kbuffer::composite(f, c0, 4, None)),
+        (
+            "hybrid-4".to_owned(),
+            kbuffer::composite(f, c0, 4, Some(Weight::Eq9)),
+        ),
+        (
+            "stochastic-16".to_owned(),
+            stochastic::composite(f, c0, 16, [3, 5]),
+        ),
+        (
+            "mboit4".to_owned(),
+            mboit4::composite(f, c0, &warp, &mboit4::Settings::PAPER),
+        ),
+        (
+            "mboit6".to_owned(),
+            mboit6::composite(f, c0, &warp, &mboit6::PAPER),
+        ),
+        (
+            "wavelet-3".to_owned(),
+            wavelet::composite(f, c0, &warp, true),
+        ),
+    ];
+    for ends in [false, true] {
+        let color = anchored::composite(f, c0, &warp, ends, share);
+        all.push((format!("anchored, separate ends {ends}"), color));
+    }
+    all.extend(Weight::ALL.map(|w| (format!("wboit-{}", w.name()), wboit::composite(f, c0, w))));
+    all
+}
+
+/// Twenty roundings of each of `n` sums of values ≤ 1, relative to what is divided by: the same terms.
+fn rounding(n: usize) -> f32 {
+    (20.0 + 4.0 * n as f32) * f32::EPSILON
+}
+
+/// Products of opacities and weights below the smallest normal float lose their bits. Where all opacities are that small, so is
+/// all that they add.
+fn is_faint(f: &[Fragment]) -> bool {
+    f.iter().map(|f| f.alpha).sum::<f32>() < 1e-15
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    /// T falls from 1 and never below 0, and what is seen of the fragments is what `T_∞` leaves.
+    #[test]
+    fn transmittance_falls_and_contributions_add_up(of in lists()) {
+        let f = over::sorted(&list(of));
+        let alphas: Vec<f32> = f.iter().map(|f| f.alpha).collect();
+        let t = transmittances(&alphas);
+        prop_assert_eq!(t[0], 1.0);
+        prop_assert!(t.windows(2).all(|w| w[1] <= w[0] && w[1] >= 0.0));
+        let seen: f64 = alphas.iter().zip(&t).map(|(&a, &t)| f64::from(a) * f64::from(t)).sum();
+        let covered = 1.0 - f64::from(t[f.len()]);
+        prop_assert!((seen - covered).abs() <= 2.0 * tolerance::transmittance(f.len() + 1), "{} {}", seen, covered);
+    }
+
+    /// The exact composite in 32 bits, front to back, is that in 64 bits, back to front.
+    #[test]
+    fn exact_is_exact(of in lists()) {
+        let f = list(of);
+        let (found, want) = (over::composite(&f, [0.3, 0.9, 0.1]), over::composite_f64(&f, [0.3, 0.9, 0.1]));
+        for k in 0..3 {
+            let error = (f64::from(found[k]) - want[k]).abs();
+            prop_assert!(error <= tolerance::composite(f.len(), 1.0) && error <= tolerance::EXACT * 10.0);
+        }
+    }
+
+    /// Every normalised method stays within what its colours span, component by component, whatever the list.
+    #[test]
+    fn normalised_methods_stay_in_the_hull(of in lists()) {
+        let f = list(of);
+        let c0 = [0.2, 0.7, 0.4];
+        for (name, color) in normalised(&f, c0) {
+            for k in 0..3 {
+                let all = || f.iter().map(|f| f.color[k]).chain([c0[k]]);
+                let (low, high) = all().fold((f32::INFINITY, 0.0f32), |(l, h), c| (l.min(c), h.max(c)));
+                let slack = if is_faint(&f) { 1e-4 } else { rounding(f.len()) };
+                let inside = color[k] >= low - slack && color[k] <= high + slack;
+                // The published weights end at 2^-24 of opacity times weight: depths of 1e30 vanish, a declared flaw.
+                let vanishes = name == "wboit-inverse-power" && f.iter().any(|f| f.depth > 1e2);
+                prop_assert!(inside || (vanishes && color[k].is_finite()), "{}: {:?} outside of {} … {}", name, color, low, high);
+            }
+        }
+    }
+
+    /// One fragment is exact, for every normalised method.
+    #[test]
+    fn a_single_fragment_is_exact((seed, _, kind) in lists()) {
+        let f = list((seed, 1, kind));
+        let c0 = [0.2, 0.7, 0.4];
+        let exact = over::composite(&f, c0);
+        for (name, color) in normalised(&f, c0) {
+            let vanishes = name == "wboit-inverse-power" && f[0].depth > 1e2;
+            for k in 0..3 {
+                let slack = if is_faint(&f) { 1e-4 } else { rounding(1) };
+                prop_assert!((color[k] - exact[k]).abs() <= slack || vanishes, "{}: {:?} for {:?}", name, color, exact);
+            }
+        }
+    }
+
+    /// Moments and wavelets answer a transmittance at any depth.
+    #[test]
+    fn estimates_are_transmittances(of in lists(), zeta in -1.0f64..=1.0) {
+        let f = list(of);
+        let warp = warp(&f);
+        let (mut four, mut six, mut haar) =
+            (mboit4::Moments::default(), mboit6::Moments::default(), wavelet::Averages::default());
+        for f in &f {
+            let (b, z) = (absorbance(f.alpha), warp.apply(f.depth.into()));
+            four.add(b, z);
+            six.add(b, z);
+            haar.add(b, z);
+        }
+        let at = f.iter().map(|f| warp.apply(f.depth.into())).take(8).chain([zeta]);
+        for z in at {
+            for t in [
+                four.transmittance(z, &mboit4::Settings::PAPER),
+                six.transmittance(z, &mboit6::PAPER),
+                (-haar.in_front(z)).exp(),
+            ] {
+                prop_assert!((0.0..=1.0 + 1e-12).contains(&t), "{} at {}", t, z);
+            }
+        }
+    }
+
+    /// What the learned methods read is finite and within its range, in either precision, and so is the weight of any share.
+    #[test]
+    fn features_and_weights_are_finite(of in lists()) {
+        let f = list(of);
+        let warp = warp(&f);
+        let points: Vec<(f32, f32)> = f.iter().map(|f| (f.depth, f.alpha)).collect();
+        for precision in [SumPrecision::Exact, SumPrecision::Half] {
+            for seen in anchored::seen(&points, &warp, precision) {
+                prop_assert!(seen.features.iter().all(|x| x.is_finite()), "{:?}", seen);
+                let shares = &seen.features[3..7];
+                prop_assert!(shares.iter().all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", seen);
+                for s in [0.0, 0.3, 1.0] {
+                    let w = seen.weight(|_| s);
+                    prop_assert!((0.0..=1.0).contains(&w), "{:?} with share {}: {}", seen, s, w);
+                }
+            }
+        }
+    }
+
+    /// The same of any finite sums, whether or not a list of fragments has them.
+    #[test]
+    fn features_are_finite_for_any_sums(bits in prop::array::uniform8(any::<u32>()), zeta in -1.0f32..=1.0) {
+        let x = bits.map(|b| f32::from_bits(b)).map(|x| if x.is_finite() { x } else { 1e30 });
+        let s = Statistics { moments: [x[0].abs(), x[1], x[2], x[3], x[4]], nearest: x[5].clamp(-1.0, 1.0), farthest: x[6].clamp(-1.0, 1.0) };
+        let rest = s.without(&[(x[7].abs().min(16.0), zeta)]);
+        for value in features(&s, &rest, zeta) {
+            prop_assert!(value.is_finite(), "{:?} {:?}", s, rest);
+        }
+    }
+
+    /// Published weights of any depth and opacity.
+    #[test]
+    fn weights_are_finite(bits in any::<u32>(), alpha in 0.0f32..=1.0, window in 0.0f32..=1.0) {
+        let z = f32::from_bits(bits).abs();
+        prop_assume!(z.is_finite());
+        for w in Weight::ALL {
+            let value = w.eval(z, alpha, window);
+            prop_assert!(value.is_finite() && value >= 0.0, "{}: {} at {}", w.name(), value, z);
+        }
+    }
+}
