@@ -1,5 +1,7 @@
 //! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
 
+pub mod readers;
+
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, scanline};
 use peelnet_gpu::{AdapterRequest, Gpu};

@@ -103,12 +103,17 @@ fn guards_are_the_same_numbers() {
     let gpu = gpu();
     let got = evaluate(
         &gpu,
-        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR};",
-        "y = vec4f(SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, 0.0);",
+        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX};",
+        "y = vec4f(SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX);",
         &[[0.0; 4]],
     );
     assert_eq!(
-        got[0][..3],
-        [guards::SUM_FLOOR, guards::HALF_MAX, guards::WEIGHT_FLOOR]
+        got[0],
+        [
+            guards::SUM_FLOOR,
+            guards::HALF_MAX,
+            guards::WEIGHT_FLOOR,
+            guards::FILL_MAX
+        ]
     );
 }

@@ -17,7 +17,10 @@ cargo xtask <command>
                   (--full: the thesis's full size, 1.5 M rows and 150 epochs, into out/full)
   train-models    makes the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   test            formatting, clippy, all tests, documentation: what CI runs
-  ci              the same as test
+  ci              test, and cargo-deny: licences, advisories, sources, versions
+  search          a million random fragment lists for every property (minutes)
+  faults          extract, train and bench killed fifty times each (minutes)
+  fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust; installs cargo-fuzz where it is missing
   peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
 ";
 
@@ -28,7 +31,14 @@ fn main() -> ExitCode {
         (Some("demo"), []) => demo(false),
         (Some("demo"), ["--full"]) => demo(true),
         (Some("train-models"), []) => train_models(),
-        (Some("test" | "ci"), []) => test(),
+        (Some("test"), []) => test(),
+        (Some("ci"), []) => test().and_then(|()| deny()),
+        (Some("search"), []) => again("PROPTEST_CASES", "1000000", "peelnet_core", "random_lists"),
+        (Some("faults"), []) => {
+            ensure_driver().and_then(|()| again("PEELNET_KILLS", "50", "peelnet", "faults"))
+        }
+        (Some("fuzz"), []) => fuzz("1800"),
+        (Some("fuzz"), [seconds]) => fuzz(seconds),
         (Some("peers"), []) => ["train", "transparency"].into_iter().try_for_each(|name| {
             run(
                 Command::new("python3").arg(format!("benches/peers/{name}.py")),
@@ -177,6 +187,87 @@ fn scene_files() -> Result<Vec<String>, String> {
     files.sort();
     Ok(files)
 }
+
+/// One test file again, at the length that an environment variable asks for, its output shown.
+fn again(variable: &str, value: &str, package: &str, test: &str) -> Result<(), String> {
+    let args = [
+        "test",
+        "--package",
+        package,
+        "--test",
+        test,
+        "--",
+        "--nocapture",
+    ];
+    run(cargo().args(args).env(variable, value), test)
+}
+
+/// Whether a subcommand of cargo is there; installs it where it is not.
+fn ensure_subcommand(name: &str) -> Result<(), String> {
+    let there = cargo().args([name, "--version"]).output();
+    if there.is_ok_and(|o| o.status.success()) {
+        return Ok(());
+    }
+    println!("cargo-{name} is not installed: cargo install cargo-{name} --locked");
+    run(
+        cargo().args(["install", &format!("cargo-{name}"), "--locked"]),
+        "install",
+    )
+}
+
+/// Licences, sources and versions; advisories where their database can be reached.
+fn deny() -> Result<(), String> {
+    ensure_subcommand("deny")?;
+    run(
+        cargo().args(["deny", "check", "licenses", "bans", "sources"]),
+        "cargo deny",
+    )?;
+    run(
+        cargo().args(["deny", "fetch", "db"]),
+        "fetching the advisories",
+    )
+    .map_err(|e| {
+        format!("{e}: the database of advisories cannot be reached, they are not checked")
+    })?;
+    run(cargo().args(["deny", "check", "advisories"]), "cargo deny")
+}
+
+/// Every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
+fn fuzz(seconds: &str) -> Result<(), String> {
+    ensure_subcommand("fuzz")?;
+    run(
+        cargo().args([
+            "run",
+            "--package",
+            "peelnet_tests",
+            "--example",
+            "write_seeds",
+        ]),
+        "seeds",
+    )?;
+    for target in FUZZ_TARGETS {
+        println!("\n== {target}, {seconds} s");
+        // A dictionary of what the formats say, little memory, and no input that takes long.
+        let limit = format!("-max_total_time={seconds}");
+        let dictionary = "-dict=fuzz/formats.dict";
+        let options = [
+            &limit,
+            dictionary,
+            "-rss_limit_mb=1024",
+            "-timeout=10",
+            "-print_final_stats=1",
+        ];
+        let mut command = Command::new("cargo");
+        command
+            .args(["+nightly", "fuzz", "run", target, "--"])
+            .args(options);
+        run(&mut command, target)?;
+    }
+    Ok(())
+}
+
+/// One for each reader of files that users hand over.
+const FUZZ_TARGETS: [&str; 4] = ["scene", "obj", "dataset", "model"];
 
 fn test() -> Result<(), String> {
     ensure_driver()?;

@@ -14,6 +14,10 @@ pub const WEIGHT_FLOOR: f32 = 1.0 / 16384.0;
 /// changed by the floor, and zero over the floor stays zero.
 pub const SUM_FLOOR: f32 = 1.0 / 16_777_216.0;
 
+/// With separate ends: what lies between them is scaled by no more than this to fill what they leave of the coverage. The ends fall
+/// short where coincident fragments share one, and a faint fragment between must not be given what they miss.
+pub const FILL_MAX: f32 = 16.0;
+
 /// The largest finite half float, where 16-bit accumulators end.
 pub const HALF_MAX: f32 = 65504.0;
 

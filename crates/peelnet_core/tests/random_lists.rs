@@ -265,7 +265,7 @@ proptest! {
     #[test]
     fn weights_are_finite(bits in any::<u32>(), alpha in 0.0f32..=1.0, window in 0.0f32..=1.0) {
         let z = f32::from_bits(bits).abs();
-        prop_assume!(z.is_finite());
+        let z = if z.is_finite() { z } else { f32::MAX };
         for w in Weight::ALL {
             let value = w.eval(z, alpha, window);
             prop_assert!(value.is_finite() && value >= 0.0, "{}: {} at {}", w.name(), value, z);

@@ -1,5 +1,6 @@
 // Learned methods with anchors: eq 6's resolve, or the ends exact and the rest normalised to what they leave.
 // Twin of peelnet_core::methods::anchored.
+import package::helpers::guards::FILL_MAX;
 import package::helpers::resolve::{divisor, normalised, within};
 import package::helpers::screen::screen_corner;
 
@@ -29,10 +30,12 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let coverage = 1.0 - transmittance;
         let rest = within(sums);
         let exact = within(textureLoad(ends, pixel, 0));
-        // All of it where nothing lies between; never more than there is.
-        let share = select(min(1.0, coverage / divisor(exact.a)), coverage / divisor(exact.a), rest.a == 0.0);
-        let left = max(coverage - exact.a * share, 0.0);
-        let color = exact.rgb * share + rest.rgb * (left / divisor(rest.a)) + behind * transmittance;
+        // The ends never take more than there is, and what lies between no more than it can fill; what is then missing, all fill.
+        let own = min(exact.a, coverage);
+        let left = min(coverage - own, FILL_MAX * rest.a);
+        let fill = coverage / divisor(own + left);
+        let shares = fill * vec2f(own / divisor(exact.a), left / divisor(rest.a));
+        let color = exact.rgb * shares.x + rest.rgb * shares.y + behind * transmittance;
         return vec4f(color, coverage);
     }
 }

@@ -10,6 +10,7 @@
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
+    guards::FILL_MAX,
     statistics::{
         self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, features,
         zeta_of_code,
@@ -169,10 +170,12 @@ pub fn composite(
     let [between, ends] = sums;
     let t = (-total).exp();
     let floor = f64::MIN_POSITIVE;
-    // All of the coverage is the ends' where nothing lies between; never more than there is.
-    let all = (1.0 - t) / ends[3].max(floor);
-    let share = if between[3] == 0.0 { all } else { all.min(1.0) };
-    let left = (1.0 - t - ends[3] * share).max(0.0) / between[3].max(floor);
+    // The ends never take more than there is, and what lies between no more than it can fill; what is then missing, all fill.
+    let own = ends[3].min(1.0 - t);
+    let rest = (1.0 - t - own).min(f64::from(FILL_MAX) * between[3]);
+    let fill = (1.0 - t) / (own + rest).max(floor);
+    let share = fill * own / ends[3].max(floor);
+    let left = fill * rest / between[3].max(floor);
     std::array::from_fn(|k| {
         (ends[k] * share + between[k] * left + f64::from(background[k]) * t) as f32
     })

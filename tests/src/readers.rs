@@ -1,0 +1,235 @@
+//! The readers of files that users hand over, each as a function of any bytes: fuzz targets and the bounded search in
+//! `tests/fuzzed_readers.rs` call the same ones. A reader answers or gives an error; it does not panic, hang, or take memory that the
+//! file does not warrant.
+
+use peelnet_dataset::{Dataset, Format};
+use peelnet_model::Model;
+use peelnet_peel::synthetic::{SyntheticOptions, synthetic};
+use peelnet_scene::{Lighting, Scene, obj};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::{OnceLock, atomic::AtomicBool},
+};
+use tempfile::TempDir;
+
+/// A reader and files to begin from.
+#[derive(Clone, Copy, Debug)]
+pub struct Reader {
+    /// The fuzz target's name.
+    pub name: &'static str,
+    /// Reads any bytes.
+    pub read: fn(&[u8]),
+    /// Files that are sound, and some that are nearly so.
+    pub seeds: fn() -> Vec<Vec<u8>>,
+}
+
+/// All of them.
+pub const READERS: [Reader; 4] = [
+    Reader {
+        name: "scene",
+        read: scene,
+        seeds: scene_seeds,
+    },
+    Reader {
+        name: "obj",
+        read: obj,
+        seeds: obj_seeds,
+    },
+    Reader {
+        name: "dataset",
+        read: dataset,
+        seeds: dataset_seeds,
+    },
+    Reader {
+        name: "model",
+        read: model,
+        seeds: model_seeds,
+    },
+];
+
+/// A folder of this process that is removed with it.
+fn folder() -> &'static Path {
+    static FOLDER: OnceLock<TempDir> = OnceLock::new();
+    FOLDER
+        .get_or_init(|| tempfile::tempdir().expect("a temporary folder"))
+        .path()
+}
+
+fn put(name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder().join(name);
+    fs::write(&path, bytes).expect("the temporary folder can be written");
+    path
+}
+
+/// A scene file; the meshes that it may name do not exist, but for `a.obj`.
+fn scene(bytes: &[u8]) {
+    put("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    if let Ok(scene) = Scene::load(&put("s.toml", bytes)) {
+        // What was let through can be drawn.
+        for view in &scene.views {
+            assert!(view.near > 0.0 && view.near < view.far && view.view_from_world().is_finite());
+        }
+        for object in &scene.objects {
+            assert!(object.mesh.positions.iter().all(|p| p.is_finite()));
+            assert!(object.mesh.normals.iter().all(|n| n.is_finite()));
+            assert_eq!(object.materials.len(), object.mesh.parts.len());
+        }
+    }
+}
+
+fn scene_seeds() -> Vec<Vec<u8>> {
+    let camera = "name = 's'\nbackground = [0.1, 1, 1.0]\n[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y = 45.0\nnear = 0.1\nfar = 100\n";
+    let object = "[[object]]\nmesh = 'a.obj'\nfit = 1.0\nscale = 2.0\nrotate = [0, 90, 0]\ntranslate = [1, 0, 0]\nlayer = 1\n[object.material]\ncolor = [1, 0, 0]\nalpha = 0.5\nlighting = 'phong'\n";
+    let scatter = "[[scatter]]\ncount = 9\nseed = 4\nmesh = { shape = 'torus' }\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nscale = [0.1, 0.3]\nalpha = [0.2, 0.8]\n";
+    let grid = "[[scatter]]\ncount = 4\nmeshes = ['a.obj', { shape = 'sphere', triangles = 60 }]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\ngrid = [2, 2, 1]\njitter = 0.2\n";
+    let light =
+        "[orbit]\nviews = 3\n[[light]]\nposition = [1, 2, 3]\ncolor = [1, 1, 1]\nintensity = 2\n";
+    [
+        format!("{camera}{object}"),
+        format!("{camera}{light}{scatter}"),
+        format!("{camera}{grid}"),
+        format!("{camera}[[object]]\nmesh = {{ shape = 'box', size = [1, 2, 3] }}\n"),
+        camera.to_owned(),
+    ]
+    .map(String::into_bytes)
+    .to_vec()
+}
+
+/// An OBJ file, and behind the first zero byte the MTL file that it may name as `m.mtl`.
+fn obj(bytes: &[u8]) {
+    let (mesh, materials) = match bytes.iter().position(|b| *b == 0) {
+        Some(at) => (&bytes[..at], &bytes[at + 1..]),
+        None => (bytes, &b""[..]),
+    };
+    put("m.mtl", materials);
+    if let Ok(loaded) = obj::load_obj(&put("f.obj", mesh), Lighting::Phong) {
+        let mesh = &loaded.mesh;
+        assert!(mesh.positions.iter().all(|p| p.is_finite()));
+        assert!(mesh.normals.iter().all(|n| n.is_finite()));
+        let corners = mesh.triangles.iter().flatten();
+        assert!(
+            corners
+                .into_iter()
+                .all(|i| (*i as usize) < mesh.positions.len())
+        );
+        // Parts cover all triangles in order.
+        let covered = mesh.parts.iter().fold(0, |at, part| {
+            assert_eq!(part.triangles.start, at);
+            part.triangles.end
+        });
+        assert_eq!(covered, mesh.triangles.len());
+    }
+}
+
+fn obj_seeds() -> Vec<Vec<u8>> {
+    let mesh = "mtllib m.mtl\no part\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvn 0 0 1\ng side\nusemtl red\ns 1\nf 1/1/1 2/2/1 3//1\nf -4 -2 -1\nf 1 2 3 4\n";
+    let materials =
+        "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\n";
+    vec![
+        format!("{mesh}\0{materials}").into_bytes(),
+        b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end".to_vec(),
+        mesh.replace('\n', "\r\n").into_bytes(),
+    ]
+}
+
+/// A dataset of two parts: the first byte says which of its files the others replace, and in which format.
+fn dataset(bytes: &[u8]) {
+    let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
+    let format = [Format::Csv, Format::Npy, Format::Parquet][usize::from(which) % 3];
+    let template = template(format);
+    let files = &template.files;
+    let file = usize::from(which / 3) % files.len();
+    let folder = folder().join(format!("read-{format}"));
+    let _ = fs::create_dir_all(&folder);
+    let mut manifest = template.manifest.clone();
+    for (i, (name, sound)) in files.iter().enumerate() {
+        if i == file {
+            fs::write(folder.join(name), contents).expect("writes");
+            // So that the length fits, and the contents are looked at.
+            let length = |n: usize| format!("\"bytes\": {n}");
+            manifest = manifest.replace(&length(sound.len()), &length(contents.len()));
+        } else {
+            fs::write(folder.join(name), sound).expect("writes");
+        }
+    }
+    if files[file].0 != "manifest.json" {
+        fs::write(folder.join("manifest.json"), manifest).expect("writes");
+    }
+    if let Ok(dataset) = Dataset::open(&folder) {
+        // Either all rows are read, or an error ends them.
+        let rows: Result<Vec<usize>, _> = dataset.batches(64).map(|b| b.map(|b| b.len())).collect();
+        if let Ok(rows) = rows {
+            assert_eq!(rows.iter().sum::<usize>() as u64, dataset.rows());
+        }
+    }
+}
+
+fn dataset_seeds() -> Vec<Vec<u8>> {
+    let mut seeds = Vec::new();
+    for (format, k) in [Format::Csv, Format::Npy, Format::Parquet]
+        .into_iter()
+        .zip(0u8..)
+    {
+        for ((_, contents), file) in template(format).files.iter().zip(0u8..3) {
+            seeds.push([&[k + 3 * file], contents.as_slice()].concat());
+        }
+    }
+    seeds
+}
+
+struct Template {
+    manifest: String,
+    /// Name and contents; the manifest first.
+    files: Vec<(String, Vec<u8>)>,
+}
+
+/// A small dataset of a format.
+fn template(format: Format) -> &'static Template {
+    static TEMPLATES: [OnceLock<Template>; 3] = [const { OnceLock::new() }; 3];
+    let slot = match format {
+        Format::Csv => 0,
+        Format::Npy => 1,
+        Format::Parquet => 2,
+    };
+    TEMPLATES[slot].get_or_init(|| {
+        let out = folder().join(format!("template-{format}"));
+        let options = SyntheticOptions {
+            out: out.clone(),
+            lists: 12,
+            format,
+            seed: 3,
+            command: "test".into(),
+        };
+        synthetic(&options, &AtomicBool::new(false), &mut |_| {}).expect("a small dataset");
+        let names = fs::read_dir(&out).expect("lists").flatten();
+        let mut names: Vec<String> = names
+            .map(|e| e.file_name().to_string_lossy().into_owned())
+            .filter(|name| !name.starts_with('.'))
+            .collect();
+        names.sort_by_key(|name| (name != "manifest.json", name.clone()));
+        let read = |name: &String| fs::read(out.join(name)).expect("reads");
+        Template {
+            manifest: String::from_utf8_lossy(&read(&names[0])).into_owned(),
+            files: names.iter().map(|n| (n.clone(), read(n))).collect(),
+        }
+    })
+}
+
+/// A model file.
+fn model(bytes: &[u8]) {
+    if let Ok(model) = Model::from_bytes(bytes, "m.safetensors") {
+        // What was let through answers, whatever it is asked.
+        for x in [0.0, 1.0, -1e30, f32::MAX] {
+            let answer = model.shader_output(&vec![x; model.meta.inputs.len()]);
+            assert!(answer.iter().all(|y| y.is_finite()), "{answer:?} of {x}");
+        }
+    }
+}
+
+fn model_seeds() -> Vec<Vec<u8>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
+    ["small", "thesis"]
+        .map(|name| fs::read(root.join(name).join("model.safetensors")).expect("ships"))
+        .to_vec()
+}
