@@ -204,7 +204,9 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
         path: path.to_owned(),
         source,
     })?;
-    String::from_utf8(bytes).map_err(|e| {
+    // Old systems end lines with a carriage return alone, which the parser takes for a blank.
+    let text = String::from_utf8(bytes).map(|text| text.replace("\r\n", "\n").replace('\r', "\n"));
+    text.map_err(|e| {
         let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
         SceneError::Mesh {
             path: path.to_owned(),
@@ -389,13 +391,8 @@ fn check(path: &Path, text: &str) -> Result<Facts, SceneError> {
                         ),
                     ));
                 }
-                if key == "v" && values.len() == 4 && values[3].parse() == Ok(0.0f32) {
-                    return Err(fail(
-                        number,
-                        "a position with w = 0 lies at infinity; repair the line".into(),
-                    ));
-                }
-                for word in &values[..3] {
+                // Behind a position's three numbers stand its w, or a colour.
+                for word in &values {
                     match word.parse::<f32>() {
                         Ok(x) if x.is_finite() => {}
                         Ok(_) => {
@@ -414,6 +411,15 @@ fn check(path: &Path, text: &str) -> Result<Facts, SceneError> {
                             ));
                         }
                     }
+                }
+                let number_at = |k: usize| values[k].parse::<f32>().unwrap_or(0.0);
+                let at_infinity = |w: f32| (0..3).any(|k| !(number_at(k) / w).is_finite());
+                if key == "v" && values.len() == 4 && at_infinity(number_at(3)) {
+                    let message = format!(
+                        "a position with w = {} lies at infinity; repair the line",
+                        values[3]
+                    );
+                    return Err(fail(number, message));
                 }
             }
             Some("f") => {
@@ -612,7 +618,7 @@ mod tests {
     /// Each bad file gives one error that names the file, the line and the mend.
     #[test]
     fn bad_files() {
-        let cases: [(&str, Vec<u8>, &str); 9] = [
+        let cases: [(&str, Vec<u8>, &str); 11] = [
             (
                 "NaN position",
                 b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
@@ -622,6 +628,16 @@ mod tests {
                 "NaN normal",
                 format!("{QUAD}vn 0 nan 0\nf 1//1 2//1 3//1\n").into_bytes(),
                 "a.obj:5: normal 'nan'",
+            ),
+            (
+                "NaN w",
+                b"v 0 0 0\nv 1 0 0 nan\nv 0 1 0\nf 1 2 3\n".to_vec(),
+                "a.obj:2: position 'nan'",
+            ),
+            (
+                "tiny w",
+                b"v 0 0 0\nv 1 0 0 1e-42\nv 0 1 0\nf 1 2 3\n".to_vec(),
+                "a.obj:2: a position with w = 1e-42",
             ),
             (
                 "word",
