@@ -184,7 +184,10 @@ pub fn compare(
 
 /// Whether it is memory that a frame lacks: another adapter, or a smaller frame, has it.
 pub(crate) fn is_too_large(error: &RenderError) -> bool {
-    matches!(error, RenderError::Gpu(GpuError::TooLarge { .. }))
+    matches!(
+        error,
+        RenderError::Gpu(GpuError::TooLarge { .. } | GpuError::OutOfMemory { .. })
+    )
 }
 
 /// A frame's time by pass, and its clock time in microseconds.

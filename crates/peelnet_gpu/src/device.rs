@@ -2,7 +2,10 @@ use crate::{
     AdapterRequest, GpuError,
     adapter::{self, OPTIONAL_FEATURES},
 };
-use std::sync::{Arc, Mutex};
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicBool, Ordering},
+};
 
 /// An open device. Cheap to share by reference; one per test or command.
 #[derive(Debug)]
@@ -15,7 +18,18 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     /// The limits the device was opened with: the adapter's own.
     pub limits: wgpu::Limits,
+    /// What [`Gpu::pretend_memory`] was told.
+    largest_allocation: u64,
+    /// Whether an allocation did not fit the GPU's memory.
+    memory_was_full: AtomicBool,
     first_error: Arc<Mutex<Option<String>>>,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 impl Gpu {
@@ -46,17 +60,22 @@ impl Gpu {
         let first_error = Arc::new(Mutex::new(None));
         let sink = Arc::clone(&first_error);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            let mut slot = sink
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
-            slot.get_or_insert(error.to_string());
+            locked(&sink).get_or_insert(error.to_string());
         }));
+        let lost = Arc::new(Mutex::new(None));
+        let sink = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, text| {
+            locked(&sink).get_or_insert(format!("{reason:?}: {text}"));
+        });
         Ok(Self {
             device,
             queue,
             info,
             limits,
+            largest_allocation: u64::MAX,
+            memory_was_full: AtomicBool::new(false),
             first_error,
+            lost,
         })
     }
 
@@ -87,23 +106,58 @@ impl Gpu {
         })
     }
 
+    /// From now on allocations of more bytes fail as they do on a GPU whose memory is full: for tests of what then happens.
+    pub fn pretend_memory(&mut self, largest_allocation: u64) {
+        self.largest_allocation = largest_allocation;
+    }
+
+    /// Whether an allocation did not fit the GPU's memory so far, though what it was for may have gone on with less.
+    pub fn memory_was_full(&self) -> bool {
+        self.memory_was_full.load(Ordering::Relaxed)
+    }
+
     /// The error that wgpu reported since the last call, if any.
     ///
     /// # Errors
-    /// [`GpuError::Validation`] with wgpu's text.
+    /// [`GpuError::Lost`] once the device is lost, else [`GpuError::Validation`] with wgpu's text.
     pub fn check(&self) -> Result<(), GpuError> {
-        let error = self
-            .first_error
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .take();
+        if let Some(reason) = locked(&self.lost).as_ref() {
+            return Err(GpuError::Lost(reason.clone()));
+        }
+        let error = locked(&self.first_error).take();
         error.map_or(Ok(()), |text| Err(GpuError::Validation(text)))
+    }
+
+    /// Allocates; an allocation that does not fit the GPU's memory is an error at once, and the device goes on.
+    fn allocate<T>(
+        &self,
+        label: &str,
+        bytes: u64,
+        make: impl FnOnce() -> T,
+    ) -> Result<T, GpuError> {
+        let full = || {
+            self.memory_was_full.store(true, Ordering::Relaxed);
+            GpuError::OutOfMemory {
+                what: label.to_owned(),
+                needed: bytes,
+                adapter: self.info.name.clone(),
+            }
+        };
+        if bytes > self.largest_allocation {
+            return Err(full());
+        }
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let made = make();
+        match pollster::block_on(scope.pop()) {
+            None => Ok(made),
+            Some(_) => Err(full()),
+        }
     }
 
     /// A buffer that shaders can read and write and that can be copied both ways.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] beyond the largest storage binding.
+    /// [`GpuError::TooLarge`] beyond the largest storage binding, [`GpuError::OutOfMemory`] where memory is full.
     pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
         let limit = self
             .limits
@@ -120,14 +174,16 @@ impl Gpu {
                 mend: "draw a smaller frame or use an adapter with larger storage bindings",
             });
         }
-        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage: wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::COPY_SRC
-                | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        }))
+        self.allocate(label, size, || {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_SRC
+                    | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })
     }
 
     /// A buffer with data in it.
@@ -153,7 +209,7 @@ impl Gpu {
     /// A 2-D texture that can be drawn to, read by shaders and copied from.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] beyond the adapter's largest side.
+    /// [`GpuError::TooLarge`] beyond the adapter's largest side, [`GpuError::OutOfMemory`] where memory is full.
     pub fn texture(
         &self,
         label: &str,
@@ -172,9 +228,11 @@ impl Gpu {
                 mend: "draw a smaller frame",
             });
         }
-        Ok(self
-            .device
-            .create_texture(&wgpu::TextureDescriptor {
+        let bytes = u64::from(width)
+            * u64::from(height)
+            * u64::from(format.block_copy_size(None).unwrap_or(4));
+        let texture = self.allocate(label, bytes, || {
+            self.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d {
                     width,
@@ -191,7 +249,8 @@ impl Gpu {
                     | extra,
                 view_formats: &[],
             })
-            .create_view(&wgpu::TextureViewDescriptor::default()))
+        })?;
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
     /// Compiles WGSL text.

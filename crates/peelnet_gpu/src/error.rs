@@ -51,6 +51,18 @@ pub enum GpuError {
         /// What to do instead.
         mend: &'static str,
     },
+    /// The GPU's memory is full.
+    #[error(
+        "{what}: adapter '{adapter}' has no {needed} bytes of memory left; close other programs, draw a smaller frame, or use --adapter software"
+    )]
+    OutOfMemory {
+        /// What was to be made.
+        what: String,
+        /// Bytes it needs.
+        needed: u64,
+        /// Adapter name.
+        adapter: String,
+    },
     /// The device stopped answering.
     #[error("the GPU device was lost or did not answer: {0}; run again, or use --adapter software")]
     Lost(String),

@@ -152,6 +152,7 @@ pub(super) fn measure(
         })?;
     }
     drop(bar);
+    context.tell_of_memory(&gpu);
     Ok(Bench {
         machine: Machine::of(&gpu),
         command: command_line(),

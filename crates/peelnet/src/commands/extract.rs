@@ -113,6 +113,7 @@ pub(super) fn peel(
         PeelError::Usage(text) => Failure::Usage(text),
         other => other.into(),
     })?;
+    context.tell_of_memory(gpu);
     if report.lost > 0 {
         context.console.warn(format!(
             "{} fragments were left out ({} peeling); --peel sbuffer without --max-passes keeps all",

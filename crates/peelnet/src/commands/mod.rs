@@ -38,6 +38,16 @@ impl Context<'_> {
         Ok(Gpu::new(&self.global.adapter)?)
     }
 
+    /// Says that a command got through with less memory than it would have taken.
+    fn tell_of_memory(&self, gpu: &Gpu) {
+        if gpu.memory_was_full() {
+            self.console.warn(format!(
+                "the memory of {} was full: fragments were kept in smaller tiles, which takes longer and loses nothing",
+                gpu.info.name
+            ));
+        }
+    }
+
     /// Loads scenes and shows their warnings.
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
         paths.iter().map(|path| self.scene(path)).collect()

@@ -38,6 +38,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
             thousands(frame.stats.lost)
         ));
     }
+    context.tell_of_memory(&gpu);
     if frame.image.non_finite() > 0 {
         context.console.warn(format!(
             "{}: {} pixels are not finite",

@@ -10,7 +10,7 @@ use crate::{
 };
 use bytemuck::{Pod, Zeroable};
 use peelnet_gpu::{
-    Gpu,
+    Gpu, GpuError,
     bind::{Bind, Bound},
     record::Recorder,
     wgpu,
@@ -184,7 +184,8 @@ impl SBuffer {
         self.store.as_ref().map(|k| &k.storage)
     }
 
-    /// Decides the tiles of a counted frame and makes storage for the largest; tells whether storage was made anew.
+    /// Decides the tiles of a counted frame and makes storage for the largest; tells whether storage was made anew. Where the GPU
+    /// has no memory for it, tiles get smaller until they fit.
     ///
     /// # Errors
     /// A pixel that does not fit, or a lost device.
@@ -196,20 +197,32 @@ impl SBuffer {
         total: u64,
     ) -> Result<(Vec<Tile>, bool), RenderError> {
         let pixels = frame.pixels();
-        let (tiles, largest) = if total <= self.limit {
-            (vec![Tile::new(0, pixels, 0)], total)
-        } else {
-            let offsets: Vec<u32> = gpu.read(&self.count.offsets, 0..u64::from(pixels) * 4 + 4)?;
-            let tiles = tiles(&offsets, frame.size[0], self.limit)?;
-            (tiles, self.limit)
-        };
-        let grown = self.storage().is_none_or(|s| s.capacity < largest);
-        if grown {
+        loop {
+            let (tiles, largest) = if total <= self.limit {
+                (vec![Tile::new(0, pixels, 0)], total)
+            } else {
+                let offsets: Vec<u32> =
+                    gpu.read(&self.count.offsets, 0..u64::from(pixels) * 4 + 4)?;
+                let tiles = tiles(&offsets, frame.size[0], self.limit)?;
+                (tiles, self.limit)
+            };
+            if self.storage().is_some_and(|s| s.capacity >= largest) {
+                return Ok((tiles, false));
+            }
             // The old storage goes first, so that both are never held at once.
             self.store = None;
-            self.store = Some(self.kernels(gpu, scene, frame, largest)?);
+            match self.kernels(gpu, scene, frame, largest) {
+                Ok(kernels) => {
+                    self.store = Some(kernels);
+                    return Ok((tiles, true));
+                }
+                // Smaller tiles, from now on, until a pixel does not fit.
+                Err(RenderError::Gpu(GpuError::OutOfMemory { .. })) if largest > 1 => {
+                    self.limit = largest / 2;
+                }
+                Err(e) => return Err(e),
+            }
         }
-        Ok((tiles, grown))
     }
 
     fn kernels(

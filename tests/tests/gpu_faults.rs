@@ -1,0 +1,105 @@
+//! A GPU whose memory is full, and one that goes away.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use peelnet_core::fragment::Fragment;
+use peelnet_gpu::GpuError;
+use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_render::{MethodSpec, RenderError, Renderer, scene::PixelSample};
+use peelnet_tests::{gpu, walls};
+
+fn stack() -> Vec<Fragment> {
+    (0..20)
+        .map(|i| Fragment::new(1.0 + i as f32, 0.2, [i as f32 / 20.0, 0.5, 0.1]))
+        .collect()
+}
+
+/// Storage for all fragments does not fit: the frame is drawn in smaller tiles, all fragments are there, and it is told.
+#[test]
+fn full_memory_makes_smaller_tiles() {
+    let mut gpu = gpu();
+    let size = [64, 48];
+    let scene = walls(&stack(), [0.1, 0.2, 0.3]);
+    let method: MethodSpec = "abuffer".parse().unwrap();
+    let draw = |gpu: &peelnet_gpu::Gpu| {
+        let renderer = Renderer::new(gpu, &scene).unwrap();
+        let mut prepared = renderer.prepare(&method, size, None).unwrap();
+        renderer.draw(&mut prepared, &scene.views[0]).unwrap()
+    };
+    let whole = draw(&gpu);
+    assert!(whole.stats.tiles == 1 && !gpu.memory_was_full());
+    // 64 x 48 pixels of 20 colours of 16 bytes are 983,040 bytes; targets of 16 bytes a pixel fit.
+    gpu.pretend_memory(100_000);
+    let tiled = draw(&gpu);
+    // Halved until it fits: 983,040 / 16.
+    assert_eq!(tiled.stats.tiles, 16);
+    assert_eq!(tiled.stats.fragments, whole.stats.fragments);
+    assert_eq!(tiled.image, whole.image);
+    assert!(gpu.memory_was_full());
+
+    let mut harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None).unwrap();
+    let mut fragments = 0;
+    let mut take = |tile: RawTile| {
+        fragments += tile.depths.len();
+        Ok(())
+    };
+    let all = PixelSample::ALL;
+    let found = harvester
+        .harvest(&scene.views[0], all, None, RawTile::default, &mut take)
+        .unwrap();
+    assert_eq!((fragments, found.tiles), (64 * 48 * 20, 16));
+}
+
+/// Where not even the frame's targets fit, or a single pixel's fragments, one error says what needs how much.
+#[test]
+fn what_cannot_be_made_smaller_is_an_error() {
+    let mut gpu = gpu();
+    let scene = walls(&stack(), [0.0; 3]);
+    let method: MethodSpec = "abuffer".parse().unwrap();
+    gpu.pretend_memory(10_000);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let error = renderer.prepare(&method, [64, 48], None).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        matches!(error, RenderError::Gpu(GpuError::OutOfMemory { .. })),
+        "{text}"
+    );
+    assert!(
+        text.contains("49152 bytes") && text.contains("smaller frame"),
+        "{text}"
+    );
+    // Fragments of one pixel of colour take 320 bytes.
+    gpu.pretend_memory(300);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let mut prepared = renderer.prepare(&method, [4, 3], None).unwrap();
+    let error = renderer.draw(&mut prepared, &scene.views[0]).unwrap_err();
+    assert!(error.to_string().contains("20"), "{error}");
+}
+
+/// A device that goes away is one clear error, at whatever comes next: no panic, no hang, and no talk of a bug.
+#[test]
+fn a_lost_device_is_one_clear_error() {
+    let scene = walls(&stack(), [0.0; 3]);
+    for name in [
+        "abuffer",
+        "linked-list",
+        "dual-peel",
+        "wboit-eq9",
+        "mboit4",
+        "kbuffer-4",
+        "stochastic-4",
+    ] {
+        let gpu = gpu();
+        let method: MethodSpec = name.parse().unwrap();
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        let mut prepared = renderer.prepare(&method, [16, 12], None).unwrap();
+        renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        gpu.device.destroy();
+        let error = renderer.draw(&mut prepared, &scene.views[0]).unwrap_err();
+        assert!(
+            matches!(error, RenderError::Gpu(GpuError::Lost(_))),
+            "{name}: {error}"
+        );
+        assert!(error.to_string().contains("run again"), "{error}");
+    }
+}
