@@ -243,3 +243,43 @@ fn the_first_pictures_have_their_errors() {
 
 /// The scene of the README's first pictures.
 const PICTURED: &str = "foliage-held";
+
+const RESULTS: &str = "docs/results/llvmpipe-epyc-2cores";
+
+/// The precision study shows what was measured, and nothing of it is beyond its bound.
+#[test]
+fn numerics_shows_the_committed_measurement() {
+    let page = read("docs/numerics.md");
+    let (_, block) = page.split_once("<!-- numerics:begin -->\n").unwrap();
+    let (block, _) = block.split_once("<!-- numerics:end -->").unwrap();
+    assert_eq!(block, read(&format!("{RESULTS}/numerics/numerics.md")));
+    let text = read(&format!("{RESULTS}/numerics/numerics.json"));
+    let numerics: peelnet_eval::numerics::Numerics = serde_json::from_str(&text).unwrap();
+    assert!(numerics.blended.len() >= 30 && numerics.added.len() >= 60);
+    for b in &numerics.blended {
+        assert!(b.error() <= b.bound, "{b:?}");
+    }
+    for a in &numerics.added {
+        assert!(a.bound.is_none_or(|bound| a.worst <= bound), "{a:?}");
+    }
+}
+
+/// Every method and case of the catalogue is in the committed run over the hard cases, and nothing failed there.
+#[test]
+fn the_committed_stress_is_whole() {
+    use peelnet_eval::stress::{CASES, Subject, Work};
+    let rows = read(&format!("{RESULTS}/stress/stress.csv"));
+    let has = |method: &str, case: &str| rows.contains(&format!("\n{method},{case},"));
+    for method in Subject::all_methods() {
+        for case in CASES {
+            let drawn = matches!(case.work, Work::Frames(_)) || method.needs_model();
+            assert!(
+                !drawn || has(&method.to_string(), case.id),
+                "{method} in {}",
+                case.id
+            );
+        }
+    }
+    assert!(!rows.contains(",fail,"));
+    assert!(read(&format!("{RESULTS}/stress/stress.md")).contains(" 0 failures"));
+}

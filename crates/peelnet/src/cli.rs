@@ -350,7 +350,7 @@ pub struct BenchArgs {
   peelnet stress --json | jq '.rows[] | select(.result == \"fail\")'
 
 Exit code 1 where a property does not hold that is not declared as a flaw, or where a declared flaw is gone. DIR gets stress.json,
-stress.csv, stress.md, stress.html, and pictures of what fails in images/.")]
+stress.csv, stress.md, stress.html, and pictures of what fails in images/; with --numerics it gets numerics.json and numerics.md.")]
 pub struct StressArgs {
     /// Methods, with commas between them; all means every method in every precision
     #[arg(long, value_name = "all|A,B", default_value = "all")]
@@ -363,6 +363,9 @@ pub struct StressArgs {
         value_delimiter = ','
     )]
     pub models: Vec<PathBuf>,
+    /// Instead of cases: what target formats cost in accuracy on this adapter, measured beside the bounds of docs/numerics.md
+    #[arg(long, conflicts_with_all = ["methods", "models", "cases"])]
+    pub numerics: bool,
     /// Names of cases, with commas between them [default: all]
     #[arg(long, value_name = "CASE,CASE", value_delimiter = ',')]
     pub cases: Vec<String>,
@@ -471,6 +474,7 @@ mod tests {
             "bench s --out d --resume",
             "stress --methods mboit4,deep-small --models m --json",
             "stress --model m --cases deep --out d",
+            "stress --numerics --out d",
             "recommend s --budget-ms 3 --max-error 1e-4 --max-bytes 32",
             "recommend s --results d --json",
             "inspect x --json",

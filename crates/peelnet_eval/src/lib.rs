@@ -25,6 +25,7 @@ pub mod learning;
 mod lines;
 mod machine;
 pub mod metrics;
+pub mod numerics;
 mod partial;
 pub mod perceptual;
 pub mod ratios;

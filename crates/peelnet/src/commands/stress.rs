@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::parse::{MethodList, command_line};
 use crate::progress::Progress;
 use peelnet_eval::{
-    EvalError, Machine,
+    EvalError, Machine, numerics,
     stress::{CASES, Case, Outcome, Stressed, Subject, stress},
     table::plain,
 };
@@ -15,6 +15,9 @@ use serde_json::json;
 use std::sync::atomic::Ordering;
 
 pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
+    if args.numerics {
+        return formats(context, args);
+    }
     let cases = cases(&args.cases)?;
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && matches!(args.methods, MethodList::All);
@@ -91,6 +94,34 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         )));
     }
     Ok(())
+}
+
+/// What target formats cost in accuracy.
+fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
+    let gpu = context.gpu()?;
+    let numerics = numerics::measure(&gpu, command_line())?;
+    if let Some(out) = &args.out {
+        numerics.write(out)?;
+    }
+    let text = || {
+        let tables = [numerics.blended_table(), numerics.added_table()];
+        tables
+            .map(|(headings, cells)| plain(&headings, &cells))
+            .join("\n")
+    };
+    context.console.result(text, || json!(numerics))?;
+    let beyond = |b: &&numerics::Blended| b.error() > b.bound;
+    match numerics.blended.iter().find(beyond) {
+        None => Ok(()),
+        Some(b) => Err(Failure::Failed(format!(
+            "{} layers of {} in {} are off by {:e}, beyond the bound {:e}",
+            b.layers,
+            b.source,
+            b.format,
+            b.error(),
+            b.bound
+        ))),
+    }
 }
 
 /// The matrix, the flaws' reasons, and what fails.

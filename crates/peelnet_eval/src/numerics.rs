@@ -1,0 +1,496 @@
+//! What target formats cost in accuracy: how far sums and products of blending are from the exact ones, measured on the adapter at
+//! hand, beside the bound that follows from the format. docs/numerics.md explains the formulas.
+
+use crate::{EvalError, Machine, table, write_atomically, write_json};
+use peelnet_core::{fragment::Fragment, methods::over, random::Random};
+use peelnet_gpu::{
+    Gpu, GpuError,
+    bind::Bind,
+    record::Recorder,
+    wgpu::{self, BlendFactor, BlendOperation, TextureFormat},
+};
+use peelnet_render::{Image, MethodSpec, RenderError, Renderer};
+use peelnet_scene::{Camera, Material, Object, Scene};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A sum or product of blending in one format.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Blended {
+    /// The format: `R8`, `R16F`, `R32F`, `RGBA16F`, `RGBA32F`.
+    pub format: String,
+    /// `transmittance` (`dst · (1 − src)`) or `sum` (`dst + src`).
+    pub blending: String,
+    /// The opacity, or the term of the sum.
+    pub source: f32,
+    /// How often it is blended.
+    pub layers: u32,
+    /// What the target should hold, in 64 bits.
+    pub exact: f64,
+    /// What it holds; none where that is not finite.
+    pub measured: Option<f64>,
+    /// The most that it can be off.
+    pub bound: f64,
+}
+
+impl Blended {
+    /// The distance from the exact value; infinite where the target is not finite.
+    pub fn error(&self) -> f64 {
+        self.measured
+            .map_or(f64::INFINITY, |m| (m - self.exact).abs())
+    }
+}
+
+/// What 16-bit targets add to the error of a method, against 32-bit ones, over random stacks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Added {
+    /// The method.
+    pub method: String,
+    /// Layers of each stack.
+    pub layers: u32,
+    /// Largest difference of any component between the two, linear light.
+    pub worst: f64,
+    /// Root of the mean squared difference.
+    pub typical: f64,
+    /// The largest error of the method itself with 32-bit targets, for comparison.
+    pub own_error: f64,
+    /// The bound of a weighted mean of `n` terms: each of two sums and of the coverage rounds `n` times. None for moments, which
+    /// are read through the roots of a polynomial.
+    pub bound: Option<f64>,
+}
+
+/// Everything that was measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Numerics {
+    /// On what.
+    pub machine: Machine,
+    /// The command line.
+    pub command: String,
+    /// Formats by themselves.
+    pub blended: Vec<Blended>,
+    /// Methods in 16 bits against 32.
+    pub added: Vec<Added>,
+}
+
+/// What one rounding changes at most, relative for floats and absolute for R8. Adapters may round to the nearest number, or
+/// towards zero, as blending in halves does in software here; R8 rounds the source as well.
+fn roundoff(format: TextureFormat) -> f64 {
+    match format {
+        TextureFormat::R8Unorm => 1.0 / 255.0,
+        TextureFormat::R16Float | TextureFormat::Rgba16Float => 0.5f64.powi(10),
+        _ => 0.5f64.powi(23),
+    }
+}
+
+/// Where a format ends.
+fn largest(format: TextureFormat) -> f64 {
+    match format {
+        TextureFormat::R8Unorm => 1.0,
+        TextureFormat::R16Float | TextureFormat::Rgba16Float => 65_504.0,
+        _ => f64::from(f32::MAX),
+    }
+}
+
+fn name(format: TextureFormat) -> &'static str {
+    match format {
+        TextureFormat::R8Unorm => "R8",
+        TextureFormat::R16Float => "R16F",
+        TextureFormat::R32Float => "R32F",
+        TextureFormat::Rgba16Float => "RGBA16F",
+        _ => "RGBA32F",
+    }
+}
+
+/// `T` after `n` layers of one opacity. Every product rounds once; in R8 absolutely, so that an error of one step shrinks with all
+/// later ones, in floats relatively.
+fn transmittance_bound(format: TextureFormat, alpha: f64, n: f64) -> f64 {
+    let (left, u) = ((1.0 - alpha).powf(n), roundoff(format));
+    match format {
+        TextureFormat::R8Unorm => (u * (1.0 - left) / alpha).min(1.0),
+        // Below 2⁻¹⁴ halves are absolute again.
+        TextureFormat::R16Float => (n * u).min(1.0) * left + n.min(1.0 / alpha) * 0.5f64.powi(24),
+        // The source is rounded once more.
+        _ => 2.0 * n * u * left,
+    }
+}
+
+/// The sum of `n` equal terms: every addition rounds once, relative to the sum so far; beyond the format's end it is lost.
+fn sum_bound(format: TextureFormat, term: f64, n: f64) -> f64 {
+    let sum = n * term;
+    let rounded = (n * (n + 1.0) / 2.0 + n) * term * roundoff(format);
+    (sum - largest(format)).max(0.0) + rounded.min(sum)
+}
+
+/// Measures all formats and methods.
+///
+/// # Errors
+/// A GPU that fails.
+pub fn measure(gpu: &Gpu, command: String) -> Result<Numerics, EvalError> {
+    Ok(Numerics {
+        machine: Machine::of(gpu),
+        command,
+        blended: blended(gpu)?,
+        added: added(gpu)?,
+    })
+}
+
+/// The formats by themselves. Formats that the adapter cannot blend are left out.
+///
+/// # Errors
+/// A GPU that fails.
+pub fn blended(gpu: &Gpu) -> Result<Vec<Blended>, EvalError> {
+    use TextureFormat as F;
+    let full = gpu.has(wgpu::Features::FLOAT32_BLENDABLE);
+    let mut all = Vec::new();
+    let products = [F::R8Unorm, F::R16Float, F::R32Float];
+    let opacities = [
+        (0.0001, 1024),
+        (0.001, 256),
+        (0.005, 256),
+        (0.05, 32),
+        (0.3, 8),
+        (0.9, 4),
+        (0.99, 2),
+    ];
+    let sums = [F::Rgba16Float, F::Rgba32Float];
+    let terms = [
+        (1.0, 1000),
+        (1.0, 2048),
+        (1.0, 3000),
+        (0.1, 4096),
+        (3000.0, 21),
+        (3000.0, 22),
+        (3000.0, 64),
+    ];
+    let cases = products.map(|f| (f, &opacities[..], true)).into_iter();
+    for (format, sources, product) in cases.chain(sums.map(|f| (f, &terms[..], false))) {
+        if matches!(format, F::R32Float | F::Rgba32Float) && !full {
+            continue;
+        }
+        for &(source, layers) in sources {
+            let (s, n) = (f64::from(source), f64::from(layers));
+            let measured = blend(gpu, format, product, source, layers)?;
+            all.push(Blended {
+                format: name(format).to_owned(),
+                blending: if product { "transmittance" } else { "sum" }.to_owned(),
+                source,
+                layers,
+                exact: if product { (1.0 - s).powf(n) } else { s * n },
+                measured: measured.is_finite().then_some(measured.into()),
+                bound: if product {
+                    transmittance_bound(format, s, n)
+                } else {
+                    sum_bound(format, s, n)
+                },
+            });
+        }
+    }
+    Ok(all)
+}
+
+const SHADER: &str = "
+@group(0) @binding(0) var<uniform> source: vec4f;
+@vertex fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn fragment_main() -> @location(0) vec4f { return source; }
+@group(0) @binding(1) var target_texture: texture_2d<f32>;
+@group(0) @binding(2) var<storage, read_write> answer: array<f32>;
+@compute @workgroup_size(1) fn main() { answer[0] = textureLoad(target_texture, vec2u(0u), 0).x; }
+";
+
+/// What a target of one pixel holds after `layers` equal fragments.
+fn blend(
+    gpu: &Gpu,
+    format: TextureFormat,
+    product: bool,
+    source: f32,
+    layers: u32,
+) -> Result<f32, EvalError> {
+    let failed = |e: GpuError| EvalError::render("numerics", name(format))(RenderError::Gpu(e));
+    let none = wgpu::TextureUsages::empty();
+    let view = gpu
+        .texture("target", format, [1, 1], none)
+        .map_err(failed)?;
+    let answer = gpu.storage("answer", 4).map_err(failed)?;
+    let uniform = gpu.upload("source", &[[source; 4]], wgpu::BufferUsages::UNIFORM);
+    let stages = wgpu::ShaderStages::FRAGMENT;
+    let drawn = gpu.bind("blend", stages, &[Bind::Uniform(&uniform)]);
+    let read = gpu.bind(
+        "read",
+        wgpu::ShaderStages::COMPUTE,
+        &[
+            Bind::Uniform(&uniform),
+            Bind::Texture(&view),
+            Bind::Write(&answer),
+        ],
+    );
+    let module = gpu.shader("numerics", SHADER);
+    let component = wgpu::BlendComponent {
+        src_factor: if product {
+            BlendFactor::Zero
+        } else {
+            BlendFactor::One
+        },
+        dst_factor: if product {
+            BlendFactor::OneMinusSrc
+        } else {
+            BlendFactor::One
+        },
+        operation: BlendOperation::Add,
+    };
+    let blend = wgpu::BlendState {
+        color: component,
+        alpha: component,
+    };
+    let pipeline = gpu
+        .device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("numerics"),
+            layout: Some(&gpu.layout(&[&drawn.layout])),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: Some(blend),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+    let reader = gpu.compute("read", SHADER, &[&read.layout]);
+    let mut recorder = Recorder::new(gpu, false);
+    {
+        let start = f64::from(u8::from(product));
+        let color = wgpu::Color {
+            r: start,
+            g: start,
+            b: start,
+            a: start,
+        };
+        let attachment = Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(color),
+                store: wgpu::StoreOp::Store,
+            },
+        });
+        let mut pass = recorder.render("blend", &[attachment], None);
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &drawn.group, &[]);
+        // Instances blend one after the other.
+        pass.draw(0..3, 0..layers);
+    }
+    {
+        let mut pass = recorder.compute("read");
+        pass.set_pipeline(&reader);
+        pass.set_bind_group(0, &read.group, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+    recorder.finish().map_err(failed)?;
+    let found: Vec<f32> = gpu.read(&answer, 0..4).map_err(failed)?;
+    Ok(found[0])
+}
+
+/// Methods without a network whose targets may have either precision, on stacks of these many layers.
+const LAYERS: [u32; 4] = [4, 16, 64, 256];
+
+/// Stacks of each number of layers: one a pixel.
+const STACKS: [u32; 2] = [8, 8];
+
+fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
+    let mut all = Vec::new();
+    if !gpu.has(wgpu::Features::FLOAT32_BLENDABLE) {
+        return Ok(all);
+    }
+    for layers in LAYERS {
+        let (scene, exact) = stacks(layers);
+        let failed = |method: &str| EvalError::render(&scene.name, method);
+        let renderer = Renderer::new(gpu, &scene).map_err(failed("upload"))?;
+        for entry in peelnet_render::METHODS {
+            if entry.learned || !entry.knobs().any(|(knob, _)| knob == "targets") {
+                continue;
+            }
+            let ending = entry.points[entry.points.len() / 2 * usize::from(entry.most > 0)];
+            let ending = if entry.most > 0 { ending } else { "" };
+            let method = format!("{}{ending}", entry.name);
+            let draw = |targets: &str| -> Result<Image, EvalError> {
+                let name = format!("{method}:targets={targets}");
+                let spec: MethodSpec = name.parse().map_err(failed(&name))?;
+                let prepared = renderer.prepare(&spec, STACKS, None);
+                let mut prepared = prepared.map_err(failed(&name))?;
+                let frame = renderer.draw(&mut prepared, &scene.views[0]);
+                Ok(frame.map_err(failed(&name))?.image)
+            };
+            let [half, full] = [draw("f16")?, draw("f32")?];
+            let (mut worst, mut squares, mut own_error) = (0.0f64, 0.0, 0.0f64);
+            for ((a, b), exact) in half.pixels.iter().zip(&full.pixels).zip(&exact) {
+                for k in 0..3 {
+                    let difference = f64::from((a[k] - b[k]).abs());
+                    worst = worst.max(difference);
+                    squares += difference * difference;
+                    own_error = own_error.max((f64::from(b[k]) - exact[k]).abs());
+                }
+            }
+            let n = f64::from(layers);
+            all.push(Added {
+                method,
+                layers,
+                worst,
+                typical: (squares / (3 * exact.len()) as f64).sqrt(),
+                own_error,
+                bound: (!entry.name.starts_with("mboit"))
+                    .then(|| 3.0 * (n + 1.0) * 0.5f64.powi(10)),
+            });
+        }
+    }
+    all.sort_by_key(|a| {
+        let place = peelnet_render::METHODS
+            .iter()
+            .position(|m| a.method.starts_with(m.name));
+        (place, a.layers)
+    });
+    Ok(all)
+}
+
+/// One random stack a pixel, side by side, and its exact colours.
+fn stacks(layers: u32) -> (Scene, Vec<[f64; 3]>) {
+    let mut random = Random::new(u64::from(layers), &[]);
+    let [width, height] = STACKS;
+    let background = [0.2, 0.4, 0.6];
+    let (mut objects, mut exact) = (Vec::new(), Vec::new());
+    for i in 0..width * height {
+        let (x, y) = (i % width, i / width);
+        let mut fragments = Vec::new();
+        // About a third of the light passes whatever the number.
+        let mean = 1.0 - (1.0f32 / 3.0).powf(1.0 / layers as f32);
+        for k in 0..layers {
+            let depth = 1.0 + 20.0 * (k as f32 + random.unit()) / layers as f32;
+            let f = Fragment {
+                triangle: 2 * objects.len() as u32,
+                ..Fragment::new(depth, (mean * 2.0 * random.unit()).min(1.0), random.color())
+            };
+            let v = |px: u32, py: u32| {
+                glam::Vec3::new(
+                    (2.0 * px as f32 / width as f32 - 1.0) * depth,
+                    (1.0 - 2.0 * py as f32 / height as f32) * depth,
+                    -depth,
+                )
+            };
+            let [a, b, c, d] = [v(x, y + 1), v(x + 1, y + 1), v(x + 1, y), v(x, y)];
+            let material = Material::unlit(f.color, f.alpha);
+            objects.push(Object::of_triangles(
+                "layer",
+                &[[a, b, c], [a, c, d]],
+                material,
+            ));
+            fragments.push(f);
+        }
+        exact.push(over::composite_f64(&fragments, background));
+    }
+    let camera = Camera {
+        position: glam::Vec3::ZERO,
+        target: glam::Vec3::NEG_Z,
+        up: glam::Vec3::Y,
+        fov_y_degrees: 90.0,
+        near: 0.1,
+        far: 100.0,
+    };
+    let name = format!("{layers} layers");
+    let scene = Scene::generated(&name, "the precision study", background, camera, objects);
+    (scene, exact)
+}
+
+impl Numerics {
+    /// The formats' table: headings and lines.
+    pub fn blended_table(&self) -> (Vec<String>, Vec<Vec<String>>) {
+        let headings = [
+            "format", "blending", "source", "layers", "exact", "measured", "error", "bound",
+        ];
+        let line = |b: &Blended| {
+            vec![
+                b.format.clone(),
+                b.blending.clone(),
+                format!("{}", b.source),
+                b.layers.to_string(),
+                short(b.exact),
+                b.measured.map_or_else(|| "not finite".to_owned(), short),
+                format!("{:.1e}", b.error()),
+                format!("{:.1e}", b.bound),
+            ]
+        };
+        (
+            headings.map(str::to_owned).to_vec(),
+            self.blended.iter().map(line).collect(),
+        )
+    }
+
+    /// The methods' table: headings and lines.
+    pub fn added_table(&self) -> (Vec<String>, Vec<Vec<String>>) {
+        let headings = [
+            "method",
+            "layers",
+            "16 bits add, typically",
+            "at worst",
+            "bound",
+            "own error at worst",
+        ];
+        let line = |a: &Added| {
+            vec![
+                a.method.clone(),
+                a.layers.to_string(),
+                format!("{:.1e}", a.typical),
+                format!("{:.1e}", a.worst),
+                a.bound
+                    .map_or_else(|| "–".to_owned(), |b| format!("{b:.1e}")),
+                format!("{:.1e}", a.own_error),
+            ]
+        };
+        (
+            headings.map(str::to_owned).to_vec(),
+            self.added.iter().map(line).collect(),
+        )
+    }
+
+    /// Both tables, for docs/numerics.md.
+    pub fn markdown(&self) -> String {
+        let [a, b] = [self.blended_table(), self.added_table()];
+        format!(
+            "{}\n{}\n{}\n",
+            table::markdown(&a.0, &a.1),
+            table::markdown(&b.0, &b.1),
+            self.machine.credit(&self.command)
+        )
+    }
+
+    /// Writes `numerics.json` and `numerics.md` into a folder.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
+        write_json(&folder.join("numerics.json"), self)?;
+        write_atomically(&folder.join("numerics.md"), self.markdown().as_bytes())
+    }
+}
+
+fn short(x: f64) -> String {
+    if x >= 100.0 {
+        format!("{x:.0}")
+    } else {
+        format!("{x:.4}")
+    }
+}
