@@ -354,6 +354,74 @@ fn the_exported_text_is_the_twin_of_the_core() {
     }
 }
 
+/// Whatever finite depths and opacities come in, denormals and the largest numbers too, every weight is one: 0 … 1. With 32-bit and
+/// 16-bit sums.
+#[test]
+fn weights_of_hostile_fragments_are_weights() {
+    let gpu = gpu();
+    let mut random = Random::new(77, &[]);
+    let depths = [
+        0.0,
+        1e-45,
+        1e-38,
+        1e-30,
+        0.5,
+        1.0,
+        1.000_000_1,
+        2.0,
+        1e30,
+        f32::MAX,
+    ];
+    let alphas = [
+        0.0,
+        1e-45,
+        1e-30,
+        1e-7,
+        0.004,
+        0.5,
+        0.99,
+        1.0 - f32::EPSILON / 2.0,
+        1.0,
+    ];
+    let mut fragment = |hostile: bool| {
+        if hostile {
+            (
+                depths[random.below(depths.len())],
+                alphas[random.below(alphas.len())],
+            )
+        } else {
+            (random.log_between(1e-30, 1e30), random.unit())
+        }
+    };
+    let pixels: Vec<Points> = (0..2000usize)
+        .map(|i| {
+            (0..[1, 2, 3, 5, 9, 40][i % 6])
+                .map(|_| fragment(i % 2 == 0))
+                .collect()
+        })
+        .collect();
+    for recipe in ANCHORED {
+        let model = shipped(recipe);
+        for half in [false, true] {
+            let answers = on_the_gpu(&gpu, &model, &pixels, half);
+            for (pixel, answers) in pixels.iter().zip(&answers) {
+                for a in answers {
+                    let finite = a.moments.iter().chain(&a.features).all(|x| x.is_finite());
+                    assert!(
+                        finite && a.in_front.is_finite(),
+                        "{recipe}, half {half}: {pixel:?}"
+                    );
+                    assert!(
+                        (0.0..=1.0).contains(&a.weight),
+                        "{recipe}, half {half}: {} of {pixel:?}",
+                        a.weight
+                    );
+                }
+            }
+        }
+    }
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Whole frames.
 

@@ -130,6 +130,143 @@ fn bad_files_are_exit_code_1_and_one_line() {
     }
 }
 
+const CAMERA: &str =
+    "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100.0\n";
+
+/// Hard input in every kind of file: exit code 1, one line that names the file, the place in it and the mend, and nothing written.
+#[test]
+fn hard_input_is_refused_with_its_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    for (name, obj) in [
+        ("nan", format!("{quad}v 0 nan 0\nf 1 2 3\n")),
+        ("normal", format!("{quad}vn 0 inf 1\nf 1//1 2//1 3//1\n")),
+        ("beyond", format!("{quad}f 1 2 9\n")),
+        ("cut", format!("{quad}f 1 2")),
+        ("empty", String::new()),
+    ] {
+        write(&format!("{name}.obj"), &obj);
+        write(
+            &format!("{name}.toml"),
+            &format!("{CAMERA}[[object]]\nmesh = '{name}.obj'\n"),
+        );
+    }
+    write("planes.toml", &CAMERA.replace("near = 0.1", "near = 200"));
+    let made = peelnet(
+        &[
+            "extract",
+            "--synthetic",
+            "40",
+            "--format",
+            "csv",
+            "--out",
+            "sound",
+        ],
+        folder,
+    );
+    assert!(made.status.success(), "{}", stderr(&made));
+    // A dataset with one of its files changed; lengths and hashes are those of the manifest again.
+    let spoil = |name: &str, change: &dyn Fn(String) -> String| {
+        std::fs::create_dir(folder.join(name)).unwrap();
+        for entry in std::fs::read_dir(folder.join("sound")).unwrap() {
+            let file = entry.unwrap().file_name().to_string_lossy().into_owned();
+            let text = std::fs::read_to_string(folder.join("sound").join(&file)).unwrap();
+            let changed = if file.ends_with(".csv") {
+                change(text.clone())
+            } else {
+                text.clone()
+            };
+            std::fs::write(folder.join(name).join(&file), &changed).unwrap();
+            if changed.len() != text.len() {
+                let manifest = folder.join(name).join("manifest.json");
+                let sound = folder.join("sound/manifest.json");
+                let length = |n: usize| format!("\"bytes\": {n}");
+                let text = std::fs::read_to_string(sound)
+                    .unwrap()
+                    .replace(&length(text.len()), &length(changed.len()));
+                std::fs::write(manifest, text).unwrap();
+            }
+        }
+    };
+    // The depth of the third row.
+    let third = |value: &str, text: String| {
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        let mut fields: Vec<&str> = lines[3].split(',').collect();
+        fields[1] = value;
+        lines[3] = fields.join(",");
+        lines.join("\n") + "\n"
+    };
+    spoil("d-nan", &|text| third("NaN", text));
+    spoil("d-column", &|text| {
+        text.replacen("transmittance", "transmission", 1)
+    });
+    spoil("d-cut", &|text| text[..text.len() / 2].to_owned());
+    let before = std::fs::read_dir(folder).unwrap().count();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/small/model.safetensors");
+    let mut model = std::fs::read(root).unwrap();
+    let half = model.len() / 2;
+    std::fs::write(folder.join("cut.safetensors"), &model[..half]).unwrap();
+    // A shape in the header that the weights do not have.
+    let text = String::from_utf8_lossy(&model).into_owned();
+    let at = text
+        .find("\"shape\":[8,5]")
+        .expect("the first layer's shape");
+    model[at..at + 13].copy_from_slice(b"\"shape\":[5,9]");
+    std::fs::write(folder.join("shape.safetensors"), &model).unwrap();
+    for (line, words) in [
+        (
+            "render nan.toml --out a.png",
+            vec!["nan.obj:5", "position 'nan'", "repair"],
+        ),
+        (
+            "render normal.toml --out a.png",
+            vec!["normal.obj:5", "normal 'inf'", "repair"],
+        ),
+        (
+            "extract beyond.toml --out d",
+            vec!["beyond.obj:5", "index 9"],
+        ),
+        ("bench cut.toml --out d", vec!["cut.obj:5", "cut off"]),
+        (
+            "render empty.toml --out a.exr",
+            vec!["empty.obj", "no faces"],
+        ),
+        (
+            "render planes.toml --out a.png",
+            vec!["planes.toml", "camera.near", "below far"],
+        ),
+        (
+            "train d-nan --out m.safetensors",
+            vec!["d-nan", "row 3", "linear_depth", "NaN"],
+        ),
+        (
+            "train d-column --out m.safetensors",
+            vec!["d-column", "column transmittance is missing"],
+        ),
+        ("train d-cut --out m.safetensors", vec!["d-cut"]),
+        (
+            "export cut.safetensors --out w.wgsl",
+            vec!["cut.safetensors"],
+        ),
+        ("inspect shape.safetensors", vec!["shape.safetensors"]),
+    ] {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let output = peelnet(&arguments, folder);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{line}: {text}");
+        assert!(output.stdout.is_empty(), "{line}");
+        let errors: Vec<&str> = text.lines().filter(|l| l.starts_with("error: ")).collect();
+        assert_eq!(errors.len(), 1, "{line}: {text}");
+        for word in words {
+            assert!(errors[0].contains(word), "{line}: no '{word}' in {text}");
+        }
+        let there = std::fs::read_dir(folder).unwrap().count();
+        assert_eq!(there, before + 2, "{line} leaves nothing");
+    }
+}
+
 #[test]
 fn a_file_of_unknown_kind_is_wrong_usage() {
     let dir = tempfile::tempdir().unwrap();

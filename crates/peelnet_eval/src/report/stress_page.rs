@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 
 const EXTRA_STYLE: &str = "
 table.matrix { font-size: 0.75rem; } table.matrix th { writing-mode: vertical-rl; transform: rotate(180deg); padding: 0.4rem 0.1rem; }
-table.matrix td { padding: 0.1rem 0.35rem; text-align: center; } table.matrix td:first-child { white-space: nowrap; }
+table.matrix td { padding: 0.1rem 0.35rem; text-align: center; }
+table.matrix td:first-child { white-space: nowrap; text-align: left; } table.text th { text-align: left; }
 tr.front td:first-child { font-weight: bold; color: #d55e00; }
 ";
 
