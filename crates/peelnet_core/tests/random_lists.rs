@@ -253,7 +253,7 @@ proptest! {
     /// The same of any finite sums, whether or not a list of fragments has them.
     #[test]
     fn features_are_finite_for_any_sums(bits in prop::array::uniform8(any::<u32>()), zeta in -1.0f32..=1.0) {
-        let x = bits.map(|b| f32::from_bits(b)).map(|x| if x.is_finite() { x } else { 1e30 });
+        let x = bits.map(f32::from_bits).map(|x| if x.is_finite() { x } else { 1e30 });
         let s = Statistics { moments: [x[0].abs(), x[1], x[2], x[3], x[4]], nearest: x[5].clamp(-1.0, 1.0), farthest: x[6].clamp(-1.0, 1.0) };
         let rest = s.without(&[(x[7].abs().min(16.0), zeta)]);
         for value in features(&s, &rest, zeta) {
