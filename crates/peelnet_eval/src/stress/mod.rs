@@ -353,3 +353,55 @@ impl<'a> Stage<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    fn outcome(method: &str, property: Property, value: f64, strict: bool) -> Outcome {
+        let case = CASES.iter().find(|c| c.id == "coplanar").unwrap();
+        let subjects = [Subject::new(method.parse().unwrap(), None)];
+        let finding = Finding {
+            value,
+            limit: 1.0,
+            place: "here".into(),
+        };
+        let findings = Findings::from([((0, property), finding)]);
+        rows(case, &subjects, &findings, strict)[0].result
+    }
+
+    /// A declared flaw that stops failing fails a strict run; one that is not declared fails any.
+    #[test]
+    fn the_list_of_flaws_stays_true() {
+        let coplanar = |value, strict| outcome("dual-peel", Property::Exact, value, strict);
+        assert_eq!(coplanar(2.0, true), Outcome::Declared);
+        assert_eq!(coplanar(0.5, true), Outcome::Fail);
+        assert_eq!(coplanar(0.5, false), Outcome::Pass);
+        let sound = |value| outcome("abuffer", Property::Exact, value, true);
+        assert_eq!([sound(0.5), sound(2.0)], [Outcome::Pass, Outcome::Fail]);
+    }
+
+    /// Every flaw names methods, cases and properties that there are.
+    #[test]
+    fn flaws_name_what_there_is() {
+        let methods: Vec<String> = Subject::all_methods()
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        for flaw in FLAWS {
+            for case in flaw.cases {
+                assert!(CASES.iter().any(|c| c.id == *case), "{case}");
+            }
+            for pattern in flaw.methods {
+                let names = |m: &&String| {
+                    pattern
+                        .strip_suffix('*')
+                        .map_or(m.as_str() == *pattern, |start| m.starts_with(start))
+                };
+                assert!(methods.iter().any(|m| names(&m)), "{pattern}");
+            }
+            assert!(flaw.reason.len() > 10);
+        }
+    }
+}
