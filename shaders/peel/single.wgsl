@@ -4,7 +4,8 @@
 // project. Coplanar fragments follow one another by triangle: triangles are drawn in order, and the test (LESS)
 // keeps the first of equals. Unlike in the original, none is lost.
 import package::scene::camera::camera;
-import package::scene::shade::shade;
+@if(dataset) import package::scene::shade::radiance as shade;
+@if(!dataset) import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 

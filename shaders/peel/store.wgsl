@@ -1,6 +1,7 @@
 // S-buffer, pass 2: every fragment into its pixel's own run of slots.
 import package::scene::camera::camera;
-import package::scene::shade::shade;
+@if(dataset) import package::scene::shade::radiance as shade;
+@if(!dataset) import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 import package::peel::tile::Tile;

@@ -1,8 +1,14 @@
 // Opaque objects: their colour becomes C_0, their depth hides transparent fragments.
-import package::scene::shade::shade;
+@if(cutout) import package::scene::shade::is_hole;
+import package::scene::shade::opaque;
 import package::scene::surface::Surface;
 
 @fragment
 fn fragment_main(surface: Surface) -> @location(0) vec4f {
-    return vec4f(shade(surface).rgb, 1.0);
+    @if(cutout) {
+        if is_hole(surface) {
+            discard;
+        }
+    }
+    return vec4f(opaque(surface), 1.0);
 }

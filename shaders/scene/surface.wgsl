@@ -1,8 +1,9 @@
 // What the one vertex shader hands to every fragment shader.
 struct Surface {
     @builtin(position) @invariant position: vec4f,
-    @location(0) world: vec3f,
-    @location(1) normal: vec3f,
+    // Nothing is lit: nobody asks where it is and which way it faces.
+    @if(lit) @location(0) world: vec3f,
+    @if(lit) @location(1) normal: vec3f,
     // Linear depth: distance along the view axis in scene units. The sort key everywhere.
     @location(2) depth_linear: f32,
     // Index in the scene's list of triangles, object by object: the tie rule.

@@ -4,7 +4,7 @@ import package::scene::surface::Surface;
 
 struct Corner {
     @location(0) position: vec3f,
-    @location(1) normal: vec3f,
+    @if(lit) @location(1) normal: vec3f,
     @location(2) material: u32,
 }
 
@@ -12,8 +12,10 @@ struct Corner {
 fn vertex_main(corner: Corner, @builtin(vertex_index) index: u32) -> Surface {
     var out: Surface;
     out.position = camera.clip_from_world * vec4f(corner.position, 1.0);
-    out.world = corner.position;
-    out.normal = corner.normal;
+    @if(lit) {
+        out.world = corner.position;
+        out.normal = corner.normal;
+    }
     // A perspective projection puts the distance along the view axis into w.
     out.depth_linear = out.position.w;
     out.triangle = index / 3u;

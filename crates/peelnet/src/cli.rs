@@ -429,6 +429,9 @@ pub struct InspectArgs {
     /// A scene file (.toml), a dataset (a folder) or a model (.safetensors)
     #[arg(value_name = "SCENE|DATASET|MODEL")]
     pub what: PathBuf,
+    /// Of a scene: also measure what each effect that it calls for costs on this machine
+    #[arg(long)]
+    pub time: bool,
 }
 
 #[cfg(test)]
@@ -478,6 +481,7 @@ mod tests {
             "recommend s --budget-ms 3 --max-error 1e-4 --max-bytes 32",
             "recommend s --results d --json",
             "inspect x --json",
+            "inspect x --time",
             "doctor --json",
         ] {
             let words = std::iter::once("peelnet").chain(line.split(' '));

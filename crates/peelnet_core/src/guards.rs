@@ -18,6 +18,10 @@ pub const SUM_FLOOR: f32 = 1.0 / 16_777_216.0;
 /// short where coincident fragments share one, and a faint fragment between must not be given what they miss.
 pub const FILL_MAX: f32 = 16.0;
 
+/// The least opacity of a surface that emits, below half a step of an 8-bit display. Weighted sums know what a fragment adds only in
+/// proportion to what it covers, and a pixel of which nothing is covered keeps its background.
+pub const EMISSIVE_ALPHA: f32 = 1.0 / 1024.0;
+
 /// The largest finite half float, where 16-bit accumulators end.
 pub const HALF_MAX: f32 = 65504.0;
 

@@ -19,6 +19,7 @@ pub mod methods;
 pub mod mlp;
 pub mod random;
 pub mod scanline;
+pub mod shading;
 pub mod statistics;
 pub mod tolerance;
 pub mod weights;

@@ -10,7 +10,7 @@ use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -237,24 +237,16 @@ fn stack(layers: u32, cells: u32) -> Scene {
             wall(1.0 + 9.0 * t, cells, material)
         })
         .collect();
-    Scene {
-        name: format!("stack of {layers} walls of {cells}×{cells} squares"),
-        source: PathBuf::from("made by the bench"),
-        hash: String::new(),
-        background: [0.2, 0.3, 0.4],
-        views: vec![Camera {
-            position: Vec3::ZERO,
-            target: Vec3::NEG_Z,
-            up: Vec3::Y,
-            fov_y_degrees: 60.0,
-            near: 0.1,
-            far: 100.0,
-        }],
-        lights: Vec::new(),
-        objects,
-        held_out: true,
-        warnings: Vec::new(),
-    }
+    let camera = Camera {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y_degrees: 60.0,
+        near: 0.1,
+        far: 100.0,
+    };
+    let name = format!("stack of {layers} walls of {cells}×{cells} squares");
+    Scene::generated(&name, "the bench", [0.2, 0.3, 0.4], camera, objects)
 }
 
 fn wall(depth: f32, cells: u32, material: Material) -> Object {

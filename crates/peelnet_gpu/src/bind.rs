@@ -19,6 +19,8 @@ pub enum Bind<'a> {
     Depth(&'a wgpu::TextureView),
     /// A write-only storage texture of format RGBA32F.
     Store(&'a wgpu::TextureView),
+    /// Nothing: a binding number that this shader does without.
+    None,
 }
 
 /// A layout with one group that fits it.
@@ -36,14 +38,15 @@ impl Gpu {
         let layout_entries: Vec<_> = entries
             .iter()
             .zip(0..)
-            .map(|(bind, binding)| wgpu::BindGroupLayoutEntry {
+            .filter_map(|(bind, binding)| Some((bind, binding, bind.kind()?)))
+            .map(|(bind, binding, ty)| wgpu::BindGroupLayoutEntry {
                 binding,
                 // Vertex shaders may not write storage in portable WebGPU.
                 visibility: match bind {
                     Bind::Write(_) | Bind::Store(_) => stages & !wgpu::ShaderStages::VERTEX,
                     _ => stages,
                 },
-                ty: bind.kind(),
+                ty,
                 count: None,
             })
             .collect();
@@ -56,9 +59,9 @@ impl Gpu {
         let group_entries: Vec<_> = entries
             .iter()
             .zip(0..)
-            .map(|(bind, binding)| wgpu::BindGroupEntry {
-                binding,
-                resource: bind.resource(),
+            .filter_map(|(bind, binding)| {
+                let resource = bind.resource()?;
+                Some(wgpu::BindGroupEntry { binding, resource })
             })
             .collect();
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -71,7 +74,7 @@ impl Gpu {
 }
 
 impl Bind<'_> {
-    fn kind(&self) -> wgpu::BindingType {
+    fn kind(&self) -> Option<wgpu::BindingType> {
         let buffer = |ty| wgpu::BindingType::Buffer {
             ty,
             has_dynamic_offset: false,
@@ -82,7 +85,8 @@ impl Bind<'_> {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
-        match self {
+        let kind = match self {
+            Self::None => return None,
             Self::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
             Self::Read(_) => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             Self::Write(_) => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
@@ -94,15 +98,18 @@ impl Bind<'_> {
                 format: wgpu::TextureFormat::Rgba32Float,
                 view_dimension: wgpu::TextureViewDimension::D2,
             },
-        }
+        };
+        Some(kind)
     }
 
-    fn resource(&self) -> wgpu::BindingResource<'_> {
-        match self {
+    fn resource(&self) -> Option<wgpu::BindingResource<'_>> {
+        let resource = match self {
+            Self::None => return None,
             Self::Uniform(b) | Self::Read(b) | Self::Write(b) => b.as_entire_binding(),
             Self::Texture(v) | Self::Uint(v) | Self::Depth(v) | Self::Store(v) => {
                 wgpu::BindingResource::TextureView(v)
             }
-        }
+        };
+        Some(resource)
     }
 }

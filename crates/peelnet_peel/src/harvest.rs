@@ -117,7 +117,11 @@ impl<'g> Harvester<'g> {
         sampled: bool,
         budget: Option<u64>,
     ) -> Result<Self, PeelError> {
-        let features: &[&str] = if sampled { &["sampled"] } else { &[] };
+        let features: &[&str] = if sampled {
+            &["dataset", "sampled"]
+        } else {
+            &["dataset"]
+        };
         let scene = SceneBuffers::new(gpu, scene)?;
         let frame = scene.targets(gpu, size)?;
         let peeler = match peel {

@@ -78,6 +78,11 @@ impl<'g> Renderer<'g> {
         })
     }
 
+    /// What a transparent pass binds of the scene.
+    pub fn bindings(&self) -> Vec<&'static str> {
+        self.scene.bindings()
+    }
+
     /// Hands transparent surfaces to the GPU in another order from now on.
     pub fn submit(&mut self, order: scene::Submission) {
         self.scene.submit(order);

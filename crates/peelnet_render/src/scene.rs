@@ -2,13 +2,13 @@
 
 use crate::{RenderError, methods::DrawContext};
 use bytemuck::{Pod, Zeroable};
-use peelnet_core::absorbance::DepthWarp;
+use peelnet_core::{absorbance::DepthWarp, guards::EMISSIVE_ALPHA};
 use peelnet_gpu::{
     Gpu, GpuError,
     bind::{Bind, Bound},
     wgpu,
 };
-use peelnet_scene::{Camera, Lighting, Scene};
+use peelnet_scene::{Camera, Lighting, Material, Scene, Variant};
 use std::ops::Range;
 
 /// One corner of a triangle. Corners are not shared: `vertex_index / 3` is then the triangle's index in the scene's
@@ -26,7 +26,25 @@ struct Corner {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct MaterialData {
     color: [f32; 4],
-    lighting: [f32; 4],
+    look: [f32; 4],
+    emission: [f32; 4],
+}
+
+impl MaterialData {
+    fn of(m: &Material) -> Self {
+        let [r, g, b] = m.color;
+        let [first, second] = match m.lighting {
+            Lighting::Pbr => [m.metallic, m.roughness],
+            _ => [m.specular, m.shininess],
+        };
+        let least = if m.is_emissive() { EMISSIVE_ALPHA } else { 0.0 };
+        let [er, eg, eb] = m.emission;
+        Self {
+            color: [r, g, b, m.alpha.max(least)],
+            look: [first, second, m.alpha_cutoff.unwrap_or(0.0), 0.0],
+            emission: [er, eg, eb, 0.0],
+        }
+    }
 }
 
 /// Layout of `Light` in `scene/shade.wgsl`.
@@ -72,7 +90,7 @@ impl PixelSample {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct DrawRun {
     vertices: Range<u32>,
-    culled: bool,
+    variant: Variant,
 }
 
 /// A part of a transparent object with one material.
@@ -122,7 +140,8 @@ pub enum Surfaces {
 pub struct SceneBuffers {
     corners: wgpu::Buffer,
     materials: wgpu::Buffer,
-    lights: wgpu::Buffer,
+    /// Where any material is lit.
+    lights: Option<wgpu::Buffer>,
     camera: wgpu::Buffer,
     light_count: u32,
     opaque: Vec<DrawRun>,
@@ -130,6 +149,8 @@ pub struct SceneBuffers {
     parts: Vec<TransparentPart>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
+    /// Of the resolution that the scene asks transparency to be drawn at.
+    pub transparency_scale: f32,
 }
 
 /// The frame's own targets: `C_0`, the opaque depth and the finished image.
@@ -156,19 +177,21 @@ impl FrameTargets {
     }
 }
 
-/// Pipelines of one geometry pass: one for two-sided surfaces, one that culls back faces where a material asks.
+/// Pipelines of one geometry pass: one for each variant of the materials that it draws.
 #[derive(Debug)]
-pub struct GeometryPipelines {
-    two_sided: wgpu::RenderPipeline,
-    culled: Option<wgpu::RenderPipeline>,
-}
+pub struct GeometryPipelines(Vec<(Variant, wgpu::RenderPipeline)>);
 
 impl GeometryPipelines {
-    fn of(&self, culled: bool) -> &wgpu::RenderPipeline {
-        self.culled
-            .as_ref()
-            .filter(|_| culled)
-            .unwrap_or(&self.two_sided)
+    fn set(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
+        // Built for every run's variant.
+        if let Some((_, pipeline)) = self.0.iter().find(|(v, _)| *v == variant) {
+            pass.set_pipeline(pipeline);
+        }
+    }
+
+    /// What they are linked for.
+    pub fn variants(&self) -> impl Iterator<Item = Variant> {
+        self.0.iter().map(|(variant, _)| *variant)
     }
 }
 
@@ -223,22 +246,8 @@ impl SceneBuffers {
             };
             for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
                 let index = materials.len() as u32;
-                materials.push(MaterialData {
-                    color: [
-                        material.color[0],
-                        material.color[1],
-                        material.color[2],
-                        material.alpha,
-                    ],
-                    lighting: [
-                        f32::from(u8::from(
-                            material.lighting == Lighting::Phong && !scene.lights.is_empty(),
-                        )),
-                        material.specular,
-                        material.shininess,
-                        0.0,
-                    ],
-                });
+                materials.push(MaterialData::of(material));
+                let variant = Variant::of(material, !scene.lights.is_empty());
                 let begin = corners.len() as u32;
                 for triangle in &object.mesh.triangles[part.triangles.clone()] {
                     for k in order {
@@ -257,13 +266,13 @@ impl SceneBuffers {
                 } else {
                     &mut transparent
                 };
-                push_run(runs, begin..corners.len() as u32, !material.double_sided);
+                push_run(runs, begin..corners.len() as u32, variant);
                 let own = &corners[begin as usize..];
                 if let (false, Some(bounds)) = (material.is_opaque(), bounding_box(own)) {
                     parts.push(TransparentPart {
                         run: DrawRun {
                             vertices: begin..corners.len() as u32,
-                            culled: !material.double_sided,
+                            variant,
                         },
                         bounds,
                         centroids: own.chunks_exact(3).map(centroid).collect(),
@@ -287,13 +296,15 @@ impl SceneBuffers {
         let storage = wgpu::BufferUsages::STORAGE;
         // A binding may not be smaller than one element.
         let at_least_one = |n: usize| n.max(1);
-        let mut light_data = lights.clone();
-        light_data.resize(at_least_one(lights.len()), LightData::zeroed());
         materials.resize(at_least_one(materials.len()), MaterialData::zeroed());
         Ok(Self {
             corners: gpu.upload("corners", &corners, wgpu::BufferUsages::VERTEX),
             materials: gpu.upload("materials", &materials, storage),
-            lights: gpu.upload("lights", &light_data, storage),
+            lights: opaque
+                .iter()
+                .chain(&transparent)
+                .any(|run: &DrawRun| run.variant.is_lit())
+                .then(|| gpu.upload("lights", &lights, storage)),
             camera: gpu.upload(
                 "camera",
                 &[CameraUniform::zeroed()],
@@ -304,6 +315,7 @@ impl SceneBuffers {
             transparent,
             parts,
             background: scene.background,
+            transparency_scale: scene.transparency_scale,
         })
     }
 
@@ -319,13 +331,21 @@ impl SceneBuffers {
         });
         self.transparent.clear();
         for TransparentPart { run, .. } in &self.parts {
-            push_run(&mut self.transparent, run.vertices.clone(), run.culled);
+            push_run(&mut self.transparent, run.vertices.clone(), run.variant);
         }
     }
 
     /// The view's uniform.
     pub(crate) const fn camera_buffer(&self) -> &wgpu::Buffer {
         &self.camera
+    }
+
+    /// What a transparent pass binds of the scene.
+    pub fn bindings(&self) -> Vec<&'static str> {
+        let lights = self.lights.is_some().then_some("lights");
+        let depth = self.has_opaque().then_some("opaque depth");
+        let always = ["camera", "materials"].into_iter();
+        always.chain(lights).chain(depth).collect()
     }
 
     /// Whether anything opaque can hide transparent fragments.
@@ -367,10 +387,12 @@ impl SceneBuffers {
             None
         };
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        // Where nothing is lit no light is bound.
+        let lights = self.lights.as_ref().map_or(Bind::None, Bind::Read);
         let mut entries = vec![
             Bind::Uniform(&self.camera),
             Bind::Read(&self.materials),
-            Bind::Read(&self.lights),
+            lights,
         ];
         let opaque_group = gpu.bind("opaque scene", stages, &entries);
         if let Some(depth) = &depth {
@@ -441,18 +463,6 @@ impl SceneBuffers {
         surfaces: Surfaces,
         pass: &GeometryPass<'_>,
     ) -> Result<GeometryPipelines, RenderError> {
-        let mut features = pass.features.to_vec();
-        if surfaces == Surfaces::Transparent && self.has_opaque() {
-            features.push("opaque");
-        }
-        let vertex = gpu.shader(
-            "scene::vertex",
-            &peelnet_shaders::link("scene::vertex", &[], &[])?,
-        );
-        let fragment = gpu.shader(
-            pass.shader,
-            &peelnet_shaders::link(pass.shader, &features, pass.extra)?,
-        );
         let (group, runs) = match surfaces {
             Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
             Surfaces::Transparent => (&frame.scene_group, &self.transparent),
@@ -460,46 +470,75 @@ impl SceneBuffers {
         let mut layouts = vec![&group.layout];
         layouts.extend(pass.group);
         let layout = gpu.layout(&layouts);
-        let build = |cull_mode| {
-            gpu.device
-                .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                    label: Some(pass.label),
-                    layout: Some(&layout),
-                    vertex: wgpu::VertexState {
-                        module: &vertex,
-                        entry_point: Some("vertex_main"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        buffers: &[Some(wgpu::VertexBufferLayout {
-                            array_stride: size_of::<Corner>() as u64,
-                            step_mode: wgpu::VertexStepMode::Vertex,
-                            attributes: &wgpu::vertex_attr_array![
-                                0 => Float32x3, 1 => Float32x3, 2 => Uint32
-                            ],
-                        })],
-                    },
-                    primitive: wgpu::PrimitiveState {
-                        cull_mode,
-                        ..Default::default()
-                    },
-                    depth_stencil: pass.depth.clone(),
-                    multisample: wgpu::MultisampleState::default(),
-                    fragment: Some(wgpu::FragmentState {
-                        module: &fragment,
-                        entry_point: Some("fragment_main"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        targets: pass.targets,
-                    }),
-                    multiview_mask: None,
-                    cache: None,
-                })
+        let mut variants: Vec<Variant> = Vec::new();
+        for run in runs {
+            if !variants.contains(&run.variant) {
+                variants.push(run.variant);
+            }
+        }
+        let build = |variant: Variant| {
+            let mut features = pass.features.to_vec();
+            features.extend(variant.features());
+            if surfaces == Surfaces::Transparent && self.has_opaque() {
+                features.push("opaque");
+            }
+            self.pipeline(gpu, &layout, pass, &features, variant)
         };
-        Ok(GeometryPipelines {
-            two_sided: build(None),
-            culled: runs
-                .iter()
-                .any(|r| r.culled)
-                .then(|| build(Some(wgpu::Face::Back))),
-        })
+        let built = variants
+            .into_iter()
+            .map(|variant| Ok((variant, build(variant)?)));
+        built.collect::<Result<_, _>>().map(GeometryPipelines)
+    }
+
+    fn pipeline(
+        &self,
+        gpu: &Gpu,
+        layout: &wgpu::PipelineLayout,
+        pass: &GeometryPass<'_>,
+        features: &[&str],
+        variant: Variant,
+    ) -> Result<wgpu::RenderPipeline, RenderError> {
+        let lit: &[&str] = if variant.is_lit() { &["lit"] } else { &[] };
+        let vertex = gpu.shader(
+            "scene::vertex",
+            &peelnet_shaders::link("scene::vertex", lit, &[])?,
+        );
+        let fragment = gpu.shader(
+            pass.shader,
+            &peelnet_shaders::link(pass.shader, features, pass.extra)?,
+        );
+        let all = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
+        let unlit = [all[0], all[2]];
+        let attributes: &[_] = if variant.is_lit() { &all } else { &unlit };
+        let descriptor = wgpu::RenderPipelineDescriptor {
+            label: Some(pass.label),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module: &vertex,
+                entry_point: Some("vertex_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<Corner>() as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes,
+                })],
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: variant.culled.then_some(wgpu::Face::Back),
+                ..Default::default()
+            },
+            depth_stencil: pass.depth.clone(),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &fragment,
+                entry_point: Some("fragment_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: pass.targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        };
+        Ok(gpu.device.create_render_pipeline(&descriptor))
     }
 
     /// Draws one half of the scene, triangles in the order of the scene's list.
@@ -517,7 +556,7 @@ impl SceneBuffers {
         pass.set_bind_group(0, &group.group, &[]);
         pass.set_vertex_buffer(0, self.corners.slice(..));
         for run in runs {
-            pass.set_pipeline(pipelines.of(run.culled));
+            pipelines.set(pass, run.variant);
             pass.draw(run.vertices.clone(), 0..1);
         }
     }
@@ -631,22 +670,22 @@ impl Sorted {
         let parts = &cx.scene.parts;
         self.runs.clear();
         if let Some(buffer) = &self.indices {
-            let mut triangles: Vec<(f32, u32, bool)> = parts
+            let mut triangles: Vec<(f32, u32, Variant)> = parts
                 .iter()
                 .flat_map(|part| {
                     let first = part.run.vertices.start;
-                    let culled = part.run.culled;
+                    let variant = part.run.variant;
                     let all = part.centroids.iter().zip(0..);
-                    all.map(move |(&c, i)| (depth(c), first + 3 * i, culled))
+                    all.map(move |(&c, i)| (depth(c), first + 3 * i, variant))
                 })
                 .collect();
             // Ties by place, so that the image does not depend on the order in which parts are handed over.
             triangles.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let mut indices = Vec::with_capacity(triangles.len() * 3);
-            for (_, first, culled) in triangles {
+            for (_, first, variant) in triangles {
                 let at = indices.len() as u32;
                 indices.extend([first, first + 1, first + 2]);
-                push_run(&mut self.runs, at..at + 3, culled);
+                push_run(&mut self.runs, at..at + 3, variant);
             }
             if !indices.is_empty() {
                 let queue = &cx.recorder.gpu().queue;
@@ -679,7 +718,7 @@ impl Sorted {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
         for run in &self.runs {
-            pass.set_pipeline(pipelines.of(run.culled));
+            pipelines.set(pass, run.variant);
             match self.order {
                 Order::Triangles => pass.draw_indexed(run.vertices.clone(), 0, 0..1),
                 _ => pass.draw(run.vertices.clone(), 0..1),
@@ -710,15 +749,15 @@ fn bounding_box(corners: &[Corner]) -> Option<[glam::Vec3; 2]> {
 }
 
 /// Appends a run, joining it with the one before where the same pipeline draws both.
-fn push_run(runs: &mut Vec<DrawRun>, vertices: Range<u32>, culled: bool) {
+fn push_run(runs: &mut Vec<DrawRun>, vertices: Range<u32>, variant: Variant) {
     if vertices.is_empty() {
         return;
     }
     match runs.last_mut() {
-        Some(last) if last.culled == culled && last.vertices.end == vertices.start => {
+        Some(last) if last.variant == variant && last.vertices.end == vertices.start => {
             last.vertices.end = vertices.end;
         }
-        _ => runs.push(DrawRun { vertices, culled }),
+        _ => runs.push(DrawRun { vertices, variant }),
     }
 }
 
@@ -778,11 +817,16 @@ mod tests {
     #[test]
     fn runs_join_where_they_can() {
         let mut runs = Vec::new();
-        push_run(&mut runs, 0..3, false);
-        push_run(&mut runs, 3..9, false);
-        push_run(&mut runs, 9..12, true);
-        push_run(&mut runs, 12..12, true);
-        push_run(&mut runs, 15..18, true);
+        let two_sided = Variant::of(&Material::unlit([1.0; 3], 0.5), false);
+        let culled = Variant {
+            culled: true,
+            ..two_sided
+        };
+        push_run(&mut runs, 0..3, two_sided);
+        push_run(&mut runs, 3..9, two_sided);
+        push_run(&mut runs, 9..12, culled);
+        push_run(&mut runs, 12..12, culled);
+        push_run(&mut runs, 15..18, culled);
         let vertices: Vec<_> = runs.iter().map(|r| r.vertices.clone()).collect();
         assert_eq!(vertices, [0..9, 9..12, 15..18]);
     }

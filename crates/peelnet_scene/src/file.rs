@@ -22,6 +22,8 @@ struct RawScene {
     name: Option<String>,
     #[serde(default)]
     background: [f32; 3],
+    #[serde(default = "one")]
+    transparency_scale: f32,
     #[serde(default)]
     held_out: bool,
     camera: Option<RawCamera>,
@@ -133,9 +135,26 @@ struct RawMaterial {
     lighting: Option<String>,
     specular: Option<f32>,
     shininess: Option<f32>,
+    metallic: Option<f32>,
+    roughness: Option<f32>,
+    emission: Option<[f32; 3]>,
+    alpha_mode: Option<AlphaMode>,
+    alpha_cutoff: Option<f32>,
     double_sided: Option<bool>,
     blend: Option<bool>,
 }
+
+/// What opacity means, as in glTF 2.0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum AlphaMode {
+    Opaque,
+    Mask,
+    Blend,
+}
+
+/// glTF's default.
+const ALPHA_CUTOFF: f32 = 0.5;
 
 /// A mesh in a scene file: a path, or a table with `shape = …`.
 #[derive(Clone, Debug, PartialEq)]
@@ -237,13 +256,10 @@ impl Loader<'_> {
             None => Ok(None),
             Some("unlit") => Ok(Some(Lighting::Unlit)),
             Some("phong") => Ok(Some(Lighting::Phong)),
-            Some("pbr") => Err(self.value(
-                field,
-                "\"pbr\" is not drawn by this version; use \"phong\" or \"unlit\"",
-            )),
+            Some("pbr") => Ok(Some(Lighting::Pbr)),
             Some(other) => Err(self.value(
                 field,
-                format!("\"{other}\" is not one of \"unlit\", \"phong\""),
+                format!("\"{other}\" is not one of \"unlit\", \"phong\", \"pbr\""),
             )),
         }
     }
@@ -269,11 +285,26 @@ impl Loader<'_> {
                 Err(self.value(&at(key), format!("{x} must be finite and not negative")))
             }
         };
-        if let Some(color) = raw.color {
-            for c in color {
-                not_negative("color", c)?;
+        for (key, color) in [("color", raw.color), ("emission", raw.emission)] {
+            for c in color.into_iter().flatten() {
+                not_negative(key, c)?;
             }
         }
+        if raw.alpha_cutoff.is_some() && raw.alpha_mode != Some(AlphaMode::Mask) {
+            let mend = "belongs to alpha_mode = \"mask\": add that, or leave it out";
+            return Err(self.value(&at("alpha_cutoff"), mend));
+        }
+        if raw.alpha_mode.is_some() && raw.blend.is_some() {
+            let mend = "says what alpha_mode says: give one of them";
+            return Err(self.value(&at("blend"), mend));
+        }
+        let cutoff = raw.alpha_cutoff.unwrap_or(ALPHA_CUTOFF);
+        let (alpha_cutoff, blend) = match raw.alpha_mode {
+            None => (base.alpha_cutoff, raw.blend.unwrap_or(base.blend)),
+            Some(AlphaMode::Opaque) => (Some(0.0), false),
+            Some(AlphaMode::Mask) => (Some(unit("alpha_cutoff", cutoff)?), false),
+            Some(AlphaMode::Blend) => (None, true),
+        };
         Ok(Material {
             name: base.name.clone(),
             color: raw.color.unwrap_or(base.color),
@@ -295,8 +326,16 @@ impl Loader<'_> {
                     ))
                 }
             })?,
+            metallic: raw
+                .metallic
+                .map_or(Ok(base.metallic), |x| unit("metallic", x))?,
+            roughness: raw
+                .roughness
+                .map_or(Ok(base.roughness), |x| unit("roughness", x))?,
+            emission: raw.emission.unwrap_or(base.emission),
+            alpha_cutoff,
             double_sided: raw.double_sided.unwrap_or(base.double_sided),
-            blend: raw.blend.unwrap_or(base.blend),
+            blend,
         })
     }
 
@@ -426,6 +465,7 @@ impl Scene {
             source: path.to_owned(),
             hash: hash.iter().map(|b| format!("{b:02x}")).collect(),
             background: raw.background,
+            transparency_scale: raw.transparency_scale,
             views,
             lights,
             objects,
@@ -651,7 +691,7 @@ mod tests {
                 vec!["object 1.material.alpha", "0 … 1"],
             ),
             (
-                box_with("[object.material]\nlighting = 'pbr'"),
+                box_with("[object.material]\nlighting = 'toon'"),
                 vec!["lighting", "phong"],
             ),
             (box_with("scale = 0.0"), vec!["object 1.scale", "not 0"]),

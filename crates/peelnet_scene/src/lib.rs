@@ -6,6 +6,7 @@
 //! [`Scene::varied`] draws variations for training; [`suite`] finds the scenes that ship.
 
 mod camera;
+pub mod census;
 mod error;
 pub mod file;
 mod material;
@@ -19,6 +20,7 @@ pub mod suite;
 mod vary;
 
 pub use camera::Camera;
+pub use census::{Census, Effect, Variant};
 pub use error::SceneError;
 pub use material::{Lighting, Material};
 pub use mesh::{Mesh, Part};

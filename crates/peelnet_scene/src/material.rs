@@ -8,6 +8,8 @@ pub enum Lighting {
     Unlit,
     /// Blinn–Phong (Blinn 1977).
     Phong,
+    /// Cook–Torrance with a GGX distribution (Walter et al. 2007), metallic and roughness as in glTF 2.0.
+    Pbr,
 }
 
 /// A surface's looks.
@@ -25,6 +27,14 @@ pub struct Material {
     pub specular: f32,
     /// Exponent of the highlight.
     pub shininess: f32,
+    /// How much of a metal it is, 0 … 1; for physically based shading.
+    pub metallic: f32,
+    /// Roughness, 0 … 1; for physically based shading.
+    pub roughness: f32,
+    /// Radiance that it emits beyond what its opacity covers, linear RGB.
+    pub emission: [f32; 3],
+    /// Cut-out: an opacity below this is a hole, one above it is opaque.
+    pub alpha_cutoff: Option<f32>,
     /// Whether back faces are drawn.
     pub double_sided: bool,
     /// Whether an opacity of 1 still takes the transparent path.
@@ -41,6 +51,10 @@ impl Material {
             lighting,
             specular: 0.3,
             shininess: 32.0,
+            metallic: 0.0,
+            roughness: 0.5,
+            emission: [0.0; 3],
+            alpha_cutoff: None,
             double_sided: true,
             blend: false,
         }
@@ -55,6 +69,10 @@ impl Material {
             lighting: Lighting::Unlit,
             specular: 0.0,
             shininess: 1.0,
+            metallic: 0.0,
+            roughness: 0.5,
+            emission: [0.0; 3],
+            alpha_cutoff: None,
             double_sided: true,
             blend: true,
         }
@@ -62,6 +80,11 @@ impl Material {
 
     /// Whether it is drawn by the opaque pass.
     pub fn is_opaque(&self) -> bool {
-        self.alpha >= 1.0 && !self.blend
+        self.alpha_cutoff.is_some() || (self.alpha >= 1.0 && !self.blend)
+    }
+
+    /// Whether it emits anything.
+    pub fn is_emissive(&self) -> bool {
+        self.emission != [0.0; 3]
     }
 }

@@ -65,6 +65,8 @@ pub struct Scene {
     pub hash: String,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
+    /// Of the resolution that transparency is drawn at, above 0 and at most 1; exact methods keep the full one.
+    pub transparency_scale: f32,
     /// Views, at least one.
     pub views: Vec<Camera>,
     /// Lights.
@@ -91,6 +93,7 @@ impl Scene {
             source: PathBuf::from(format!("{name} (made by {maker})")),
             hash: String::new(),
             background,
+            transparency_scale: 1.0,
             views: vec![camera],
             lights: Vec::new(),
             objects,

@@ -19,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var transmittance = 1.0;
     for (var i = offsets[index] - tile.base; i < offsets[index + 1u] - tile.base; i++) {
         let fragment = colors[i];
-        color += transmittance * (fragment.a * fragment.rgb);
+        color += transmittance * fragment.rgb;
         transmittance *= 1.0 - fragment.a;
     }
     let behind = textureLoad(background, pixel, 0).rgb;

@@ -25,7 +25,7 @@ fn fragment_main(surface: Surface) -> Sums {
     let m = textureLoad(moments, pixel, 0);
     let e = textureLoad(extent, pixel, 0);
     let w = peelnet_fragment(color.a, zeta, m, e);
-    let sum = vec4f(color.rgb * color.a, color.a) * w.x;
+    let sum = color * w.x;
     @if(separate_ends)
     return Sums(select(sum, vec4f(0.0), w.y > 0.0), select(vec4f(0.0), sum, w.y > 0.0));
     @else

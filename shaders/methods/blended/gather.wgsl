@@ -15,5 +15,5 @@ fn fragment_main(surface: Surface) -> Sums {
         discard;
     }
     let color = shade(surface);
-    return Sums(vec4f(color.rgb * color.a, color.a), color.a);
+    return Sums(color, color.a);
 }

@@ -21,5 +21,5 @@ fn fragment_main(surface: Surface) -> Sums {
     let sums = textureLoad(statistics, vec2u(surface.position.xy), 0).xy;
     let features = peelnet_features(surface.depth_linear, sums);
     let weight = peelnet_weight(features.x, features.y, features.z);
-    return Sums(vec4f(color.rgb * color.a, color.a) * weight, color.a);
+    return Sums(color * weight, color.a);
 }

@@ -26,5 +26,5 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         atomicAdd(&found[1], 1u);
     }
     let peeled = textureLoad(layer, pixel, 0);
-    return vec4f(under.rgb + under.a * (peeled.a * peeled.rgb), under.a * (1.0 - peeled.a));
+    return vec4f(under.rgb + under.a * peeled.rgb, under.a * (1.0 - peeled.a));
 }

@@ -23,5 +23,5 @@ fn fragment_main(surface: Surface) -> Sums {
         discard;
     }
     let color = shade(surface);
-    return Sums(vec4f(color.rgb * color.a, color.a), vec2f(peelnet_absorbance(color.a), 1.0));
+    return Sums(color, vec2f(peelnet_absorbance(color.a), 1.0));
 }

@@ -36,7 +36,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> Layers {
     let nearest = textureLoad(front, pixel, 0);
     let farthest = textureLoad(back, pixel, 0);
     return Layers(
-        vec4f(nearest.a * nearest.rgb, nearest.a),
-        vec4f(farthest.a * farthest.rgb, farthest.a),
+        nearest,
+        farthest,
     );
 }

@@ -53,5 +53,5 @@ fn fragment_main(surface: Surface) -> Tail {
     @if(eq7) let weight = weight_eq7(surface.depth_linear, color.a);
     @if(eq8) let weight = weight_eq8(surface.depth_linear, color.a);
     @if(eq9) let weight = weight_eq9(surface.depth_linear, color.a);
-    return Tail(vec4f(color.rgb * color.a, color.a) * weight, color.a);
+    return Tail(color * weight, color.a);
 }

@@ -39,7 +39,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
         last = least;
         let fragment = colors[place];
-        color += transmittance * (fragment.a * fragment.rgb);
+        color += transmittance * fragment.rgb;
         transmittance *= 1.0 - fragment.a;
     }
     let tail = textureLoad(transmittances, pixel, 0).x;

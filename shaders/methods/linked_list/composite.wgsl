@@ -81,7 +81,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var node = sorted(heads[index]);
     while node != 0u {
         let fragment = colors[node - 1u];
-        color += transmittance * (fragment.a * fragment.rgb);
+        color += transmittance * fragment.rgb;
         transmittance *= 1.0 - fragment.a;
         node = next[node - 1u];
     }

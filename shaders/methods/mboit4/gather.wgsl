@@ -26,5 +26,5 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         moments -= b * vec4f(zeta, z2, z2 * zeta, z2 * z2);
     }
     let weight = max(transmittance_from_moments(total, moments, zeta), WEIGHT_FLOOR);
-    return vec4f(color.rgb * color.a, color.a) * weight;
+    return color * weight;
 }

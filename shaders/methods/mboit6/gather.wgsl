@@ -30,5 +30,5 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         m56 -= b * vec2f(z4 * z, z4 * z2);
     }
     let weight = max(transmittance_from_moments(total, m1234, m56, z), WEIGHT_FLOOR);
-    return vec4f(color.rgb * color.a, color.a) * weight;
+    return color * weight;
 }

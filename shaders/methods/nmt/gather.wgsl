@@ -20,5 +20,5 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         textureLoad(absorbance, pixel, 0).xy,
         textureLoad(moments, pixel, 0),
     );
-    return vec4f(color.rgb * color.a, color.a) * weight;
+    return color * weight;
 }

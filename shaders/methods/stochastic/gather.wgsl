@@ -24,5 +24,6 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         seen += select(0u, 1u, nearest[sample(pixel, c, t)] == ~bitcast<u32>(surface.depth_linear));
     }
     let weight = f32(seen) / f32(SAMPLES) + UNSEEN * color.a;
-    return vec4f(color.rgb, 1.0) * weight;
+    // The share that is seen stands for the opacity.
+    return vec4f(color.rgb / max(color.a, 1e-6), 1.0) * weight;
 }

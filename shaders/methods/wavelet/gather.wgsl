@@ -37,5 +37,5 @@ fn fragment_main(surface: Surface) -> Sums {
     // The fragment itself: nothing before its bin, and what of its bin lies behind it.
     @if(own_share_out) in_front -= absorbance(color.a) * t * (1.0 - t);
     let weight = clamp(exp(-in_front), WEIGHT_FLOOR, 1.0);
-    return Sums(vec4f(color.rgb * color.a, color.a) * weight, color.a);
+    return Sums(color * weight, color.a);
 }

@@ -23,5 +23,5 @@ fn fragment_main(surface: Surface) -> Sums {
     @if(eq10) let weight = weight_eq10(surface.position.z, color.a, FACTOR);
     @if(inverse_power) let weight = weight_inverse_power(surface.depth_linear, POWER, EPSILON);
     @if(papakostas) let weight = weight_papakostas(surface.depth_linear, color.a);
-    return Sums(vec4f(color.rgb * color.a, color.a) * weight, color.a);
+    return Sums(color * weight, color.a);
 }

@@ -14,5 +14,5 @@ fn fragment_main(surface: Surface) -> Sums {
         discard;
     }
     let color = shade(surface);
-    return Sums(vec4f(color.rgb * color.a, color.a), 1.0);
+    return Sums(color, 1.0);
 }

@@ -9,5 +9,5 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         discard;
     }
     let color = shade(surface);
-    return vec4f(color.rgb * color.a, color.a);
+    return color;
 }

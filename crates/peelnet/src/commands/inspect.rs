@@ -8,7 +8,7 @@ use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Summary};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodSpec, Renderer};
-use peelnet_scene::{Lighting, Material, Scene};
+use peelnet_scene::{Census, Effect, Scene};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
             path.display()
         )))
     } else if ending.eq_ignore_ascii_case("toml") {
-        scene(context, path)
+        scene(context, path, args.time)
     } else if ending.eq_ignore_ascii_case("safetensors") {
         model(context, path)
     } else {
@@ -82,44 +82,76 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// What is counted of a scene without drawing it.
-#[derive(Debug, Default, PartialEq, Eq)]
-struct Census {
-    triangles: u64,
-    transparent_triangles: u64,
-    unlit_parts: u64,
-    phong_parts: u64,
-    double_sided_parts: u64,
+/// Frame in which effects are timed.
+const TIMED_AT: [u32; 2] = [512, 384];
+
+/// Timed frames with and without each effect, in turn.
+const TIMED_FRAMES: usize = 7;
+
+/// How much longer a frame takes with an effect than without it.
+#[derive(Clone, Debug, serde::Serialize)]
+struct Cost {
+    effect: &'static str,
+    ms_with: f64,
+    ms_without: f64,
+    ratio: f64,
 }
 
-/// Whether a material goes through the transparent path.
-fn transparent(material: &Material) -> bool {
-    material.blend || material.alpha < 1.0
-}
-
-impl Census {
-    fn of(scene: &Scene) -> Self {
-        let mut census = Self::default();
-        for object in &scene.objects {
-            census.triangles += object.mesh.triangles.len() as u64;
-            for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
-                if transparent(material) {
-                    census.transparent_triangles += part.triangles.len() as u64;
-                }
-                match material.lighting {
-                    Lighting::Unlit => census.unlit_parts += 1,
-                    Lighting::Phong => census.phong_parts += 1,
-                }
-                census.double_sided_parts += u64::from(material.double_sided);
+/// Times every effect that is on: the frame as it is, and of the scene without it, drawn in turn.
+fn costs(context: &Context<'_>, scene: &Scene, census: &Census) -> Result<Vec<Cost>, Failure> {
+    let gpu = context.gpu()?;
+    let method: MethodSpec = "wboit-eq9".parse()?;
+    let camera = scene.views[0];
+    let mut all = Vec::new();
+    for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
+        let plain = scene.without(effect);
+        let [with, without] = [Renderer::new(&gpu, scene)?, Renderer::new(&gpu, &plain)?];
+        let mut frames = [
+            with.prepare(&method, TIMED_AT, None)?,
+            without.prepare(&method, TIMED_AT, None)?,
+        ];
+        let mut times = [Vec::new(), Vec::new()];
+        for _ in 0..=TIMED_FRAMES {
+            for (k, renderer) in [&with, &without].into_iter().enumerate() {
+                let (passes, wall) = renderer.time(&mut frames[k], &camera)?;
+                let micros: f64 = passes.iter().map(|p| p.micros).sum();
+                times[k].push(if micros > 0.0 { micros } else { wall } / 1e3);
             }
         }
-        census
+        let median = |times: &[f64]| {
+            // The first frame warms up.
+            let mut sorted = times[1..].to_vec();
+            sorted.sort_by(f64::total_cmp);
+            sorted[sorted.len() / 2]
+        };
+        let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
+        all.push(Cost {
+            effect: effect.name(),
+            ms_with,
+            ms_without,
+            ratio: ms_with / ms_without,
+        });
     }
+    Ok(all)
 }
 
-fn scene(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
+/// Triangles, and those of transparent surfaces.
+fn triangles(scene: &Scene) -> [u64; 2] {
+    let mut counts = [0, 0];
+    for object in &scene.objects {
+        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+            let n = part.triangles.len() as u64;
+            counts[0] += n;
+            counts[1] += if material.is_opaque() { 0 } else { n };
+        }
+    }
+    counts
+}
+
+fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> {
     let scene = context.scene(path)?;
     let census = Census::of(&scene);
+    let [all, transparent] = triangles(&scene);
     let counted = match count(context, &scene) {
         Ok(stats) => Some(stats),
         Err(failure) => {
@@ -130,11 +162,27 @@ fn scene(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
             None
         }
     };
+    let costs = if time {
+        costs(context, &scene, &census)?
+    } else {
+        Vec::new()
+    };
     context.console.result(
-        || scene_text(&scene, &census, counted.as_ref()),
+        || {
+            scene_text(
+                &scene,
+                &census,
+                [all, transparent],
+                counted.as_ref(),
+                &costs,
+            )
+        },
         || {
             json!({
                 "kind": "scene",
+                "effects": census.effects,
+                "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
+                "costs": costs,
                 "path": path,
                 "name": scene.name,
                 "hash": scene.hash,
@@ -142,11 +190,8 @@ fn scene(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
                 "views": scene.views.len(),
                 "lights": scene.lights.len(),
                 "objects": scene.objects.len(),
-                "triangles": census.triangles,
-                "transparent_triangles": census.transparent_triangles,
-                "unlit_parts": census.unlit_parts,
-                "phong_parts": census.phong_parts,
-                "double_sided_parts": census.double_sided_parts,
+                "triangles": all,
+                "transparent_triangles": transparent,
                 "fragments": counted.as_ref().and_then(|s| s.fragments),
                 "max_layers": counted.as_ref().and_then(|s| s.max_layers),
                 "counted_at": {"view": 0, "width": COUNTED_AT[0], "height": COUNTED_AT[1]},
@@ -169,7 +214,13 @@ fn count(context: &Context<'_>, scene: &Scene) -> Result<FrameStats, Failure> {
     Ok(renderer.draw(&mut prepared, camera)?.stats)
 }
 
-fn scene_text(scene: &Scene, census: &Census, counted: Option<&FrameStats>) -> String {
+fn scene_text(
+    scene: &Scene,
+    census: &Census,
+    [all, transparent]: [u64; 2],
+    counted: Option<&FrameStats>,
+    costs: &[Cost],
+) -> String {
     let mut t = format!("scene       {}\n", scene.name);
     let _ = writeln!(t, "file        {}", scene.source.display());
     let _ = writeln!(t, "hash        {}", scene.hash);
@@ -185,13 +236,8 @@ fn scene_text(scene: &Scene, census: &Census, counted: Option<&FrameStats>) -> S
     let _ = writeln!(
         t,
         "triangles   {}, of which {} transparent",
-        thousands(census.triangles),
-        thousands(census.transparent_triangles)
-    );
-    let _ = writeln!(
-        t,
-        "materials   {} unlit, {} Phong, {} double-sided",
-        census.unlit_parts, census.phong_parts, census.double_sided_parts
+        thousands(all),
+        thousands(transparent)
     );
     if let Some((n, most)) = counted.and_then(|s| Some((s.fragments?, s.max_layers?))) {
         let _ = writeln!(
@@ -202,7 +248,44 @@ fn scene_text(scene: &Scene, census: &Census, counted: Option<&FrameStats>) -> S
             COUNTED_AT[1]
         );
     }
+    let _ = writeln!(
+        t,
+        "pipelines   at most {} in a pass over the surfaces",
+        census.variants.len()
+    );
+    t.push_str("\neffect          on   called for by\n");
+    for effect in &census.effects {
+        let on = if effect.on { "yes" } else { "–" };
+        let _ = writeln!(t, "{:<15} {on:<4} {}", effect.name, few(&effect.why));
+        if effect.on {
+            let _ = writeln!(t, "{:<20} adds {}", "", effect.adds);
+        }
+    }
+    if !costs.is_empty() {
+        let [width, height] = TIMED_AT;
+        let _ = writeln!(
+            t,
+            "\neffect          with ms  without ms  ratio   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
+        );
+        for c in costs {
+            let _ = writeln!(
+                t,
+                "{:<15} {:>7.2} {:>11.2} {:>6.2}",
+                c.effect, c.ms_with, c.ms_without, c.ratio
+            );
+        }
+    }
     t
+}
+
+/// The first names, and how many more there are.
+fn few(names: &[String]) -> String {
+    const SHOWN: usize = 4;
+    let shown = names[..names.len().min(SHOWN)].join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
 }
 
 fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {

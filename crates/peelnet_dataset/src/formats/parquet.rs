@@ -268,6 +268,7 @@ impl ParquetSource {
                 ));
             }
         }
+        check_places(&path, &file)?;
         Ok(Self {
             path,
             file,
@@ -300,6 +301,34 @@ impl ParquetSource {
         self.next_group += 1;
         Ok(true)
     }
+}
+
+/// Every column's pages must lie inside the file: the reader takes their places from the footer, and panics where they are negative.
+fn check_places(path: &Path, file: &SerializedFileReader<File>) -> Result<(), DatasetError> {
+    let length = std::fs::metadata(path)
+        .map_err(DatasetError::io(path, "read"))?
+        .len();
+    for group in file.metadata().row_groups() {
+        for column in group.columns() {
+            let first = column
+                .dictionary_page_offset()
+                .unwrap_or_else(|| column.data_page_offset());
+            let end = u64::try_from(first)
+                .ok()
+                .zip(u64::try_from(column.compressed_size()).ok())
+                .and_then(|(first, bytes)| first.checked_add(bytes));
+            if end.is_none_or(|end| end > length) {
+                return Err(DatasetError::format(
+                    path,
+                    format!(
+                        "the footer says that column {} lies outside of the file; write the dataset again",
+                        column.column_path().string()
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn read_error(path: &Path, error: &ParquetError) -> DatasetError {

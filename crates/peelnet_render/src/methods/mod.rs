@@ -638,7 +638,13 @@ impl fmt::Display for MethodSpec {
 
 /// Makes a method ready.
 pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let scale = b.spec.number("scale", 1.0)?;
+    // What a scene asks for concerns estimates; what judges them stays exact unless it is asked itself.
+    let default = if b.spec.entry().exact {
+        1.0
+    } else {
+        b.scene.transparency_scale
+    };
+    let scale = b.spec.number("scale", default)?;
     if !(scale > 0.0 && scale <= 1.0) {
         return Err(b
             .spec
