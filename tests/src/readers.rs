@@ -25,7 +25,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 4] = [
+pub const READERS: [Reader; 5] = [
     Reader {
         name: "scene",
         read: scene,
@@ -45,6 +45,11 @@ pub const READERS: [Reader; 4] = [
         name: "model",
         read: model,
         seeds: model_seeds,
+    },
+    Reader {
+        name: "gltf",
+        read: gltf,
+        seeds: gltf_seeds,
     },
 ];
 
@@ -66,16 +71,50 @@ fn put(name: &str, bytes: &[u8]) -> PathBuf {
 fn scene(bytes: &[u8]) {
     put("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     if let Ok(scene) = Scene::load(&put("s.toml", bytes)) {
-        // What was let through can be drawn.
-        for view in &scene.views {
-            assert!(view.near > 0.0 && view.near < view.far && view.view_from_world().is_finite());
-        }
-        for object in &scene.objects {
-            assert!(object.mesh.positions.iter().all(|p| p.is_finite()));
-            assert!(object.mesh.normals.iter().all(|n| n.is_finite()));
-            assert_eq!(object.materials.len(), object.mesh.parts.len());
-        }
+        is_sound(&scene);
     }
+}
+
+/// What a reader let through can be drawn.
+fn is_sound(scene: &Scene) {
+    for view in &scene.views {
+        assert!(view.near > 0.0 && view.near < view.far && view.view_from_world().is_finite());
+    }
+    for object in &scene.objects {
+        let mesh = &object.mesh;
+        assert!(mesh.positions.iter().all(|p| p.is_finite()));
+        assert!(mesh.normals.iter().all(|n| n.is_finite()));
+        let mut corners = mesh.triangles.iter().flatten();
+        assert!(corners.all(|i| (*i as usize) < mesh.positions.len()));
+        assert_eq!(object.materials.len(), mesh.parts.len());
+    }
+}
+
+/// A glTF or GLB file, by how it begins.
+fn gltf(bytes: &[u8]) {
+    let name = if bytes.starts_with(b"glTF") {
+        "g.glb"
+    } else {
+        "g.gltf"
+    };
+    if let Ok(scene) = Scene::load(&put(name, bytes)) {
+        is_sound(&scene);
+    }
+}
+
+/// A triangle with its buffer as a data URI: nine zeros but for two corners, in base 64.
+fn gltf_seeds() -> Vec<Vec<u8>> {
+    let buffer = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],
+"nodes":[{{"mesh":0,"children":[1],"scale":[1,2,1]}},{{"mesh":0,"translation":[0,0,1],"rotation":[0,0,0,1]}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"mode":4,"material":0}}]}}],
+"materials":[{{"alphaMode":"BLEND","doubleSided":true,"emissiveFactor":[0,1,0],"pbrMetallicRoughness":{{"baseColorFactor":[1,0,0,0.5],"metallicFactor":0.1}}}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
+"bufferViews":[{{"buffer":0,"byteLength":36}}],
+"buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{buffer}"}}]}}"#
+    );
+    vec![text.into_bytes()]
 }
 
 fn scene_seeds() -> Vec<Vec<u8>> {

@@ -124,3 +124,8 @@ fn datasets() {
 fn models() {
     search("model");
 }
+
+#[test]
+fn gltf_files() {
+    search("gltf");
+}

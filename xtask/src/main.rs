@@ -267,7 +267,7 @@ fn fuzz(seconds: &str) -> Result<(), String> {
 }
 
 /// One for each reader of files that users hand over.
-const FUZZ_TARGETS: [&str; 4] = ["scene", "obj", "dataset", "model"];
+const FUZZ_TARGETS: [&str; 5] = ["scene", "obj", "gltf", "dataset", "model"];
 
 fn test() -> Result<(), String> {
     ensure_driver()?;

@@ -2,6 +2,7 @@
 
 use crate::{
     Camera, Light, Lighting, Material, Mesh, Object, Scene, SceneError,
+    gltf::load_gltf,
     obj::load_obj,
     scatter::{Scatter, fixed_axes},
     shapes::Shape,
@@ -222,25 +223,35 @@ impl Loader<'_> {
                     .and_then(|e| e.to_str())
                     .unwrap_or_default()
                     .to_lowercase();
-                if ending != "obj" {
-                    return Err(self.value(
-                        field,
-                        format!(
-                            "{} is not an .obj file; export the mesh as OBJ",
-                            file.display()
-                        ),
-                    ));
-                }
-                let loaded = load_obj(&file, self.lighting)?;
-                for read in &loaded.files {
+                let (mesh, warnings, files) = match ending.as_str() {
+                    "obj" => {
+                        let loaded = load_obj(&file, self.lighting)?;
+                        (loaded.mesh, loaded.warnings, loaded.files)
+                    }
+                    "gltf" | "glb" => {
+                        let loaded = load_gltf(&file)?;
+                        // A scene file has lights and cameras of its own.
+                        (loaded.mesh, loaded.warnings, loaded.files)
+                    }
+                    _ => {
+                        return Err(self.value(
+                            field,
+                            format!(
+                                "{} is neither .obj, .gltf nor .glb; export the mesh as one of them",
+                                file.display()
+                            ),
+                        ));
+                    }
+                };
+                for read in &files {
                     let bytes = fs::read(read).map_err(|source| SceneError::Read {
                         path: read.clone(),
                         source,
                     })?;
                     self.hasher.update(&bytes);
                 }
-                self.warnings.extend(loaded.warnings);
-                let mesh = Arc::new(loaded.mesh);
+                self.warnings.extend(warnings);
+                let mesh = Arc::new(mesh);
                 self.files.insert(file, Arc::clone(&mesh));
                 Ok(mesh)
             }
@@ -393,6 +404,13 @@ impl Scene {
     /// # Errors
     /// The first thing wrong, with file, line or key, and the mend.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let ending = path.extension().and_then(|e| e.to_str());
+        if matches!(
+            ending.map(str::to_lowercase).as_deref(),
+            Some("gltf" | "glb")
+        ) {
+            return of_gltf(path);
+        }
         let text = fs::read_to_string(path).map_err(|source| SceneError::Read {
             path: path.to_owned(),
             source,
@@ -445,6 +463,12 @@ impl Scene {
                 intensity: light.intensity,
             });
         }
+        if !(raw.transparency_scale > 0.0 && raw.transparency_scale <= 1.0) {
+            return Err(loader.value(
+                "transparency_scale",
+                format!("{} must be above 0 and at most 1", raw.transparency_scale),
+            ));
+        }
         if raw.background.iter().any(|c| !c.is_finite() || *c < 0.0) {
             return Err(loader.value("background", "must be finite and not negative"));
         }
@@ -473,6 +497,83 @@ impl Scene {
             warnings: loader.warnings,
         })
     }
+}
+
+/// A glTF file as a whole scene: its own lights, its first camera, or one that sees all of it.
+fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
+    let loaded = load_gltf(path)?;
+    let mut hasher = Sha256::new();
+    for file in &loaded.files {
+        let bytes = fs::read(file).map_err(|source| SceneError::Read {
+            path: file.clone(),
+            source,
+        })?;
+        hasher.update(&bytes);
+    }
+    let (low, high) = loaded.mesh.bounds().unwrap_or_default();
+    let (middle, radius) = ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6));
+    let fit = || {
+        let towards = Vec3::new(0.5, 0.35, 1.0).normalize();
+        Camera {
+            position: middle + towards * radius * 2.8,
+            target: middle,
+            up: Vec3::Y,
+            fov_y_degrees: 45.0,
+            near: radius * 0.5,
+            far: radius * 8.0,
+        }
+    };
+    let views: Vec<Camera> = loaded
+        .cameras
+        .iter()
+        .filter_map(|c| {
+            let position = c.file_from_camera.transform_point3(Vec3::ZERO);
+            let target = position
+                + c.file_from_camera
+                    .transform_vector3(Vec3::NEG_Z)
+                    .try_normalize()?;
+            let far = c.far.unwrap_or((position - middle).length() + 4.0 * radius);
+            let camera = Camera {
+                position,
+                target,
+                up: c
+                    .file_from_camera
+                    .transform_vector3(Vec3::Y)
+                    .try_normalize()?,
+                fov_y_degrees: c.fov_y.to_degrees(),
+                near: c.near,
+                far,
+            };
+            let sound = c.near > 0.0
+                && c.near < far
+                && far.is_finite()
+                && (0.01..179.0).contains(&camera.fov_y_degrees);
+            (sound && camera.view_from_world().is_finite()).then_some(camera)
+        })
+        .collect();
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+    let name = stem.unwrap_or_else(|| "scene".into());
+    let materials = loaded.mesh.parts.iter().map(|p| p.material.clone());
+    let object = Object {
+        name: name.clone(),
+        materials: materials.collect(),
+        mesh: Arc::new(loaded.mesh),
+        world_from_object: Mat4::IDENTITY,
+        layer: 0,
+    };
+    let hash = hasher.finalize();
+    Ok(Scene {
+        name,
+        source: path.to_owned(),
+        hash: hash.iter().map(|b| format!("{b:02x}")).collect(),
+        background: [1.0; 3],
+        transparency_scale: 1.0,
+        views: if views.is_empty() { vec![fit()] } else { views },
+        lights: loaded.lights,
+        objects: vec![object],
+        held_out: false,
+        warnings: loaded.warnings,
+    })
 }
 
 fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, SceneError> {
@@ -705,7 +806,7 @@ mod tests {
             ),
             (
                 object("mesh = 'cow.fbx'"),
-                vec!["object 1.mesh", "export the mesh as OBJ"],
+                vec!["object 1.mesh", "export the mesh as one of them"],
             ),
             (object("mesh = 'none.obj'"), vec!["none.obj", "cannot read"]),
             (object("mesh = 7"), vec!["s.toml:7", "path or a table"]),

@@ -9,6 +9,7 @@ mod camera;
 pub mod census;
 mod error;
 pub mod file;
+pub mod gltf;
 mod material;
 mod mesh;
 pub mod obj;

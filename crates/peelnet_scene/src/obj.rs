@@ -486,8 +486,21 @@ fn material(m: &tobj::Material, lighting: Lighting) -> Material {
         .dissolve
         .or(transparency.map(|t| 1.0 - t))
         .unwrap_or(default.alpha);
+    // The extension of MTL for physically based shading (Exocortex 2013).
+    let factor = |key: &str| {
+        let value: Option<f32> = m.unknown_param.get(key).and_then(|t| t.trim().parse().ok());
+        value.filter(|x| x.is_finite()).map(|x| x.clamp(0.0, 1.0))
+    };
+    let (roughness, metallic) = (factor("Pr"), factor("Pm"));
+    let is_pbr = lighting != Lighting::Unlit && (roughness.is_some() || metallic.is_some());
+    let emission = m.emissive.unwrap_or(default.emission);
+    let emission = emission.map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 });
     Material {
         name: m.name.clone(),
+        lighting: if is_pbr { Lighting::Pbr } else { lighting },
+        metallic: metallic.unwrap_or(default.metallic),
+        roughness: roughness.unwrap_or(default.roughness),
+        emission,
         color: m.diffuse.unwrap_or(default.color),
         alpha: if alpha.is_finite() {
             alpha.clamp(0.0, 1.0)
@@ -576,6 +589,20 @@ mod tests {
     }
 
     /// Corners that a texture seam splits keep one normal: the surface is smooth there.
+    #[test]
+    fn physically_based_values_and_emission() {
+        let mtl = b"newmtl m\nKd 1 0 0\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
+        let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
+        let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+        let m = &loaded.mesh.parts[0].material;
+        assert_eq!(
+            (m.roughness, m.metallic, m.emission),
+            (0.3, 0.8, [2.0, 0.0, 1.0])
+        );
+        // Unlit scenes stay unlit; these tests load so, or with Phong.
+        assert_ne!(m.lighting, Lighting::Phong);
+    }
+
     #[test]
     fn seams_do_not_split_normals() {
         let obj =

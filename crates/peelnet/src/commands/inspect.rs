@@ -29,13 +29,16 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
             "{}: there is no such file or folder",
             path.display()
         )))
-    } else if ending.eq_ignore_ascii_case("toml") {
+    } else if ["toml", "gltf", "glb"]
+        .iter()
+        .any(|e| ending.eq_ignore_ascii_case(e))
+    {
         scene(context, path, args.time)
     } else if ending.eq_ignore_ascii_case("safetensors") {
         model(context, path)
     } else {
         Err(Failure::Usage(format!(
-            "{}: neither a scene (.toml), a dataset (a folder) nor a model (.safetensors)",
+            "{}: neither a scene (.toml, .gltf, .glb), a dataset (a folder) nor a model (.safetensors)",
             path.display()
         )))
     }

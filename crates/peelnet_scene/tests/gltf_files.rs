@@ -1,0 +1,265 @@
+//! glTF files as exporters write them, and as they should not.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use glam::Vec3;
+use peelnet_scene::{Lighting, Scene};
+use serde_json::{Value, json};
+
+/// A GLB file of this JSON and this buffer.
+fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
+    let mut text = serde_json::to_vec(json).unwrap();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let mut binary = buffer.to_vec();
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let mut file = b"glTF".to_vec();
+    file.extend(word(2));
+    file.extend(word(12 + 8 + text.len() + 8 + binary.len()));
+    file.extend(word(text.len()));
+    file.extend(b"JSON");
+    file.extend(text);
+    file.extend(word(binary.len()));
+    file.extend(b"BIN\0");
+    file.extend(binary);
+    file
+}
+
+/// Four corners of a square in the plane z = 0, and the indices of two triangles.
+fn square() -> Vec<u8> {
+    let corners: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut bytes: Vec<u8> = corners
+        .iter()
+        .flatten()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    bytes.extend([0u16, 1, 2, 0, 2, 3].iter().flat_map(|i| i.to_le_bytes()));
+    bytes
+}
+
+/// Two nodes that show the square, one mirrored; a light, a camera, four materials.
+fn document() -> Value {
+    json!({
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_unlit", "KHR_materials_emissive_strength"],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "point", "color": [1.0, 0.5, 0.25], "intensity": 40.0},
+            {"type": "directional"},
+        ]}},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [
+            {"children": [1, 2, 3, 4, 5], "translation": [0.0, 0.0, -2.0]},
+            {"mesh": 0},
+            {"mesh": 0, "scale": [-1.0, 2.0, 1.0], "translation": [0.0, 0.0, 1.0]},
+            {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0.0, 3.0, 0.0]},
+            {"extensions": {"KHR_lights_punctual": {"light": 1}}},
+            {"camera": 0, "translation": [0.0, 0.0, 7.0]},
+        ],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1, "zfar": 50.0}}],
+        "meshes": [{"name": "square", "primitives": [
+            {"attributes": {"POSITION": 0}, "indices": 1, "material": 0},
+            {"attributes": {"POSITION": 0}, "indices": 1, "material": 1},
+            {"attributes": {"POSITION": 0}, "indices": 1, "material": 2},
+            {"attributes": {"POSITION": 0}, "indices": 1, "material": 3},
+        ]}],
+        "materials": [
+            {"name": "glass", "alphaMode": "BLEND", "doubleSided": true,
+             "pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.4, 0.6, 0.3], "metallicFactor": 0.25, "roughnessFactor": 0.75}},
+            {"name": "leaf", "alphaMode": "MASK", "alphaCutoff": 0.4},
+            {"name": "sign", "extensions": {"KHR_materials_unlit": {}}},
+            {"name": "lamp", "emissiveFactor": [0.5, 0.25, 0.0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}}},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "buffers": [{"byteLength": 60}],
+    })
+}
+
+fn load(bytes: &[u8]) -> Result<Scene, String> {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("thing.glb");
+    std::fs::write(&path, bytes).unwrap();
+    Scene::load(&path).map_err(|e| e.to_string())
+}
+
+#[test]
+fn nodes_instances_materials_lights_and_cameras() {
+    let scene = load(&glb(&document(), &square())).unwrap();
+    assert_eq!((scene.objects.len(), scene.triangles()), (1, 16));
+    let mesh = &scene.objects[0].mesh;
+    let (low, high) = mesh.bounds().unwrap();
+    assert_eq!(
+        (low, high),
+        (Vec3::new(-1.0, 0.0, -2.0), Vec3::new(1.0, 2.0, -1.0))
+    );
+    // The mirrored instance faces the same way: +z, without normals in the file.
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        assert!((b - a).cross(c - a).z > 0.0 && mesh.normals[t[0] as usize].z > 0.9);
+    }
+    let [glass, leaf, sign, lamp] = &scene.objects[0].materials[..4] else {
+        panic!("four materials of the first instance");
+    };
+    assert_eq!(
+        (glass.color, glass.alpha, glass.blend),
+        ([0.2, 0.4, 0.6], 0.3, true)
+    );
+    assert_eq!(
+        (glass.metallic, glass.roughness, glass.double_sided),
+        (0.25, 0.75, true)
+    );
+    assert_eq!(glass.lighting, Lighting::Pbr);
+    assert_eq!((leaf.alpha_cutoff, leaf.is_opaque()), (Some(0.4), true));
+    assert_eq!((sign.lighting, sign.alpha), (Lighting::Unlit, 1.0));
+    assert_eq!(lamp.emission, [2.0, 1.0, 0.0]);
+    assert_eq!(scene.lights.len(), 1);
+    assert_eq!(
+        (scene.lights[0].position, scene.lights[0].intensity),
+        (Vec3::new(0.0, 3.0, -2.0), 40.0)
+    );
+    let camera = &scene.views[0];
+    assert_eq!(
+        (camera.position, camera.target),
+        (Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, 4.0))
+    );
+    assert!((camera.fov_y_degrees - 0.8f32.to_degrees()).abs() < 1e-4 && camera.far == 50.0);
+    assert!(
+        scene.warnings.len() == 1 && scene.warnings[0].contains("directional lights"),
+        "{:?}",
+        scene.warnings
+    );
+}
+
+/// Without a camera of its own all of it is seen.
+#[test]
+fn a_file_without_a_camera_is_framed() {
+    let mut document = document();
+    document["nodes"][5]
+        .as_object_mut()
+        .unwrap()
+        .remove("camera");
+    let scene = load(&glb(&document, &square())).unwrap();
+    let camera = &scene.views[0];
+    let clip = camera.clip_from_view(1.0) * camera.view_from_world();
+    let (low, high) = scene.objects[0].mesh.bounds().unwrap();
+    for k in 0..8 {
+        let pick = |bit: u32, i: usize| if k >> bit & 1 == 0 { low[i] } else { high[i] };
+        let p = clip * glam::Vec4::new(pick(0, 0), pick(1, 1), pick(2, 2), 1.0);
+        assert!(
+            p.x.abs() < p.w && p.y.abs() < p.w && (0.0..p.w).contains(&p.z),
+            "{p}"
+        );
+    }
+}
+
+/// What is asked for and not drawn is told.
+#[test]
+fn what_is_not_drawn_is_told() {
+    let mut document = document();
+    document["images"] = json!([{"uri": "a.png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+    document["extensionsUsed"]
+        .as_array_mut()
+        .unwrap()
+        .push("KHR_materials_clearcoat".into());
+    document["meshes"][0]["primitives"][1]["mode"] = json!(1);
+    let warnings = load(&glb(&document, &square()))
+        .unwrap()
+        .warnings
+        .join("\n");
+    for word in [
+        "base-colour maps",
+        "KHR_materials_clearcoat",
+        "Lines",
+        "directional",
+    ] {
+        assert!(warnings.contains(word), "{word}: {warnings}");
+    }
+}
+
+/// Every bad file is one error with its place and a mend.
+#[test]
+fn bad_files() {
+    let good = square();
+    let with = |change: &dyn Fn(&mut Value)| {
+        let mut d = document();
+        change(&mut d);
+        d
+    };
+    let mut nan = good.clone();
+    nan[4..8].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut beyond = good.clone();
+    beyond[48..50].copy_from_slice(&9u16.to_le_bytes());
+    for (change, words) in [
+        (
+            json!({"at": "POSITION", "is": 7}),
+            ["'POSITION' is 7", "2 accessors"],
+        ),
+        (
+            json!({"at": "children", "is": 4_294_967_295u32}),
+            ["'children' is 4294967295", "6 nodes"],
+        ),
+    ] {
+        let mut d = document();
+        match change["at"].as_str() {
+            Some("POSITION") => {
+                d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = change["is"].clone();
+            }
+            _ => d["nodes"][0]["children"][0] = change["is"].clone(),
+        }
+        let e = load(&glb(&d, &good)).expect_err("a reference to nothing");
+        assert!(words.iter().all(|w| e.contains(w)), "{e}");
+    }
+    let whole = glb(&document(), &good);
+    for (bytes, words) in [
+        (
+            b"not a file".to_vec(),
+            vec!["thing.glb", "no glTF 2.0 file", "export"],
+        ),
+        (whole[..whole.len() / 2].to_vec(), vec!["thing.glb"]),
+        (Vec::new(), vec!["thing.glb"]),
+        (
+            glb(&document(), &nan),
+            vec!["mesh 0, primitive 0", "position 0 is not finite", "repair"],
+        ),
+        (
+            glb(&document(), &beyond),
+            vec!["mesh 0, primitive 0", "index 9", "4 vertices"],
+        ),
+        (
+            glb(&with(&|d| d["scenes"] = json!([{"nodes": []}])), &good),
+            vec!["no triangles"],
+        ),
+        (
+            glb(
+                &with(&|d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])),
+                &good,
+            ),
+            vec!["KHR_draco_mesh_compression"],
+        ),
+        (
+            glb(
+                &with(&|d| d["meshes"][0]["primitives"][0]["attributes"] = json!({})),
+                &good,
+            ),
+            vec!["no glTF"],
+        ),
+        (
+            glb(
+                &with(&|d| d["buffers"] = json!([{"byteLength": 60, "uri": "gone.bin"}])),
+                &good,
+            ),
+            vec!["buffer", ".bin"],
+        ),
+    ] {
+        let e = load(&bytes).expect_err(&words.join(" "));
+        for word in words {
+            assert!(e.contains(word), "no '{word}' in: {e}");
+        }
+    }
+}
