@@ -1,4 +1,5 @@
 //! The scene file: TOML, strict. An unknown key is an error, because a misspelt one would otherwise be silently ignored.
+//! A glTF or GLB file is a scene by itself, see [`Scene::load`].
 
 use crate::{
     Camera, Light, Lighting, Material, Mesh, Object, Scene, SceneError,
@@ -399,7 +400,8 @@ impl Loader<'_> {
 }
 
 impl Scene {
-    /// Reads a scene file and everything it names.
+    /// Reads a scene file and everything it names. A glTF or GLB file is drawn with its own lights and cameras; where it has none, with
+    /// two lights, and a camera that sees all of it.
     ///
     /// # Errors
     /// The first thing wrong, with file, line or key, and the mend.
@@ -551,6 +553,24 @@ fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
             (sound && camera.view_from_world().is_finite()).then_some(camera)
         })
         .collect();
+    let mut lights = loaded.lights;
+    let mut warnings = loaded.warnings;
+    let shaded = |p: &crate::Part| p.material.lighting == Lighting::Pbr;
+    if lights.is_empty() && loaded.mesh.parts.iter().any(shaded) {
+        warnings.push(format!(
+            "{}: has no point light: two are added; put it into a scene file with lights of your own, or none",
+            path.display()
+        ));
+        // Bright enough that a white surface facing them is nearly white.
+        for (towards, share) in [([0.6, 0.9, 1.0], 0.8), ([-1.0, 0.1, 0.7], 0.4)] {
+            let distance = 4.0 * radius;
+            lights.push(Light {
+                position: middle + Vec3::from(towards).normalize() * distance,
+                color: [1.0; 3],
+                intensity: share * std::f32::consts::PI * distance * distance,
+            });
+        }
+    }
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
     let name = stem.unwrap_or_else(|| "scene".into());
     let materials = loaded.mesh.parts.iter().map(|p| p.material.clone());
@@ -569,10 +589,10 @@ fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
         background: [1.0; 3],
         transparency_scale: 1.0,
         views: if views.is_empty() { vec![fit()] } else { views },
-        lights: loaded.lights,
+        lights,
         objects: vec![object],
         held_out: false,
-        warnings: loaded.warnings,
+        warnings,
     })
 }
 
