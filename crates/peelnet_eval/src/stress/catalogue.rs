@@ -7,7 +7,7 @@ use super::{
 };
 use crate::EvalError;
 use glam::Vec3;
-use peelnet_core::fragment::Fragment;
+use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
 use peelnet_gpu::Gpu;
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, suite};
 
@@ -248,7 +248,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "emissive",
-        what: "radiance far above 1, at α from 0 to 1",
+        what: "surfaces that emit up to twenty times white, visible and invisible ones",
         breaks: "half floats, division of premultiplied colour by 0",
         work: Work::Frames(|| {
             let bright = |name: &str, layers: &[(f32, f32, f32)]| {
@@ -259,7 +259,11 @@ pub const CASES: &[Case] = &[
             };
             Ok(vec![trial(vec![
                 bright("lamp", &[(2.0, 0.1, 20.0)]),
-                bright("invisible lamp", &[(2.0, 0.0, 20.0), (3.0, 0.5, 0.5)]),
+                bright("invisible lamp", &[(2.0, EMISSIVE_ALPHA, 400.0)]),
+                bright(
+                    "one before a wall",
+                    &[(2.0, EMISSIVE_ALPHA, 400.0), (3.0, 0.5, 0.5)],
+                ),
                 bright(
                     "lamp behind",
                     &[(2.0, 0.5, 0.2), (3.0, 0.3, 20.0), (4.0, 0.5, 0.4)],

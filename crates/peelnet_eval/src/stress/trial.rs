@@ -5,6 +5,7 @@ use crate::EvalError;
 use glam::Vec3;
 use peelnet_core::{
     fragment::{Fragment, sort_front_to_back},
+    guards::EMISSIVE_ALPHA,
     methods::over,
 };
 use peelnet_gpu::Gpu;
@@ -95,6 +96,19 @@ impl Kind {
     }
 }
 
+/// The material of a layer. Radiance above 1 is emitted, and a layer that covers no more than emission must is invisible but for
+/// what it emits.
+fn material(layer: &Fragment) -> Material {
+    let reflected = layer.color.map(|c| c.min(1.0));
+    let beyond = |k: usize| layer.alpha * (layer.color[k] - reflected[k]);
+    let emission = [beyond(0), beyond(1), beyond(2)];
+    let invisible = layer.alpha == EMISSIVE_ALPHA && emission != [0.0; 3];
+    Material {
+        emission,
+        ..Material::unlit(reflected, if invisible { 0.0 } else { layer.alpha })
+    }
+}
+
 /// Width and height of frames whose pixels are peeled.
 const PEELED_SIZE: [u32; 2] = [48, 36];
 
@@ -139,7 +153,7 @@ impl Trial {
             };
             let mut fragments = Vec::new();
             for layer in &stack.layers {
-                let material = Material::unlit(layer.color, layer.alpha);
+                let material = material(layer);
                 let name = format!("{} at {}", stack.name, layer.depth);
                 fragments.push(Fragment {
                     triangle: 2 * objects.len() as u32,
