@@ -325,9 +325,7 @@ fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
             if entry.learned || !entry.knobs().any(|(knob, _)| knob == "targets") {
                 continue;
             }
-            let ending = entry.points[entry.points.len() / 2 * usize::from(entry.most > 0)];
-            let ending = if entry.most > 0 { ending } else { "" };
-            let method = format!("{}{ending}", entry.name);
+            let method = entry.representative();
             let draw = |targets: &str| -> Result<Image, EvalError> {
                 let name = format!("{method}:targets={targets}");
                 let spec: MethodSpec = name.parse().map_err(failed(&name))?;

@@ -188,11 +188,6 @@ impl GeometryPipelines {
             pass.set_pipeline(pipeline);
         }
     }
-
-    /// What they are linked for.
-    pub fn variants(&self) -> impl Iterator<Item = Variant> {
-        self.0.iter().map(|(variant, _)| *variant)
-    }
 }
 
 /// What a geometry pass is made of.

@@ -29,6 +29,7 @@ use crate::{EvalError, compare::EXACT, compare::image_name, transmittance};
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::Gpu;
 use peelnet_render::{Image, Renderer, scene::Submission};
+use peelnet_scene::Camera;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
 
@@ -74,13 +75,6 @@ const SCALES: [f32; 2] = [1e-3, 1e3];
 /// What a case found of every subject and property.
 type Findings = BTreeMap<(usize, Property), Finding>;
 
-/// A frame that was drawn: by which method, of which scene.
-struct Picture {
-    method: String,
-    scene: String,
-    image: Image,
-}
-
 /// Draws a case with every subject and judges what is seen; `tell` learns of every subject before it is drawn, and may end the
 /// run. `strict` asks that declared flaws fail: it is meant for shipped networks, not for a user's own. Pictures of what fails are
 /// saved in the folder `images`, beside the exact ones.
@@ -96,9 +90,8 @@ pub fn stress(
     tell: &mut dyn FnMut(&str) -> Result<(), EvalError>,
 ) -> Result<Vec<Row>, EvalError> {
     let mut findings = Findings::new();
-    let mut pictures: Vec<Picture> = Vec::new();
-    // The frame before, where trials are a sequence: the exact one and every subject's.
-    let mut before: Option<Vec<Image>> = None;
+    // Of every trial its name, the exact image, and every subject's.
+    let mut drawn: Vec<(String, Vec<Image>)> = Vec::new();
     let trials = match case.work {
         Work::Frames(make) => make()?,
         Work::Network(examine) => {
@@ -121,21 +114,14 @@ pub fn stress(
                 });
             };
             let image = stage.draw(subject, case, &exact, &mut note)?;
-            if let (true, Some(before)) = (trial.moves, &before) {
+            // Trials that move are a sequence.
+            if let (true, Some((_, before))) = (trial.moves, drawn.last()) {
                 let moved = [&before[1 + i], &image];
                 properties::compare_frames(moved, [&before[0], &exact[0]], &mut note);
             }
             frames.push(image);
         }
-        let names = subjects.iter().map(|s| s.method.to_string());
-        for (method, image) in [EXACT.to_owned()].into_iter().chain(names).zip(&frames) {
-            pictures.push(Picture {
-                method,
-                scene: scene.clone(),
-                image: image.clone(),
-            });
-        }
-        before = Some(frames);
+        drawn.push((scene, frames));
     }
     let rows = rows(case, subjects, &findings, strict);
     if let Some(folder) = images {
@@ -144,11 +130,17 @@ pub fn stress(
             rows.iter().any(of_method)
         };
         let any = rows.iter().any(|r| r.result == Outcome::Fail);
-        for p in &pictures {
-            if failed(&p.method) || (any && p.method == EXACT) {
-                let path = folder.join(image_name(&p.scene, &p.method));
-                let saved = p.image.save(&path);
-                saved.map_err(EvalError::render(&p.scene, &p.method))?;
+        let names: Vec<String> = subjects.iter().map(|s| s.method.to_string()).collect();
+        for (scene, frames) in &drawn {
+            let subjects = names.iter().map(String::as_str).zip(&frames[1..]);
+            let failing = subjects.filter(|(method, _)| failed(method));
+            for (method, image) in any
+                .then_some((EXACT, &frames[0]))
+                .into_iter()
+                .chain(failing)
+            {
+                let saved = image.save(&folder.join(image_name(scene, method)));
+                saved.map_err(EvalError::render(scene, method))?;
             }
         }
     }
@@ -215,13 +207,35 @@ fn rows(case: &Case, subjects: &[Subject], findings: &Findings, strict: bool) ->
 /// Tells a property's value, its limit and where it is.
 pub type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
 
+/// The exact image of every view.
+fn exact_images(
+    renderer: &Renderer<'_>,
+    scene: &str,
+    size: [u32; 2],
+    views: &[Camera],
+) -> Result<Vec<Image>, EvalError> {
+    let failed = || EvalError::render(scene, EXACT);
+    // The name is in the list.
+    let method = EXACT.parse().map_err(failed())?;
+    let mut prepared = renderer.prepare(&method, size, None).map_err(failed())?;
+    let mut draw = |camera| {
+        renderer
+            .draw(&mut prepared, camera)
+            .map(|frame| frame.image)
+    };
+    views
+        .iter()
+        .map(|camera| draw(camera).map_err(failed()))
+        .collect()
+}
+
 /// A trial made ready to be drawn with any method.
 struct Stage<'a> {
     trial: &'a Trial,
     truth: Truth,
     renderer: Renderer<'a>,
     /// The scene at other scales, with the exact image; made when first asked for.
-    scaled: Vec<(Renderer<'a>, peelnet_scene::Camera, Image)>,
+    scaled: Vec<(Renderer<'a>, Camera, Image)>,
     gpu: &'a Gpu,
 }
 
@@ -239,19 +253,8 @@ impl<'a> Stage<'a> {
 
     /// The exact image of every view.
     fn exact(&self) -> Result<Vec<Image>, EvalError> {
-        let failed = || EvalError::render(&self.trial.scene.name, EXACT);
-        // The name is in the list.
-        let method = EXACT.parse().map_err(failed())?;
-        let prepared = self.renderer.prepare(&method, self.trial.size, None);
-        let mut prepared = prepared.map_err(failed())?;
-        let views = &self.trial.scene.views;
-        views
-            .iter()
-            .map(|camera| {
-                let frame = self.renderer.draw(&mut prepared, camera);
-                frame.map(|f| f.image).map_err(failed())
-            })
-            .collect()
+        let scene = &self.trial.scene;
+        exact_images(&self.renderer, &scene.name, self.trial.size, &scene.views)
     }
 
     /// Draws a subject in every way that its properties ask for; gives the first view's frame.
@@ -314,14 +317,12 @@ impl<'a> Stage<'a> {
         }
         for factor in SCALES {
             let scene = self.trial.scene.scaled(factor);
-            let failed = || EvalError::render(&scene.name, EXACT);
-            let renderer = Renderer::new(self.gpu, &scene).map_err(failed())?;
-            let method = EXACT.parse().map_err(failed())?;
-            let prepared = renderer.prepare(&method, self.trial.size, None);
-            let mut prepared = prepared.map_err(failed())?;
+            let renderer = Renderer::new(self.gpu, &scene);
+            let renderer = renderer.map_err(EvalError::render(&scene.name, EXACT))?;
             let camera = scene.views[0];
-            let frame = renderer.draw(&mut prepared, &camera).map_err(failed())?;
-            self.scaled.push((renderer, camera, frame.image));
+            let mut exact = exact_images(&renderer, &scene.name, self.trial.size, &[camera])?;
+            // One image for the one view.
+            self.scaled.push((renderer, camera, exact.swap_remove(0)));
         }
         Ok(())
     }

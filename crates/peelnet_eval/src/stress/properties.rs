@@ -40,22 +40,6 @@ pub enum Property {
 }
 
 impl Property {
-    /// All of them, in the order of the specification.
-    pub const ALL: [Self; 12] = [
-        Self::Finite,
-        Self::Background,
-        Self::Hull,
-        Self::Single,
-        Self::Order,
-        Self::Exact,
-        Self::Scale,
-        Self::Dark,
-        Self::Opaque,
-        Self::Transmittance,
-        Self::Steady,
-        Self::Half,
-    ];
-
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {

@@ -37,13 +37,7 @@ impl Subject {
     pub fn all_methods() -> Vec<MethodSpec> {
         let mut all: Vec<MethodSpec> = Vec::new();
         for entry in METHODS {
-            let middle = entry.points.len() / 2;
-            let ending = if entry.most > 0 {
-                entry.points[middle]
-            } else {
-                ""
-            };
-            let name = format!("{}{ending}", entry.name);
+            let name = entry.representative();
             let mut names = vec![name.clone()];
             if entry.knobs().any(|(knob, _)| knob == "targets") {
                 // One of them may be the default; both are named, so that the rows say what was drawn.

@@ -190,11 +190,6 @@ impl Trial {
         }
     }
 
-    /// Whether the fragments are known without drawing.
-    pub fn is_known(&self) -> bool {
-        self.known.is_some()
-    }
-
     /// What the first view's pixels hold.
     ///
     /// # Errors

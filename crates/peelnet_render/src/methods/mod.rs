@@ -93,6 +93,13 @@ pub struct MethodEntry {
 }
 
 impl MethodEntry {
+    /// The name that stands for it where one is enough: by itself, or with a number in the middle of its curve.
+    pub fn representative(&self) -> String {
+        let middle = self.points[self.points.len() / 2];
+        let ending = if self.most > 0 { middle } else { "" };
+        format!("{}{ending}", self.name)
+    }
+
     /// Names of its knobs, with the values they take: its own, and what every method has.
     pub fn knobs(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         self.own_knobs.iter().copied().chain([SCALE])
