@@ -34,3 +34,14 @@ fn normalised(sums: vec4f, transmittance: f32, background: vec3f) -> vec4f {
     let average = finite.rgb / divisor(finite.a);
     return vec4f(average * (1.0 - transmittance) + background * transmittance, 1.0 - transmittance);
 }
+
+// The same where light takes a colour on its way (McGuire and Mara 2016, without their diffusion and refraction): what surfaces show is
+// weighed by the mean of what they cover, which is exact for one surface, and what is behind them passes channel by channel.
+fn normalised_by_channel(sums: vec4f, transmittance: vec3f, background: vec3f) -> vec4f {
+    if all(transmittance == vec3f(1.0)) {
+        return vec4f(background, 0.0);
+    }
+    let finite = within(sums);
+    let covered = 1.0 - dot(transmittance, vec3f(1.0 / 3.0));
+    return vec4f(finite.rgb / divisor(finite.a) * covered + background * transmittance, covered);
+}

@@ -10,6 +10,10 @@ import package::peel::tile::Tile;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> colors: array<vec4f>;
 
+// Colours of a fragment.
+@if(!tinted) const COLORS: u32 = 1u;
+@if(tinted) const COLORS: u32 = 2u;
+
 fn next_gap(gap: u32) -> u32 {
     if gap > 1750u { return u32(f32(gap) / 2.25); }
     if gap > 701u { return 701u; }
@@ -50,15 +54,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
             // Only a fragment out of place is moved, with its colour.
             if j != i {
-                let color = colors[i];
+                let color = colors[COLORS * i];
+                @if(tinted) let second = colors[COLORS * i + 1u];
                 for (var k = i; k > j; k -= gap) {
                     depths[k] = depths[k - gap];
                     triangles[k] = triangles[k - gap];
-                    colors[k] = colors[k - gap];
+                    colors[COLORS * k] = colors[COLORS * (k - gap)];
+                    @if(tinted) colors[COLORS * k + 1u] = colors[COLORS * (k - gap) + 1u];
                 }
                 depths[j] = depth;
                 triangles[j] = triangle;
-                colors[j] = color;
+                colors[COLORS * j] = color;
+                @if(tinted) colors[COLORS * j + 1u] = second;
             }
         }
         gap = next_gap(gap);

@@ -1,7 +1,9 @@
 // S-buffer, pass 2: every fragment into its pixel's own run of slots.
 import package::scene::camera::camera;
 @if(dataset) import package::scene::shade::radiance as shade;
-@if(!dataset) import package::scene::shade::shade;
+@if(layered) import package::scene::shade::layered as shade;
+@if(!dataset && !layered) import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 import package::peel::tile::Tile;
@@ -10,6 +12,7 @@ import package::peel::tile::Tile;
 @group(1) @binding(1) var<storage, read> offsets: array<u32>;
 @group(1) @binding(2) var<storage, read_write> depths: array<f32>;
 @group(1) @binding(3) var<storage, read_write> triangles: array<u32>;
+// Where light takes a colour two of a fragment: its colour, and what it covers of each channel.
 @group(1) @binding(4) var<storage, read_write> colors: array<vec4f>;
 @group(1) @binding(5) var<uniform> tile: Tile;
 
@@ -27,5 +30,9 @@ fn fragment_main(surface: Surface) {
     let slot = offsets[index] - tile.base + atomicSub(&counts[index], 1u) - 1u;
     depths[slot] = surface.depth_linear;
     triangles[slot] = surface.triangle;
-    colors[slot] = shade(surface);
+    @if(!tinted) colors[slot] = shade(surface);
+    @if(tinted) {
+        colors[2u * slot] = shade(surface);
+        colors[2u * slot + 1u] = vec4f(covering(surface), 0.0);
+    }
 }

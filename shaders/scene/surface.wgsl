@@ -9,4 +9,8 @@ struct Surface {
     // Index in the scene's list of triangles, object by object: the tie rule.
     @location(3) @interpolate(flat) triangle: u32,
     @location(4) @interpolate(flat) material: u32,
+    @if(mapped) @location(5) uv: vec2f,
+    // Direction of u; w: which way the second tangent points.
+    @if(normal_map) @location(6) tangent: vec4f,
+    @if(vertex_colors) @location(7) color: vec4f,
 }

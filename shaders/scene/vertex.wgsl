@@ -6,6 +6,9 @@ struct Corner {
     @location(0) position: vec3f,
     @if(lit) @location(1) normal: vec3f,
     @location(2) material: u32,
+    @if(mapped) @location(3) uv: vec2f,
+    @if(normal_map) @location(4) tangent: vec4f,
+    @if(vertex_colors) @location(5) color: vec4f,
 }
 
 @vertex
@@ -16,6 +19,9 @@ fn vertex_main(corner: Corner, @builtin(vertex_index) index: u32) -> Surface {
         out.world = corner.position;
         out.normal = corner.normal;
     }
+    @if(mapped) out.uv = corner.uv;
+    @if(normal_map) out.tangent = corner.tangent;
+    @if(vertex_colors) out.color = corner.color;
     // A perspective projection puts the distance along the view axis into w.
     out.depth_linear = out.position.w;
     out.triangle = index / 3u;

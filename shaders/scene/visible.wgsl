@@ -1,5 +1,6 @@
 // Whether a transparent fragment counts at all.
 import package::scene::camera::camera;
+@if(mapped) import package::scene::maps::remember_footprint;
 import package::helpers::hash::pixel_hash;
 import package::scene::surface::Surface;
 
@@ -10,6 +11,7 @@ import package::scene::surface::Surface;
 // The opaque depth is compared here and not by the fixed-function test, because storage writes of a fragment
 // shader happen before that test.
 fn visible(surface: Surface) -> bool {
+    @if(mapped) remember_footprint(surface.uv);
     let pixel = vec2u(surface.position.xy);
     @if(sampled) {
         if pixel_hash(camera.frame.w, camera.sample.x, pixel.x, pixel.y) > camera.sample.y {

@@ -2,7 +2,7 @@
 
 pub mod readers;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use peelnet_core::{fragment::Fragment, scanline};
 use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
@@ -44,7 +44,12 @@ pub fn wall(z: f32, material: Material) -> Object {
     let s = 1.5 * z;
     let v = |x: f32, y: f32| Vec3::new(x * s, y * s, -z);
     let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
-    Object::of_triangles(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material)
+    let mut wall = Object::of_triangles(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material);
+    // It shows the whole of an image.
+    let mesh = std::sync::Arc::make_mut(&mut wall.mesh);
+    let (a, b, c, d) = (Vec2::Y, Vec2::ONE, Vec2::X, Vec2::ZERO);
+    mesh.uvs = vec![[a, b, c], [a, c, d]];
+    wall
 }
 
 /// A scene of these objects.

@@ -7,12 +7,14 @@ use peelnet_core::{
     fragment::Fragment,
     guards::EMISSIVE_ALPHA,
     methods::over,
-    shading::{self, Point, PointLight},
+    shading::{self, Point},
+    srgb,
 };
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, MethodSpec, Renderer};
-use peelnet_scene::{Census, Effect, Light, Lighting, Material, Scene};
+use peelnet_render::{Image, LayerView, MethodSpec, Renderer};
+use peelnet_scene::{Census, Effect, Light, Lighting, Maps, Material, Scene, Source, Texture};
 use peelnet_tests::{gpu, scene, wall};
+use std::sync::Arc;
 
 fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
@@ -22,9 +24,25 @@ fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
     renderer.draw(&mut prepared, &scene.views[0]).unwrap().image
 }
 
+/// An image of one colour.
+fn even(texel: [u8; 4]) -> Option<Arc<Texture>> {
+    Some(Arc::new(Texture::of("even", [4, 4], |_, _| texel)))
+}
+
+/// The place of a map's effect in a material.
+fn map_of(maps: &mut Maps, effect: Effect) -> &mut Option<Arc<Texture>> {
+    match effect {
+        Effect::NormalMap => &mut maps.normal,
+        Effect::MetallicRoughnessMap => &mut maps.metallic_roughness,
+        Effect::OcclusionMap => &mut maps.occlusion,
+        Effect::EmissiveMap => &mut maps.emissive,
+        _ => &mut maps.color,
+    }
+}
+
 fn light(position: Vec3, color: [f32; 3]) -> Light {
     Light {
-        position,
+        source: Source::Point(position),
         color,
         intensity: 1.5,
     }
@@ -43,13 +61,44 @@ fn scene_with(effect: Option<Effect>) -> Scene {
         Some(Effect::Cutout) => material.alpha_cutoff = Some(0.3),
         Some(Effect::Emission) => material.emission = [0.2, 0.0, 0.1],
         Some(Effect::LowResolution) => all.transparency_scale = 0.5,
+        Some(Effect::Transmission) => material.transmission = [0.5; 3],
+        Some(map) if Effect::MAPS.contains(&map) => {
+            *map_of(&mut material.maps, map) = even([200, 150, 220, 255]);
+            match map {
+                Effect::NormalMap | Effect::OcclusionMap => material.lighting = Lighting::Phong,
+                Effect::MetallicRoughnessMap => material.lighting = Lighting::Pbr,
+                Effect::EmissiveMap => material.emission = [0.2, 0.0, 0.1],
+                _ => {}
+            }
+        }
+        Some(Effect::Sun) => {
+            material.lighting = Lighting::Phong;
+            all.lights.push(Light {
+                source: Source::Toward(Vec3::Z),
+                ..light(Vec3::ZERO, [1.0; 3])
+            });
+        }
+        Some(Effect::Monochrome) => {
+            material.color = [0.6; 3];
+            all.background = [0.1; 3];
+        }
+        _ => {}
     }
-    if matches!(effect, Some(Effect::Lighting | Effect::Pbr)) {
+    if material.lighting != Lighting::Unlit && effect != Some(Effect::Sun) {
         all.lights.push(light(Vec3::new(1.0, 1.0, 0.0), [1.0; 3]));
     }
-    all.objects.push(wall(3.0, material));
-    all.objects
-        .push(wall(5.0, Material::unlit([0.1, 0.9, 0.4], 0.5)));
+    let mut first = wall(3.0, material);
+    if effect == Some(Effect::VertexColors) {
+        let mesh = Arc::make_mut(&mut first.mesh);
+        mesh.colors = vec![[0.5, 1.0, 0.25, 1.0]; mesh.positions.len()];
+    }
+    all.objects.push(first);
+    let second = if effect == Some(Effect::Monochrome) {
+        [0.3; 3]
+    } else {
+        [0.1, 0.9, 0.4]
+    };
+    all.objects.push(wall(5.0, Material::unlit(second, 0.5)));
     all
 }
 
@@ -60,6 +109,14 @@ fn what_is_not_called_for_is_not_there() {
     let gpu = gpu();
     let plain = Renderer::new(&gpu, &scene_with(None)).unwrap();
     assert_eq!(plain.bindings(), ["camera", "materials"]);
+    assert_eq!(plain.corner_attributes(), ["position", "material"]);
+    let bytes = |s: &Scene| {
+        let renderer = Renderer::new(&gpu, s).unwrap();
+        let blended = "blended".parse().unwrap();
+        let mut prepared = renderer.prepare(&blended, [8, 6], None).unwrap();
+        let frame = renderer.draw(&mut prepared, &s.views[0]).unwrap();
+        frame.stats.bytes_per_pixel
+    };
     let passes = |s: &Scene| {
         let renderer = Renderer::new(&gpu, s).unwrap();
         let mut prepared = renderer
@@ -73,9 +130,34 @@ fn what_is_not_called_for_is_not_there() {
         let with = scene_with(Some(effect));
         let census = Census::of(&with);
         assert!(census.has(effect), "{effect}");
-        let bindings = Renderer::new(&gpu, &with).unwrap().bindings();
-        let lit = matches!(effect, Effect::Lighting | Effect::Pbr);
+        let renderer = Renderer::new(&gpu, &with).unwrap();
+        let (bindings, attributes) = (renderer.bindings(), renderer.corner_attributes());
+        let lit = matches!(
+            effect,
+            Effect::Lighting
+                | Effect::Pbr
+                | Effect::NormalMap
+                | Effect::OcclusionMap
+                | Effect::MetallicRoughnessMap
+                | Effect::Sun
+        );
         assert_eq!(bindings.contains(&"lights"), lit, "{effect}");
+        assert_eq!(attributes.contains(&"normal"), lit, "{effect}");
+        let mapped = Effect::MAPS.contains(&effect);
+        assert_eq!(bindings.contains(&"sampler"), mapped, "{effect}");
+        assert_eq!(attributes.contains(&"places on images"), mapped, "{effect}");
+        for map in Effect::MAPS {
+            assert_eq!(bindings.contains(&map.name()), map == effect, "{effect}");
+        }
+        let tangents = effect == Effect::NormalMap;
+        assert_eq!(attributes.contains(&"tangent"), tangents, "{effect}");
+        let colors = effect == Effect::VertexColors;
+        assert_eq!(attributes.contains(&"color"), colors, "{effect}");
+        // Without a scale every frame of this method has the same targets, but for grey, which has one less.
+        if effect != Effect::LowResolution {
+            let fewer = bytes(&with) < bytes(&scene_with(None));
+            assert_eq!(fewer, effect == Effect::Monochrome, "{effect}");
+        }
         let opaque = matches!(effect, Effect::Opaque | Effect::Cutout);
         assert_eq!(bindings.contains(&"opaque depth"), opaque, "{effect}");
         assert_eq!(
@@ -89,6 +171,14 @@ fn what_is_not_called_for_is_not_there() {
             Effect::Pbr => &["lights", "fresnel", "world"],
             Effect::Emission => &["emission.rgb"],
             Effect::Cutout => &["is_hole"],
+            Effect::ColorMap => &["color_map", "textureSampleGrad"],
+            Effect::NormalMap => &["normal_map", "tangent"],
+            Effect::MetallicRoughnessMap => &["metallic_roughness_map"],
+            Effect::OcclusionMap => &["occlusion_map"],
+            Effect::EmissiveMap => &["emissive_map"],
+            Effect::VertexColors => &["surface.color"],
+            Effect::Sun => &["position.w"],
+            Effect::Transmission => &["transmission.rgb"],
             _ => &[],
         };
         let text_of = |scene: &Scene| -> String {
@@ -123,56 +213,79 @@ fn an_effect_changes_only_what_it_names() {
     }
 }
 
+/// A scene, and the same with an effect that changes nothing.
+fn neutral(effect: Effect) -> [Scene; 2] {
+    let mut plain = scene_with(None);
+    let opaque = Material {
+        blend: false,
+        ..Material::unlit([0.1, 0.9, 0.4], 1.0)
+    };
+    match effect {
+        Effect::Cutout => plain.objects[1] = wall(5.0, opaque),
+        // Lit: the effect concerns light.
+        Effect::NormalMap | Effect::OcclusionMap | Effect::Sun => {
+            plain = scene_with(Some(Effect::Lighting));
+        }
+        Effect::MetallicRoughnessMap => plain = scene_with(Some(Effect::Pbr)),
+        Effect::EmissiveMap => plain = scene_with(Some(Effect::Emission)),
+        Effect::Monochrome => plain = scene_with(Some(effect)).without(effect),
+        _ => {}
+    }
+    let mut with = plain.clone();
+    let material = &mut with.objects[0].materials[0];
+    match effect {
+        // Behind everything, of the background's colour.
+        Effect::Opaque => {
+            let material = Material {
+                blend: false,
+                ..Material::unlit(plain.background, 1.0)
+            };
+            with.objects.push(wall(50.0, material));
+        }
+        Effect::Culling => material.double_sided = false,
+        // Radiance that is the colour: ambient light alone, of a colour that makes up for its share.
+        Effect::Lighting | Effect::Pbr => {
+            let (kind, ambient) = match effect {
+                Effect::Pbr => (Lighting::Pbr, 0.03),
+                _ => (Lighting::Phong, 0.1),
+            };
+            material.lighting = kind;
+            material.color = material.color.map(|c| c / ambient);
+            with.lights.push(light(Vec3::ZERO, [0.0; 3]));
+        }
+        Effect::Cutout => with.objects[1].materials[0].alpha_cutoff = Some(0.5),
+        Effect::Emission => material.emission = [1e-9; 3],
+        Effect::Transmission => material.transmission = [1e-9; 3],
+        Effect::NormalMap => material.maps.normal = even([128, 128, 255, 255]),
+        map if Effect::MAPS.contains(&map) => *map_of(&mut material.maps, map) = even([255; 4]),
+        Effect::VertexColors => {
+            let mesh = Arc::make_mut(&mut with.objects[0].mesh);
+            mesh.colors = vec![[1.0; 4]; mesh.positions.len()];
+        }
+        Effect::Sun => with.lights.push(Light {
+            source: Source::Toward(Vec3::Y),
+            ..light(Vec3::ZERO, [0.0; 3])
+        }),
+        Effect::Monochrome => with = scene_with(Some(effect)),
+        _ => with.transparency_scale = 0.5,
+    }
+    [plain, with]
+}
+
 /// Effects with neutral values leave the image as it is, within a step of an 8-bit display; and a scene without an effect is, bit
 /// for bit, the scene that never had it.
 #[test]
 fn neutral_values_change_nothing() {
     let gpu = gpu();
     let size = [16, 12];
-    let base = scene_with(None);
-    let mut solid = base.clone();
-    solid.objects[1] = wall(
-        5.0,
-        Material {
-            blend: false,
-            ..Material::unlit([0.1, 0.9, 0.4], 1.0)
-        },
-    );
     for effect in Effect::ALL {
-        let (mut neutral, plain) = match effect {
-            Effect::Cutout => (solid.clone(), &solid),
-            _ => (base.clone(), &base),
-        };
-        match effect {
-            // Behind everything, of the background's colour.
-            Effect::Opaque => {
-                let material = Material {
-                    blend: false,
-                    ..Material::unlit(base.background, 1.0)
-                };
-                neutral.objects.push(wall(50.0, material));
-            }
-            Effect::Culling => neutral.objects[0].materials[0].double_sided = false,
-            // Radiance that is the colour: ambient light alone, of a colour that makes up for its share.
-            Effect::Lighting | Effect::Pbr => {
-                neutral.lights.push(light(Vec3::ZERO, [0.0; 3]));
-                let (kind, ambient) = match effect {
-                    Effect::Pbr => (Lighting::Pbr, 0.03),
-                    _ => (Lighting::Phong, 0.1),
-                };
-                let m = &mut neutral.objects[0].materials[0];
-                m.lighting = kind;
-                m.color = m.color.map(|c| c / ambient);
-            }
-            Effect::Cutout => neutral.objects[1].materials[0].alpha_cutoff = Some(0.5),
-            Effect::Emission => neutral.objects[0].materials[0].emission = [1e-9; 3],
-            Effect::LowResolution => neutral.transparency_scale = 0.5,
-        }
-        assert!(Census::of(&neutral).has(effect), "{effect}");
+        let [plain, with] = neutral(effect);
+        let on = |scene: &Scene| Census::of(scene).has(effect);
+        assert!(on(&with) && !on(&plain), "{effect}");
         for method in ["abuffer", "wboit-eq9", "mboit4", "dual-peel"] {
             let [a, b] = [
-                draw(&gpu, plain, method, size),
-                draw(&gpu, &neutral, method, size),
+                draw(&gpu, &plain, method, size),
+                draw(&gpu, &with, method, size),
             ];
             for (a, b) in a.pixels.iter().zip(&b.pixels) {
                 for k in 0..3 {
@@ -183,67 +296,310 @@ fn neutral_values_change_nothing() {
                 }
             }
         }
+        // What is lit cannot be drawn by its colour instead.
         if !matches!(effect, Effect::Lighting | Effect::Pbr) {
-            let stripped = draw(&gpu, &neutral.without(effect), "wboit-eq9", size);
-            assert_eq!(stripped, draw(&gpu, plain, "wboit-eq9", size), "{effect}");
+            let stripped = draw(&gpu, &with.without(effect), "wboit-eq9", size);
+            assert_eq!(stripped, draw(&gpu, &plain, "wboit-eq9", size), "{effect}");
         }
     }
 }
 
-/// Lit surfaces against the 64-bit twin, pixel by pixel: 1e-4 of the brightest.
+/// Lit surfaces against the 64-bit twin, pixel by pixel: 1e-4 of the brightest. With and without a light that has no place; with
+/// and without images, whose values multiply the material's, and normals that lean.
 #[test]
 fn shading_is_the_twin_of_the_core() {
     let gpu = gpu();
-    let size = [24u32, 16];
-    let lights = [
+    let lamps = [
         light(Vec3::new(1.0, 1.5, -0.5), [2.0, 1.0, 0.5]),
         light(Vec3::new(-2.0, 0.3, -1.0), [0.2, 0.9, 3.0]),
     ];
-    let color = [0.8, 0.5, 0.3];
+    let sun = Light {
+        source: Source::Toward(Vec3::new(0.6, 0.0, 0.8)),
+        ..light(Vec3::ZERO, [1.0, 0.8, 0.6])
+    };
     for lighting in [Lighting::Phong, Lighting::Pbr] {
         for (first, second) in [(0.0, 0.05), (0.0, 0.5), (0.4, 0.3), (1.0, 0.2), (1.0, 1.0)] {
-            let mut material = Material::unlit(color, 0.5);
-            material.lighting = lighting;
-            (material.specular, material.shininess) = (first, 1.0 + 60.0 * second);
-            (material.metallic, material.roughness) = (first, second);
-            let mut scene = scene("lit", [0.0; 3], vec![wall(3.0, material.clone())]);
-            scene.lights = lights.to_vec();
-            let image = draw(&gpu, &scene, "abuffer", size);
-            let points: Vec<PointLight> = lights
-                .iter()
-                .map(|l| PointLight {
-                    position: l.position.as_dvec3().to_array(),
-                    color: l.color.map(|c| f64::from(c) * f64::from(l.intensity)),
-                })
-                .collect();
-            for (i, pixel) in image.pixels.iter().enumerate() {
-                let (x, y) = (i as u32 % size[0], i as u32 / size[0]);
-                let aspect = f64::from(size[0]) / f64::from(size[1]);
-                let ndc_x = (f64::from(x) + 0.5) / f64::from(size[0]) * 2.0 - 1.0;
-                let ndc_y = 1.0 - (f64::from(y) + 0.5) / f64::from(size[1]) * 2.0;
-                let at = Point {
-                    position: [ndc_x * aspect * 3.0, ndc_y * 3.0, -3.0],
-                    normal: [0.0, 0.0, 1.0],
-                    eye: [0.0; 3],
-                };
-                let c = color.map(f64::from);
-                let (first, second) = (f64::from(first), f64::from(second));
-                let want = match lighting {
-                    Lighting::Phong => {
-                        shading::phong(&at, c, first, material.shininess.into(), &points)
-                    }
-                    _ => shading::physically_based(&at, c, first, second, &points),
-                };
-                for k in 0..3 {
-                    let error = (f64::from(pixel[k]) - 0.5 * want[k]).abs();
-                    assert!(
-                        error <= 1e-4 * want[k].max(1.0),
-                        "{lighting:?} {first} {second}: {pixel:?} for {want:?}"
-                    );
-                }
+            for (mapped, sunny) in [(false, false), (false, true), (true, true)] {
+                let mut material = Material::unlit([0.8, 0.5, 0.3], 0.5);
+                material.lighting = lighting;
+                (material.specular, material.shininess) = (first, 1.0 + 60.0 * second);
+                (material.metallic, material.roughness) = (first, second);
+                let mut lights = lamps.to_vec();
+                lights.extend(sunny.then_some(sun));
+                compare_with_the_twin(&gpu, material, &lights, mapped);
             }
         }
     }
+}
+
+fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], mapped: bool) {
+    let size = [24u32, 16];
+    let byte = |b: u8| f64::from(b) / 255.0;
+    let mut color = material.color.map(f64::from);
+    let mut factors = [material.metallic, material.roughness].map(f64::from);
+    let (mut normal, mut ambient) = ([0.0, 0.0, 1.0], 1.0);
+    let mut object = wall(3.0, material.clone());
+    if mapped {
+        material.maps = Maps {
+            // GPUs may be off by a part of a byte where they decode sRGB, but not here.
+            color: even([0, 255, 255, 255]),
+            normal: even([168, 98, 240, 255]),
+            metallic_roughness: even([7, 230, 140, 255]),
+            occlusion: even([102, 0, 0, 255]),
+            normal_scale: 0.5,
+            occlusion_strength: 0.75,
+            ..Maps::NONE
+        };
+        object = wall(3.0, material.clone());
+        let mesh = Arc::make_mut(&mut object.mesh);
+        mesh.colors = vec![[0.5, 1.0, 0.75, 0.8]; mesh.positions.len()];
+        color = [0.0, color[1], color[2] * 0.75];
+        factors = [factors[0] * byte(140), factors[1] * byte(230)];
+        ambient = 1.0 + 0.75 * (byte(102) - 1.0);
+        let lean = [0.5 * 40.0 / 127.0, 0.5 * -30.0 / 127.0, 112.0 / 127.0f64];
+        let length = lean.iter().map(|x| x * x).sum::<f64>().sqrt();
+        normal = lean.map(|x| x / length);
+    }
+    let alpha = if mapped { 0.5 * 0.8 } else { 0.5 };
+    let mut scene = scene("lit", [0.0; 3], vec![object]);
+    scene.lights = lights.to_vec();
+    let image = draw(gpu, &scene, "abuffer", size);
+    let lights: Vec<shading::Light> = lights
+        .iter()
+        .map(|l| shading::Light {
+            source: match l.source {
+                Source::Point(p) => shading::Source::Point(p.as_dvec3().to_array()),
+                Source::Toward(d) => shading::Source::Toward(d.as_dvec3().to_array()),
+            },
+            color: l.color.map(|c| f64::from(c) * f64::from(l.intensity)),
+        })
+        .collect();
+    for (i, pixel) in image.pixels.iter().enumerate() {
+        let (x, y) = (i as u32 % size[0], i as u32 / size[0]);
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        let ndc_x = (f64::from(x) + 0.5) / f64::from(size[0]) * 2.0 - 1.0;
+        let ndc_y = 1.0 - (f64::from(y) + 0.5) / f64::from(size[1]) * 2.0;
+        let at = Point {
+            position: [ndc_x * aspect * 3.0, ndc_y * 3.0, -3.0],
+            normal,
+            eye: [0.0; 3],
+            ambient,
+        };
+        let (specular, shininess) = (material.specular.into(), material.shininess.into());
+        let want = match material.lighting {
+            Lighting::Phong => shading::phong(&at, color, specular, shininess, &lights),
+            _ => shading::physically_based(&at, color, factors[0], factors[1], &lights),
+        };
+        for k in 0..3 {
+            let error = (f64::from(pixel[k]) - alpha * want[k]).abs();
+            assert!(
+                error <= 1e-4 * want[k].max(1.0),
+                "{material:?}, mapped {mapped}: {pixel:?} for {want:?}"
+            );
+        }
+    }
+}
+
+/// Four texels on a wall that shows them once: seen as squares, each where its corner of the image lies, as light.
+#[test]
+fn images_lie_where_their_places_say() {
+    let gpu = gpu();
+    let texels = [
+        [255, 0, 0, 255],
+        [0, 188, 0, 255],
+        [0, 0, 90, 255],
+        [255, 255, 255, 64],
+    ];
+    let mut material = Material::unlit([1.0; 3], 1.0);
+    material.maps.color = Some(Arc::new(Texture::of("four", [2, 2], |x, y| {
+        texels[(2 * y + x) as usize]
+    })));
+    material.maps.nearest = true;
+    let scene = scene("four", [0.0; 3], vec![wall(3.0, material)]);
+    for method in [
+        "abuffer",
+        "depth-peel",
+        "wboit-eq9",
+        "mboit4",
+        "painter-triangle",
+    ] {
+        let image = draw(&gpu, &scene, method, [16, 12]);
+        for (i, pixel) in image.pixels.iter().enumerate() {
+            let quadrant = 2 * (i / 16 / 6) + i % 16 / 8;
+            let [r, g, b, a] = texels[quadrant].map(|b| f32::from(b) / 255.0);
+            let want = [r, g, b].map(|c| srgb::decode(c) * a);
+            for k in 0..3 {
+                // Two roundings of half floats.
+                let bound = 2.0 / 2048.0;
+                assert!(
+                    (pixel[k] - want[k]).abs() <= bound,
+                    "{method}, {i}: {pixel:?} for {want:?}"
+                );
+            }
+        }
+    }
+}
+
+/// A board much finer than pixels shows the mean of its light, and not one square or the other.
+#[test]
+fn fine_images_show_their_mean() {
+    let gpu = gpu();
+    let mut material = Material::unlit([1.0; 3], 1.0);
+    material.maps.color = Some(Arc::new(Texture::of("board", [256, 256], |x, y| {
+        let c = if (x + y) % 2 == 0 { 255 } else { 0 };
+        [c, c, c, 255]
+    })));
+    let image = draw(
+        &gpu,
+        &scene("board", [0.0; 3], vec![wall(3.0, material)]),
+        "abuffer",
+        [16, 12],
+    );
+    // The mean of light is kept in a byte.
+    let step = srgb::decode(189.0 / 255.0) - srgb::decode(188.0 / 255.0);
+    for p in &image.pixels {
+        assert!((p[0] - 0.5).abs() <= step, "{p:?}");
+    }
+}
+
+/// Stained glass: one pane is exact for every method that knows what light passes, two are for the exact one; the others say so.
+#[test]
+fn stained_glass_tints_what_is_behind_it() {
+    let gpu = gpu();
+    let c0 = [0.8, 0.6, 0.9];
+    let pane = |passing: [f32; 3], alpha| Material {
+        transmission: passing,
+        ..Material::unlit([0.2, 0.1, 0.3], alpha)
+    };
+    let (first, second) = ([0.9, 0.5, 0.1], [0.2, 0.7, 0.4]);
+    let through = |behind: [f32; 3], passing: [f32; 3], alpha: f32| {
+        let color = [0.2, 0.1, 0.3];
+        [0, 1, 2].map(|k| alpha * color[k] + behind[k] * (1.0 - alpha * (1.0 - passing[k])))
+    };
+    let check = |image: &Image, want: [f32; 3], bound: f32, what: &str| {
+        for (p, k) in image.pixels.iter().flat_map(|p| [0, 1, 2].map(|k| (p, k))) {
+            assert!(
+                (p[k] - want[k]).abs() <= bound,
+                "{what}: {p:?} for {want:?}"
+            );
+        }
+    };
+    for alpha in [0.3, 1.0] {
+        let one = scene("pane", c0, vec![wall(3.0, pane(first, alpha))]);
+        let want = through(c0, first, alpha);
+        for spec in MethodSpec::all() {
+            let method = spec.to_string();
+            if spec.entry().tinted {
+                let bound = if spec.entry().exact {
+                    1e-6
+                } else {
+                    6.0 / 2048.0
+                };
+                check(&draw(&gpu, &one, &method, [4, 3]), want, bound, &method);
+            } else {
+                let renderer = Renderer::new(&gpu, &one).unwrap();
+                let e = renderer
+                    .prepare(&spec, [4, 3], None)
+                    .unwrap_err()
+                    .to_string();
+                assert!(
+                    e.contains("abuffer") && e.contains("transmission_color"),
+                    "{e}"
+                );
+            }
+        }
+        // Grey glass is a lower opacity, which every method knows.
+        let grey = scene("grey", c0, vec![wall(3.0, pane([0.5; 3], alpha))]);
+        let want = through(c0, [0.5; 3], alpha);
+        for method in ["abuffer", "dual-peel", "painter-object", "wboit-eq9"] {
+            check(
+                &draw(&gpu, &grey, method, [4, 3]),
+                want,
+                6.0 / 2048.0,
+                method,
+            );
+        }
+    }
+    let both = vec![wall(3.0, pane(first, 0.6)), wall(5.0, pane(second, 0.9))];
+    let want = through(through(c0, second, 0.9), first, 0.6);
+    let two = scene("panes", c0, both);
+    check(
+        &draw(&gpu, &two, "abuffer", [4, 3]),
+        want,
+        1e-6,
+        "two panes",
+    );
+    // Also where storage is sorted and tiled.
+    check(
+        &draw(&gpu, &two, "abuffer:budget=6", [4, 3]),
+        want,
+        1e-6,
+        "tiles",
+    );
+}
+
+/// Layers seen one by one: the highlighted one takes half, those in front of it the other half in equal parts, what lies behind is gone.
+#[test]
+fn a_layer_is_highlighted() {
+    let gpu = gpu();
+    let colors = [[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.1, 0.3, 1.0]];
+    let of = |layers: &[u32]| {
+        let walls = layers.iter().zip(3..).map(|(layer, z)| {
+            let mut wall = wall(z as f32, Material::unlit(colors[*layer as usize], 1.0));
+            wall.layer = Some(*layer);
+            wall
+        });
+        scene("layers", [0.5; 3], walls.collect())
+    };
+    let look = |layers: &[u32], highlight: u32, increasing: bool| {
+        let scene = of(layers).layer_view(highlight, false).unwrap();
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        let view = LayerView {
+            highlight,
+            increasing,
+        };
+        let mut prepared = renderer.prepare_layers(view, [4, 3]).unwrap();
+        let image = renderer.draw(&mut prepared, &scene.views[0]).unwrap().image;
+        image.pixels[5]
+    };
+    let mix = |parts: &[(usize, f32)]| {
+        [0, 1, 2].map(|k| {
+            parts
+                .iter()
+                .map(|(layer, share)| colors[*layer][k] * share)
+                .sum::<f32>()
+        })
+    };
+    for (layers, highlight, increasing, parts) in [
+        // Two in front share the other half.
+        (
+            &[0, 1, 2][..],
+            2,
+            false,
+            &[(0, 0.25), (1, 0.25), (2, 0.5)][..],
+        ),
+        // What is behind is not seen; nothing in front: all of it.
+        (&[0, 1, 2], 0, false, &[(0, 1.0)]),
+        (&[0, 1, 2], 1, false, &[(0, 0.5), (1, 0.5)]),
+        // A ray that leaves again meets the outer layers once more, unless only new layers count.
+        (
+            &[0, 1, 0, 2],
+            2,
+            false,
+            &[(0, 1.0 / 3.0), (1, 1.0 / 6.0), (2, 0.5)],
+        ),
+        (&[0, 1, 0, 2], 2, true, &[(0, 0.25), (1, 0.25), (2, 0.5)]),
+    ] {
+        let (found, want) = (look(layers, highlight, increasing), mix(parts));
+        for k in 0..3 {
+            assert!(
+                (found[k] - want[k]).abs() < 1e-6,
+                "{layers:?} {highlight}: {found:?} {want:?}"
+            );
+        }
+    }
+    let e = of(&[0, 1]).layer_view(7, false).unwrap_err().to_string();
+    assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
 }
 
 /// What is emitted comes beyond what is covered, for every method: a single surface is exact, down to an opacity of 0, where it

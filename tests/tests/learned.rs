@@ -15,7 +15,7 @@ use peelnet_core::{
 };
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::{Model, Recipe};
-use peelnet_render::{Image, LearnedWeight, MethodSpec, Renderer, srgb_encode};
+use peelnet_render::{Image, LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::{Scene, suite};
 use peelnet_tests::{gpu, shipped, walls};
 
@@ -543,7 +543,8 @@ fn scale_changes_nothing_visible() {
                     let scene = base.scaled(factor);
                     let image = draw(&gpu, &scene, &spec, &model, [256, 192]);
                     let difference = |a: &[f32; 4], b: &[f32; 4]| {
-                        let display = |x: f32| srgb_encode(x.clamp(0.0, 1.0)) * 255.0;
+                        let display =
+                            |x: f32| peelnet_core::srgb::encode(x.clamp(0.0, 1.0)) * 255.0;
                         (0..3).fold(0.0, |d: f32, k| {
                             d.max((display(a[k]) - display(b[k])).abs())
                         })

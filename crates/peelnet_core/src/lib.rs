@@ -20,6 +20,7 @@ pub mod mlp;
 pub mod random;
 pub mod scanline;
 pub mod shading;
+pub mod srgb;
 pub mod statistics;
 pub mod tolerance;
 pub mod weights;

@@ -5,13 +5,36 @@ use std::f64::consts::PI;
 /// A vector, or a linear RGB colour.
 pub type V3 = [f64; 3];
 
-/// A point light: position, and linear RGB times intensity.
+/// A light: where it comes from, and linear RGB times intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointLight {
-    /// World space.
-    pub position: V3,
+pub struct Light {
+    /// A place in world space, or the direction of a light without one.
+    pub source: Source,
     /// Linear RGB times intensity.
     pub color: V3,
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// A place.
+    Point(V3),
+    /// A direction, of length 1.
+    Toward(V3),
+}
+
+impl Light {
+    /// The direction to it, and what falls off its light by the square law.
+    fn seen_from(&self, position: V3) -> (V3, f64) {
+        match self.source {
+            Source::Toward(direction) => (direction, 1.0),
+            Source::Point(place) => {
+                let apart = between(position, place);
+                let squared = dot(apart, apart).max(1e-8);
+                (apart.map(|x| x / squared.sqrt()), squared)
+            }
+        }
+    }
 }
 
 /// A surface at a point.
@@ -23,6 +46,8 @@ pub struct Point {
     pub normal: V3,
     /// The eye's position.
     pub eye: V3,
+    /// Share of the ambient light that arrives.
+    pub ambient: f64,
 }
 
 fn dot(a: V3, b: V3) -> f64 {
@@ -55,11 +80,11 @@ fn frame(at: &Point) -> (V3, V3) {
 }
 
 /// Blinn–Phong (Blinn 1977): 10 % ambient, diffuse, and a highlight of the light's colour.
-pub fn phong(at: &Point, color: V3, specular: f64, shininess: f64, lights: &[PointLight]) -> V3 {
+pub fn phong(at: &Point, color: V3, specular: f64, shininess: f64, lights: &[Light]) -> V3 {
     let (view, normal) = frame(at);
-    let mut radiance = color.map(|c| 0.1 * c);
+    let mut radiance = color.map(|c| 0.1 * at.ambient * c);
     for light in lights {
-        let toward = normalised(between(at.position, light.position));
+        let (toward, _) = light.seen_from(at.position);
         let diffuse = dot(normal, toward).max(0.0);
         let halfway = normalised(sum(toward, view));
         let highlight = if diffuse > 0.0 {
@@ -103,20 +128,18 @@ pub fn reflectance(
     })
 }
 
-/// Physically based shading by point lights that fall off with the square of the distance, and 3 % ambient.
+/// Physically based shading by lights, of which those with a place fall off with the square of the distance, and 3 % ambient.
 pub fn physically_based(
     at: &Point,
     albedo: V3,
     metallic: f64,
     roughness: f64,
-    lights: &[PointLight],
+    lights: &[Light],
 ) -> V3 {
     let (view, normal) = frame(at);
-    let mut radiance = albedo.map(|c| 0.03 * c);
+    let mut radiance = albedo.map(|c| 0.03 * at.ambient * c);
     for light in lights {
-        let apart = between(at.position, light.position);
-        let squared = dot(apart, apart).max(1e-8);
-        let toward = apart.map(|x| x / squared.sqrt());
+        let (toward, squared) = light.seen_from(at.position);
         let n_l = dot(normal, toward).max(0.0);
         let part = reflectance(normal, view, toward, albedo, metallic, roughness);
         for k in 0..3 {
@@ -172,9 +195,10 @@ mod tests {
             position: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
             eye: [0.0, 0.0, 5.0],
+            ambient: 1.0,
         };
-        let light = PointLight {
-            position: [0.0, 0.0, 2.0],
+        let light = Light {
+            source: Source::Point([0.0, 0.0, 2.0]),
             color: [8.0, 4.0, 0.0],
         };
         // D = 1/π and G = 1 for roughness 1, F = 0.04 each way.

@@ -165,7 +165,7 @@ mod tests {
     fn pictures_are_encoded_alike() {
         for k in -100..1200 {
             let linear = k as f32 * 1e-3;
-            let shown = f64::from(peelnet_render::srgb_encode(linear));
+            let shown = f64::from(peelnet_core::srgb::encode(linear));
             assert!((shown - srgb_encode(linear)).abs() < 1e-6, "{linear}");
         }
     }

@@ -247,7 +247,7 @@ fn blend(
         .device
         .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("numerics"),
-            layout: Some(&gpu.layout(&[&drawn.layout])),
+            layout: Some(&gpu.layout(&[Some(&drawn.layout)])),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("vertex_main"),

@@ -272,13 +272,15 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
             material: material.clone(),
         }],
         positions,
+        colors: Vec::new(),
+        uvs: Vec::new(),
         triangles,
     };
     Object {
         name: format!("wall at {depth}"),
         mesh: Arc::new(mesh),
         world_from_object: Mat4::IDENTITY,
-        layer: 0,
+        layer: None,
         materials: vec![material],
     }
 }

@@ -19,6 +19,10 @@ pub enum Bind<'a> {
     Depth(&'a wgpu::TextureView),
     /// A write-only storage texture of format RGBA32F.
     Store(&'a wgpu::TextureView),
+    /// A colour texture read through a sampler.
+    Image(&'a wgpu::TextureView),
+    /// What it is read through.
+    Sampler(&'a wgpu::Sampler),
     /// Nothing: a binding number that this shader does without.
     None,
 }
@@ -91,6 +95,8 @@ impl Bind<'_> {
             Self::Read(_) => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             Self::Write(_) => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
             Self::Texture(_) => texture(wgpu::TextureSampleType::Float { filterable: false }),
+            Self::Image(_) => texture(wgpu::TextureSampleType::Float { filterable: true }),
+            Self::Sampler(_) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
             Self::Uint(_) => texture(wgpu::TextureSampleType::Uint),
             Self::Depth(_) => texture(wgpu::TextureSampleType::Depth),
             Self::Store(_) => wgpu::BindingType::StorageTexture {
@@ -106,7 +112,8 @@ impl Bind<'_> {
         let resource = match self {
             Self::None => return None,
             Self::Uniform(b) | Self::Read(b) | Self::Write(b) => b.as_entire_binding(),
-            Self::Texture(v) | Self::Uint(v) | Self::Depth(v) | Self::Store(v) => {
+            Self::Sampler(s) => wgpu::BindingResource::Sampler(s),
+            Self::Texture(v) | Self::Image(v) | Self::Uint(v) | Self::Depth(v) | Self::Store(v) => {
                 wgpu::BindingResource::TextureView(v)
             }
         };

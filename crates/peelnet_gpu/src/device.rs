@@ -253,6 +253,68 @@ impl Gpu {
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
+    /// A texture of 8 bits a channel with its levels of detail, the largest first: size, and texels row by row.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the adapter's largest side, [`GpuError::OutOfMemory`] where memory is full.
+    pub fn image(
+        &self,
+        label: &str,
+        srgb: bool,
+        levels: &[([u32; 2], Vec<u8>)],
+    ) -> Result<wgpu::TextureView, GpuError> {
+        let [width, height] = levels.first().map_or([1, 1], |(size, _)| *size);
+        let limit = self.limits.max_texture_dimension_2d;
+        if width.max(height) > limit {
+            return Err(GpuError::TooLarge {
+                what: format!("the image {label}, {width}×{height} (side given in texels)"),
+                needed: width.max(height).into(),
+                limit: limit.into(),
+                adapter: self.info.name.clone(),
+                mend: "make it smaller",
+            });
+        }
+        let format = if srgb {
+            wgpu::TextureFormat::Rgba8UnormSrgb
+        } else {
+            wgpu::TextureFormat::Rgba8Unorm
+        };
+        let extent = |[width, height]: [u32; 2]| wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        let bytes = levels.iter().map(|(_, texels)| texels.len() as u64).sum();
+        let texture = self.allocate(label, bytes, || {
+            self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: extent([width, height]),
+                mip_level_count: levels.len().max(1) as u32,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            })
+        })?;
+        for ((size, texels), level) in levels.iter().zip(0..) {
+            self.queue.write_texture(
+                wgpu::TexelCopyTextureInfo {
+                    mip_level: level,
+                    ..texture.as_image_copy()
+                },
+                texels,
+                wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(4 * size[0]),
+                    rows_per_image: None,
+                },
+                extent(*size),
+            );
+        }
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+
     /// Compiles WGSL text.
     pub fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
         self.device
@@ -273,7 +335,7 @@ impl Gpu {
         self.device
             .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(label),
-                layout: Some(&self.layout(layouts)),
+                layout: Some(&self.layout(&layouts.iter().map(|l| Some(*l)).collect::<Vec<_>>())),
                 module: &module,
                 entry_point: Some("main"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
@@ -281,13 +343,12 @@ impl Gpu {
             })
     }
 
-    /// A pipeline layout from bind-group layouts.
-    pub fn layout(&self, layouts: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
-        let layouts: Vec<_> = layouts.iter().map(|l| Some(*l)).collect();
+    /// A pipeline layout from the layouts of its bind groups; groups may be left out.
+    pub fn layout(&self, layouts: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
         self.device
             .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
-                bind_group_layouts: &layouts,
+                bind_group_layouts: layouts,
                 immediate_size: 0,
             })
     }

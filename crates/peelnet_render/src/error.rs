@@ -28,6 +28,12 @@ pub enum RenderError {
     /// A learned method without its network.
     #[error("method {0} draws with a trained network: give its model file with --model")]
     NeedsModel(String),
+    /// Light that takes a colour, and a method that knows how much light passes and not which.
+    #[error(
+        "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with abuffer, blended \
+         or a wboit method, or make transmission_color grey"
+    )]
+    OneTransmittance(String),
     /// A frame without pixels.
     #[error("a frame of {width}×{height} pixels: both sides must be at least 1")]
     EmptyFrame {

@@ -1,6 +1,7 @@
 //! The drawn frame in memory, and its three file formats.
 
 use crate::RenderError;
+use peelnet_core::srgb;
 use std::path::Path;
 
 /// Linear RGB and coverage, row 0 on top.
@@ -14,28 +15,13 @@ pub struct Image {
     pub pixels: Vec<[f32; 4]>,
 }
 
-/// The sRGB transfer function (IEC 61966-2-1) of one linear value; values outside 0 … 1 are clipped first.
-#[allow(
-    clippy::manual_clamp,
-    reason = "clamp would hand a NaN on; max and min make it 0"
-)]
-pub fn srgb_encode(linear: f32) -> f32 {
-    // NaN becomes 0 here, which shows as black: metrics look at linear values and see it.
-    let x = linear.max(0.0).min(1.0);
-    if x <= 0.003_130_8 {
-        12.92 * x
-    } else {
-        1.055 * x.powf(1.0 / 2.4) - 0.055
-    }
-}
-
 impl Image {
     /// sRGB-encoded 8-bit RGB, three bytes a pixel.
     pub fn to_srgb8(&self) -> Vec<u8> {
         self.pixels
             .iter()
             .flat_map(|p| [p[0], p[1], p[2]])
-            .map(|c| (srgb_encode(c) * 255.0).round() as u8)
+            .map(|c| (srgb::encode(c) * 255.0).round() as u8)
             .collect()
     }
 
@@ -115,11 +101,11 @@ mod tests {
 
     #[test]
     fn srgb_has_its_known_values() {
-        assert_eq!(srgb_encode(0.0), 0.0);
-        assert!((srgb_encode(1.0) - 1.0).abs() < 1e-6);
+        assert_eq!(srgb::encode(0.0), 0.0);
+        assert!((srgb::encode(1.0) - 1.0).abs() < 1e-6);
         // Middle grey: 18 % reflectance encodes to 0.4614.
-        assert!((srgb_encode(0.18) - 0.461_356).abs() < 1e-5);
-        assert_eq!(srgb_encode(7.0), srgb_encode(1.0));
+        assert!((srgb::encode(0.18) - 0.461_356).abs() < 1e-5);
+        assert_eq!(srgb::encode(7.0), srgb::encode(1.0));
     }
 
     #[test]

@@ -12,13 +12,14 @@
 
 mod error;
 mod image;
+mod maps;
 pub mod methods;
 pub mod passes;
 pub mod scene;
 
 pub use error::RenderError;
-pub use image::{Image, srgb_encode};
-pub use methods::{FrameStats, METHODS, MethodSpec};
+pub use image::Image;
+pub use methods::{FrameStats, METHODS, MethodSpec, layers::LayerView};
 
 use methods::{Build, Compositor, DrawContext};
 use peelnet_gpu::{
@@ -83,6 +84,11 @@ impl<'g> Renderer<'g> {
         self.scene.bindings()
     }
 
+    /// What the vertex shader reads of a corner.
+    pub fn corner_attributes(&self) -> Vec<&'static str> {
+        self.scene.corner_attributes()
+    }
+
     /// Hands transparent surfaces to the GPU in another order from now on.
     pub fn submit(&mut self, order: scene::Submission) {
         self.scene.submit(order);
@@ -111,6 +117,24 @@ impl<'g> Renderer<'g> {
             spec,
             learned,
         })?;
+        self.finish(frame, compositor)
+    }
+
+    /// Makes the view of layers ready, of a scene that [`Scene::layer_view`] has made.
+    ///
+    /// # Errors
+    /// A frame beyond the adapter's limits.
+    pub fn prepare_layers(&self, view: LayerView, size: [u32; 2]) -> Result<Prepared, RenderError> {
+        let frame = self.scene.targets(self.gpu, size)?;
+        let compositor = methods::layers::build(self.gpu, &self.scene, &frame, view)?;
+        self.finish(frame, compositor)
+    }
+
+    fn finish(
+        &self,
+        frame: FrameTargets,
+        compositor: Box<dyn Compositor>,
+    ) -> Result<Prepared, RenderError> {
         let opaque = self.scene.opaque_pipelines(self.gpu, &frame)?;
         self.gpu.check()?;
         Ok(Prepared {

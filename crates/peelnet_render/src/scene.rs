@@ -1,14 +1,14 @@
 //! The scene on the GPU: corners in world space, materials, lights, and what to draw in which pass.
 
-use crate::{RenderError, methods::DrawContext};
+use crate::{RenderError, maps::MapSets, methods::DrawContext};
 use bytemuck::{Pod, Zeroable};
-use peelnet_core::{absorbance::DepthWarp, guards::EMISSIVE_ALPHA};
+use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
     Gpu, GpuError,
     bind::{Bind, Bound},
     wgpu,
 };
-use peelnet_scene::{Camera, Lighting, Material, Scene, Variant};
+use peelnet_scene::{Camera, Lighting, Material, Object, Scene, Setting, Source, Variant};
 use std::ops::Range;
 
 /// One corner of a triangle. Corners are not shared: `vertex_index / 3` is then the triangle's index in the scene's
@@ -28,21 +28,24 @@ struct MaterialData {
     color: [f32; 4],
     look: [f32; 4],
     emission: [f32; 4],
+    transmission: [f32; 4],
 }
 
 impl MaterialData {
-    fn of(m: &Material) -> Self {
+    fn of(m: &Material, layer: u32) -> Self {
         let [r, g, b] = m.color;
         let [first, second] = match m.lighting {
             Lighting::Pbr => [m.metallic, m.roughness],
             _ => [m.specular, m.shininess],
         };
-        let least = if m.is_emissive() { EMISSIVE_ALPHA } else { 0.0 };
         let [er, eg, eb] = m.emission;
+        let [tr, tg, tb] = m.transmission;
+        let cutoff = m.alpha_cutoff.unwrap_or(0.0);
         Self {
-            color: [r, g, b, m.alpha.max(least)],
-            look: [first, second, m.alpha_cutoff.unwrap_or(0.0), 0.0],
-            emission: [er, eg, eb, 0.0],
+            color: [r, g, b, m.alpha],
+            look: [first, second, cutoff, layer as f32],
+            emission: [er, eg, eb, m.maps.normal_scale],
+            transmission: [tr, tg, tb, m.maps.occlusion_strength],
         }
     }
 }
@@ -91,6 +94,8 @@ impl PixelSample {
 struct DrawRun {
     vertices: Range<u32>,
     variant: Variant,
+    /// Number of its images' set.
+    maps: Option<usize>,
 }
 
 /// A part of a transparent object with one material.
@@ -139,6 +144,11 @@ pub enum Surfaces {
 #[derive(Debug)]
 pub struct SceneBuffers {
     corners: wgpu::Buffer,
+    /// Places on images, tangents and colours, for every corner; each where any material reads it.
+    attributes: [Option<wgpu::Buffer>; 3],
+    maps: MapSets,
+    /// Which images any material reads.
+    mapped: [bool; 5],
     materials: wgpu::Buffer,
     /// Where any material is lit.
     lights: Option<wgpu::Buffer>,
@@ -149,6 +159,10 @@ pub struct SceneBuffers {
     parts: Vec<TransparentPart>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
+    /// Whether every colour is grey.
+    pub grey: bool,
+    /// Whether light takes a colour where it passes through surfaces.
+    pub tinted: bool,
     /// Of the resolution that the scene asks transparency to be drawn at.
     pub transparency_scale: f32,
 }
@@ -226,6 +240,10 @@ impl SceneBuffers {
                 mend: "split the scene or simplify its meshes",
             }));
         }
+        let setting = Setting::of(scene);
+        let mut attributes = Attributes::default();
+        let mut maps = MapSets::default();
+        let mut mapped = [false; 5];
         let mut corners = Vec::with_capacity(triangles * 3);
         let mut materials = Vec::new();
         let (mut opaque, mut transparent) = (Vec::new(), Vec::new());
@@ -239,10 +257,24 @@ impl SceneBuffers {
             } else {
                 [0, 1, 2]
             };
+            // Tangents turn with the surface, and over with a mirror.
+            let turning = Turning {
+                world,
+                order,
+                mirrored: order[1] == 2,
+            };
             for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
                 let index = materials.len() as u32;
-                materials.push(MaterialData::of(material));
-                let variant = Variant::of(material, !scene.lights.is_empty());
+                materials.push(MaterialData::of(material, object.layer.unwrap_or(0)));
+                let variant = Variant::of(material, object, setting);
+                let set = if variant.is_mapped() && !part.triangles.is_empty() {
+                    for (any, read) in mapped.iter_mut().zip(variant.maps) {
+                        *any |= read;
+                    }
+                    Some(maps.number(gpu, &material.maps, variant.maps)?)
+                } else {
+                    None
+                };
                 let begin = corners.len() as u32;
                 for triangle in &object.mesh.triangles[part.triangles.clone()] {
                     for k in order {
@@ -261,14 +293,18 @@ impl SceneBuffers {
                 } else {
                     &mut transparent
                 };
-                push_run(runs, begin..corners.len() as u32, variant);
+                let run = DrawRun {
+                    vertices: begin..corners.len() as u32,
+                    variant,
+                    maps: set,
+                };
+                push_run(runs, run.clone());
+                let at = begin as usize..corners.len();
+                attributes.extend(at, object, part.triangles.clone(), variant, turning);
                 let own = &corners[begin as usize..];
                 if let (false, Some(bounds)) = (material.is_opaque(), bounding_box(own)) {
                     parts.push(TransparentPart {
-                        run: DrawRun {
-                            vertices: begin..corners.len() as u32,
-                            variant,
-                        },
+                        run,
                         bounds,
                         centroids: own.chunks_exact(3).map(centroid).collect(),
                     });
@@ -279,7 +315,10 @@ impl SceneBuffers {
             .lights
             .iter()
             .map(|l| LightData {
-                position: l.position.extend(1.0).to_array(),
+                position: match l.source {
+                    Source::Point(place) => place.extend(1.0).to_array(),
+                    Source::Toward(direction) => direction.extend(0.0).to_array(),
+                },
                 color: [
                     l.color[0] * l.intensity,
                     l.color[1] * l.intensity,
@@ -293,6 +332,11 @@ impl SceneBuffers {
         let at_least_one = |n: usize| n.max(1);
         materials.resize(at_least_one(materials.len()), MaterialData::zeroed());
         Ok(Self {
+            attributes: attributes.upload(gpu, corners.len()),
+            maps,
+            mapped,
+            grey: scene.is_grey(),
+            tinted: scene.is_tinted(),
             corners: gpu.upload("corners", &corners, wgpu::BufferUsages::VERTEX),
             materials: gpu.upload("materials", &materials, storage),
             lights: opaque
@@ -326,7 +370,7 @@ impl SceneBuffers {
         });
         self.transparent.clear();
         for TransparentPart { run, .. } in &self.parts {
-            push_run(&mut self.transparent, run.vertices.clone(), run.variant);
+            push_run(&mut self.transparent, run.clone());
         }
     }
 
@@ -340,7 +384,26 @@ impl SceneBuffers {
         let lights = self.lights.is_some().then_some("lights");
         let depth = self.has_opaque().then_some("opaque depth");
         let always = ["camera", "materials"].into_iter();
-        always.chain(lights).chain(depth).collect()
+        let sampler = self.mapped.contains(&true).then_some("sampler");
+        let names = peelnet_scene::Effect::MAPS.map(peelnet_scene::Effect::name);
+        let maps = names.into_iter().zip(self.mapped);
+        let maps = maps.filter_map(|(name, read)| read.then_some(name));
+        always
+            .chain(lights)
+            .chain(depth)
+            .chain(sampler)
+            .chain(maps)
+            .collect()
+    }
+
+    /// What the vertex shader reads of a corner.
+    pub fn corner_attributes(&self) -> Vec<&'static str> {
+        let lit = self.lights.is_some().then_some("normal");
+        let names = ["places on images", "tangent", "color"].into_iter();
+        let extra = names.zip(&self.attributes);
+        let extra = extra.filter_map(|(name, buffer)| buffer.as_ref().map(|_| name));
+        let always = ["position", "material"].into_iter();
+        always.chain(lit).chain(extra).collect()
     }
 
     /// Whether anything opaque can hide transparent fragments.
@@ -462,16 +525,19 @@ impl SceneBuffers {
             Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
             Surfaces::Transparent => (&frame.scene_group, &self.transparent),
         };
-        let mut layouts = vec![&group.layout];
-        layouts.extend(pass.group);
-        let layout = gpu.layout(&layouts);
-        let mut variants: Vec<Variant> = Vec::new();
+        let mut variants: Vec<(Variant, Option<usize>)> = Vec::new();
         for run in runs {
-            if !variants.contains(&run.variant) {
-                variants.push(run.variant);
+            if !variants.iter().any(|(v, _)| *v == run.variant) {
+                variants.push((run.variant, run.maps));
             }
         }
-        let build = |variant: Variant| {
+        let build = |variant: Variant, maps: Option<usize>| {
+            let maps = maps.map(|number| &self.maps.bound(number).layout);
+            let mut layouts = vec![Some(&group.layout), pass.group, maps];
+            while layouts.last().is_some_and(Option::is_none) {
+                layouts.pop();
+            }
+            let layout = gpu.layout(&layouts);
             let mut features = pass.features.to_vec();
             features.extend(variant.features());
             if surfaces == Surfaces::Transparent && self.has_opaque() {
@@ -481,7 +547,7 @@ impl SceneBuffers {
         };
         let built = variants
             .into_iter()
-            .map(|variant| Ok((variant, build(variant)?)));
+            .map(|(variant, maps)| Ok((variant, build(variant, maps)?)));
         built.collect::<Result<_, _>>().map(GeometryPipelines)
     }
 
@@ -493,10 +559,12 @@ impl SceneBuffers {
         features: &[&str],
         variant: Variant,
     ) -> Result<wgpu::RenderPipeline, RenderError> {
-        let lit: &[&str] = if variant.is_lit() { &["lit"] } else { &[] };
+        let carried = ["lit", "mapped", "normal_map", "vertex_colors"];
+        let mut of_vertex = variant.features();
+        of_vertex.retain(|f| carried.contains(f));
         let vertex = gpu.shader(
             "scene::vertex",
-            &peelnet_shaders::link("scene::vertex", lit, &[])?,
+            &peelnet_shaders::link("scene::vertex", &of_vertex, &[])?,
         );
         let fragment = gpu.shader(
             pass.shader,
@@ -505,6 +573,33 @@ impl SceneBuffers {
         let all = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
         let unlit = [all[0], all[2]];
         let attributes: &[_] = if variant.is_lit() { &all } else { &unlit };
+        // In the order of `Attributes`.
+        let extra: [[wgpu::VertexAttribute; 1]; 3] = [
+            wgpu::vertex_attr_array![3 => Float32x2],
+            wgpu::vertex_attr_array![4 => Float32x4],
+            wgpu::vertex_attr_array![5 => Float32x4],
+        ];
+        let read = Attributes::read_by(variant);
+        let of_extra = |k: usize| {
+            read[k].then(|| wgpu::VertexBufferLayout {
+                array_stride: extra[k][0].format.size(),
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &extra[k],
+            })
+        };
+        let mut buffers = vec![
+            Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<Corner>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes,
+            }),
+            of_extra(0),
+            of_extra(1),
+            of_extra(2),
+        ];
+        while buffers.last().is_some_and(Option::is_none) {
+            buffers.pop();
+        }
         let descriptor = wgpu::RenderPipelineDescriptor {
             label: Some(pass.label),
             layout: Some(layout),
@@ -512,11 +607,7 @@ impl SceneBuffers {
                 module: &vertex,
                 entry_point: Some("vertex_main"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Corner>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes,
-                })],
+                buffers: &buffers,
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: variant.culled.then_some(wgpu::Face::Back),
@@ -548,11 +639,27 @@ impl SceneBuffers {
             Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
             Surfaces::Transparent => (&frame.scene_group, &self.transparent),
         };
+        self.set_corners(pass, group);
+        for run in runs {
+            self.set_run(pass, pipelines, run);
+            pass.draw(run.vertices.clone(), 0..1);
+        }
+    }
+
+    fn set_corners(&self, pass: &mut wgpu::RenderPass<'_>, group: &Bound) {
         pass.set_bind_group(0, &group.group, &[]);
         pass.set_vertex_buffer(0, self.corners.slice(..));
-        for run in runs {
-            pipelines.set(pass, run.variant);
-            pass.draw(run.vertices.clone(), 0..1);
+        for (buffer, slot) in self.attributes.iter().zip(1..) {
+            if let Some(buffer) = buffer {
+                pass.set_vertex_buffer(slot, buffer.slice(..));
+            }
+        }
+    }
+
+    fn set_run(&self, pass: &mut wgpu::RenderPass<'_>, all: &GeometryPipelines, run: &DrawRun) {
+        all.set(pass, run.variant);
+        if let Some(number) = run.maps {
+            pass.set_bind_group(2, &self.maps.bound(number).group, &[]);
         }
     }
 
@@ -665,22 +772,25 @@ impl Sorted {
         let parts = &cx.scene.parts;
         self.runs.clear();
         if let Some(buffer) = &self.indices {
-            let mut triangles: Vec<(f32, u32, Variant)> = parts
+            let mut triangles: Vec<(f32, u32, &DrawRun)> = parts
                 .iter()
                 .flat_map(|part| {
                     let first = part.run.vertices.start;
-                    let variant = part.run.variant;
                     let all = part.centroids.iter().zip(0..);
-                    all.map(move |(&c, i)| (depth(c), first + 3 * i, variant))
+                    all.map(move |(&c, i)| (depth(c), first + 3 * i, &part.run))
                 })
                 .collect();
             // Ties by place, so that the image does not depend on the order in which parts are handed over.
             triangles.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let mut indices = Vec::with_capacity(triangles.len() * 3);
-            for (_, first, variant) in triangles {
+            for (_, first, run) in triangles {
                 let at = indices.len() as u32;
                 indices.extend([first, first + 1, first + 2]);
-                push_run(&mut self.runs, at..at + 3, variant);
+                let own = DrawRun {
+                    vertices: at..at + 3,
+                    ..run.clone()
+                };
+                push_run(&mut self.runs, own);
             }
             if !indices.is_empty() {
                 let queue = &cx.recorder.gpu().queue;
@@ -707,13 +817,12 @@ impl Sorted {
         frame: &FrameTargets,
         pipelines: &GeometryPipelines,
     ) {
-        pass.set_bind_group(0, &frame.scene_group.group, &[]);
-        pass.set_vertex_buffer(0, scene.corners.slice(..));
+        scene.set_corners(pass, &frame.scene_group);
         if let Some(indices) = &self.indices {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
         for run in &self.runs {
-            pipelines.set(pass, run.variant);
+            scene.set_run(pass, pipelines, run);
             match self.order {
                 Order::Triangles => pass.draw_indexed(run.vertices.clone(), 0, 0..1),
                 _ => pass.draw(run.vertices.clone(), 0..1),
@@ -744,15 +853,98 @@ fn bounding_box(corners: &[Corner]) -> Option<[glam::Vec3; 2]> {
 }
 
 /// Appends a run, joining it with the one before where the same pipeline draws both.
-fn push_run(runs: &mut Vec<DrawRun>, vertices: Range<u32>, variant: Variant) {
-    if vertices.is_empty() {
+fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
+    if run.vertices.is_empty() {
         return;
     }
+    let same = |last: &DrawRun| (last.variant, last.maps) == (run.variant, run.maps);
     match runs.last_mut() {
-        Some(last) if last.variant == variant && last.vertices.end == vertices.start => {
-            last.vertices.end = vertices.end;
+        Some(last) if same(last) && last.vertices.end == run.vertices.start => {
+            last.vertices.end = run.vertices.end;
         }
-        _ => runs.push(DrawRun { vertices, variant }),
+        _ => runs.push(run),
+    }
+}
+
+/// How an object stands in the world.
+#[derive(Clone, Copy)]
+struct Turning {
+    world: glam::Mat4,
+    /// Of a triangle's corners.
+    order: [usize; 3],
+    mirrored: bool,
+}
+
+/// What only some materials read of a corner: places on images, tangents, colours.
+#[derive(Default)]
+struct Attributes {
+    uvs: Vec<[f32; 2]>,
+    tangents: Vec<[f32; 4]>,
+    colors: Vec<[f32; 4]>,
+}
+
+impl Attributes {
+    fn read_by(variant: Variant) -> [bool; 3] {
+        [
+            variant.is_mapped(),
+            variant.has_normal_map(),
+            variant.vertex_colors,
+        ]
+    }
+
+    /// Those of a part whose corners are numbered `at`.
+    fn extend(
+        &mut self,
+        at: Range<usize>,
+        object: &Object,
+        triangles: Range<usize>,
+        variant: Variant,
+        Turning {
+            world,
+            order,
+            mirrored,
+        }: Turning,
+    ) {
+        let [uvs, tangents, colors] = Self::read_by(variant);
+        let mesh = &object.mesh;
+        if uvs && !mesh.uvs.is_empty() {
+            self.uvs.resize(at.start, [0.0; 2]);
+            let all = mesh.uvs[triangles.clone()].iter();
+            self.uvs
+                .extend(all.flat_map(|t| order.map(|k| t[k].to_array())));
+        }
+        if let Some(found) = tangents.then(|| mesh.tangents(triangles.clone())).flatten() {
+            let sign = if mirrored { -1.0 } else { 1.0 };
+            let turned = |[x, y, z, w]: [f32; 4]| {
+                let tangent = world.transform_vector3(glam::Vec3::new(x, y, z));
+                let [x, y, z] = tangent.normalize_or_zero().to_array();
+                [x, y, z, w * sign]
+            };
+            self.tangents.resize(at.start, [0.0; 4]);
+            self.tangents
+                .extend(found.iter().flat_map(|t| order.map(|k| turned(t[k]))));
+        }
+        if colors {
+            self.colors.resize(at.start, [1.0; 4]);
+            let all = mesh.triangles[triangles].iter();
+            self.colors
+                .extend(all.flat_map(|t| order.map(|k| mesh.colors[t[k] as usize])));
+        }
+    }
+
+    fn upload(mut self, gpu: &Gpu, corners: usize) -> [Option<wgpu::Buffer>; 3] {
+        fn one<T: Pod>(gpu: &Gpu, label: &str, all: &mut Vec<T>, n: usize) -> Option<wgpu::Buffer> {
+            if all.is_empty() {
+                return None;
+            }
+            all.resize(n, T::zeroed());
+            Some(gpu.upload(label, all, wgpu::BufferUsages::VERTEX))
+        }
+        [
+            one(gpu, "places on images", &mut self.uvs, corners),
+            one(gpu, "tangents", &mut self.tangents, corners),
+            one(gpu, "corner colours", &mut self.colors, corners),
+        ]
     }
 }
 
@@ -811,18 +1003,35 @@ mod tests {
 
     #[test]
     fn runs_join_where_they_can() {
-        let mut runs = Vec::new();
-        let two_sided = Variant::of(&Material::unlit([1.0; 3], 0.5), false);
+        let material = Material::unlit([1.0; 3], 0.5);
+        let object = Object::of_triangles("none", &[], material.clone());
+        let setting = Setting {
+            lit: false,
+            sun: false,
+        };
+        let two_sided = Variant::of(&material, &object, setting);
         let culled = Variant {
             culled: true,
             ..two_sided
         };
-        push_run(&mut runs, 0..3, two_sided);
-        push_run(&mut runs, 3..9, two_sided);
-        push_run(&mut runs, 9..12, culled);
-        push_run(&mut runs, 12..12, culled);
-        push_run(&mut runs, 15..18, culled);
+        let mut runs = Vec::new();
+        for (vertices, variant, maps) in [
+            (0..3, two_sided, None),
+            (3..9, two_sided, None),
+            (9..12, culled, None),
+            (12..12, culled, None),
+            (15..18, culled, None),
+            (18..21, culled, Some(0)),
+            (21..24, culled, Some(0)),
+        ] {
+            let run = DrawRun {
+                vertices,
+                variant,
+                maps,
+            };
+            push_run(&mut runs, run);
+        }
         let vertices: Vec<_> = runs.iter().map(|r| r.vertices.clone()).collect();
-        assert_eq!(vertices, [0..9, 9..12, 15..18]);
+        assert_eq!(vertices, [0..9, 9..12, 15..18, 18..24]);
     }
 }

@@ -1,6 +1,8 @@
 //! The census: which effects a scene calls for, and what asks for each. A renderer builds what the census names and nothing else.
 
-use crate::{Lighting, Material, Scene};
+#[cfg(doc)]
+use crate::Maps;
+use crate::{Lighting, Material, Object, Scene, Source};
 use serde::Serialize;
 use std::fmt;
 
@@ -16,21 +18,76 @@ pub struct Variant {
     pub cutout: bool,
     /// Whether back faces are left out.
     pub culled: bool,
+    /// Which of [`Maps::all`] are read.
+    pub maps: [bool; 5],
+    /// Whether opacity is read from the colour map, which other passes than those of colour need then.
+    pub clear_map: bool,
+    /// Whether corners have colours of their own.
+    pub vertex_colors: bool,
+    /// Whether a light that it is lit by has no position.
+    pub sun: bool,
+    /// Whether light passes through what it covers.
+    pub transmissive: bool,
+}
+
+/// What of a scene decides its materials' variants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Whether there is any light.
+    pub lit: bool,
+    /// Whether any light has no position.
+    pub sun: bool,
+}
+
+impl Setting {
+    /// A scene's.
+    pub fn of(scene: &Scene) -> Self {
+        let is_sun = |l: &crate::Light| matches!(l.source, Source::Toward(_));
+        Self {
+            lit: !scene.lights.is_empty(),
+            sun: scene.lights.iter().any(is_sun),
+        }
+    }
 }
 
 impl Variant {
-    /// A material's, in a scene that has lights or none.
-    pub fn of(material: &Material, lit: bool) -> Self {
+    /// A material's on an object.
+    pub fn of(material: &Material, object: &Object, setting: Setting) -> Self {
+        let lighting = if setting.lit {
+            material.lighting
+        } else {
+            Lighting::Unlit
+        };
+        let is_lit = lighting != Lighting::Unlit;
+        let emissive = material.is_emissive();
+        let [color, normal, metal, occlusion, emission] = material.maps.all();
         Self {
-            lighting: if lit {
-                material.lighting
-            } else {
-                Lighting::Unlit
-            },
-            emissive: material.is_emissive(),
+            lighting,
+            emissive,
             cutout: material.alpha_cutoff.is_some_and(|cutoff| cutoff > 0.0),
             culled: !material.double_sided,
+            maps: [
+                color.is_some(),
+                is_lit && normal.is_some(),
+                lighting == Lighting::Pbr && metal.is_some(),
+                is_lit && occlusion.is_some(),
+                emissive && emission.is_some(),
+            ],
+            clear_map: color.is_some_and(|map| map.has_alpha()),
+            vertex_colors: !object.mesh.colors.is_empty(),
+            sun: is_lit && setting.sun,
+            transmissive: material.is_transmissive(),
         }
+    }
+
+    /// Whether any image is read.
+    pub fn is_mapped(self) -> bool {
+        self.maps.contains(&true)
+    }
+
+    /// Whether tangents are read.
+    pub const fn has_normal_map(self) -> bool {
+        self.maps[1]
     }
 
     /// Whether normals, positions and lights are read.
@@ -48,9 +105,25 @@ impl Variant {
         let mut all = lighting.to_vec();
         all.extend(self.emissive.then_some("emission"));
         all.extend(self.cutout.then_some("cutout"));
+        all.extend(self.is_mapped().then_some("mapped"));
+        let maps = self.maps.iter().zip(MAP_FEATURES);
+        all.extend(maps.filter_map(|(read, name)| read.then_some(name)));
+        all.extend(self.clear_map.then_some("clear_map"));
+        all.extend(self.vertex_colors.then_some("vertex_colors"));
+        all.extend(self.sun.then_some("sun"));
+        all.extend(self.transmissive.then_some("transmission"));
         all
     }
 }
+
+/// Shader features of the maps, in the order of [`Maps::all`].
+const MAP_FEATURES: [&str; 5] = [
+    "color_map",
+    "normal_map",
+    "metallic_roughness_map",
+    "occlusion_map",
+    "emissive_map",
+];
 
 /// Something that a renderer does only where a scene calls for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,20 +140,56 @@ pub enum Effect {
     Cutout,
     /// Light that comes from a surface itself.
     Emission,
+    /// Images of base colour and opacity.
+    ColorMap,
+    /// Images of normals.
+    NormalMap,
+    /// Images of metal and roughness.
+    MetallicRoughnessMap,
+    /// Images of the share of ambient light.
+    OcclusionMap,
+    /// Images of emission.
+    EmissiveMap,
+    /// Colours of corners.
+    VertexColors,
+    /// Lights without a position.
+    Sun,
+    /// Light that passes through surfaces and takes their colour.
+    Transmission,
+    /// Grey alone: one channel less.
+    Monochrome,
     /// Transparency at a lower resolution.
     LowResolution,
 }
 
 impl Effect {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 16] = [
         Self::Opaque,
         Self::Culling,
         Self::Lighting,
         Self::Pbr,
         Self::Cutout,
         Self::Emission,
+        Self::ColorMap,
+        Self::NormalMap,
+        Self::MetallicRoughnessMap,
+        Self::OcclusionMap,
+        Self::EmissiveMap,
+        Self::VertexColors,
+        Self::Sun,
+        Self::Transmission,
+        Self::Monochrome,
         Self::LowResolution,
+    ];
+
+    /// The five maps in the order of [`Maps::all`].
+    pub const MAPS: [Self; 5] = [
+        Self::ColorMap,
+        Self::NormalMap,
+        Self::MetallicRoughnessMap,
+        Self::OcclusionMap,
+        Self::EmissiveMap,
     ];
 
     /// Its name.
@@ -92,6 +201,15 @@ impl Effect {
             Self::Pbr => "pbr",
             Self::Cutout => "cutout",
             Self::Emission => "emission",
+            Self::ColorMap => "color-map",
+            Self::NormalMap => "normal-map",
+            Self::MetallicRoughnessMap => "metallic-roughness-map",
+            Self::OcclusionMap => "occlusion-map",
+            Self::EmissiveMap => "emissive-map",
+            Self::VertexColors => "vertex-colors",
+            Self::Sun => "directional-light",
+            Self::Transmission => "transmission",
+            Self::Monochrome => "monochrome",
             Self::LowResolution => "low-resolution",
         }
     }
@@ -109,6 +227,17 @@ impl Effect {
             Self::Pbr => "normals and positions, a binding of lights, Cook–Torrance in the shader",
             Self::Cutout => "a comparison and a discard in the pipelines of these materials",
             Self::Emission => "an addition in the pipelines of these materials",
+            Self::ColorMap => "an image with its fetch, places on it, a sampler",
+            Self::NormalMap => "an image with its fetch, tangents, places on it, a sampler",
+            Self::MetallicRoughnessMap | Self::OcclusionMap | Self::EmissiveMap => {
+                "an image with its fetch, places on it, a sampler"
+            }
+            Self::VertexColors => "16 bytes a corner and a product",
+            Self::Sun => "a choice between position and direction for each light",
+            Self::Transmission => {
+                "three channels of transmittance instead of one where it is not grey"
+            }
+            Self::Monochrome => "nothing: weighted sums and transmittance share one target",
             Self::LowResolution => {
                 "two passes over the pixels and 36 bytes a sample; fewer samples for everything transparent"
             }
@@ -123,7 +252,15 @@ impl Effect {
             Self::Pbr => variant.lighting == Lighting::Pbr,
             Self::Cutout => variant.cutout,
             Self::Emission => variant.emissive,
-            Self::LowResolution => false,
+            Self::ColorMap => variant.maps[0],
+            Self::NormalMap => variant.maps[1],
+            Self::MetallicRoughnessMap => variant.maps[2],
+            Self::OcclusionMap => variant.maps[3],
+            Self::EmissiveMap => variant.maps[4],
+            Self::VertexColors => variant.vertex_colors,
+            Self::Sun => variant.sun,
+            Self::Transmission => variant.transmissive,
+            Self::LowResolution | Self::Monochrome => false,
         }
     }
 }
@@ -159,23 +296,24 @@ pub struct Census {
 impl Census {
     /// Takes the census of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let lit = !scene.lights.is_empty();
+        let setting = Setting::of(scene);
         let mut variants: Vec<Variant> = Vec::new();
         let materials = scene.objects.iter().flat_map(|object| {
             let materials = object.mesh.parts.iter().zip(&object.materials);
             // A part without triangles calls for nothing.
             let drawn = materials.filter(|(part, _)| !part.triangles.is_empty());
-            drawn.map(|(_, material)| (object.name.as_str(), material))
+            drawn.map(move |(_, material)| (object, material))
         });
         let mut why: Vec<Vec<String>> = vec![Vec::new(); Effect::ALL.len()];
         for (object, material) in materials {
-            let variant = Variant::of(material, lit);
+            let variant = Variant::of(material, object, setting);
             if !variants.contains(&variant) {
                 variants.push(variant);
             }
             for (effect, why) in Effect::ALL.iter().zip(&mut why) {
-                if effect.is_called_by(material, variant) && !why.iter().any(|w| w == object) {
-                    why.push(object.to_owned());
+                let is_new = || !why.contains(&object.name);
+                if effect.is_called_by(material, variant) && is_new() {
+                    why.push(object.name.clone());
                 }
             }
         }
@@ -189,11 +327,17 @@ impl Census {
                 adds: effect.adds(),
             })
             .collect();
-        if scene.transparency_scale < 1.0 {
-            for effect in effects.iter_mut().filter(|e| e.name == "low-resolution") {
-                effect.on = true;
-                effect.why = vec![format!("transparency_scale = {}", scene.transparency_scale)];
+        let mut call = |which: Effect, why: String| {
+            for effect in effects.iter_mut().filter(|e| e.name == which.name()) {
+                (effect.on, effect.why) = (true, vec![why.clone()]);
             }
+        };
+        if scene.transparency_scale < 1.0 {
+            let why = format!("transparency_scale = {}", scene.transparency_scale);
+            call(Effect::LowResolution, why);
+        }
+        if scene.is_grey() {
+            call(Effect::Monochrome, "every colour is grey".into());
         }
         Self { effects, variants }
     }
@@ -206,6 +350,33 @@ impl Census {
 }
 
 impl Scene {
+    /// Whether every colour is grey: of materials that are drawn, images, corners, lights and the background.
+    pub fn is_grey(&self) -> bool {
+        let grey = |[r, g, b]: [f32; 3]| r == g && g == b;
+        let material = |m: &Material| {
+            let colors = [m.color, m.emission, m.transmission];
+            let maps = [&m.maps.color, &m.maps.emissive];
+            colors.into_iter().all(grey) && maps.into_iter().flatten().all(|map| map.is_grey())
+        };
+        let corners = |o: &Object| o.mesh.colors.iter().all(|&[r, g, b, _]| grey([r, g, b]));
+        grey(self.background)
+            && self.lights.iter().all(|l| grey(l.color))
+            && self
+                .objects
+                .iter()
+                .all(|o| o.materials.iter().all(material) && corners(o))
+    }
+
+    /// Whether light that passes through a surface takes a colour; where all of it is grey one channel tells how much passes.
+    pub fn is_tinted(&self) -> bool {
+        let mut materials = self.objects.iter().flat_map(|o| &o.materials);
+        materials.any(|m| {
+            let [r, g, b] = m.transmission;
+            let mapped = m.maps.color.as_ref().is_some_and(|map| !map.is_grey());
+            m.is_transmissive() && (r != g || g != b || mapped)
+        })
+    }
+
     /// The scene as it would be if nothing called for an effect: what opaque objects leave is empty, what was lit is unlit.
     pub fn without(&self, effect: Effect) -> Self {
         let mut scene = self.clone();
@@ -223,8 +394,30 @@ impl Scene {
                 Effect::Pbr if m.lighting == Lighting::Pbr => m.lighting = Lighting::Unlit,
                 Effect::Cutout => m.alpha_cutoff = m.alpha_cutoff.map(|_| 0.0),
                 Effect::Emission => m.emission = [0.0; 3],
+                Effect::ColorMap => m.maps.color = None,
+                Effect::NormalMap => m.maps.normal = None,
+                Effect::MetallicRoughnessMap => m.maps.metallic_roughness = None,
+                Effect::OcclusionMap => m.maps.occlusion = None,
+                Effect::EmissiveMap => m.maps.emissive = None,
+                Effect::Transmission => m.transmission = [0.0; 3],
                 _ => {}
             }
+        }
+        for o in &mut scene.objects {
+            if effect == Effect::VertexColors && !o.mesh.colors.is_empty() {
+                let mut mesh = (*o.mesh).clone();
+                mesh.colors.clear();
+                o.mesh = mesh.into();
+            }
+        }
+        if effect == Effect::Sun {
+            scene
+                .lights
+                .retain(|l| matches!(l.source, Source::Point(_)));
+        }
+        // The least that is not grey.
+        if effect == Effect::Monochrome && scene.is_grey() {
+            scene.background[2] = scene.background[2].next_up();
         }
         scene
     }
@@ -233,7 +426,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Camera, Light, Object};
+    use crate::{Camera, Light, Object, Texture};
     use glam::Vec3;
 
     fn scene(material: Material) -> Scene {
@@ -253,53 +446,101 @@ mod tests {
     /// Each effect is called for by just what names it, and is gone without it.
     #[test]
     fn each_effect_has_its_cause() {
-        let plain = Material::unlit([0.5; 3], 0.5);
+        let plain = Material::unlit([0.5, 0.4, 0.5], 0.5);
         assert!(
             Effect::ALL
                 .iter()
                 .all(|e| !Census::of(&scene(plain.clone())).has(*e))
         );
         let light = Light {
-            position: Vec3::ONE,
+            source: Source::Point(Vec3::ONE),
             color: [1.0; 3],
             intensity: 1.0,
+        };
+        let image = || {
+            Some(std::sync::Arc::new(Texture::of("red", [1, 1], |_, _| {
+                [255, 0, 0, 255]
+            })))
         };
         for effect in Effect::ALL {
             let mut material = plain.clone();
             let mut lights = Vec::new();
             let mut scale = 1.0;
+            let maps = &mut material.maps;
+            // What it cannot be without.
+            let mut with: Vec<&str> = Vec::new();
             match effect {
                 Effect::Opaque => (material.alpha, material.blend) = (1.0, false),
                 Effect::Culling => material.double_sided = false,
                 Effect::Lighting => material.lighting = Lighting::Phong,
                 Effect::Pbr => material.lighting = Lighting::Pbr,
-                Effect::Cutout => material.alpha_cutoff = Some(0.4),
+                Effect::Cutout => {
+                    material.alpha_cutoff = Some(0.4);
+                    // A surface with holes is drawn with the opaque ones.
+                    with.push("opaque");
+                }
                 Effect::Emission => material.emission = [0.0, 0.1, 0.0],
+                Effect::ColorMap => maps.color = image(),
+                Effect::NormalMap | Effect::OcclusionMap => {
+                    with.push("lighting");
+                    material.lighting = Lighting::Phong;
+                    match effect {
+                        Effect::NormalMap => maps.normal = image(),
+                        _ => maps.occlusion = image(),
+                    }
+                }
+                Effect::MetallicRoughnessMap => {
+                    with.push("pbr");
+                    maps.metallic_roughness = image();
+                    material.lighting = Lighting::Pbr;
+                }
+                Effect::EmissiveMap => {
+                    with.push("emission");
+                    maps.emissive = image();
+                    material.emission = [0.0, 0.1, 0.0];
+                }
+                Effect::VertexColors => {}
+                Effect::Sun => {
+                    with.push("lighting");
+                    material.lighting = Lighting::Phong;
+                }
+                Effect::Transmission => material.transmission = [0.0, 0.5, 0.0],
+                Effect::Monochrome => material.color = [0.25; 3],
                 Effect::LowResolution => scale = 0.5,
             }
-            if matches!(effect, Effect::Lighting | Effect::Pbr) {
+            if material.lighting != Lighting::Unlit {
                 // Without a light there is nothing to compute.
                 assert!(!Census::of(&scene(material.clone())).has(effect));
                 lights.push(light);
             }
             let mut scene = scene(material);
-            scene.lights = lights;
+            if effect == Effect::VertexColors {
+                let mut mesh = (*scene.objects[0].mesh).clone();
+                mesh.colors = vec![[1.0, 0.0, 0.0, 1.0]; 3];
+                scene.objects[0].mesh = mesh.into();
+            }
+            if effect == Effect::Sun {
+                scene.lights.push(Light {
+                    source: Source::Toward(Vec3::Y),
+                    ..light
+                });
+            }
+            scene.lights.extend(lights);
             scene.transparency_scale = scale;
             let on = |s: &Scene| -> Vec<&str> {
                 let census = Census::of(s);
                 let on = census.effects.into_iter().filter(|e| e.on);
                 on.map(|e| e.name).collect()
             };
-            // A surface with holes is drawn with the opaque ones.
-            let both = ["opaque", "cutout"];
-            let alone = [effect.name()];
-            let want = if effect == Effect::Cutout {
-                &both[..]
-            } else {
-                &alone[..]
-            };
-            assert_eq!(on(&scene), want);
-            assert!(!on(&scene.without(effect)).contains(&effect.name()));
+            with.push(effect.name());
+            let mut found = on(&scene);
+            found.sort_unstable();
+            with.sort_unstable();
+            assert_eq!(found, with, "{effect}");
+            assert!(
+                !on(&scene.without(effect)).contains(&effect.name()),
+                "{effect}"
+            );
         }
     }
 }

@@ -2,9 +2,11 @@
 //! A glTF or GLB file is a scene by itself, see [`Scene::load`].
 
 use crate::{
-    Camera, Light, Lighting, Material, Mesh, Object, Scene, SceneError,
+    Camera, Light, Lighting, Maps, Material, Mesh, Object, Scene, SceneError, Source, State,
+    Texture, Wrap,
     gltf::load_gltf,
     obj::load_obj,
+    pattern::Pattern,
     scatter::{Scatter, fixed_axes},
     shapes::Shape,
 };
@@ -38,6 +40,29 @@ struct RawScene {
     object: Vec<RawObject>,
     #[serde(default)]
     scatter: OneOrMany<Scatter>,
+    #[serde(default)]
+    timeline: Vec<RawState>,
+}
+
+/// A state of an ageing scene: what changes from its time on.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawState {
+    time: f32,
+    #[serde(default)]
+    label: String,
+    #[serde(default)]
+    object: Vec<RawChange>,
+}
+
+/// What becomes of an object.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawChange {
+    name: String,
+    mesh: Option<MeshRef>,
+    #[serde(default)]
+    material: RawMaterial,
 }
 
 /// `[scatter]` or `[[scatter]]`.
@@ -96,7 +121,8 @@ struct RawOrbit {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawLight {
-    position: [f32; 3],
+    position: Option<[f32; 3]>,
+    direction: Option<[f32; 3]>,
     #[serde(default = "white")]
     color: [f32; 3],
     #[serde(default = "one")]
@@ -123,13 +149,12 @@ struct RawObject {
     rotate: [f32; 3],
     #[serde(default)]
     translate: [f32; 3],
-    #[serde(default)]
-    layer: u32,
+    layer: Option<u32>,
     #[serde(default)]
     material: RawMaterial,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawMaterial {
     color: Option<[f32; 3]>,
@@ -140,10 +165,95 @@ struct RawMaterial {
     metallic: Option<f32>,
     roughness: Option<f32>,
     emission: Option<[f32; 3]>,
+    transmission_color: Option<[f32; 3]>,
+    color_map: Option<MapRef>,
+    normal_map: Option<MapRef>,
+    metallic_roughness_map: Option<MapRef>,
+    occlusion_map: Option<MapRef>,
+    emissive_map: Option<MapRef>,
+    normal_scale: Option<f32>,
+    occlusion_strength: Option<f32>,
+    wrap: Option<RawWrap>,
     alpha_mode: Option<AlphaMode>,
     alpha_cutoff: Option<f32>,
     double_sided: Option<bool>,
     blend: Option<bool>,
+}
+
+impl RawMaterial {
+    fn has_maps(&self) -> bool {
+        let maps = [
+            &self.color_map,
+            &self.normal_map,
+            &self.metallic_roughness_map,
+            &self.occlusion_map,
+            &self.emissive_map,
+        ];
+        maps.into_iter().any(Option::is_some)
+    }
+
+    /// What an earlier state says, but for what this one says anew.
+    fn after(&self, earlier: &Self) -> Self {
+        macro_rules! later {
+            ($($field:ident),*) => { Self { $($field: self.$field.clone().or_else(|| earlier.$field.clone())),* } };
+        }
+        later!(
+            color,
+            alpha,
+            lighting,
+            specular,
+            shininess,
+            metallic,
+            roughness,
+            emission,
+            transmission_color,
+            color_map,
+            normal_map,
+            metallic_roughness_map,
+            occlusion_map,
+            emissive_map,
+            normal_scale,
+            occlusion_strength,
+            wrap,
+            alpha_mode,
+            alpha_cutoff,
+            double_sided,
+            blend
+        )
+    }
+}
+
+/// Beyond the edges of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum RawWrap {
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+/// An image in a scene file: a path, or a table with `pattern = …`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MapRef {
+    /// A file, relative to the scene file.
+    File(PathBuf),
+    /// A generated pattern.
+    Pattern(Box<Pattern>),
+}
+
+impl<'de> Deserialize<'de> for MapRef {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match toml::Value::deserialize(deserializer)? {
+            toml::Value::String(path) => Ok(Self::File(path.into())),
+            table @ toml::Value::Table(_) => Pattern::deserialize(table)
+                .map(|pattern| Self::Pattern(Box::new(pattern)))
+                .map_err(|e| D::Error::custom(e.message())),
+            other => Err(D::Error::custom(format!(
+                "a map is a path or a table with pattern = …, not {}",
+                other.type_str()
+            ))),
+        }
+    }
 }
 
 /// What opacity means, as in glTF 2.0.
@@ -189,7 +299,8 @@ struct Loader<'a> {
     hasher: Sha256,
     warnings: Vec<String>,
     files: HashMap<PathBuf, Arc<Mesh>>,
-    shapes: Vec<(Shape, Arc<Mesh>)>,
+    shapes: Vec<(Shape, bool, Arc<Mesh>)>,
+    images: HashMap<PathBuf, Arc<Texture>>,
 }
 
 impl Loader<'_> {
@@ -201,17 +312,20 @@ impl Loader<'_> {
         }
     }
 
-    fn mesh(&mut self, mesh: &MeshRef, field: &str) -> Result<Arc<Mesh>, SceneError> {
+    /// A mesh, read or made once; a generated one has places on images only where it is `mapped`.
+    fn mesh(&mut self, mesh: &MeshRef, mapped: bool, field: &str) -> Result<Arc<Mesh>, SceneError> {
         match mesh {
             MeshRef::Shape(shape) => {
-                if let Some((_, mesh)) = self.shapes.iter().find(|(s, _)| s == shape) {
+                let mut known = self.shapes.iter();
+                if let Some((_, _, mesh)) = known.find(|(s, m, _)| s == shape && *m == mapped) {
                     return Ok(Arc::clone(mesh));
                 }
                 let built = shape
-                    .build(&Material::default_with(self.lighting))
+                    .build(&Material::default_with(self.lighting), mapped)
                     .map_err(|e| self.value(field, e))?;
                 let built = Arc::new(built);
-                self.shapes.push((shape.clone(), Arc::clone(&built)));
+                self.shapes
+                    .push((shape.clone(), mapped, Arc::clone(&built)));
                 Ok(built)
             }
             MeshRef::File(name) => {
@@ -276,12 +390,103 @@ impl Loader<'_> {
         }
     }
 
+    /// An image: a file, read once, or a pattern read as what it is for.
+    fn map(
+        &mut self,
+        map: Option<&MapRef>,
+        of_pattern: fn(&Pattern) -> Result<Texture, String>,
+        field: &str,
+    ) -> Result<Option<Arc<Texture>>, SceneError> {
+        let file = match map {
+            None => return Ok(None),
+            Some(MapRef::Pattern(pattern)) => {
+                let texture = of_pattern(pattern).map_err(|e| self.value(field, e))?;
+                return Ok(Some(Arc::new(texture)));
+            }
+            Some(MapRef::File(name)) => self.path.parent().unwrap_or(Path::new(".")).join(name),
+        };
+        if let Some(known) = self.images.get(&file) {
+            return Ok(Some(Arc::clone(known)));
+        }
+        let texture = Arc::new(Texture::load(&file)?);
+        let bytes = fs::read(&file).map_err(|source| SceneError::Read {
+            path: file.clone(),
+            source,
+        })?;
+        self.hasher.update(&bytes);
+        self.images.insert(file, Arc::clone(&texture));
+        Ok(Some(texture))
+    }
+
+    /// The images of a material: those given, and the base's where none is.
+    fn maps(
+        &mut self,
+        base: &Maps,
+        raw: &RawMaterial,
+        read: bool,
+        field: &str,
+    ) -> Result<Maps, SceneError> {
+        let at = |key: &str| format!("{field}.material.{key}");
+        let number = |x: f32| x.is_finite() && x.abs() <= 100.0;
+        if let Some(x) = raw.normal_scale.filter(|x| !number(*x)) {
+            return Err(self.value(&at("normal_scale"), format!("{x} must lie in -100 … 100")));
+        }
+        let strength = raw.occlusion_strength.filter(|x| !(0.0..=1.0).contains(x));
+        if let Some(x) = strength {
+            return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
+        }
+        let wrap = raw.wrap.map(|wrap| match wrap {
+            RawWrap::Repeat => Wrap::Repeat,
+            RawWrap::Mirror => Wrap::Mirror,
+            RawWrap::Clamp => Wrap::Clamp,
+        });
+        let mut map = |map: &Option<MapRef>, of_pattern, key: &str, base: &Option<Arc<Texture>>| {
+            let own = self.map(map.as_ref().filter(|_| read), of_pattern, &at(key))?;
+            Ok::<_, SceneError>(own.or_else(|| base.clone()))
+        };
+        let metal = &raw.metallic_roughness_map;
+        Ok(Maps {
+            color: map(&raw.color_map, Pattern::color, "color_map", &base.color)?,
+            normal: map(
+                &raw.normal_map,
+                Pattern::normals,
+                "normal_map",
+                &base.normal,
+            )?,
+            metallic_roughness: map(
+                metal,
+                Pattern::metallic_roughness,
+                "metallic_roughness_map",
+                &base.metallic_roughness,
+            )?,
+            occlusion: map(
+                &raw.occlusion_map,
+                Pattern::occlusion,
+                "occlusion_map",
+                &base.occlusion,
+            )?,
+            emissive: map(
+                &raw.emissive_map,
+                Pattern::color,
+                "emissive_map",
+                &base.emissive,
+            )?,
+            normal_scale: raw.normal_scale.unwrap_or(base.normal_scale),
+            occlusion_strength: raw.occlusion_strength.unwrap_or(base.occlusion_strength),
+            wrap: wrap.map_or(base.wrap, |wrap| [wrap; 2]),
+            nearest: base.nearest,
+        })
+    }
+
+    /// A mesh's material with what a scene file says of it; images are left as they are unless they are `read`.
     fn material(
-        &self,
+        &mut self,
         base: &Material,
         raw: &RawMaterial,
+        read: bool,
         field: &str,
     ) -> Result<Material, SceneError> {
+        let maps = self.maps(&base.maps, raw, read, field)?;
         let at = |key: &str| format!("{field}.material.{key}");
         let unit = |key: &str, x: f32| {
             if (0.0..=1.0).contains(&x) {
@@ -297,6 +502,9 @@ impl Loader<'_> {
                 Err(self.value(&at(key), format!("{x} must be finite and not negative")))
             }
         };
+        for c in raw.transmission_color.into_iter().flatten() {
+            unit("transmission_color", c)?;
+        }
         for (key, color) in [("color", raw.color), ("emission", raw.emission)] {
             for c in color.into_iter().flatten() {
                 not_negative(key, c)?;
@@ -312,18 +520,32 @@ impl Loader<'_> {
         }
         let cutoff = raw.alpha_cutoff.unwrap_or(ALPHA_CUTOFF);
         let (alpha_cutoff, blend) = match raw.alpha_mode {
-            None => (base.alpha_cutoff, raw.blend.unwrap_or(base.blend)),
+            None => {
+                // An image that can be seen through is meant to be.
+                let own = raw.color_map.as_ref().and(maps.color.as_ref());
+                let clear = own.is_some_and(|map| map.has_alpha());
+                let blend = raw.blend.unwrap_or(base.blend || clear);
+                (base.alpha_cutoff, blend)
+            }
             Some(AlphaMode::Opaque) => (Some(0.0), false),
             Some(AlphaMode::Mask) => (Some(unit("alpha_cutoff", cutoff)?), false),
             Some(AlphaMode::Blend) => (None, true),
         };
+        let lighting = self
+            .lighting_word(raw.lighting.as_deref(), &at("lighting"))?
+            .unwrap_or(base.lighting);
+        if raw.metallic_roughness_map.is_some() && lighting == Lighting::Phong {
+            let mend = "belongs to lighting = \"pbr\": add that, or leave it out";
+            return Err(self.value(&at("metallic_roughness_map"), mend));
+        }
+        // A map multiplies the material's value: all of it counts where no value is given.
+        let by_map = |map: &Option<MapRef>, base: f32| if map.is_some() { 1.0 } else { base };
+        let metal = &raw.metallic_roughness_map;
         Ok(Material {
             name: base.name.clone(),
             color: raw.color.unwrap_or(base.color),
             alpha: raw.alpha.map_or(Ok(base.alpha), |a| unit("alpha", a))?,
-            lighting: self
-                .lighting_word(raw.lighting.as_deref(), &at("lighting"))?
-                .unwrap_or(base.lighting),
+            lighting,
             specular: raw
                 .specular
                 .map_or(Ok(base.specular), |x| not_negative("specular", x))?,
@@ -340,11 +562,15 @@ impl Loader<'_> {
             })?,
             metallic: raw
                 .metallic
-                .map_or(Ok(base.metallic), |x| unit("metallic", x))?,
+                .map_or(Ok(by_map(metal, base.metallic)), |x| unit("metallic", x))?,
             roughness: raw
                 .roughness
-                .map_or(Ok(base.roughness), |x| unit("roughness", x))?,
-            emission: raw.emission.unwrap_or(base.emission),
+                .map_or(Ok(by_map(metal, base.roughness)), |x| unit("roughness", x))?,
+            emission: raw
+                .emission
+                .unwrap_or(base.emission.map(|c| by_map(&raw.emissive_map, c))),
+            transmission: raw.transmission_color.unwrap_or(base.transmission),
+            maps,
             alpha_cutoff,
             double_sided: raw.double_sided.unwrap_or(base.double_sided),
             blend,
@@ -400,18 +626,33 @@ impl Loader<'_> {
 }
 
 impl Scene {
-    /// Reads a scene file and everything it names. A glTF or GLB file is drawn with its own lights and cameras; where it has none, with
-    /// two lights, and a camera that sees all of it.
+    /// Reads a scene file and everything it names, an ageing one in its first state. A glTF or GLB file is drawn with its own lights and
+    /// cameras; where it has none, with two lights, and a camera that sees all of it.
     ///
     /// # Errors
     /// The first thing wrong, with file, line or key, and the mend.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::load_at(path, None)
+    }
+
+    /// The same at a time of the scene's timeline: only the state shown is loaded; numbers of materials lie between its and the next one's.
+    ///
+    /// # Errors
+    /// See [`Scene::load`]; a time outside of the timeline, or of a scene without one.
+    pub fn load_at(path: &Path, time: Option<f32>) -> Result<Self, SceneError> {
         let ending = path.extension().and_then(|e| e.to_str());
         if matches!(
             ending.map(str::to_lowercase).as_deref(),
             Some("gltf" | "glb")
         ) {
-            return of_gltf(path);
+            return match time {
+                None => of_gltf(path),
+                Some(_) => Err(SceneError::Value {
+                    path: path.to_owned(),
+                    field: "timeline".into(),
+                    message: NO_TIMELINE.into(),
+                }),
+            };
         }
         let text = fs::read_to_string(path).map_err(|source| SceneError::Read {
             path: path.to_owned(),
@@ -441,12 +682,29 @@ impl Scene {
             warnings: Vec::new(),
             files: HashMap::new(),
             shapes: Vec::new(),
+            images: HashMap::new(),
         };
+        let age = Age::of(&mut loader, &raw, time)?;
         let views = views(&loader, &raw)?;
         let mut lights = Vec::new();
         for (i, light) in raw.light.iter().enumerate() {
-            let numbers = light
-                .position
+            let source = match (light.position, light.direction) {
+                (Some(position), None) => Source::Point(position.into()),
+                // It comes from where it does not shine to.
+                (None, Some(direction)) => {
+                    let toward = (-Vec3::from(direction)).try_normalize();
+                    Source::Toward(toward.unwrap_or(Vec3::NAN))
+                }
+                _ => {
+                    return Err(loader.value(
+                        &format!("light {}", i + 1),
+                        "needs either a position or a direction",
+                    ));
+                }
+            };
+            let (Source::Point(place) | Source::Toward(place)) = source;
+            let numbers = place
+                .as_ref()
                 .iter()
                 .chain(&light.color)
                 .chain([&light.intensity]);
@@ -456,11 +714,11 @@ impl Scene {
             {
                 return Err(loader.value(
                     &format!("light {}", i + 1),
-                    "must be finite, colour and intensity not negative",
+                    "must be finite, colour and intensity not negative, a direction not zero",
                 ));
             }
             lights.push(Light {
-                position: light.position.into(),
+                source,
                 color: light.color,
                 intensity: light.intensity,
             });
@@ -476,7 +734,7 @@ impl Scene {
         }
         let mut objects = Vec::new();
         for (i, object) in raw.object.iter().enumerate() {
-            objects.push(place_object(&mut loader, object, i)?);
+            objects.push(place_object(&mut loader, object, i, &age)?);
         }
         for (i, scatter) in raw.scatter.0.iter().enumerate() {
             scatter_objects(&mut loader, scatter, i, views[0].position, &mut objects)?;
@@ -497,6 +755,15 @@ impl Scene {
             objects,
             held_out: raw.held_out,
             warnings: loader.warnings,
+            time: age.time,
+            timeline: raw
+                .timeline
+                .into_iter()
+                .map(|s| State {
+                    time: s.time,
+                    label: s.label,
+                })
+                .collect(),
         })
     }
 }
@@ -565,7 +832,7 @@ fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
         for (towards, share) in [([0.6, 0.9, 1.0], 0.8), ([-1.0, 0.1, 0.7], 0.4)] {
             let distance = 4.0 * radius;
             lights.push(Light {
-                position: middle + Vec3::from(towards).normalize() * distance,
+                source: Source::Point(middle + Vec3::from(towards).normalize() * distance),
                 color: [1.0; 3],
                 intensity: share * std::f32::consts::PI * distance * distance,
             });
@@ -579,7 +846,7 @@ fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
         materials: materials.collect(),
         mesh: Arc::new(loaded.mesh),
         world_from_object: Mat4::IDENTITY,
-        layer: 0,
+        layer: None,
     };
     let hash = hasher.finalize();
     Ok(Scene {
@@ -593,7 +860,94 @@ fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
         objects: vec![object],
         held_out: false,
         warnings,
+        timeline: Vec::new(),
+        time: 0.0,
     })
+}
+
+const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";
+
+/// What a timeline makes of objects at one time.
+struct Age {
+    time: f32,
+    /// By name of the object: how it is, and how it will be at the next state's time.
+    changes: HashMap<String, [Changed; 2]>,
+    /// How far it is to the next state, 0 … 1.
+    share: f32,
+}
+
+/// An object as the states so far have left it.
+#[derive(Clone, Default)]
+struct Changed {
+    mesh: Option<MeshRef>,
+    material: RawMaterial,
+}
+
+impl Age {
+    fn of(loader: &mut Loader<'_>, raw: &RawScene, time: Option<f32>) -> Result<Self, SceneError> {
+        let states = &raw.timeline;
+        let (Some(first), Some(last)) = (states.first(), states.last()) else {
+            return match time {
+                None => Ok(Self {
+                    time: 0.0,
+                    changes: HashMap::new(),
+                    share: 0.0,
+                }),
+                Some(_) => Err(loader.value("timeline", NO_TIMELINE)),
+            };
+        };
+        for (i, state) in states.iter().enumerate() {
+            let field = format!("timeline {}", i + 1);
+            let later = i == 0 || states[i - 1].time < state.time;
+            if !(state.time.is_finite() && later) {
+                return Err(loader.value(
+                    &format!("{field}.time"),
+                    "must be finite and later than the state before it",
+                ));
+            }
+            for change in &state.object {
+                let mut names = raw.object.iter().filter_map(|o| o.name.as_ref());
+                if !names.any(|n| *n == change.name) {
+                    let message = format!("no [[object]] is named '{}'", change.name);
+                    return Err(loader.value(&format!("{field}.object.name"), message));
+                }
+                // All states are checked, whichever is shown.
+                let any = Material::default_with(loader.lighting);
+                let place = format!("{field}, {}", change.name);
+                loader.material(&any, &change.material, false, &place)?;
+            }
+        }
+        let time = time.unwrap_or(first.time);
+        if !(first.time..=last.time).contains(&time) {
+            return Err(loader.value(
+                "timeline",
+                format!("runs from {} to {}, not to {time}", first.time, last.time),
+            ));
+        }
+        let shown = states.iter().rposition(|s| s.time <= time).unwrap_or(0);
+        let mut changes: HashMap<String, [Changed; 2]> = HashMap::new();
+        for (i, state) in states.iter().enumerate().take(shown + 2) {
+            for change in &state.object {
+                let both = changes.entry(change.name.clone()).or_default();
+                let next = both[1].clone();
+                let changed = Changed {
+                    mesh: change.mesh.clone().or(next.mesh),
+                    material: change.material.after(&next.material),
+                };
+                if i <= shown {
+                    both[0] = changed.clone();
+                }
+                both[1] = changed;
+            }
+        }
+        let next = states.get(shown + 1).map_or(f32::INFINITY, |s| s.time);
+        let share = (time - states[shown].time) / (next - states[shown].time);
+        Ok(Self {
+            time,
+            changes,
+            share,
+        })
+    }
 }
 
 fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, SceneError> {
@@ -637,9 +991,19 @@ fn place_object(
     loader: &mut Loader<'_>,
     raw: &RawObject,
     index: usize,
+    age: &Age,
 ) -> Result<Object, SceneError> {
     let field = format!("object {}", index + 1);
-    let mesh = loader.mesh(&raw.mesh, &format!("{field}.mesh"))?;
+    let name = raw.name.as_deref().unwrap_or_default();
+    let [now, next] = age.changes.get(name).cloned().unwrap_or_default();
+    let looks = now.material.after(&raw.material);
+    let mapped = looks.has_maps();
+    let mesh = now.mesh.as_ref().unwrap_or(&raw.mesh);
+    let mesh = loader.mesh(mesh, mapped, &format!("{field}.mesh"))?;
+    if mapped && mesh.uvs.is_empty() {
+        let mend = "has no texture coordinates for its material's maps; export it with them";
+        return Err(loader.value(&format!("{field}.mesh"), mend));
+    }
     let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
     if !(raw.scale.is_finite() && raw.scale != 0.0) {
         return Err(loader.value(&format!("{field}.scale"), "must be finite and not 0"));
@@ -663,11 +1027,16 @@ fn place_object(
             }
         }
     }
-    let materials = mesh
-        .parts
-        .iter()
-        .map(|p| loader.material(&p.material, &raw.material, &field))
-        .collect::<Result<_, _>>()?;
+    let mut materials = Vec::with_capacity(mesh.parts.len());
+    for part in &mesh.parts {
+        let mut material = loader.material(&part.material, &looks, true, &field)?;
+        if age.share > 0.0 {
+            let next = next.material.after(&raw.material);
+            let next = loader.material(&part.material, &next, false, &field)?;
+            material = material.towards(&next, age.share);
+        }
+        materials.push(material);
+    }
     Ok(Object {
         name: raw.name.clone().unwrap_or(field),
         mesh,
@@ -692,7 +1061,7 @@ fn scatter_objects(
         loader.lighting_word(scatter.lighting.as_deref(), &format!("{field}.lighting"))?;
     let mut meshes = Vec::new();
     for mesh in scatter.mesh_list() {
-        meshes.push(loader.mesh(mesh, &format!("{field}.mesh"))?);
+        meshes.push(loader.mesh(mesh, false, &format!("{field}.mesh"))?);
     }
     for (i, placed) in scatter.place(eye).into_iter().enumerate() {
         let mesh = Arc::clone(&meshes[placed.mesh]);

@@ -1,13 +1,23 @@
-//! glTF 2.0 and GLB files: nodes, instances, materials, point lights and cameras. What a file asks for and is not drawn is told in a
+//! glTF 2.0 and GLB files: nodes, instances, materials with their images, vertex colours, point and directional lights, and cameras. What a file asks for and is not drawn is told in a
 //! warning, never dropped silently.
 
-use crate::{Light, Lighting, Material, Mesh, Part, SceneError, mesh::smooth_normals};
-use glam::{Mat3, Mat4, Vec3};
-use gltf::{camera::Projection, khr_lights_punctual::Kind, material::AlphaMode, mesh::Mode};
+use crate::{
+    Light, Lighting, Maps, Material, Mesh, Part, SceneError, Source, Texture, Wrap,
+    mesh::{Corners, smooth_normals},
+};
+use glam::{Mat2, Mat3, Mat4, Vec2, Vec3};
+use gltf::{
+    camera::Projection,
+    khr_lights_punctual::Kind,
+    material::AlphaMode,
+    mesh::Mode,
+    texture::{MagFilter, WrappingMode},
+};
 use serde_json::Value;
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 /// What a glTF file holds.
@@ -15,7 +25,7 @@ use std::{
 pub struct LoadedGltf {
     /// All nodes' triangles in the file's space, a part for each primitive.
     pub mesh: Mesh,
-    /// Point lights.
+    /// Point and directional lights.
     pub lights: Vec<Light>,
     /// Cameras with a perspective projection.
     pub cameras: Vec<GltfCamera>,
@@ -70,15 +80,12 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
     })?;
     let mut reader = Reader {
         path,
+        folder,
         buffers,
+        images: HashMap::new(),
         missing: BTreeSet::new(),
         loaded: LoadedGltf {
-            mesh: Mesh {
-                positions: Vec::new(),
-                normals: Vec::new(),
-                triangles: Vec::new(),
-                parts: Vec::new(),
-            },
+            mesh: Mesh::empty(),
             lights: Vec::new(),
             cameras: Vec::new(),
             warnings: Vec::new(),
@@ -113,6 +120,8 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
         "KHR_lights_punctual",
         "KHR_materials_unlit",
         "KHR_materials_emissive_strength",
+        "KHR_materials_transmission",
+        "KHR_texture_transform",
     ];
     for extension in document.extensions_used().filter(|e| !known.contains(e)) {
         reader.missing.insert(format!("extension {extension}"));
@@ -194,13 +203,83 @@ fn check_value(document: &Value, value: &Value, field: &str, parent: &str) -> Re
                 "'{field}' is {number}, but there are {there} {list}; export the file again"
             ))
         }
+        // A file's name in per cent codes that are no text.
+        Value::String(uri) if field == "uri" && !uri.starts_with("data:") => {
+            let bytes = uri.split('%').skip(1).map(|code| code.get(..2));
+            let high = |code: Option<&str>| {
+                code.is_none_or(|c| u8::from_str_radix(c, 16).is_ok_and(|b| b > 127))
+            };
+            if bytes.into_iter().any(high) && percent_decoded(uri).is_none() {
+                return Err(format!(
+                    "'{uri}' is no name of a file; rename the file and export again"
+                ));
+            }
+            Ok(())
+        }
         _ => Ok(()),
+    }
+}
+
+/// A text with per cent codes, decoded; `None` where that gives no UTF-8.
+fn percent_decoded(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let Some((first, after)) = rest.split_first() {
+        let code = (*first == b'%')
+            .then(|| after.get(..2).and_then(|c| std::str::from_utf8(c).ok()))
+            .flatten()
+            .and_then(|c| u8::from_str_radix(c, 16).ok());
+        match code {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(*first);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+/// Where a map lies on its texture coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Placing {
+    set: u32,
+    transform: (Mat2, Vec2),
+}
+
+impl Placing {
+    const PLAIN: Self = Self {
+        set: 0,
+        transform: (Mat2::IDENTITY, Vec2::ZERO),
+    };
+
+    /// KHR_texture_transform: scaled, turned, moved.
+    fn of(info: &gltf::texture::Info<'_>) -> Self {
+        let Some(t) = info.texture_transform() else {
+            return Self {
+                set: info.tex_coord(),
+                ..Self::PLAIN
+            };
+        };
+        let (sin, cos) = t.rotation().sin_cos();
+        let [x, y] = t.scale();
+        let turned = Mat2::from_cols(Vec2::new(cos, -sin) * x, Vec2::new(sin, cos) * y);
+        Self {
+            set: t.tex_coord().unwrap_or(info.tex_coord()),
+            transform: (turned, t.offset().into()),
+        }
     }
 }
 
 struct Reader<'a> {
     path: &'a Path,
+    folder: &'a Path,
     buffers: Vec<gltf::buffer::Data>,
+    /// By number; `None` for what cannot be drawn.
+    images: HashMap<usize, Option<Arc<Texture>>>,
     /// What the file asks for and is not drawn, each once.
     missing: BTreeSet<String>,
     loaded: LoadedGltf,
@@ -265,11 +344,16 @@ impl Reader<'_> {
     fn light(&mut self, light: &gltf::khr_lights_punctual::Light<'_>, world: Mat4) {
         match light.kind() {
             Kind::Point => self.loaded.lights.push(Light {
-                position: world.transform_point3(Vec3::ZERO),
+                source: Source::Point(world.transform_point3(Vec3::ZERO)),
                 color: light.color(),
                 intensity: light.intensity(),
             }),
-            Kind::Directional => drop(self.missing.insert("directional lights".into())),
+            // It shines along its −z.
+            Kind::Directional => self.loaded.lights.push(Light {
+                source: Source::Toward(world.transform_vector3(Vec3::Z).normalize_or(Vec3::Y)),
+                color: light.color(),
+                intensity: light.intensity(),
+            }),
             Kind::Spot { .. } => drop(self.missing.insert("spot lights".into())),
         }
     }
@@ -361,45 +445,173 @@ impl Reader<'_> {
                 .collect(),
             _ => smooth,
         };
-        if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
-            self.missing.insert("vertex colours".into());
-        }
+        let colors: Option<Vec<[f32; 4]>> = reader.read_colors(0).map(|colors| {
+            let unit = |c: f32| {
+                if c.is_finite() {
+                    c.clamp(0.0, 1.0)
+                } else {
+                    0.0
+                }
+            };
+            colors.into_rgba_f32().map(|c| c.map(unit)).collect()
+        });
         if primitive.morph_targets().len() > 0 {
             self.missing.insert("morph targets".into());
         }
-        let material = self.material(&primitive.material());
-        let target = &mut self.loaded.mesh;
-        let (base, first) = (target.positions.len() as u32, target.triangles.len());
-        target.positions.extend(positions);
-        target.normals.extend(normals);
-        target
-            .triangles
-            .extend(triangles.iter().map(|t| t.map(|i| i + base)));
-        target.parts.push(Part {
-            name: mesh.name().unwrap_or(&place).to_owned(),
-            triangles: first..target.triangles.len(),
-            material,
+        // Opacity of corners counts for what blends or has holes.
+        let is_opaque = primitive.material().alpha_mode() == AlphaMode::Opaque;
+        let (material, placing) = self.material(&primitive.material());
+        let reader = primitive.reader(|b| self.buffers.get(b.index()).map(|d| d.0.as_slice()));
+        let uvs: Option<Vec<Vec2>> = reader.read_tex_coords(placing.set).map(|uvs| {
+            let (turned, moved) = placing.transform;
+            let place = |uv: [f32; 2]| turned * Vec2::from(uv) + moved;
+            let sound = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
+            uvs.into_f32().map(|uv| sound(place(uv))).collect()
         });
+        let n = positions.len();
+        let corners = Corners {
+            uvs: uvs.filter(|uvs| uvs.len() == n),
+            colors: colors.filter(|c| c.len() == n).map(|mut colors| {
+                if is_opaque {
+                    colors.iter_mut().for_each(|c| c[3] = 1.0);
+                }
+                colors
+            }),
+            positions,
+            normals,
+            triangles,
+        };
+        let part = Part {
+            name: mesh.name().unwrap_or(&place).to_owned(),
+            triangles: 0..0,
+            material,
+        };
+        let lost = self.loaded.mesh.push(corners, part);
+        self.missing.extend(lost);
         Ok(())
     }
 
-    fn material(&mut self, m: &gltf::Material<'_>) -> Material {
-        let pbr = m.pbr_metallic_roughness();
-        let maps = [
-            ("base-colour", pbr.base_color_texture().is_some()),
-            (
-                "metallic-roughness",
-                pbr.metallic_roughness_texture().is_some(),
-            ),
-            ("normal", m.normal_texture().is_some()),
-            ("occlusion", m.occlusion_texture().is_some()),
-            ("emissive", m.emissive_texture().is_some()),
-        ];
-        for (name, _) in maps.into_iter().filter(|(_, there)| *there) {
-            self.missing
-                .insert(format!("{name} maps (factors alone are drawn)"));
+    /// An image, read once; `None`, and told, where it cannot be drawn.
+    fn image(&mut self, image: &gltf::Image<'_>) -> Option<Arc<Texture>> {
+        if let Some(known) = self.images.get(&image.index()) {
+            return known.clone();
         }
-        let [r, g, b, a] = pbr.base_color_factor();
+        let name = image
+            .name()
+            .map_or_else(|| format!("image {}", image.index()), str::to_owned);
+        let decoded = match image.source() {
+            gltf::image::Source::View { view, .. } => {
+                let bytes = self.buffers.get(view.buffer().index());
+                let end = view.offset().saturating_add(view.length());
+                bytes
+                    .and_then(|b| b.0.get(view.offset()..end))
+                    .ok_or_else(|| "lies beyond its buffer".to_owned())
+                    .and_then(|bytes| Texture::decode(&name, bytes))
+            }
+            gltf::image::Source::Uri { uri, .. } => {
+                // The crate's reader of what a URI names.
+                let source = gltf::buffer::Source::Uri(uri);
+                gltf::buffer::Data::from_source(source, Some(self.folder))
+                    .map_err(|e| format!("cannot be read: {e}"))
+                    .and_then(|data| {
+                        if !uri.starts_with("data:") {
+                            let file = percent_decoded(uri).unwrap_or_else(|| uri.to_owned());
+                            self.loaded.files.push(self.folder.join(file));
+                        }
+                        Texture::decode(&name, &data.0)
+                    })
+            }
+        };
+        let found = match decoded {
+            Ok(texture) => Some(Arc::new(texture)),
+            Err(why) => {
+                self.missing.insert(format!("{name}, which {why}"));
+                None
+            }
+        };
+        self.images.insert(image.index(), found.clone());
+        found
+    }
+
+    /// A material, and where its maps lie.
+    fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placing) {
+        let pbr = m.pbr_metallic_roughness();
+        let infos = [
+            pbr.base_color_texture(),
+            pbr.metallic_roughness_texture(),
+            m.emissive_texture(),
+        ];
+        let normal = m.normal_texture();
+        let occlusion = m.occlusion_texture();
+        // The crate does not tell the transforms of normal and occlusion maps: they are taken to be the first of the others'.
+        let shared = infos.iter().flatten().map(Placing::of).next();
+        let transform = shared.unwrap_or(Placing::PLAIN).transform;
+        let of_info = |i: usize| {
+            let info: &Option<gltf::texture::Info<'_>> = &infos[i];
+            info.as_ref().map(|t| (t.texture(), Placing::of(t)))
+        };
+        let textures = [
+            of_info(0),
+            normal.as_ref().map(|t| {
+                let set = t.tex_coord();
+                (t.texture(), Placing { set, transform })
+            }),
+            of_info(1),
+            occlusion.as_ref().map(|t| {
+                let set = t.tex_coord();
+                (t.texture(), Placing { set, transform })
+            }),
+            of_info(2),
+        ];
+        let placing = textures
+            .iter()
+            .flatten()
+            .map(|(_, placing)| *placing)
+            .next();
+        let placing = placing.unwrap_or(Placing::PLAIN);
+        let samplers: Vec<_> = textures
+            .iter()
+            .flatten()
+            .map(|(t, _)| {
+                let sampler = t.sampler();
+                (sampler.wrap_s(), sampler.wrap_t(), sampler.mag_filter())
+            })
+            .collect();
+        if samplers.windows(2).any(|w| w[0] != w[1]) {
+            self.missing
+                .insert("samplers of its own for a map (the first map's is taken)".into());
+        }
+        let mut images = textures.map(|texture| {
+            let (texture, own) = texture?;
+            if own.transform != placing.transform {
+                self.missing.insert(
+                    "texture transforms of its own for a map (the first map's is taken)".into(),
+                );
+            }
+            if own.set != placing.set {
+                self.missing
+                    .insert("maps on other texture coordinates than the first map's".into());
+                return None;
+            }
+            self.image(&texture.source())
+        });
+        let (wrap_s, wrap_t, filter) =
+            samplers
+                .first()
+                .copied()
+                .unwrap_or((WrappingMode::Repeat, WrappingMode::Repeat, None));
+        let wrap = |mode| match mode {
+            WrappingMode::Repeat => Wrap::Repeat,
+            WrappingMode::MirroredRepeat => Wrap::Mirror,
+            WrappingMode::ClampToEdge => Wrap::Clamp,
+        };
+        let alpha_mode = m.alpha_mode();
+        if let (AlphaMode::Opaque, Some(color)) = (alpha_mode, &images[0])
+            && color.has_alpha()
+        {
+            let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
+            images[0] = Some(Arc::new(Texture::joined(color, color, opaque)));
+        }
         let finite = |x: f32, low: f32, high: f32| {
             if x.is_finite() {
                 x.clamp(low, high)
@@ -407,28 +619,59 @@ impl Reader<'_> {
                 low
             }
         };
+        let [
+            color,
+            normal_map,
+            metallic_roughness,
+            occlusion_map,
+            emissive,
+        ] = images;
+        let maps = Maps {
+            color,
+            normal: normal_map,
+            metallic_roughness,
+            occlusion: occlusion_map,
+            emissive,
+            normal_scale: finite(normal.map_or(1.0, |n| n.scale()), -100.0, 100.0),
+            occlusion_strength: finite(occlusion.map_or(1.0, |o| o.strength()), 0.0, 1.0),
+            wrap: [wrap(wrap_s), wrap(wrap_t)],
+            nearest: filter == Some(MagFilter::Nearest),
+        };
+        let [r, g, b, a] = pbr.base_color_factor();
+        let base = [r, g, b].map(|c| finite(c, 0.0, 1.0));
         let lighting = if m.unlit() {
             Lighting::Unlit
         } else {
             Lighting::Pbr
         };
         let strength = m.emissive_strength().unwrap_or(1.0);
-        let (alpha, blend, alpha_cutoff) = match m.alpha_mode() {
+        // What passes is not scattered: glTF's mix of both, as opacity and colour (McGuire and Mara 2016).
+        let passing = m.transmission().map_or(0.0, |t| {
+            if t.transmission_texture().is_some() {
+                self.missing
+                    .insert("transmission maps (the factor alone is drawn)".into());
+            }
+            finite(t.transmission_factor(), 0.0, 1.0)
+        });
+        let (alpha, blend, alpha_cutoff) = match alpha_mode {
             AlphaMode::Opaque => (1.0, false, None),
             AlphaMode::Mask => (a, false, Some(m.alpha_cutoff().unwrap_or(0.5))),
             AlphaMode::Blend => (a, true, None),
         };
-        Material {
+        let material = Material {
             name: m.name().unwrap_or("unnamed").to_owned(),
-            color: [r, g, b].map(|c| finite(c, 0.0, 1.0)),
+            color: base.map(|c| c * (1.0 - passing)),
+            transmission: base.map(|c| c * passing),
             alpha: finite(alpha, 0.0, 1.0),
             metallic: finite(pbr.metallic_factor(), 0.0, 1.0),
             roughness: finite(pbr.roughness_factor(), 0.0, 1.0),
             emission: m.emissive_factor().map(|c| finite(c * strength, 0.0, 1e6)),
+            maps,
             alpha_cutoff: alpha_cutoff.map(|c| finite(c, 0.0, 1.0)),
             double_sided: m.double_sided(),
             blend,
             ..Material::default_with(lighting)
-        }
+        };
+        (material, placing)
     }
 }

@@ -1,3 +1,4 @@
+use crate::Maps;
 use serde::Deserialize;
 
 /// How a material answers to light.
@@ -33,6 +34,10 @@ pub struct Material {
     pub roughness: f32,
     /// Radiance that it emits beyond what its opacity covers, linear RGB.
     pub emission: [f32; 3],
+    /// Light that passes through what its opacity covers, linear RGB, 0 … 1: stained glass. None where it is black.
+    pub transmission: [f32; 3],
+    /// Images on it.
+    pub maps: Maps,
     /// Cut-out: an opacity below this is a hole, one above it is opaque.
     pub alpha_cutoff: Option<f32>,
     /// Whether back faces are drawn.
@@ -54,6 +59,8 @@ impl Material {
             metallic: 0.0,
             roughness: 0.5,
             emission: [0.0; 3],
+            transmission: [0.0; 3],
+            maps: Maps::NONE,
             alpha_cutoff: None,
             double_sided: true,
             blend: false,
@@ -72,15 +79,48 @@ impl Material {
             metallic: 0.0,
             roughness: 0.5,
             emission: [0.0; 3],
+            transmission: [0.0; 3],
+            maps: Maps::NONE,
             alpha_cutoff: None,
             double_sided: true,
             blend: true,
         }
     }
 
+    /// The same with every number a share of the way to another's; images stay.
+    pub fn towards(&self, other: &Self, share: f32) -> Self {
+        let mix = |a: f32, b: f32| a + share * (b - a);
+        let each = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|k| mix(a[k], b[k]));
+        let (maps, next) = (&self.maps, &other.maps);
+        Self {
+            color: each(self.color, other.color),
+            alpha: mix(self.alpha, other.alpha),
+            specular: mix(self.specular, other.specular),
+            shininess: mix(self.shininess, other.shininess),
+            metallic: mix(self.metallic, other.metallic),
+            roughness: mix(self.roughness, other.roughness),
+            emission: each(self.emission, other.emission),
+            transmission: each(self.transmission, other.transmission),
+            alpha_cutoff: self
+                .alpha_cutoff
+                .map(|a| mix(a, other.alpha_cutoff.unwrap_or(a))),
+            maps: Maps {
+                normal_scale: mix(maps.normal_scale, next.normal_scale),
+                occlusion_strength: mix(maps.occlusion_strength, next.occlusion_strength),
+                ..maps.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// Whether it is drawn by the opaque pass.
     pub fn is_opaque(&self) -> bool {
-        self.alpha_cutoff.is_some() || (self.alpha >= 1.0 && !self.blend)
+        self.alpha_cutoff.is_some() || (self.alpha >= 1.0 && !self.blend && !self.is_transmissive())
+    }
+
+    /// Whether light passes through what its opacity covers.
+    pub fn is_transmissive(&self) -> bool {
+        self.transmission != [0.0; 3]
     }
 
     /// Whether it emits anything.

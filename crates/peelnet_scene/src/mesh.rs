@@ -1,5 +1,5 @@
-use crate::Material;
-use glam::Vec3;
+use crate::{Maps, Material};
+use glam::{Vec2, Vec3};
 use std::ops::Range;
 
 /// Triangles with a normal at every corner.
@@ -9,6 +9,11 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit normals, one for each position.
     pub normals: Vec<Vec3>,
+    /// Linear RGB and alpha that multiply the material's, one for each position; empty where there are none.
+    pub colors: Vec<[f32; 4]>,
+    /// Places on images, for each triangle those of its corners (a seam splits them, not the surface): u to the right, v down, 0 … 1 over
+    /// the image. Empty where there are none.
+    pub uvs: Vec<[Vec2; 3]>,
     /// Indices of three corners, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Runs of triangles that share a material; together they cover all triangles in order.
@@ -43,8 +48,81 @@ impl Mesh {
             }],
             positions,
             normals,
+            colors: Vec::new(),
+            uvs: Vec::new(),
             triangles,
         }
+    }
+
+    /// A mesh of nothing, to be filled part by part.
+    pub(crate) const fn empty() -> Self {
+        Self {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            colors: Vec::new(),
+            uvs: Vec::new(),
+            triangles: Vec::new(),
+            parts: Vec::new(),
+        }
+    }
+
+    /// Appends a part: its corners, and triangles whose indices count from its first corner. Its maps are dropped where it has no places
+    /// on them; tells so.
+    pub(crate) fn push(&mut self, corners: Corners, mut part: Part) -> Option<String> {
+        let (base, first) = (self.positions.len(), self.triangles.len());
+        let Corners {
+            positions,
+            normals,
+            colors,
+            uvs,
+            triangles,
+        } = corners;
+        if let Some(colors) = colors {
+            self.colors.resize(base, [1.0; 4]);
+            self.colors.extend(colors);
+        }
+        let mut lost = None;
+        if let Some(uvs) = uvs {
+            self.uvs.resize(first, [Vec2::ZERO; 3]);
+            self.uvs
+                .extend(triangles.iter().map(|t| t.map(|i| uvs[i as usize])));
+        } else if part.material.maps.all().iter().any(Option::is_some) {
+            part.material.maps = Maps::NONE;
+            lost = Some(format!(
+                "'{}' has images and no texture coordinates: plain values are drawn",
+                part.name
+            ));
+        }
+        self.positions.extend(positions);
+        self.normals.extend(normals);
+        let base = base as u32;
+        self.triangles
+            .extend(triangles.iter().map(|t| t.map(|i| i + base)));
+        if !self.colors.is_empty() {
+            self.colors.resize(self.positions.len(), [1.0; 4]);
+        }
+        if !self.uvs.is_empty() {
+            self.uvs.resize(self.triangles.len(), [Vec2::ZERO; 3]);
+        }
+        part.triangles = first..self.triangles.len();
+        self.parts.push(part);
+        lost
+    }
+
+    /// Tangents of a run of triangles, for normal maps: direction of u, and 1 or −1 where v runs against or along normal × tangent,
+    /// by MikkTSpace (Mikkelsen 2008), which bakers of normal maps use. `None` without places on images.
+    pub fn tangents(&self, triangles: Range<usize>) -> Option<Vec<[[f32; 4]; 3]>> {
+        if self.uvs.is_empty() {
+            return None;
+        }
+        let mut geometry = Tangents {
+            mesh: self,
+            first: triangles.start,
+            found: vec![[[1.0, 0.0, 0.0, 1.0]; 3]; triangles.len()],
+        };
+        // It refuses meshes without triangles only.
+        let _ = bevy_mikktspace::generate_tangents(&mut geometry);
+        Some(geometry.found)
     }
 
     /// The box around all corners that triangles use; `None` without any.
@@ -56,6 +134,61 @@ impl Mesh {
             .map(|&i| self.positions[i as usize]);
         let first = corners.next()?;
         Some(corners.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
+    }
+}
+
+/// What a part adds to a mesh.
+pub(crate) struct Corners {
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+    /// One for each position.
+    pub colors: Option<Vec<[f32; 4]>>,
+    /// One for each position.
+    pub uvs: Option<Vec<Vec2>>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What MikkTSpace reads and writes.
+struct Tangents<'a> {
+    mesh: &'a Mesh,
+    first: usize,
+    found: Vec<[[f32; 4]; 3]>,
+}
+
+impl bevy_mikktspace::Geometry for Tangents<'_> {
+    fn num_faces(&self) -> usize {
+        self.found.len()
+    }
+
+    fn num_vertices_of_face(&self, _: usize) -> usize {
+        3
+    }
+
+    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
+        let i = self.mesh.triangles[self.first + face][corner];
+        self.mesh.positions[i as usize].to_array()
+    }
+
+    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
+        let i = self.mesh.triangles[self.first + face][corner];
+        self.mesh.normals[i as usize].to_array()
+    }
+
+    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
+        // The second tangent points up the image, against v.
+        let uv = self.mesh.uvs[self.first + face][corner];
+        [uv.x, 1.0 - uv.y]
+    }
+
+    fn set_tangent(
+        &mut self,
+        tangent: Option<bevy_mikktspace::TangentSpace>,
+        face: usize,
+        corner: usize,
+    ) {
+        if let Some(tangent) = tangent {
+            self.found[face][corner] = tangent.tangent_encoded();
+        }
     }
 }
 
@@ -71,4 +204,44 @@ pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
         }
     }
     sums.into_iter().map(|n| n.normalize_or(Vec3::Z)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a rectangle the tangent runs to the right of the image and normal × tangent, times the sign, up it; mirrored, the sign turns.
+    #[test]
+    fn tangents_of_a_rectangle() {
+        for mirrored in [false, true] {
+            let u = |x: f32| if mirrored { 1.0 - x } else { x };
+            let corners = Corners {
+                positions: vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y],
+                normals: vec![Vec3::Z; 4],
+                colors: None,
+                uvs: Some(vec![
+                    Vec2::new(u(0.0), 1.0),
+                    Vec2::new(u(1.0), 1.0),
+                    Vec2::new(u(1.0), 0.0),
+                    Vec2::new(u(0.0), 0.0),
+                ]),
+                triangles: vec![[0, 1, 2], [0, 2, 3]],
+            };
+            let mut mesh = Mesh::empty();
+            let part = Part {
+                name: "rectangle".into(),
+                triangles: 0..0,
+                material: Material::unlit([1.0; 3], 0.5),
+            };
+            assert_eq!(mesh.push(corners, part), None);
+            let tangents = mesh.tangents(0..2).expect("has places");
+            for [x, y, z, sign] in tangents.into_iter().flatten() {
+                let tangent = Vec3::new(x, y, z);
+                let right = if mirrored { -Vec3::X } else { Vec3::X };
+                assert!((tangent - right).length() < 1e-6, "{tangent}");
+                let up = Vec3::Z.cross(tangent) * sign;
+                assert!((up - Vec3::Y).length() < 1e-6, "{up}");
+            }
+        }
+    }
 }

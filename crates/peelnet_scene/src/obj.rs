@@ -4,13 +4,16 @@
 //! as a fan. A first walk over the text checks what a user can get wrong — numbers, indices, faces, colours — and names
 //! the line; polygons are cut into triangles in the text; then the parser does the rest.
 
-use crate::{Lighting, Material, Mesh, Part, SceneError, polygons};
-use glam::{DVec3, Vec3};
+use crate::{
+    Lighting, Maps, Material, Mesh, Part, SceneError, Texture, Wrap, mesh::Corners, polygons,
+};
+use glam::{DVec3, Vec2, Vec3};
 use std::{
     cell::RefCell,
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 /// A mesh file's contents.
@@ -38,6 +41,7 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
     let mut warnings = Vec::new();
     let missing = RefCell::new(Vec::new());
     let bad_library = RefCell::new(None);
+    let images = RefCell::new(Images::default());
     let files = RefCell::new(vec![path.to_owned()]);
     let folder = path.parent().unwrap_or(Path::new("."));
     let options = tobj::LoadOptions {
@@ -55,8 +59,9 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
                 let text = plain(&text);
                 files.borrow_mut().push(file.clone());
                 match check_library(&file, &text) {
-                    Ok(textures) => {
-                        missing.borrow_mut().extend(textures);
+                    Ok(warnings) => {
+                        missing.borrow_mut().extend(warnings);
+                        images.borrow_mut().list(&file, &text);
                         tobj::load_mtl_buf(&mut text.as_bytes())
                     }
                     Err(e) => {
@@ -109,12 +114,15 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
             ));
         }
     }
-    let mut mesh = Mesh {
-        positions: Vec::new(),
-        normals: Vec::new(),
-        triangles: Vec::new(),
-        parts: Vec::new(),
-    };
+    let mut images = images.into_inner();
+    let finished: Vec<Material> = materials
+        .iter()
+        .map(|m| images.put_on(m, material(m, lighting)))
+        .collect();
+    warnings.append(&mut images.warnings);
+    files.borrow_mut().append(&mut images.files);
+    let mut mesh = Mesh::empty();
+    let mut bad_places = 0usize;
     let (mut degenerate, mut bad_normals) = (0usize, 0usize);
     let areas = area_sums(&models);
     for model in &models {
@@ -156,22 +164,55 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
         } else {
             smooth
         };
-        let base = mesh.positions.len() as u32;
-        let first = mesh.triangles.len();
-        mesh.positions.extend(positions);
-        mesh.normals.extend(normals);
-        mesh.triangles
-            .extend(triangles.iter().map(|t| t.map(|i| i + base)));
-        if mesh.triangles.len() > first {
-            mesh.parts.push(Part {
-                name: model.name.clone(),
-                triangles: first..mesh.triangles.len(),
-                material: m.material_id.and_then(|i| materials.get(i)).map_or_else(
-                    || Material::default_with(lighting),
-                    |m| material(m, lighting),
-                ),
-            });
+        if triangles.is_empty() {
+            continue;
         }
+        let uvs: Vec<Vec2> = m
+            .texcoords
+            .chunks_exact(2)
+            .map(|uv| {
+                let uv = Vec2::new(uv[0], 1.0 - uv[1]);
+                bad_places += usize::from(!uv.is_finite());
+                if uv.is_finite() { uv } else { Vec2::ZERO }
+            })
+            .collect();
+        let colors: Vec<[f32; 4]> = m
+            .vertex_color
+            .chunks_exact(3)
+            .map(|c| {
+                [
+                    c[0].clamp(0.0, 1.0),
+                    c[1].clamp(0.0, 1.0),
+                    c[2].clamp(0.0, 1.0),
+                    1.0,
+                ]
+            })
+            .collect();
+        let n = positions.len();
+        let corners = Corners {
+            uvs: (uvs.len() == n).then_some(uvs),
+            colors: (colors.len() == n).then_some(colors),
+            positions,
+            normals,
+            triangles,
+        };
+        let part = Part {
+            name: model.name.clone(),
+            triangles: 0..0,
+            material: m
+                .material_id
+                .and_then(|i| finished.get(i).cloned())
+                .unwrap_or_else(|| Material::default_with(lighting)),
+        };
+        if let Some(lost) = mesh.push(corners, part) {
+            warnings.push(format!("{}: {lost}", path.display()));
+        }
+    }
+    if bad_places > 0 {
+        warnings.push(format!(
+            "{}: {bad_places} texture coordinates were not finite and are taken as 0",
+            path.display()
+        ));
     }
     if degenerate > 0 {
         warnings.push(format!(
@@ -246,6 +287,10 @@ fn triangulated(text: &str) -> String {
             positions.push(DVec3::new(number(), number(), number()));
         }
     }
+    let numbers = |line: &str| line.split_ascii_whitespace().count() - 1;
+    let is_position = |line: &str| line.starts_with("v ");
+    // The parser wants a colour for every position or for none.
+    let colored = text.lines().any(|l| is_position(l) && numbers(l) == 6);
     let mut out = String::with_capacity(text.len());
     let mut seen = 0i64;
     for line in text.lines() {
@@ -271,6 +316,9 @@ fn triangulated(text: &str) -> String {
             }
         } else {
             out.push_str(line);
+            if colored && is_position(line) && numbers(line) == 3 {
+                out.push_str(" 1 1 1");
+            }
             out.push('\n');
         }
     }
@@ -310,7 +358,8 @@ fn check_library(path: &Path, text: &str) -> Result<Vec<String>, SceneError> {
             "Ka" | "Kd" | "Ks" | "Ke" => 3,
             "d" | "Tr" | "Ns" | "Ni" => 1,
             _ => {
-                if key.starts_with("map_") || matches!(key, "bump" | "norm" | "disp") {
+                let is_image = key.starts_with("map_") || matches!(key, "disp" | "decal" | "refl");
+                if is_image && drawn_as(key).is_none() {
                     textures.insert(key.to_owned());
                 }
                 continue;
@@ -339,11 +388,207 @@ fn check_library(path: &Path, text: &str) -> Result<Vec<String>, SceneError> {
     } else {
         let names: Vec<_> = textures.into_iter().collect();
         vec![format!(
-            "{}: {} not drawn by this version; plain colours are used",
+            "{}: not drawn: {}",
             path.display(),
             names.join(", ")
         )]
     })
+}
+
+/// What an image of an MTL file is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Use {
+    Color,
+    Alpha,
+    /// A height field, or normals where it is not grey.
+    Bump,
+    Normal,
+    Roughness,
+    Metallic,
+    Emission,
+}
+
+fn drawn_as(key: &str) -> Option<Use> {
+    Some(match key {
+        "map_Kd" => Use::Color,
+        "map_d" => Use::Alpha,
+        "map_Bump" | "map_bump" | "bump" => Use::Bump,
+        "norm" | "map_Norm" | "map_Kn" => Use::Normal,
+        "map_Pr" => Use::Roughness,
+        "map_Pm" => Use::Metallic,
+        "map_Ke" => Use::Emission,
+        _ => return None,
+    })
+}
+
+/// A statement such as `map_Bump -bm 0.5 -clamp on bricks.png`.
+#[derive(Clone, Debug)]
+struct Statement {
+    file: PathBuf,
+    /// Multiplies heights.
+    strength: f32,
+    clamp: bool,
+}
+
+/// The images that MTL files name, read once each.
+#[derive(Default)]
+struct Images {
+    of: HashMap<String, BTreeMap<Use, Statement>>,
+    read: HashMap<PathBuf, Option<Arc<Texture>>>,
+    warnings: Vec<String>,
+    files: Vec<PathBuf>,
+}
+
+impl Images {
+    /// Lists the images of an MTL's materials; the last statement of a kind counts.
+    fn list(&mut self, library: &Path, text: &str) {
+        let folder = library.parent().unwrap_or(Path::new("."));
+        let mut material = String::new();
+        for line in text.lines() {
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            let Some((&key, mut rest)) = words.split_first() else {
+                continue;
+            };
+            if key == "newmtl" {
+                material = rest.join(" ");
+            }
+            let Some(kind) = drawn_as(key) else { continue };
+            let mut statement = Statement {
+                file: PathBuf::new(),
+                strength: 1.0,
+                clamp: false,
+            };
+            while let Some((option, after)) = rest.split_first()
+                && option.starts_with('-')
+            {
+                let is_number = |w: &&&str| w.parse::<f32>().is_ok();
+                let taken = match *option {
+                    "-o" | "-s" | "-t" => after.iter().take(3).take_while(is_number).count(),
+                    "-mm" => 2,
+                    _ => 1,
+                };
+                match (*option, after.first()) {
+                    ("-bm", Some(value)) => statement.strength = value.parse().unwrap_or(1.0),
+                    ("-clamp", Some(value)) => statement.clamp = *value == "on",
+                    _ => self.warnings.push(format!(
+                        "{}: option {option} of {key} is not drawn",
+                        library.display()
+                    )),
+                }
+                rest = &after[taken.min(after.len())..];
+            }
+            if rest.is_empty() {
+                self.warnings
+                    .push(format!("{}: {key} names no file", library.display()));
+                continue;
+            }
+            // Written on Windows, read anywhere.
+            statement.file = folder.join(rest.join(" ").replace('\\', "/"));
+            let all = self.of.entry(material.clone()).or_default();
+            all.insert(kind, statement);
+        }
+    }
+
+    /// An image; `None`, and a warning, where it cannot be drawn.
+    fn image(&mut self, file: &Path) -> Option<Arc<Texture>> {
+        if let Some(known) = self.read.get(file) {
+            return known.clone();
+        }
+        let image = match Texture::load(file) {
+            Ok(texture) => {
+                self.files.push(file.to_owned());
+                Some(Arc::new(texture))
+            }
+            Err(e) => {
+                self.warnings.push(format!("{e}; drawn without it"));
+                None
+            }
+        };
+        self.read.insert(file.to_owned(), image.clone());
+        image
+    }
+
+    /// A material with its images.
+    fn put_on(&mut self, m: &tobj::Material, mut material: Material) -> Material {
+        let Some(statements) = self.of.get(&m.name).cloned() else {
+            return material;
+        };
+        let mut found: BTreeMap<Use, Arc<Texture>> = BTreeMap::new();
+        for (kind, statement) in &statements {
+            if let Some(image) = self.image(&statement.file) {
+                found.insert(*kind, image);
+            }
+        }
+        let mut maps = Maps::NONE;
+        if statements.values().any(|s| s.clamp) {
+            maps.wrap = [Wrap::Clamp; 2];
+        }
+        let opaque = |t: [u8; 4]| [t[0], t[1], t[2], 255];
+        let of_alpha = |image: &Texture| {
+            let by_alpha = image.has_alpha();
+            move |t: [u8; 4]| if by_alpha { t[3] } else { t[0] }
+        };
+        maps.color = match (found.get(&Use::Color), found.get(&Use::Alpha)) {
+            (None, None) => None,
+            // Opacity is what `map_d` says, and nothing else.
+            (Some(color), None) if !color.has_alpha() => Some(Arc::clone(color)),
+            (Some(color), None) => Some(Arc::new(Texture::joined(color, color, |t, _| opaque(t)))),
+            (None, Some(alpha)) => {
+                let value = of_alpha(alpha);
+                Some(Arc::new(Texture::joined(alpha, alpha, |t, _| {
+                    [255, 255, 255, value(t)]
+                })))
+            }
+            (Some(color), Some(alpha)) => {
+                let value = of_alpha(alpha);
+                let join = |c: [u8; 4], a| [c[0], c[1], c[2], value(a)];
+                Some(Arc::new(Texture::joined(color, alpha, join)))
+            }
+        };
+        if found.contains_key(&Use::Alpha) {
+            material.blend = true;
+        }
+        let heights = |image: &Texture, strength: f32| {
+            // A rise of white over black by an eightieth of the image's width.
+            Arc::new(image.normals_of_heights(strength * image.size[0] as f32 / 80.0))
+        };
+        maps.normal = match (found.get(&Use::Normal), found.get(&Use::Bump)) {
+            (Some(normals), _) => Some(Arc::clone(normals)),
+            (None, Some(bump)) if bump.is_grey() => {
+                Some(heights(bump, statements[&Use::Bump].strength))
+            }
+            (None, bump) => bump.cloned(),
+        };
+        let is_pbr = material.lighting != Lighting::Unlit;
+        let of_key = |key: &str| m.unknown_param.contains_key(key);
+        let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
+        let rough = found.get(&Use::Roughness);
+        let metal = found.get(&Use::Metallic);
+        if rough.is_some() || metal.is_some() {
+            let values = Texture::joined(
+                rough.map_or(&white, |t| t.as_ref()),
+                metal.map_or(&white, |t| t.as_ref()),
+                |rough, metal| [255, rough[0], metal[0], 255],
+            );
+            maps.metallic_roughness = Some(Arc::new(values));
+            material.lighting = if is_pbr {
+                Lighting::Pbr
+            } else {
+                material.lighting
+            };
+            if rough.is_some() && !of_key("Pr") {
+                material.roughness = 1.0;
+            }
+            if metal.is_some() && !of_key("Pm") {
+                material.metallic = 1.0;
+            }
+        }
+        maps.emissive = found.get(&Use::Emission).cloned();
+        if maps.emissive.is_some() && m.emissive.is_none() {
+            material.emission = [1.0; 3];
+        }
+        Material { maps, ..material }
+    }
 }
 
 struct Facts {
@@ -550,7 +795,7 @@ mod tests {
         assert!(m.normals.iter().all(|n| *n == Vec3::Z));
     }
 
-    /// An L-shaped face (concave), comments behind data, a continued line, and a texture that is not drawn.
+    /// An L-shaped face (concave), comments behind data, a continued line, and a texture that is not there.
     #[test]
     fn what_exporters_write() {
         let obj = "mtllib\ta.mtl # library\nv 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\n";
@@ -569,7 +814,7 @@ mod tests {
         assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
         assert_eq!(loaded.warnings.len(), 1);
         assert!(
-            loaded.warnings[0].contains("map_Kd"),
+            loaded.warnings[0].contains("brass.png"),
             "{:?}",
             loaded.warnings
         );

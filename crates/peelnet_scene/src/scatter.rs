@@ -59,8 +59,7 @@ pub struct Scatter {
     /// As in a material.
     pub lighting: Option<String>,
     /// Layer of all objects.
-    #[serde(default)]
-    pub layer: u32,
+    pub layer: Option<u32>,
 }
 
 const fn one() -> NumberOrRange {

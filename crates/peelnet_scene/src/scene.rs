@@ -1,12 +1,21 @@
-use crate::{Camera, Material, Mesh, Part};
+use crate::{Camera, Lighting, Material, Mesh, Part, SceneError};
 use glam::{Mat4, Vec3};
 use std::{path::PathBuf, sync::Arc};
 
-/// A point light without falloff.
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// A point, scene units. Physically based surfaces see it fall off with the square of the distance, others do not.
+    Point(Vec3),
+    /// Far away in this direction, a unit vector: the sun.
+    Toward(Vec3),
+}
+
+/// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Position, scene units.
-    pub position: Vec3,
+    /// Where it comes from.
+    pub source: Source,
     /// Linear RGB.
     pub color: [f32; 3],
     /// Multiplies the colour.
@@ -22,8 +31,8 @@ pub struct Object {
     pub mesh: Arc<Mesh>,
     /// Object to world space.
     pub world_from_object: Mat4,
-    /// Layer number; 0 where the file gives none.
-    pub layer: u32,
+    /// Layer number of a nested object, 0 outermost.
+    pub layer: Option<u32>,
     /// One for each part of the mesh.
     pub materials: Vec<Material>,
 }
@@ -35,6 +44,8 @@ impl Object {
         let mesh = Mesh {
             positions: corners.iter().flatten().copied().collect(),
             normals: corners.iter().flat_map(|t| [normal(t); 3]).collect(),
+            colors: Vec::new(),
+            uvs: Vec::new(),
             triangles: (0..corners.len() as u32)
                 .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
                 .collect(),
@@ -48,7 +59,7 @@ impl Object {
             name: name.to_owned(),
             mesh: Arc::new(mesh),
             world_from_object: Mat4::IDENTITY,
-            layer: 0,
+            layer: None,
             materials: vec![material],
         }
     }
@@ -77,6 +88,19 @@ pub struct Scene {
     pub held_out: bool,
     /// What was noticed and mended while loading.
     pub warnings: Vec<String>,
+    /// States of an ageing scene in order of time; empty where it does not age.
+    pub timeline: Vec<State>,
+    /// The time of the timeline that is shown.
+    pub time: f32,
+}
+
+/// A state of an ageing scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// When, in whatever unit the scene counts.
+    pub time: f32,
+    /// Its name.
+    pub label: String,
 }
 
 impl Scene {
@@ -99,6 +123,8 @@ impl Scene {
             objects,
             held_out: false,
             warnings: Vec::new(),
+            timeline: Vec::new(),
+            time: 0.0,
         }
     }
 
@@ -110,7 +136,9 @@ impl Scene {
             object.world_from_object = scaling * object.world_from_object;
         }
         for light in &mut scene.lights {
-            light.position *= factor;
+            if let Source::Point(position) = &mut light.source {
+                *position *= factor;
+            }
         }
         for view in &mut scene.views {
             view.position *= factor;
@@ -119,6 +147,53 @@ impl Scene {
             view.far *= factor;
         }
         scene
+    }
+
+    /// Numbers of its layers, from outside to inside, each once.
+    pub fn layers(&self) -> Vec<u32> {
+        let all = self.objects.iter().filter_map(|o| o.layer);
+        let all: std::collections::BTreeSet<u32> = all.collect();
+        all.into_iter().collect()
+    }
+
+    /// The scene as the view of layers draws it: every surface of a layer is a fragment, the highlighted layer's shaded as its material
+    /// says, the others' by their base colour alone, or (`shade_all`, what it would cost) as theirs say.
+    ///
+    /// # Errors
+    /// A layer that no object has, or a transparent object without a layer.
+    pub fn layer_view(&self, highlight: u32, shade_all: bool) -> Result<Self, SceneError> {
+        let value = |field: &str, message: String| SceneError::Value {
+            path: self.source.clone(),
+            field: field.to_owned(),
+            message,
+        };
+        let layers = self.layers();
+        if !layers.contains(&highlight) {
+            let message = match layers.as_slice() {
+                [] => "no object has one: add layer = N to objects, 0 outermost".to_owned(),
+                all => format!("{highlight} is none of those there are: {all:?}"),
+            };
+            return Err(value("layer", message));
+        }
+        let mut scene = self.clone();
+        scene.transparency_scale = 1.0;
+        for object in &mut scene.objects {
+            let Some(layer) = object.layer else {
+                if object.materials.iter().all(Material::is_opaque) {
+                    continue;
+                }
+                let message = format!("of '{}' is missing: it is transparent", object.name);
+                return Err(value("layer", message));
+            };
+            for material in &mut object.materials {
+                (material.blend, material.alpha_cutoff) = (true, None);
+                if layer != highlight && !shade_all {
+                    material.lighting = Lighting::Unlit;
+                    material.emission = [0.0; 3];
+                }
+            }
+        }
+        Ok(scene)
     }
 
     /// Number of triangles.

@@ -1,7 +1,7 @@
 //! Meshes made by code. Closed ones are watertight, turned outwards, and their corners are shared.
 
 use crate::{Material, Mesh, mesh::smooth_normals};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use peelnet_core::random::Random;
 use serde::Deserialize;
 use std::f32::consts::{PI, TAU};
@@ -89,6 +89,18 @@ pub enum Shape {
         #[serde(default = "smooth")]
         triangles: usize,
     },
+    /// A surface of revolution about y whose profile is a smooth curve through points (radius, y): from the axis below along the outside
+    /// to the axis again.
+    Lathe {
+        /// Points of the profile, the first and the last on the axis.
+        profile: Vec<[f32; 2]>,
+        /// How far outside of the profile: layers of a nested object are lathes of one profile with different offsets.
+        #[serde(default)]
+        offset: f32,
+        /// About how many triangles.
+        #[serde(default = "smooth")]
+        triangles: usize,
+    },
 }
 
 const fn one() -> f32 {
@@ -130,15 +142,16 @@ impl Shape {
             Self::Capsule { .. } => "capsule",
             Self::Bumpy { .. } => "bumpy",
             Self::Cup { .. } => "cup",
+            Self::Lathe { .. } => "lathe",
         }
     }
 
-    /// Makes the mesh.
+    /// Makes the mesh; where it is `mapped`, with places on images: u once around, v from the top down along the profile.
     ///
     /// # Errors
     /// A text that names the parameter out of range and what it may be.
-    pub fn build(&self, material: &Material) -> Result<Mesh, String> {
-        let (positions, normals, triangles) = match *self {
+    pub fn build(&self, material: &Material, mapped: bool) -> Result<Mesh, String> {
+        let ((positions, normals, triangles), unwrap) = match *self {
             Self::Sphere { radius, triangles } => {
                 length("radius", radius)?;
                 let (rings, segments) = sphere_grid(triangles)?;
@@ -150,7 +163,7 @@ impl Shape {
                     .collect();
                 let (p, t) = revolve(&profile, segments);
                 let n = p.iter().map(|p| p.normalize_or(Vec3::Y)).collect();
-                (p, n, t)
+                ((p, n, t), Unwrap::Revolved(profile, segments))
             }
             Self::Torus {
                 radius,
@@ -162,13 +175,15 @@ impl Shape {
                 if tube >= radius {
                     return Err(format!("tube {tube} must be smaller than radius {radius}"));
                 }
-                torus(radius, tube, count(triangles)?)
+                let surface = torus(radius, tube, count(triangles)?);
+                let [_, around] = torus_grid(radius, tube, triangles);
+                (surface, Unwrap::Torus(around))
             }
             Self::Box { size } => {
                 for s in size {
                     length("size", s)?;
                 }
-                cuboid(size)
+                (cuboid(size), Unwrap::Faces)
             }
             Self::Quad { size } => {
                 for s in size {
@@ -176,7 +191,8 @@ impl Shape {
                 }
                 let [x, y] = size.map(|s| s / 2.0);
                 let p = [(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| Vec3::new(x, y, 0.0));
-                (p.to_vec(), vec![Vec3::Z; 4], vec![[0, 1, 2], [0, 2, 3]])
+                let surface = (p.to_vec(), vec![Vec3::Z; 4], vec![[0, 1, 2], [0, 2, 3]]);
+                (surface, Unwrap::Faces)
             }
             Self::Capsule {
                 radius,
@@ -209,7 +225,7 @@ impl Shape {
                         (*p - Vec3::Y * centre).normalize_or(Vec3::Y)
                     })
                     .collect();
-                (p, n, t)
+                ((p, n, t), Unwrap::Revolved(profile, segments))
             }
             Self::Bumpy {
                 radius,
@@ -234,7 +250,7 @@ impl Shape {
                     *p *= radius * (1.0 + amplitude * waves.at(*p));
                 }
                 let n = smooth_normals(&p, &t);
-                (p, n, t)
+                ((p, n, t), Unwrap::Revolved(profile, segments))
             }
             Self::Cup {
                 radius,
@@ -261,18 +277,28 @@ impl Shape {
                     (0.0, thickness - h),
                 ];
                 let (rings, segments) = sphere_grid(triangles)?;
-                let (p, t) = revolve(&resample(&line, rings.max(8)), segments);
+                let profile = resample(&line, rings.max(8));
+                let (p, t) = revolve(&profile, segments);
                 let n = smooth_normals(&p, &t);
-                (p, n, t)
+                ((p, n, t), Unwrap::Revolved(profile, segments))
+            }
+            Self::Lathe {
+                ref profile,
+                offset,
+                triangles,
+            } => {
+                let (rings, segments) = sphere_grid(triangles)?;
+                let profile = lathe(profile, offset, rings)?;
+                let (p, t) = revolve(&profile, segments);
+                let n = smooth_normals(&p, &t);
+                ((p, n, t), Unwrap::Revolved(profile, segments))
             }
         };
-        Ok(Mesh::single(
-            self.name(),
-            positions,
-            normals,
-            triangles,
-            material,
-        ))
+        let mut mesh = Mesh::single(self.name(), positions, normals, triangles, material);
+        if mapped {
+            mesh.uvs = unwrap.uvs(&mesh.triangles);
+        }
+        Ok(mesh)
     }
 }
 
@@ -301,6 +327,137 @@ fn sphere_grid(triangles: usize) -> Result<(usize, usize), String> {
     let rings = ((n / 4.0).sqrt().round() as usize).max(2);
     let segments = ((n / (2.0 * rings as f32)).round() as usize).max(3);
     Ok((rings, segments))
+}
+
+/// How a surface lies on an image.
+enum Unwrap {
+    /// What [`revolve`] made of a profile and segments.
+    Revolved(Vec<(f32, f32)>, usize),
+    /// What [`torus`] made, with so many segments around the tube.
+    Torus(usize),
+    /// Pairs of triangles from four corners: each the whole image.
+    Faces,
+}
+
+impl Unwrap {
+    fn uvs(&self, triangles: &[[u32; 3]]) -> Vec<[Vec2; 3]> {
+        match self {
+            Self::Faces => triangles
+                .iter()
+                .map(|t| {
+                    let corners = [Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::X, Vec2::ZERO];
+                    t.map(|i| corners[i as usize % 4])
+                })
+                .collect(),
+            Self::Torus(around) => {
+                let (n, along) = (*around, triangles.len() / 2 / around);
+                let place = |i: u32| {
+                    let (i, j) = (i as usize / n, i as usize % n);
+                    Vec2::new(i as f32 / along as f32, 1.0 - j as f32 / n as f32)
+                };
+                triangles.iter().map(|t| unseamed(t.map(place))).collect()
+            }
+            Self::Revolved(profile, segments) => {
+                // Along the profile by length.
+                let mut down = vec![0.0];
+                for w in profile.windows(2) {
+                    let step = (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1);
+                    down.push(down[down.len() - 1] + step);
+                }
+                let total = down[down.len() - 1];
+                let poles = [0, (1 + (profile.len() - 2) * segments) as u32];
+                let place = |i: u32| {
+                    if i == poles[0] {
+                        return Vec2::new(0.0, 1.0);
+                    } else if i == poles[1] {
+                        return Vec2::ZERO;
+                    }
+                    let (ring, s) = ((i as usize - 1) / segments, (i as usize - 1) % segments);
+                    Vec2::new(s as f32 / *segments as f32, 1.0 - down[ring + 1] / total)
+                };
+                let of = |t: &[u32; 3]| {
+                    let Some(pole) = t.iter().position(|i| poles.contains(i)) else {
+                        return unseamed(t.map(place));
+                    };
+                    // A pole lies above the middle of its triangle.
+                    let mut all = t.map(place);
+                    all[pole].x = all[(pole + 1) % 3].x;
+                    all = unseamed(all);
+                    all[pole].x = (all[(pole + 1) % 3].x + all[(pole + 2) % 3].x) / 2.0;
+                    all
+                };
+                triangles.iter().map(of).collect()
+            }
+        }
+    }
+}
+
+/// A triangle over the seam, where places jump from 1 to 0, goes on beyond 1.
+fn unseamed(mut corners: [Vec2; 3]) -> [Vec2; 3] {
+    for axis in 0..2 {
+        let most = corners.iter().map(|c| c[axis]).fold(0.0, f32::max);
+        for c in &mut corners {
+            if most - c[axis] > 0.5 {
+                c[axis] += 1.0;
+            }
+        }
+    }
+    corners
+}
+
+/// The smooth profile of a lathe: a Catmull–Rom curve (1974) through its points, moved outwards, in even steps.
+fn lathe(points: &[[f32; 2]], offset: f32, rings: usize) -> Result<Vec<(f32, f32)>, String> {
+    let n = points.len();
+    if n < 3 || points[0][0] != 0.0 || points[n - 1][0] != 0.0 {
+        return Err(
+            "profile must have three points or more, the first and the last with radius 0".into(),
+        );
+    }
+    if points[1..n - 1].iter().any(|p| p[0] <= 0.0)
+        || points.iter().flatten().any(|x| !x.is_finite())
+    {
+        return Err(
+            "profile: every radius between its ends must be positive, and all of it finite".into(),
+        );
+    }
+    if !offset.is_finite() {
+        return Err("offset must be finite".into());
+    }
+    let at = |i: isize| Vec2::from(points[i.clamp(0, n as isize - 1) as usize]);
+    let mut fine = Vec::new();
+    for i in 0..n as isize - 1 {
+        let [a, b, c, d] = [-1, 0, 1, 2].map(|k| at(i + k));
+        for step in 0..32 {
+            let t = step as f32 / 32.0;
+            let tangents = [(c - a) * 0.5, (d - b) * 0.5];
+            let (t2, t3) = (t * t, t * t * t);
+            let p = b * (2.0 * t3 - 3.0 * t2 + 1.0)
+                + tangents[0] * (t3 - 2.0 * t2 + t)
+                + c * (3.0 * t2 - 2.0 * t3)
+                + tangents[1] * (t3 - t2);
+            fine.push(p);
+        }
+    }
+    fine.push(at(n as isize - 1));
+    let moved: Vec<Vec2> = (0..fine.len())
+        .map(|i| {
+            let along = fine[(i + 1).min(fine.len() - 1)] - fine[i.saturating_sub(1)];
+            fine[i] + Vec2::new(along.y, -along.x).normalize_or_zero() * offset
+        })
+        .collect();
+    let steps = moved.windows(2).map(|w| w[0].distance(w[1]));
+    let total: f32 = steps.clone().sum();
+    let (mut line, mut gone) = (vec![(0.0, moved[0].y)], 0.0);
+    for (w, step) in moved.windows(2).zip(steps) {
+        while line.len() <= rings && gone + step >= total * line.len() as f32 / (rings + 1) as f32 {
+            let t = (total * line.len() as f32 / (rings + 1) as f32 - gone) / step.max(1e-12);
+            let p = w[0].lerp(w[1], t.clamp(0.0, 1.0));
+            line.push((p.x.max(1e-4 * total), p.y));
+        }
+        gone += step;
+    }
+    line.push((0.0, moved[moved.len() - 1].y));
+    Ok(line)
 }
 
 type Surface = (Vec<Vec3>, Vec<Vec3>, Vec<[u32; 3]>);
@@ -357,9 +514,15 @@ fn resample(line: &[(f32, f32)], rings: usize) -> Vec<(f32, f32)> {
     points
 }
 
-fn torus(radius: f32, tube: f32, triangles: usize) -> Surface {
+/// Segments along and around a torus.
+fn torus_grid(radius: f32, tube: f32, triangles: usize) -> [usize; 2] {
     let around = ((triangles as f32 / 2.0 * (tube / radius)).sqrt().round() as usize).max(3);
     let along = ((triangles as f32 / (2.0 * around as f32)).round() as usize).max(3);
+    [along, around]
+}
+
+fn torus(radius: f32, tube: f32, triangles: usize) -> Surface {
+    let [along, around] = torus_grid(radius, tube, triangles);
     let (mut positions, mut normals, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..along {
         let a = TAU * i as f32 / along as f32;
@@ -449,7 +612,7 @@ mod tests {
 
     fn build(text: &str) -> Result<Mesh, String> {
         let shape: Shape = toml::from_str(text).map_err(|e| e.to_string())?;
-        shape.build(&Material::default_with(Lighting::Unlit))
+        shape.build(&Material::default_with(Lighting::Unlit), true)
     }
 
     fn volume(mesh: &Mesh) -> f64 {
@@ -508,9 +671,29 @@ mod tests {
             ("shape = 'capsule'", 2),
             ("shape = 'bumpy'\nseed = 3\namplitude = 0.4", 2),
             ("shape = 'cup'", 2),
+            (LATHE, 2),
         ] {
             let mesh = build(text).unwrap_or_else(|e| panic!("{text}: {e}"));
             check_closed(text, &mesh, euler);
+            check_unwrapped(text, &mesh);
+        }
+    }
+
+    const LATHE: &str = "shape = 'lathe'\noffset = 0.05\nprofile = [[0, -1], [0.6, -1], [0.9, 0], [0.4, 0.8], [0.5, 1], [0.3, 0.8], [0.7, 0], [0, -0.8]]";
+
+    /// No triangle is stretched over the seam, none is mirrored, and images stand upright: v falls where y rises, on the outside.
+    fn check_unwrapped(name: &str, mesh: &Mesh) {
+        assert_eq!(mesh.uvs.len(), mesh.triangles.len(), "{name}");
+        for (uv, t) in mesh.uvs.iter().zip(&mesh.triangles) {
+            let [a, b, c] = *uv;
+            let area = (b - a).perp_dot(c - a);
+            // v runs down: what turns left on the surface turns right on the image.
+            assert!(area < 0.0, "{name}: {uv:?}");
+            for axis in 0..2 {
+                let all = uv.map(|p| p[axis]);
+                let spread = all.iter().fold(0f32, |m, x| m.max((x - all[0]).abs()));
+                assert!(spread <= 0.5 || spread == 1.0, "{name}: {uv:?} of {t:?}");
+            }
         }
     }
 
@@ -566,6 +749,11 @@ mod tests {
             ("shape = 'sphere'\ntube = 2.0", "tube"),
             ("shape = 'cow'", "cow"),
             ("shape = 'bumpy'\namplitude = 0.9", "amplitude"),
+            ("shape = 'lathe'\nprofile = [[0, 0], [1, 1]]", "profile"),
+            (
+                "shape = 'lathe'\nprofile = [[0, 0], [-1, 1], [0, 2]]",
+                "profile",
+            ),
         ] {
             let e = build(text).expect_err(text);
             assert!(e.contains(word), "{text}: {e}");

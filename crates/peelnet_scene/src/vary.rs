@@ -1,7 +1,7 @@
 //! Variations of a scene, for training: other colours, opacities, cameras and scales of the same geometry.
 
 use crate::{Material, Scene};
-use glam::{Mat4, Quat, Vec3};
+use glam::{Quat, Vec3};
 use peelnet_core::random::Random;
 
 /// How a copy's opacities are drawn. What networks find hardest is among them: extremes in one pixel, near-opaque and
@@ -44,7 +44,7 @@ impl Scene {
         vary_materials(&mut scene, &mut random);
         vary_cameras(&mut scene, &mut random);
         let exponent = random.between(-2.0, 2.0);
-        rescale(&mut scene, 10f32.powf(exponent));
+        scene = scene.scaled(10f32.powf(exponent));
         scene
     }
 }
@@ -116,20 +116,5 @@ fn vary_cameras(scene: &mut Scene, random: &mut Random) {
         view.position = turned.target + offset * distance;
         view.far *= distance.max(1.0);
         view.fov_y_degrees = (view.fov_y_degrees * fov).clamp(5.0, 120.0);
-    }
-}
-
-fn rescale(scene: &mut Scene, factor: f32) {
-    for object in &mut scene.objects {
-        object.world_from_object = Mat4::from_scale(Vec3::splat(factor)) * object.world_from_object;
-    }
-    for view in &mut scene.views {
-        view.position *= factor;
-        view.target *= factor;
-        view.near *= factor;
-        view.far *= factor;
-    }
-    for light in &mut scene.lights {
-        light.position *= factor;
     }
 }

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use glam::Vec3;
-use peelnet_scene::{Lighting, Scene};
+use glam::{Vec2, Vec3};
+use peelnet_scene::{Lighting, Scene, Source, Wrap};
 use serde_json::{Value, json};
 
 /// A GLB file of this JSON and this buffer.
@@ -116,22 +116,21 @@ fn nodes_instances_materials_lights_and_cameras() {
     assert_eq!((leaf.alpha_cutoff, leaf.is_opaque()), (Some(0.4), true));
     assert_eq!((sign.lighting, sign.alpha), (Lighting::Unlit, 1.0));
     assert_eq!(lamp.emission, [2.0, 1.0, 0.0]);
-    assert_eq!(scene.lights.len(), 1);
-    assert_eq!(
-        (scene.lights[0].position, scene.lights[0].intensity),
-        (Vec3::new(0.0, 3.0, -2.0), 40.0)
-    );
+    let point = Source::Point(Vec3::new(0.0, 3.0, -2.0));
+    let sources: Vec<_> = scene
+        .lights
+        .iter()
+        .map(|l| (l.source, l.intensity))
+        .collect();
+    // A directional light shines along its −z: it comes from +z.
+    assert_eq!(sources, [(point, 40.0), (Source::Toward(Vec3::Z), 1.0)]);
     let camera = &scene.views[0];
     assert_eq!(
         (camera.position, camera.target),
         (Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, 4.0))
     );
     assert!((camera.fov_y_degrees - 0.8f32.to_degrees()).abs() < 1e-4 && camera.far == 50.0);
-    assert!(
-        scene.warnings.len() == 1 && scene.warnings[0].contains("directional lights"),
-        "{:?}",
-        scene.warnings
-    );
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
 /// Without a camera of its own all of it is seen.
@@ -156,6 +155,76 @@ fn a_file_without_a_camera_is_framed() {
     }
 }
 
+/// An image in a buffer, one beside the file and one in a data URI; places that a transform moves, a sampler, colours of corners, and
+/// light that passes through.
+#[test]
+fn images_corner_colours_and_transmission() {
+    let image = |texel: [u8; 4]| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = image::RgbaImage::from_pixel(2, 1, image::Rgba(texel));
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    let mut buffer = square();
+    let mut views = document()["bufferViews"].as_array().unwrap().clone();
+    let mut append = |bytes: Vec<u8>| {
+        views.push(json!({"buffer": 0, "byteOffset": buffer.len(), "byteLength": bytes.len()}));
+        buffer.extend(bytes);
+        buffer.resize(buffer.len().next_multiple_of(4), 0);
+        views.len() - 1
+    };
+    let floats = |all: &[f32]| all.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let uvs = append(floats(&[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]));
+    let colors = append(floats(&[1.0, 0.5, 0.25].repeat(4)));
+    let red = append(image([255, 0, 0, 128]));
+    let mut document = document();
+    document["bufferViews"] = views.clone().into();
+    document["buffers"][0]["byteLength"] = buffer.len().into();
+    let accessors = document["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"bufferView": uvs, "componentType": 5126, "count": 4, "type": "VEC2"}));
+    accessors
+        .push(json!({"bufferView": colors, "componentType": 5126, "count": 4, "type": "VEC3"}));
+    for primitive in document["meshes"][0]["primitives"].as_array_mut().unwrap() {
+        primitive["attributes"]["TEXCOORD_0"] = 2.into();
+        primitive["attributes"]["COLOR_0"] = 3.into();
+    }
+    document["images"] =
+        json!([{"bufferView": red, "mimeType": "image/png"}, {"uri": "a%20map.png"}]);
+    document["samplers"] = json!([{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]);
+    document["textures"] = json!([{"source": 0, "sampler": 0}, {"source": 1, "sampler": 0}]);
+    let materials = document["materials"].as_array_mut().unwrap();
+    let transform = json!({"KHR_texture_transform": {"offset": [0.25, 0.5], "scale": [2.0, 1.0], "rotation": 0.0}});
+    materials[0]["pbrMetallicRoughness"]["baseColorTexture"] =
+        json!({"index": 0, "extensions": transform});
+    materials[0]["normalTexture"] = json!({"index": 1, "scale": 0.5});
+    materials[1]["pbrMetallicRoughness"] = json!({"baseColorTexture": {"index": 0}});
+    materials[2]["pbrMetallicRoughness"] = json!({"baseColorTexture": {"index": 0}});
+    materials[3]["extensions"] =
+        json!({"KHR_materials_transmission": {"transmissionFactor": 0.75}});
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("thing.glb");
+    std::fs::write(&path, glb(&document, &buffer)).unwrap();
+    std::fs::write(folder.path().join("a map.png"), image([128, 128, 255, 255])).unwrap();
+    let scene = Scene::load(&path).unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let [glass, leaf, sign, lamp] = &scene.objects[0].materials[..4] else {
+        panic!("four materials of the first instance");
+    };
+    let color = glass.maps.color.as_ref().unwrap();
+    assert_eq!((color.size, color.texels[0]), ([2, 1], [255, 0, 0, 128]));
+    assert_eq!(glass.maps.wrap, [Wrap::Clamp, Wrap::Mirror]);
+    assert!(glass.maps.nearest && glass.maps.normal_scale == 0.5);
+    assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha());
+    // Opaque by the file's word, whatever its image holds.
+    assert!(!sign.maps.color.as_ref().unwrap().has_alpha());
+    // Three quarters pass, one quarter is scattered.
+    assert_eq!((lamp.transmission, lamp.color), ([0.75; 3], [0.25; 3]));
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!(mesh.uvs[0][1], Vec2::new(2.25, 1.5));
+    assert_eq!(mesh.uvs[2][1], Vec2::new(1.0, 1.0));
+    assert_eq!(mesh.colors[0], [1.0, 0.5, 0.25, 1.0]);
+}
+
 /// What is asked for and not drawn is told.
 #[test]
 fn what_is_not_drawn_is_told() {
@@ -168,15 +237,17 @@ fn what_is_not_drawn_is_told() {
         .unwrap()
         .push("KHR_materials_clearcoat".into());
     document["meshes"][0]["primitives"][1]["mode"] = json!(1);
+    document["extensions"]["KHR_lights_punctual"]["lights"][1] =
+        json!({"type": "spot", "spot": {}});
     let warnings = load(&glb(&document, &square()))
         .unwrap()
         .warnings
         .join("\n");
     for word in [
-        "base-colour maps",
+        "image 0, which cannot be read",
         "KHR_materials_clearcoat",
         "Lines",
-        "directional",
+        "spot lights",
     ] {
         assert!(warnings.contains(word), "{word}: {warnings}");
     }

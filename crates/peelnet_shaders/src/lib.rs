@@ -180,7 +180,49 @@ mod tests {
         )
     }
 
-    const PARAMETERS: &str = "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\nconst BIAS: f32 = 5e-7;\nconst OVERESTIMATION: f32 = 0.25;\nconst K: u32 = 4u;\nconst SAMPLES: u32 = 8u;\n";
+    const PARAMETERS: &str = "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\nconst BIAS: f32 = 5e-7;\nconst OVERESTIMATION: f32 = 0.25;\nconst K: u32 = 4u;\nconst SAMPLES: u32 = 8u;\nconst HIGHLIGHT: f32 = 1.0;\nconst HIGHLIGHT_SHARE: f32 = 0.5;\n";
+
+    /// What materials call for: alone, and all of it.
+    const MATERIALS: [&[&str]; 10] = [
+        &["lit", "phong"],
+        &["lit", "pbr"],
+        &["lit", "pbr", "sun"],
+        &["emission"],
+        &["cutout"],
+        &["vertex_colors"],
+        &["mapped", "color_map"],
+        &["mapped", "color_map", "clear_map"],
+        &["transmission"],
+        &[
+            "lit",
+            "pbr",
+            "sun",
+            "emission",
+            "cutout",
+            "vertex_colors",
+            "mapped",
+            "color_map",
+            "clear_map",
+            "normal_map",
+            "metallic_roughness_map",
+            "occlusion_map",
+            "emissive_map",
+            "transmission",
+        ],
+    ];
+
+    /// What the colours of a scene call for, and where.
+    fn of_colors(path: &str) -> &'static [&'static str] {
+        match path {
+            "methods::wboit::gather" | "methods::wboit::resolve" | "methods::blended::gather" => {
+                &["packed", "tinted"]
+            }
+            "methods::abuffer::composite" | "peel::sort" => &["tinted"],
+            "peel::store" => &["tinted", "layered", "dataset"],
+            "methods::layers::composite" => &["increasing"],
+            _ => &[],
+        }
+    }
 
     /// Every root (a module with an entry point) links and validates in every feature it names; all failures are
     /// reported at once.
@@ -196,7 +238,7 @@ mod tests {
                 continue;
             }
             roots += 1;
-            let variants: Vec<Vec<&str>> = if *path == "methods::wboit::gather" {
+            let mut variants: Vec<Vec<&str>> = if *path == "methods::wboit::gather" {
                 ["eq7", "eq8", "eq9", "eq10", "inverse_power", "papakostas"]
                     .map(|w| vec![w, "opaque"])
                     .to_vec()
@@ -223,6 +265,12 @@ mod tests {
                     vec!["opaque", "sampled"],
                 ]
             };
+            let first = variants[0].clone();
+            let with = |more: &[&'static str]| [first.as_slice(), more].concat();
+            if text.contains("surface: Surface") || text.contains("-> Surface") {
+                variants.extend(MATERIALS.map(with));
+            }
+            variants.extend(of_colors(path).iter().map(|feature| with(&[*feature])));
             for features in variants {
                 let learned = learned(path.rsplit_once("::").map_or("", |(folder, _)| folder));
                 let extra = [

@@ -16,12 +16,21 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let width = textureDimensions(background).x;
     let pixel = vec2u(index % width, index / width);
     var color = vec3f(0.0);
-    var transmittance = 1.0;
+    @if(!tinted) var transmittance = 1.0;
+    @if(tinted) var transmittance = vec3f(1.0);
     for (var i = offsets[index] - tile.base; i < offsets[index + 1u] - tile.base; i++) {
-        let fragment = colors[i];
-        color += transmittance * fragment.rgb;
-        transmittance *= 1.0 - fragment.a;
+        @if(!tinted) {
+            let fragment = colors[i];
+            color += transmittance * fragment.rgb;
+            transmittance *= 1.0 - fragment.a;
+        }
+        @if(tinted) {
+            color += transmittance * colors[2u * i].rgb;
+            transmittance *= 1.0 - colors[2u * i + 1u].rgb;
+        }
     }
     let behind = textureLoad(background, pixel, 0).rgb;
-    textureStore(image, pixel, vec4f(color + transmittance * behind, 1.0 - transmittance));
+    @if(!tinted) let covered = 1.0 - transmittance;
+    @if(tinted) let covered = 1.0 - dot(transmittance, vec3f(1.0 / 3.0));
+    textureStore(image, pixel, vec4f(color + transmittance * behind, covered));
 }

@@ -1,13 +1,9 @@
 // blended (McGuire & Bavoil 2013, eq 5): sum C, sum alpha and the transmittance of the whole pixel.
+import package::helpers::sums::{Sums, sums_of};
 import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
-
-struct Sums {
-    @location(0) color: vec4f,
-    // Blended multiplicatively: dst * (1 - src).
-    @location(1) alpha: f32,
-}
 
 @fragment
 fn fragment_main(surface: Surface) -> Sums {
@@ -15,5 +11,6 @@ fn fragment_main(surface: Surface) -> Sums {
         discard;
     }
     let color = shade(surface);
-    return Sums(color, color.a);
+    @if(tinted) return sums_of(color, covering(surface));
+    @else return sums_of(color, vec3f(color.a));
 }

@@ -1,15 +1,11 @@
 // wboit (McGuire & Bavoil 2013, eq 6): sum C w, sum alpha w and the transmittance of the whole pixel.
 import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9, weight_eq10, weight_inverse_power, weight_papakostas};
 import package::parameters::{FACTOR, POWER, EPSILON};
+import package::helpers::sums::{Sums, sums_of};
 import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
-
-struct Sums {
-    @location(0) color: vec4f,
-    // Blended multiplicatively: dst * (1 - src).
-    @location(1) alpha: f32,
-}
 
 @fragment
 fn fragment_main(surface: Surface) -> Sums {
@@ -23,5 +19,6 @@ fn fragment_main(surface: Surface) -> Sums {
     @if(eq10) let weight = weight_eq10(surface.position.z, color.a, FACTOR);
     @if(inverse_power) let weight = weight_inverse_power(surface.depth_linear, POWER, EPSILON);
     @if(papakostas) let weight = weight_papakostas(surface.depth_linear, color.a);
-    return Sums(color * weight, color.a);
+    @if(tinted) return sums_of(color * weight, covering(surface));
+    @else return sums_of(color * weight, vec3f(color.a));
 }

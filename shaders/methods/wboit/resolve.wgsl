@@ -1,10 +1,11 @@
 // Eq 6's resolve, shared by every method that accumulates (sum C w, sum alpha w) and T.
-import package::helpers::resolve::normalised;
+@if(!tinted) import package::helpers::resolve::normalised;
+@if(tinted) import package::helpers::resolve::normalised_by_channel;
 import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
-@group(0) @binding(2) var transmittances: texture_2d<f32>;
+@if(!packed) @group(0) @binding(2) var transmittances: texture_2d<f32>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -14,9 +15,9 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
-    return normalised(
-        textureLoad(sums, pixel, 0),
-        textureLoad(transmittances, pixel, 0).x,
-        textureLoad(background, pixel, 0).rgb,
-    );
+    let behind = textureLoad(background, pixel, 0).rgb;
+    let found = textureLoad(sums, pixel, 0);
+    @if(packed) return normalised(found.xxxy, found.w, behind);
+    @if(tinted) return normalised_by_channel(found, textureLoad(transmittances, pixel, 0).rgb, behind);
+    @if(!packed && !tinted) return normalised(found, textureLoad(transmittances, pixel, 0).x, behind);
 }

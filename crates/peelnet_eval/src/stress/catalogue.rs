@@ -9,7 +9,7 @@ use crate::EvalError;
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
 use peelnet_gpu::Gpu;
-use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, suite};
+use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source, suite};
 
 /// One hard case.
 #[derive(Clone, Copy, Debug)]
@@ -568,7 +568,7 @@ fn grazing() -> Trial {
     objects.push(flat);
     let mut trial = generated("grazing", objects);
     trial.scene.lights.push(Light {
-        position: v(1.0, 2.0, 1.0),
+        source: Source::Point(v(1.0, 2.0, 1.0)),
         color: [1.0; 3],
         intensity: 1.0,
     });

@@ -5,7 +5,7 @@ use super::{
     subject::Subject,
     trial::{Kind, Trial, Truth},
 };
-use peelnet_render::{Image, srgb_encode};
+use peelnet_render::Image;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -297,7 +297,7 @@ fn nan_max(a: f64, b: f64) -> f64 {
 }
 
 fn display(linear: f32) -> f64 {
-    f64::from(srgb_encode(linear)) * 255.0
+    f64::from(peelnet_core::srgb::encode(linear)) * 255.0
 }
 
 /// Rec. 709.

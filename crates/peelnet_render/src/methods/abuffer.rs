@@ -3,9 +3,11 @@
 use super::{Build, Compositor, DrawContext, FrameStats};
 use crate::{
     RenderError,
-    passes::sbuffer::{BYTES_PER_FRAGMENT, SBuffer},
+    passes::sbuffer::{BYTES_PER_FRAGMENT, FragmentStorage, SBuffer},
+    scene::{FrameTargets, SceneBuffers},
 };
 use peelnet_gpu::{
+    Gpu,
     bind::{Bind, Bound},
     wgpu,
 };
@@ -15,26 +17,43 @@ struct ABuffer {
     sbuffer: SBuffer,
     composite: wgpu::ComputePipeline,
     group: Option<Bound>,
+    tinted: bool,
 }
 
 pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let sbuffer = SBuffer::new(b.gpu, b.scene, b.frame, b.spec.count("budget")?, &[])?;
+    let features: &[&str] = if b.scene.tinted { &["tinted"] } else { &[] };
+    let wgsl = peelnet_shaders::link("methods::abuffer::composite", features, &[])?;
+    build_with(
+        b.gpu,
+        b.scene,
+        b.frame,
+        b.spec.count("budget")?,
+        features,
+        &wgsl,
+    )
+}
+
+/// Stores, sorts and hands every pixel's run to a compute shader; `features` are those of storing.
+pub(super) fn build_with(
+    gpu: &Gpu,
+    scene: &SceneBuffers,
+    frame: &FrameTargets,
+    budget: Option<u64>,
+    features: &[&str],
+    wgsl: &str,
+) -> Result<Box<dyn Compositor>, RenderError> {
+    let sbuffer = SBuffer::new(gpu, scene, frame, budget, features)?;
     // Storage is sized by the first frame; the layout does not depend on it, so any buffer stands in for it here.
-    let layout = group(b.gpu, &sbuffer, &sbuffer.count.counts, b.frame).layout;
-    let wgsl = peelnet_shaders::link("methods::abuffer::composite", &[], &[])?;
+    let layout = group(gpu, &sbuffer, &sbuffer.count.counts, frame).layout;
     Ok(Box::new(ABuffer {
-        composite: b.gpu.compute("composite", &wgsl, &[&layout]),
+        composite: gpu.compute("composite", wgsl, &[&layout]),
         group: None,
         sbuffer,
+        tinted: features.contains(&"tinted"),
     }))
 }
 
-fn group(
-    gpu: &peelnet_gpu::Gpu,
-    sbuffer: &SBuffer,
-    colors: &wgpu::Buffer,
-    frame: &crate::scene::FrameTargets,
-) -> Bound {
+fn group(gpu: &Gpu, sbuffer: &SBuffer, colors: &wgpu::Buffer, frame: &FrameTargets) -> Bound {
     gpu.bind(
         "composite",
         wgpu::ShaderStages::COMPUTE,
@@ -73,8 +92,9 @@ impl Compositor for ABuffer {
             cx.recorder.submit();
         }
         let pixels = f64::from(cx.frame.pixels());
+        let bytes = BYTES_PER_FRAGMENT + if self.tinted { 16 } else { 0 };
         let stored = if tiles.len() > 1 {
-            crate::passes::sbuffer::FragmentStorage::limit(gpu, None).min(found.total)
+            FragmentStorage::limit(gpu, None, self.tinted).min(found.total)
         } else {
             found.total
         };
@@ -86,7 +106,7 @@ impl Compositor for ABuffer {
             geometry_passes: 1 + tiles.len() as u32,
             fullscreen_passes: 3 + 2 * tiles.len() as u32,
             // Count, offset and the unwritten attachment; then the fragments.
-            bytes_per_pixel: 9.0 + (stored * BYTES_PER_FRAGMENT) as f64 / pixels,
+            bytes_per_pixel: 9.0 + (stored * bytes) as f64 / pixels,
         })
     }
 }

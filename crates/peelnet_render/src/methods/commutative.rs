@@ -24,6 +24,8 @@ pub(crate) enum Blend {
     Add,
     /// `dst · (1 − src)`, from 1.
     Transmit,
+    /// `dst + src` of red, green and blue, from 0; `dst · (1 − src.a)` of alpha, from 1.
+    AddTransmit,
     /// `src + dst · (1 − src.a)` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
     Over,
     /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
@@ -36,7 +38,7 @@ impl Blend {
         let least = -f64::from(HALF_MAX);
         match self {
             Self::Add => [0.0; 4],
-            Self::Over => [0.0, 0.0, 0.0, 1.0],
+            Self::Over | Self::AddTransmit => [0.0, 0.0, 0.0, 1.0],
             Self::Transmit => [1.0; 4],
             Self::MaxAdd => [least, least, least, 0.0],
         }
@@ -58,6 +60,7 @@ impl Blend {
                 component(F::Zero, F::OneMinusSrcAlpha, O::Add),
             ),
             Self::Transmit => (transmit, transmit),
+            Self::AddTransmit => (add, component(F::Zero, F::OneMinusSrcAlpha, O::Add)),
             Self::MaxAdd => (component(F::One, F::One, O::Max), add),
         };
         wgpu::BlendState { color, alpha }

@@ -73,7 +73,7 @@ impl Pool {
         nodes: u64,
     ) -> Result<Self, RenderError> {
         let next = gpu.storage("list links", nodes * 4)?;
-        let storage = FragmentStorage::new(gpu, nodes)?;
+        let storage = FragmentStorage::new(gpu, nodes, false)?;
         let build_group = gpu.bind(
             "build",
             wgpu::ShaderStages::FRAGMENT,

@@ -11,6 +11,7 @@ pub mod depth_peel;
 mod dfaoit;
 pub mod dual_peel;
 mod kbuffer;
+pub mod layers;
 mod linked_list;
 mod low_resolution;
 mod mboit;
@@ -89,6 +90,8 @@ pub struct MethodEntry {
     pub learned: bool,
     /// Whether it is exact by definition.
     pub exact: bool,
+    /// Whether it draws light that takes a colour where it passes through surfaces.
+    pub tinted: bool,
     build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
 }
 
@@ -158,6 +161,7 @@ macro_rules! wboit {
             own_knobs: &[TARGETS $(, $knob)*],
             learned: false,
             exact: false,
+            tinted: true,
             build: |b| weighted::wboit(b, $weight),
         }
     };
@@ -173,6 +177,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[("budget", "fragments that one tile may hold")],
         learned: false,
         exact: true,
+        tinted: true,
         build: abuffer::build,
     },
     MethodEntry {
@@ -183,6 +188,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[("nodes", "size of the first pool; it grows as needed")],
         learned: false,
         exact: true,
+        tinted: false,
         build: linked_list::build,
     },
     MethodEntry {
@@ -193,6 +199,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[PASSES],
         learned: false,
         exact: true,
+        tinted: false,
         build: depth_peel::build,
     },
     MethodEntry {
@@ -203,6 +210,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[PASSES],
         learned: false,
         exact: true,
+        tinted: false,
         build: dual_peel::build,
     },
     MethodEntry {
@@ -219,6 +227,7 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
+        tinted: false,
         build: painter::objects,
     },
     MethodEntry {
@@ -229,6 +238,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: false,
         exact: false,
+        tinted: false,
         build: painter::triangles,
     },
     MethodEntry {
@@ -239,6 +249,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: false,
         exact: false,
+        tinted: false,
         build: weighted::sum,
     },
     MethodEntry {
@@ -249,6 +260,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: false,
         exact: false,
+        tinted: false,
         build: weighted::average,
     },
     MethodEntry {
@@ -259,6 +271,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: false,
         exact: false,
+        tinted: true,
         build: weighted::blended,
     },
     wboit!(
@@ -328,6 +341,7 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
+        tinted: false,
         build: mboit::four,
     },
     MethodEntry {
@@ -346,6 +360,7 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
+        tinted: false,
         build: mboit::six,
     },
     MethodEntry {
@@ -356,6 +371,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[("own", "out (default) or in: a fragment's own absorbance")],
         learned: false,
         exact: false,
+        tinted: false,
         build: wavelet::build,
     },
     MethodEntry {
@@ -366,6 +382,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: false,
         exact: false,
+        tinted: false,
         build: kbuffer::plain,
     },
     MethodEntry {
@@ -379,6 +396,7 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
+        tinted: false,
         build: kbuffer::hybrid,
     },
     MethodEntry {
@@ -389,6 +407,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: false,
         exact: false,
+        tinted: false,
         build: stochastic::build,
     },
     MethodEntry {
@@ -399,6 +418,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: true,
         exact: false,
+        tinted: false,
         build: deep_thesis::build,
     },
     MethodEntry {
@@ -409,6 +429,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
+        tinted: false,
         build: nmt::build,
     },
     MethodEntry {
@@ -419,6 +440,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: true,
         exact: false,
+        tinted: false,
         build: dfaoit::build,
     },
     MethodEntry {
@@ -429,6 +451,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: true,
         exact: false,
+        tinted: false,
         build: anchored::build,
     },
     MethodEntry {
@@ -439,6 +462,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: true,
         exact: false,
+        tinted: false,
         build: anchored::build,
     },
     MethodEntry {
@@ -449,6 +473,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
+        tinted: false,
         build: anchored::build,
     },
 ];
@@ -656,6 +681,9 @@ pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         return Err(b
             .spec
             .bad("scale must be above 0 and at most 1, such as 0.5"));
+    }
+    if b.scene.tinted && (!b.spec.entry().tinted || scale < 1.0) {
+        return Err(RenderError::OneTransmittance(b.spec.to_string()));
     }
     if scale < 1.0 {
         low_resolution::build(b, scale)

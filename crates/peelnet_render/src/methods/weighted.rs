@@ -23,6 +23,44 @@ pub(super) const TRANSMITTANCE: Target = Target {
     blend: Blend::Transmit,
 };
 
+/// `T_∞` of red, green and blue.
+const TINTED: Target = Target {
+    channels: 4,
+    ..TRANSMITTANCE
+};
+
+/// Of grey colours `Σ C w`, `Σ α w` and, where alpha is, `T_∞`: one target less.
+const PACKED: Target = Target {
+    blend: Blend::AddTransmit,
+    ..SUMS
+};
+
+/// Builds a method of weighted sums and a transmittance in the targets that the scene's colours call for.
+fn build_sums(b: &Build<'_>, gather: Gather<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let (targets, places, feature): (&[Target], &[usize], &[&str]) =
+        match (b.scene.grey, b.scene.tinted) {
+            (true, _) => (&[PACKED], &[0], &["packed"]),
+            (false, true) => (&[SUMS, TINTED], &[0, 1], &["tinted"]),
+            (false, false) => (&[SUMS, TRANSMITTANCE], &[0, 1], &[]),
+        };
+    let features = [gather.features, feature].concat();
+    commutative::build(
+        b,
+        &Plan {
+            targets,
+            passes: &[Gather {
+                features: &features,
+                writes: places,
+                ..gather
+            }],
+            resolve: "methods::wboit::resolve",
+            resolve_features: feature,
+            resolve_reads: places,
+            ..Plan::NONE
+        },
+    )
+}
+
 const fn gather(shader: &'static str, writes: &'static [usize]) -> Gather<'static> {
     Gather {
         label: "gather",
@@ -65,16 +103,7 @@ pub(super) fn average(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError>
 }
 
 pub(super) fn blended(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    commutative::build(
-        b,
-        &Plan {
-            targets: &[SUMS, TRANSMITTANCE],
-            passes: &[gather("methods::blended::gather", &[0, 1])],
-            resolve: "methods::wboit::resolve",
-            resolve_reads: &[0, 1],
-            ..Plan::NONE
-        },
-    )
+    build_sums(b, gather("methods::blended::gather", &[]))
 }
 
 pub(super) fn wboit(
@@ -93,18 +122,12 @@ pub(super) fn wboit(
         "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
     );
     let feature = weight.name().replace('-', "_");
-    commutative::build(
+    build_sums(
         b,
-        &Plan {
-            targets: &[SUMS, TRANSMITTANCE],
-            passes: &[Gather {
-                features: &[&feature],
-                extra: &[("parameters", &parameters)],
-                ..gather("methods::wboit::gather", &[0, 1])
-            }],
-            resolve: "methods::wboit::resolve",
-            resolve_reads: &[0, 1],
-            ..Plan::NONE
+        Gather {
+            features: &[&feature],
+            extra: &[("parameters", &parameters)],
+            ..gather("methods::wboit::gather", &[])
         },
     )
 }

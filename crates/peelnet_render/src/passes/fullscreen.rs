@@ -35,7 +35,7 @@ impl FullscreenPass {
             .device
             .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(shader),
-                layout: Some(&gpu.layout(&[&group.layout])),
+                layout: Some(&gpu.layout(&[Some(&group.layout)])),
                 vertex: wgpu::VertexState {
                     module: &module,
                     entry_point: Some("vertex_main"),

@@ -19,6 +19,11 @@ use peelnet_gpu::{
 /// Bytes of one fragment in storage: depth, triangle, colour with alpha.
 pub const BYTES_PER_FRAGMENT: u64 = 4 + 4 + 16;
 
+/// Bytes of a fragment's colours: with alpha, or with what it covers of each channel.
+const fn color_bytes(tinted: bool) -> u64 {
+    if tinted { 32 } else { 16 }
+}
+
 /// Layout of `Tile` in `peel/tile.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable, PartialEq, Eq)]
@@ -109,26 +114,26 @@ pub struct FragmentStorage {
 }
 
 impl FragmentStorage {
-    /// Storage for `fragments` fragments.
+    /// Storage for `fragments` fragments, with two colours each where light is `tinted`.
     ///
     /// # Errors
     /// More than a storage binding holds.
-    pub fn new(gpu: &Gpu, fragments: u64) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, fragments: u64, tinted: bool) -> Result<Self, RenderError> {
         Ok(Self {
             depths: gpu.storage("fragment depths", fragments * 4)?,
             triangles: gpu.storage("fragment triangles", fragments * 4)?,
-            colors: gpu.storage("fragment colours", fragments * 16)?,
+            colors: gpu.storage("fragment colours", fragments * color_bytes(tinted))?,
             capacity: fragments,
         })
     }
 
     /// Fragments that one tile may hold on this adapter: bounded by the largest binding and by `budget`.
-    pub fn limit(gpu: &Gpu, budget: Option<u64>) -> u64 {
+    pub fn limit(gpu: &Gpu, budget: Option<u64>, tinted: bool) -> u64 {
         let binding = gpu
             .limits
             .max_storage_buffer_binding_size
             .min(gpu.limits.max_buffer_size)
-            / 16;
+            / color_bytes(tinted);
         budget.map_or(binding, |b| b.clamp(1, binding))
     }
 }
@@ -154,7 +159,8 @@ struct Kernels {
 }
 
 impl SBuffer {
-    /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`.
+    /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`, and one of
+    /// `dataset`, `tinted` and `layered`, which say what is kept of a fragment.
     ///
     /// # Errors
     /// See [`CountPass::new`].
@@ -170,7 +176,7 @@ impl SBuffer {
             store: None,
             tile: gpu.upload("tile", &[Tile::zeroed()], wgpu::BufferUsages::UNIFORM),
             features: features.iter().map(|&f| f.to_owned()).collect(),
-            limit: FragmentStorage::limit(gpu, budget),
+            limit: FragmentStorage::limit(gpu, budget, features.contains(&"tinted")),
         })
     }
 
@@ -232,7 +238,8 @@ impl SBuffer {
         frame: &FrameTargets,
         fragments: u64,
     ) -> Result<Kernels, RenderError> {
-        let storage = FragmentStorage::new(gpu, fragments)?;
+        let tinted = self.features.iter().any(|f| f == "tinted");
+        let storage = FragmentStorage::new(gpu, fragments, tinted)?;
         let store_group = gpu.bind(
             "store",
             wgpu::ShaderStages::FRAGMENT,
@@ -273,7 +280,7 @@ impl SBuffer {
         );
         let sort = gpu.compute(
             "peel::sort",
-            &peelnet_shaders::link("peel::sort", &[], &[])?,
+            &peelnet_shaders::link("peel::sort", if tinted { &["tinted"] } else { &[] }, &[])?,
             &[&sort_group.layout],
         );
         Ok(Kernels {

@@ -1,0 +1,319 @@
+//! Maps made by code: a field over the image, 0 … 1, that repeats without a seam, read as colours, heights or values.
+
+use crate::texture::{Texture, normals_of};
+use glam::{IVec2, Vec2};
+use peelnet_core::{hash::pixel_hash, srgb};
+use serde::Deserialize;
+
+/// What the field is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Field {
+    /// Squares of 0 and 1.
+    Checker,
+    /// Smooth noise, five octaves of it.
+    Noise,
+    /// 1 along the borders of irregular cells, as cracks of a glaze run.
+    Cracks,
+    /// 1 in some bands around the image, with waves on their edges: painted decoration.
+    Bands,
+}
+
+/// A generated map: `color_map = { pattern = "cracks", cells = 12, colors = [[1, 1, 1], [0.2, 0.1, 0]] }`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pattern {
+    /// The field.
+    pub pattern: Field,
+    /// Cells across and down the image.
+    #[serde(default = "eight")]
+    pub cells: u32,
+    /// Another seed, another pattern.
+    #[serde(default)]
+    pub seed: u32,
+    /// Width and height in texels.
+    #[serde(default = "size")]
+    pub size: u32,
+    /// Where the field goes from 0 to 1: values below the first are 0, above the second 1.
+    #[serde(default = "unit")]
+    pub range: [f32; 2],
+    /// Width of cracks as a part of a cell.
+    #[serde(default = "twelfth")]
+    pub width: f32,
+    /// Linear RGB, or RGB and alpha, at 0 and at 1; for colours and emission.
+    #[serde(default = "black_and_white")]
+    pub colors: [Vec<f32>; 2],
+    /// Rise of 1 over 0 in widths of a cell; for normals.
+    #[serde(default = "twelfth")]
+    pub height: f32,
+    /// Metallic factor at 0 and at 1.
+    #[serde(default = "unit")]
+    pub metallic: [f32; 2],
+    /// Roughness factor at 0 and at 1.
+    #[serde(default = "unit")]
+    pub roughness: [f32; 2],
+    /// Share of ambient light that arrives at 0 and at 1.
+    #[serde(default = "unit")]
+    pub occlusion: [f32; 2],
+}
+
+const fn eight() -> u32 {
+    8
+}
+const fn size() -> u32 {
+    512
+}
+const fn unit() -> [f32; 2] {
+    [0.0, 1.0]
+}
+const fn twelfth() -> f32 {
+    1.0 / 12.0
+}
+fn black_and_white() -> [Vec<f32>; 2] {
+    [vec![0.0; 3], vec![1.0; 3]]
+}
+
+impl Pattern {
+    fn check(&self) -> Result<(), String> {
+        let unit = |x: f32| (0.0..=1.0).contains(&x);
+        if !(4..=4096).contains(&self.size) {
+            return Err(format!("size {} must lie in 4 … 4096", self.size));
+        }
+        if !(1..=256).contains(&self.cells) {
+            return Err(format!("cells {} must lie in 1 … 256", self.cells));
+        }
+        if self.colors.iter().any(|c| !matches!(c.len(), 3 | 4)) {
+            return Err(
+                "colors must be two of [red, green, blue] or [red, green, blue, alpha]".into(),
+            );
+        }
+        let factors = [self.metallic, self.roughness, self.occlusion];
+        let all = factors.iter().flatten().chain(self.colors.iter().flatten());
+        if let Some(x) = all.chain([&self.width]).find(|x| !unit(**x)) {
+            return Err(format!("{x} must lie in 0 … 1, as all values of a pattern"));
+        }
+        if !(self.height.is_finite() && self.range.iter().all(|x| x.is_finite()))
+            || self.range[0] == self.range[1]
+        {
+            return Err("height and range must be finite, and the ends of range differ".into());
+        }
+        Ok(())
+    }
+
+    /// The field's values, row by row.
+    fn values(&self) -> Vec<f32> {
+        let n = self.size;
+        let at = |x: u32, y: u32| {
+            // Texel centres, in cells.
+            let place = (Vec2::new(x as f32, y as f32) + 0.5) / n as f32 * self.cells as f32;
+            let raw = match self.pattern {
+                Field::Checker => ((place.x as u32 + place.y as u32) % 2) as f32,
+                Field::Noise => self.octaves(place, self.cells),
+                Field::Cracks => {
+                    // Not straight: the borders of cells are pushed about by noise.
+                    let push = Vec2::new(
+                        self.noise(place * 2.0, self.cells * 2, 7),
+                        self.noise(place * 2.0, self.cells * 2, 8),
+                    );
+                    let border = self.border(place + (push - 0.5) * 0.35);
+                    1.0 - smoothstep(0.0, self.width, border)
+                }
+                Field::Bands => {
+                    let down = place.y / self.cells as f32;
+                    let wave = 0.012 * (std::f32::consts::TAU * place.x).sin();
+                    let bands = [0.22, 0.3, 0.62, 0.68f32];
+                    let near = bands
+                        .iter()
+                        .map(|b| (down + wave - b).abs())
+                        .fold(1.0, f32::min);
+                    1.0 - smoothstep(0.012, 0.016, near)
+                }
+            };
+            ((raw - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0)
+        };
+        (0..n)
+            .flat_map(|y| (0..n).map(move |x| (x, y)))
+            .map(|(x, y)| at(x, y))
+            .collect()
+    }
+
+    /// A number of 0 … 1 that belongs to a corner of the grid.
+    fn random(&self, at: IVec2, period: u32, channel: u32) -> f32 {
+        let at = at.rem_euclid(IVec2::splat(period as i32));
+        pixel_hash(self.seed, channel, at.x as u32, at.y as u32) as f32 / u32::MAX as f32
+    }
+
+    /// Value noise that repeats after `period` cells.
+    fn noise(&self, place: Vec2, period: u32, channel: u32) -> f32 {
+        let corner = place.floor();
+        let t = place - corner;
+        let t = t * t * (3.0 - 2.0 * t);
+        let corner = corner.as_ivec2();
+        let value = |x, y| self.random(corner + IVec2::new(x, y), period, channel);
+        let across = |y| value(0, y) + t.x * (value(1, y) - value(0, y));
+        across(0) + t.y * (across(1) - across(0))
+    }
+
+    fn octaves(&self, place: Vec2, period: u32) -> f32 {
+        let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
+        for octave in 0..5 {
+            let times = 1 << octave;
+            sum += weight * self.noise(place * times as f32, period * times, octave);
+            total += weight;
+            weight *= 0.5;
+        }
+        sum / total
+    }
+
+    /// Distance to the border between the two nearest cells' points, in cells (Worley 1996).
+    fn border(&self, place: Vec2) -> f32 {
+        let cell = place.floor().as_ivec2();
+        let around = (-2..=2).flat_map(|y| (-2..=2).map(move |x| IVec2::new(x, y)));
+        let mut nearest = [(f32::INFINITY, Vec2::ZERO); 2];
+        for offset in around {
+            let own = cell + offset;
+            let jitter = Vec2::new(
+                self.random(own, self.cells, 5),
+                self.random(own, self.cells, 6),
+            );
+            let point = own.as_vec2() + jitter;
+            let distance = (point - place).length_squared();
+            if distance < nearest[0].0 {
+                nearest = [(distance, point), nearest[0]];
+            } else if distance < nearest[1].0 {
+                nearest[1] = (distance, point);
+            }
+        }
+        let [(_, a), (_, b)] = nearest;
+        let apart = (b - a).normalize_or(Vec2::X);
+        ((a + b) * 0.5 - place).dot(apart).abs()
+    }
+
+    fn texture(&self, name: &str, texel: impl Fn(f32) -> [u8; 4]) -> Result<Texture, String> {
+        self.check()?;
+        let values = self.values();
+        let n = self.size;
+        Ok(Texture::of(name, [n, n], |x, y| {
+            texel(values[(y * n + x) as usize])
+        }))
+    }
+
+    /// As colours in sRGB, with alpha where it is given.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn color(&self) -> Result<Texture, String> {
+        self.texture("a pattern of colours", |t| {
+            let channel = |k: usize| {
+                let at = |c: &Vec<f32>| c.get(k).copied().unwrap_or(1.0);
+                let [a, b] = [at(&self.colors[0]), at(&self.colors[1])];
+                a + t * (b - a)
+            };
+            let [r, g, b] = [0, 1, 2].map(|k| byte(srgb::encode(channel(k))));
+            [r, g, b, byte(channel(3))]
+        })
+    }
+
+    /// As normals of a surface whose height it is.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn normals(&self) -> Result<Texture, String> {
+        self.check()?;
+        let values = self.values();
+        let n = self.size;
+        let slope = self.height * n as f32 / self.cells as f32;
+        Ok(normals_of("a pattern of heights", [n, n], slope, |x, y| {
+            values[(y * n + x) as usize]
+        }))
+    }
+
+    /// As factors of metallic and roughness.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn metallic_roughness(&self) -> Result<Texture, String> {
+        self.texture("a pattern of metal", |t| {
+            let at = |[a, b]: [f32; 2]| byte(a + t * (b - a));
+            [255, at(self.roughness), at(self.metallic), 255]
+        })
+    }
+
+    /// As the share of ambient light that arrives.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn occlusion(&self) -> Result<Texture, String> {
+        let [a, b] = self.occlusion;
+        self.texture("a pattern of occlusion", |t| {
+            let share = byte(a + t * (b - a));
+            [share, share, share, 255]
+        })
+    }
+}
+
+fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
+    let t = ((x - a) / (b - a).max(1e-6)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+fn byte(x: f32) -> u8 {
+    (x * 255.0).round().clamp(0.0, 255.0) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pattern(text: &str) -> Pattern {
+        toml::from_str(text).expect("parses")
+    }
+
+    /// Fields stay in 0 … 1, use most of it, repeat without a seam (the step over the edge is no larger than the largest inside), and
+    /// differ with the seed.
+    #[test]
+    fn fields_repeat_without_a_seam() {
+        for name in ["noise", "cracks", "bands"] {
+            let p = pattern(&format!("pattern = '{name}'\nsize = 128\nwidth = 0.3"));
+            let v = p.values();
+            let at = |x: u32, y: u32| v[(y * 128 + x % 128) as usize];
+            let (lo, hi) = v
+                .iter()
+                .fold((1f32, 0f32), |(a, b), &x| (a.min(x), b.max(x)));
+            assert!(lo >= 0.0 && hi <= 1.0 && hi - lo > 0.5, "{name}: {lo} {hi}");
+            let step = |x: u32| {
+                (0..128)
+                    .map(|y| (at(x + 1, y) - at(x, y)).abs())
+                    .fold(0f32, f32::max)
+            };
+            let inside = (0..127).map(step).fold(0f32, f32::max);
+            assert!(step(127) <= inside, "{name}: {} {inside}", step(127));
+            if name != "bands" {
+                let other = Pattern {
+                    seed: 1,
+                    ..p.clone()
+                };
+                assert_ne!(other.values(), v, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn colours_and_factors_are_those_given() {
+        let p = pattern(
+            "pattern = 'checker'\ncells = 2\nsize = 4\ncolors = [[0, 0, 0, 0.2], [1, 0.5, 0]]\nroughness = [0.4, 1]\nmetallic = [1, 0]",
+        );
+        let color = p.color().expect("in range");
+        assert_eq!(
+            (color.texels[0], color.texels[2]),
+            ([0, 0, 0, 51], [255, 188, 0, 255])
+        );
+        let values = p.metallic_roughness().expect("in range");
+        assert_eq!(
+            (values.texels[0], values.texels[2]),
+            ([255, 102, 255, 255], [255, 255, 0, 255])
+        );
+        let e = pattern("pattern = 'noise'\nroughness = [0, 2]").metallic_roughness();
+        assert!(e.is_err_and(|e| e.contains('2')));
+    }
+}

@@ -1,0 +1,250 @@
+//! Images on surfaces: read from PNG and JPEG files, or made by code ([`crate::pattern`]).
+
+use crate::SceneError;
+use std::{path::Path, sync::Arc};
+
+/// An image of 8 bits a channel.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Texture {
+    /// Where it comes from, for messages.
+    pub name: String,
+    /// Width and height in texels.
+    pub size: [u32; 2],
+    /// Red, green, blue, alpha of every texel, row by row from the top.
+    pub texels: Vec<[u8; 4]>,
+    clear: bool,
+    grey: bool,
+}
+
+impl std::fmt::Debug for Texture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [width, height] = self.size;
+        write!(f, "Texture({:?}, {width}x{height})", self.name)
+    }
+}
+
+/// What lies beyond an image's edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// The image mirrored.
+    Mirror,
+    /// Its edge.
+    Clamp,
+}
+
+/// The images on a surface, named as in glTF 2.0; each multiplies the material's value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Maps {
+    /// Base colour in sRGB, and opacity.
+    pub color: Option<Arc<Texture>>,
+    /// Tangent-space normals.
+    pub normal: Option<Arc<Texture>>,
+    /// Roughness in green, metallic in blue.
+    pub metallic_roughness: Option<Arc<Texture>>,
+    /// Share of ambient light that arrives, in red.
+    pub occlusion: Option<Arc<Texture>>,
+    /// Emission in sRGB.
+    pub emissive: Option<Arc<Texture>>,
+    /// How much of the normal map's slopes counts.
+    pub normal_scale: f32,
+    /// How much of the occlusion counts.
+    pub occlusion_strength: f32,
+    /// Beyond the edges, across and down.
+    pub wrap: [Wrap; 2],
+    /// Whether texels are seen as squares from near.
+    pub nearest: bool,
+}
+
+impl Maps {
+    /// No maps.
+    pub const NONE: Self = Self {
+        color: None,
+        normal: None,
+        metallic_roughness: None,
+        occlusion: None,
+        emissive: None,
+        normal_scale: 1.0,
+        occlusion_strength: 1.0,
+        wrap: [Wrap::Repeat; 2],
+        nearest: false,
+    };
+
+    /// All five, in the order of their bindings.
+    pub fn all(&self) -> [Option<&Arc<Texture>>; 5] {
+        [
+            self.color.as_ref(),
+            self.normal.as_ref(),
+            self.metallic_roughness.as_ref(),
+            self.occlusion.as_ref(),
+            self.emissive.as_ref(),
+        ]
+    }
+}
+
+impl Default for Maps {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+/// Longest side of an image that is read: what WebGPU guarantees.
+const LONGEST: u32 = 8192;
+
+impl Texture {
+    /// An image of `size[0] * size[1]` texels.
+    fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
+        Self {
+            name: name.to_owned(),
+            size,
+            clear: texels.iter().any(|t| t[3] < 255),
+            grey: texels.iter().all(|[r, g, b, _]| r == g && g == b),
+            texels,
+        }
+    }
+
+    /// Reads a PNG or JPEG file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is neither, or is too large.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::decode(&path.display().to_string(), &bytes).map_err(|message| SceneError::Mesh {
+            path: path.to_owned(),
+            line: None,
+            message,
+        })
+    }
+
+    /// Reads a PNG or JPEG image from memory.
+    ///
+    /// # Errors
+    /// What is wrong, and the mend.
+    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, String> {
+        let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
+            .with_guessed_format()
+            .map_err(|e| format!("cannot be read: {e}"))?;
+        let known = [image::ImageFormat::Png, image::ImageFormat::Jpeg];
+        if !reader.format().is_some_and(|f| known.contains(&f)) {
+            return Err("is neither a PNG nor a JPEG image; save it as one of them".into());
+        }
+        let mut limits = image::Limits::default();
+        (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+        reader.limits(limits);
+        let image = reader.decode().map_err(|e| {
+            format!("is no image that can be drawn: {e}; save it again, at most {LONGEST} texels wide and high")
+        })?;
+        let image = image.to_rgba8();
+        let size = [image.width(), image.height()];
+        Ok(Self::new(name, size, image.pixels().map(|p| p.0).collect()))
+    }
+
+    /// An image that a function of row-major texel places makes.
+    pub fn of(name: &str, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
+        let [width, height] = size;
+        let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        Self::new(name, size, texels.map(|(x, y)| texel(x, y)).collect())
+    }
+
+    /// Whether any texel is not wholly opaque.
+    pub fn has_alpha(&self) -> bool {
+        self.clear
+    }
+
+    /// Whether every texel is grey.
+    pub fn is_grey(&self) -> bool {
+        self.grey
+    }
+
+    /// The same image at another size.
+    pub fn resized(&self, size: [u32; 2]) -> Self {
+        if size == self.size {
+            return self.clone();
+        }
+        let [width, height] = self.size;
+        let flat = self.texels.concat();
+        let Some(image) = image::RgbaImage::from_raw(width, height, flat) else {
+            return self.clone();
+        };
+        let filter = image::imageops::FilterType::Triangle;
+        let image = image::imageops::resize(&image, size[0], size[1], filter);
+        Self::new(&self.name, size, image.pixels().map(|p| p.0).collect())
+    }
+
+    /// One image of two: texel by texel, at the larger size of each side.
+    pub fn joined(a: &Self, b: &Self, texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4]) -> Self {
+        let size = [a.size[0].max(b.size[0]), a.size[1].max(b.size[1])];
+        let [left, right] = [a.resized(size), b.resized(size)];
+        let pairs = left.texels.iter().zip(&right.texels);
+        let name = format!("{} and {}", a.name, b.name);
+        Self::new(&name, size, pairs.map(|(a, b)| texel(*a, *b)).collect())
+    }
+
+    /// Tangent-space normals of a height field that repeats: `slope` is the rise of white over black in widths of a texel.
+    pub fn normals_of_heights(&self, slope: f32) -> Self {
+        let [width, height] = self.size;
+        let heights: Vec<f32> = self
+            .texels
+            .iter()
+            .map(|t| f32::from(t[0]) / 255.0)
+            .collect();
+        normals_of(&self.name, self.size, slope, |x, y| {
+            heights[((y % height) * width + x % width) as usize]
+        })
+    }
+}
+
+/// Tangent-space normals of heights that repeat, by central differences; `slope` is the rise of 1 in widths of a texel.
+pub(crate) fn normals_of(
+    name: &str,
+    size: [u32; 2],
+    slope: f32,
+    height: impl Fn(u32, u32) -> f32,
+) -> Texture {
+    let [w, h] = size;
+    Texture::of(name, size, |x, y| {
+        let dx = (height((x + 1) % w, y) - height((x + w - 1) % w, y)) * 0.5 * slope;
+        // Rows run downwards, the second tangent upwards.
+        let dy = (height(x, (y + h - 1) % h) - height(x, (y + 1) % h)) * 0.5 * slope;
+        let n = glam::Vec3::new(-dx, -dy, 1.0).normalize();
+        let byte = |v: f32| (v * 127.0 + 128.0).round().clamp(0.0, 255.0) as u8;
+        [byte(n.x), byte(n.y), byte(n.z), 255]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plane that rises to the right by one texel a texel leans to the left by 45 degrees; flat ground is (128, 128, 255).
+    #[test]
+    fn normals_of_a_slope() {
+        let ramp = normals_of("ramp", [8, 4], 1.0, |x, _| x as f32);
+        let at = |x: usize| ramp.texels[8 + x];
+        let forty_five = (128.0 - 127.0 / 2f32.sqrt()).round() as u8;
+        assert_eq!(
+            at(3),
+            [
+                forty_five,
+                128,
+                256u16.wrapping_sub(u16::from(forty_five)) as u8,
+                255
+            ]
+        );
+        let flat = normals_of("flat", [4, 4], 5.0, |_, _| 0.3);
+        assert!(flat.texels.iter().all(|t| *t == [128, 128, 255, 255]));
+    }
+
+    #[test]
+    fn what_is_no_image_is_told() {
+        let e = Texture::decode("x", b"RIFF....WEBP").expect_err("no PNG");
+        assert!(e.contains("PNG"), "{e}");
+        let e = Texture::decode("x", b"\x89PNG\r\n\x1a\n\0\0").expect_err("cut off");
+        assert!(e.contains("save it again"), "{e}");
+    }
+}
