@@ -291,6 +291,15 @@ pub struct RenderArgs {
     /// Frame size in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x768")]
     pub size: Size,
+    /// Time of the scene's timeline; numbers of materials lie between the states around it
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+    /// Highlight one layer of a nested object, 0 outermost: it alone is shaded, the others veil it with their base colour
+    #[arg(long, value_name = "LAYER", conflicts_with_all = ["method", "model"])]
+    pub highlight: Option<u32>,
+    /// With --highlight: leave out what lies on no further layer than what is in front of it, such as an object's own far side
+    #[arg(long, requires = "highlight")]
+    pub increasing: bool,
 }
 
 /// `peelnet bench`.

@@ -84,6 +84,9 @@ pub struct SceneEntry {
     pub sha256: String,
     /// Whether the scene must not be trained on.
     pub held_out: bool,
+    /// Its census: the effects that it calls for, by name. Datasets of earlier versions do not tell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<String>,
 }
 
 /// A view's camera, in the scene file's terms.

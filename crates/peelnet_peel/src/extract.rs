@@ -12,7 +12,7 @@ use peelnet_dataset::{
 };
 use peelnet_gpu::Gpu;
 use peelnet_render::scene::PixelSample;
-use peelnet_scene::{Camera, Scene};
+use peelnet_scene::{Camera, Census, Scene};
 use std::{
     path::PathBuf,
     sync::{
@@ -327,6 +327,12 @@ fn scene_entry(scene: &Scene) -> SceneEntry {
         file: scene.source.display().to_string(),
         sha256: scene.hash.clone(),
         held_out: scene.held_out,
+        effects: Census::of(scene)
+            .effects
+            .iter()
+            .filter(|e| e.on)
+            .map(|e| e.name.to_owned())
+            .collect(),
     }
 }
 

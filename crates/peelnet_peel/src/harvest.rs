@@ -10,6 +10,7 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_render::{
+    RenderError,
     passes::{
         dual::DualPeel,
         sbuffer::{SBuffer, Tile},
@@ -123,6 +124,9 @@ impl<'g> Harvester<'g> {
             &["dataset"]
         };
         let scene = SceneBuffers::new(gpu, scene)?;
+        if scene.tinted {
+            return Err(RenderError::OneTransmittance("a dataset".into()).into());
+        }
         let frame = scene.targets(gpu, size)?;
         let peeler = match peel {
             Peel::SBuffer => Peeler::SBuffer,

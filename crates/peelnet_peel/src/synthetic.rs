@@ -204,6 +204,7 @@ pub fn synthetic(
                 // Nothing is read; the lists follow from the seed and this version.
                 sha256: "0".repeat(64),
                 held_out: false,
+                effects: Vec::new(),
             }],
             work_items: worlds,
             shard: None,

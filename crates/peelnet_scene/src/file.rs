@@ -906,15 +906,16 @@ impl Age {
                 ));
             }
             for change in &state.object {
-                let mut names = raw.object.iter().filter_map(|o| o.name.as_ref());
-                if !names.any(|n| *n == change.name) {
+                let of_name = |o: &&RawObject| o.name.as_ref() == Some(&change.name);
+                let Some(object) = raw.object.iter().find(of_name) else {
                     let message = format!("no [[object]] is named '{}'", change.name);
                     return Err(loader.value(&format!("{field}.object.name"), message));
-                }
+                };
                 // All states are checked, whichever is shown.
                 let any = Material::default_with(loader.lighting);
                 let place = format!("{field}, {}", change.name);
-                loader.material(&any, &change.material, false, &place)?;
+                let looks = change.material.after(&object.material);
+                loader.material(&any, &looks, false, &place)?;
             }
         }
         let time = time.unwrap_or(first.time);

@@ -19,6 +19,7 @@ fn scene(name: &str, held_out: bool) -> SceneEntry {
         file: format!("{name}.toml"),
         sha256: "0".repeat(64),
         held_out,
+        effects: Vec::new(),
     }
 }
 

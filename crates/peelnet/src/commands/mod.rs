@@ -54,7 +54,12 @@ impl Context<'_> {
     }
 
     fn scene(&self, path: &Path) -> Result<Scene, Failure> {
-        let scene = Scene::load(path)?;
+        self.scene_at(path, None)
+    }
+
+    /// A scene at a time of its timeline.
+    fn scene_at(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
+        let scene = Scene::load_at(path, time)?;
         for warning in &scene.warnings {
             self.console.warn(warning);
         }

@@ -5,7 +5,7 @@ use crate::cli::RenderArgs;
 use crate::failure::Failure;
 use crate::learned;
 use crate::progress::thousands;
-use peelnet_render::{Frame, Renderer};
+use peelnet_render::{Frame, LayerView, Renderer};
 use serde_json::json;
 use std::path::Path;
 
@@ -14,7 +14,14 @@ const ENDINGS: [&str; 3] = ["png", "exr", "npy"];
 
 pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failure> {
     check_ending(&args.out)?;
-    let scene = context.scene(&args.scene)?;
+    let mut scene = context.scene_at(&args.scene, args.time)?;
+    let layers = args.highlight.map(|highlight| LayerView {
+        highlight,
+        increasing: args.increasing,
+    });
+    if let Some(view) = layers {
+        scene = scene.layer_view(view.highlight, false)?;
+    }
     let camera = scene.views.get(args.view as usize).ok_or_else(|| {
         Failure::Usage(format!(
             "--view {}: {} has {} views, numbered from 0",
@@ -26,33 +33,40 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     let gpu = context.gpu()?;
     let learned = learned::weight_of(&gpu, &args.method, args.model.as_deref())?;
     let renderer = Renderer::new(&gpu, &scene)?;
-    let mut prepared = renderer.prepare(&args.method, args.size.0, learned.as_ref())?;
+    let mut prepared = match layers {
+        Some(view) => renderer.prepare_layers(view, args.size.0)?,
+        None => renderer.prepare(&args.method, args.size.0, learned.as_ref())?,
+    };
+    let method = layers.map_or_else(
+        || args.method.to_string(),
+        |view| format!("layer {}", view.highlight),
+    );
     let frame = renderer.draw(&mut prepared, camera)?;
     context.check_interrupt()?;
     super::create_folder_of(&args.out)?;
     frame.image.save(&args.out)?;
     if frame.stats.lost > 0 {
         context.console.warn(format!(
-            "{}: {} fragments are not in the image",
-            args.method,
+            "{method}: {} fragments are not in the image",
             thousands(frame.stats.lost)
         ));
     }
     context.tell_of_memory(&gpu);
     if frame.image.non_finite() > 0 {
         context.console.warn(format!(
-            "{}: {} pixels are not finite",
-            args.method,
+            "{method}: {} pixels are not finite",
             frame.image.non_finite()
         ));
     }
     context.console.result(
-        || text(args, &gpu.info.name, &frame),
+        || text(args, &method, &gpu.info.name, &frame),
         || {
             json!({
                 "out": args.out,
                 "scene": scene.name,
-                "method": args.method.to_string(),
+                "method": method,
+                "highlight": args.highlight,
+                "time": (!scene.timeline.is_empty()).then_some(scene.time),
                 "view": args.view,
                 "width": frame.image.width,
                 "height": frame.image.height,
@@ -92,7 +106,7 @@ fn gpu_ms(frame: &Frame) -> Option<f64> {
     (!frame.times.is_empty()).then(|| frame.times.iter().map(|t| t.micros).sum::<f64>() / 1e3)
 }
 
-fn text(args: &RenderArgs, adapter: &str, frame: &Frame) -> String {
+fn text(args: &RenderArgs, method: &str, adapter: &str, frame: &Frame) -> String {
     let fragments = frame.stats.fragments.map_or_else(String::new, |n| {
         let most = frame.stats.max_layers;
         let most = most.map_or_else(String::new, |most| format!(", up to {most} a pixel"));
@@ -103,9 +117,8 @@ fn text(args: &RenderArgs, adapter: &str, frame: &Frame) -> String {
         |ms| format!("{ms:.1} ms on the GPU"),
     );
     format!(
-        "{}: {} of {}, {}{fragments}; {} geometry and {} full-screen passes, {:.0} bytes a pixel, {time}, on {adapter}",
+        "{}: {method} of {}, {}{fragments}; {} geometry and {} full-screen passes, {:.0} bytes a pixel, {time}, on {adapter}",
         args.out.display(),
-        args.method,
         args.scene.display(),
         args.size,
         frame.stats.geometry_passes,

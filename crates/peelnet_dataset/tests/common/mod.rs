@@ -80,6 +80,7 @@ pub fn header(format: Format, shard: Option<Shard>) -> Header {
         file: format!("scenes/{name}.toml"),
         sha256: "ab".repeat(32),
         held_out,
+        effects: vec!["opaque".to_owned()],
     };
     Header {
         format,
