@@ -308,6 +308,7 @@ pub struct RenderArgs {
   peelnet bench data/scenes/cups.toml --out out/bench
   peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
   peelnet bench --scaling --out out/scaling
+  peelnet bench --effects --out out/effects
   peelnet bench --training out/synthetic data/scenes/*-held.toml --out out/training
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
@@ -315,7 +316,7 @@ DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images
 another one of its recipe.")]
 pub struct BenchArgs {
     /// Scene files
-    #[arg(value_name = "SCENE", required_unless_present_any = ["scaling", "redraw"])]
+    #[arg(value_name = "SCENE", required_unless_present_any = ["scaling", "redraw", "effects"])]
     pub scenes: Vec<PathBuf>,
     /// Folder for everything that is written
     #[arg(long, value_name = "DIR")]
@@ -323,6 +324,10 @@ pub struct BenchArgs {
     /// Instead of scenes: how time and memory grow with fragments a pixel, pixels and triangles
     #[arg(long, conflicts_with_all = ["scenes", "size", "views", "resume"])]
     pub scaling: bool,
+    /// Instead of methods: what each effect that the scenes (those in data/effects where none is named) call for costs, and what shading
+    /// one layer of several saves; with the first of --methods, wboit-eq9 by default
+    #[arg(long, conflicts_with_all = ["scaling", "training", "models", "views", "resume", "redraw"])]
+    pub effects: bool,
     /// Instead of methods: the error of networks on the scenes against parameters, training examples and epochs, trained on these
     /// datasets
     #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "methods", "models", "frames", "resume"])]

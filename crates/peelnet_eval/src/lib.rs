@@ -17,6 +17,7 @@
 
 mod base64;
 pub mod compare;
+pub mod effects;
 mod error;
 mod files;
 pub mod findings;

@@ -2,9 +2,11 @@
 
 mod bench_page;
 mod chart;
+mod effects_page;
 mod page;
 mod stress_page;
 
+pub(crate) use effects_page::page as effects_page;
 #[cfg(test)]
 pub(crate) use page::tests::machine as machine_of_tests;
 pub(crate) use stress_page::page as stress_page;

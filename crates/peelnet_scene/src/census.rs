@@ -339,6 +339,7 @@ impl Census {
         if scene.is_grey() {
             call(Effect::Monochrome, "every colour is grey".into());
         }
+        effects.extend(beyond_pixels(scene));
         Self { effects, variants }
     }
 
@@ -347,6 +348,39 @@ impl Census {
         let mut of = self.effects.iter();
         of.any(|e| e.name == effect.name() && e.on)
     }
+}
+
+/// What concerns no pipeline of a frame: layers are told apart where one of them is highlighted, states of a timeline are loaded one at
+/// a time, and which statistics are gathered is up to the method.
+fn beyond_pixels(scene: &Scene) -> [Called; 3] {
+    let layered = scene.objects.iter().filter(|o| o.layer.is_some());
+    let several = scene.layers().len() > 1;
+    let states = scene.timeline.iter().map(|s| s.label.clone());
+    [
+        Called {
+            name: "layers",
+            on: several,
+            why: layered
+                .filter(|_| several)
+                .map(|o| o.name.clone())
+                .collect(),
+            adds: "nothing until one is highlighted; then every fragment and its layer are stored and sorted",
+        },
+        Called {
+            name: "ageing",
+            on: scene.timeline.len() > 1,
+            why: states.filter(|_| scene.timeline.len() > 1).collect(),
+            adds: "nothing: one state is loaded",
+        },
+        Called {
+            name: "statistics",
+            on: false,
+            why: vec![
+                "up to the method: a learned or moment method adds a pass over the surfaces".into(),
+            ],
+            adds: "a pass over the transparent surfaces and its targets",
+        },
+    ]
 }
 
 impl Scene {

@@ -150,6 +150,8 @@ struct RawObject {
     #[serde(default)]
     translate: [f32; 3],
     layer: Option<u32>,
+    /// Linear RGB and alpha of its lowest and of its highest corner, mixed by height between them.
+    vertex_colors: Option<[[f32; 4]; 2]>,
     #[serde(default)]
     material: RawMaterial,
 }
@@ -1005,6 +1007,18 @@ fn place_object(
         let mend = "has no texture coordinates for its material's maps; export it with them";
         return Err(loader.value(&format!("{field}.mesh"), mend));
     }
+    let mesh = match raw.vertex_colors {
+        None => mesh,
+        Some(ends) if ends.iter().flatten().all(|x| (0.0..=1.0).contains(x)) => {
+            Arc::new(mesh.colored_by_height(ends))
+        }
+        Some(_) => {
+            return Err(loader.value(
+                &format!("{field}.vertex_colors"),
+                "must be two of [red, green, blue, alpha], each 0 … 1",
+            ));
+        }
+    };
     let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
     if !(raw.scale.is_finite() && raw.scale != 0.0) {
         return Err(loader.value(&format!("{field}.scale"), "must be finite and not 0"));

@@ -1,6 +1,6 @@
 use crate::{Maps, Material};
 use glam::{Vec2, Vec3};
-use std::ops::Range;
+use std::{collections::HashMap, ops::Range};
 
 /// Triangles with a normal at every corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,6 +125,61 @@ impl Mesh {
         Some(geometry.found)
     }
 
+    /// The same with colours of corners that go with their height, from the lowest to the highest.
+    pub(crate) fn colored_by_height(&self, [low, high]: [[f32; 4]; 2]) -> Self {
+        let (bottom, top) = self.bounds().unwrap_or_default();
+        let of = |p: &Vec3| {
+            let t = ((p.y - bottom.y) / (top.y - bottom.y).max(1e-12)).clamp(0.0, 1.0);
+            [0, 1, 2, 3].map(|k| low[k] + t * (high[k] - low[k]))
+        };
+        Self {
+            colors: self.positions.iter().map(of).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same surface with every triangle cut into four at the middles of its edges. Normals between corners are interpolated, so that
+    /// it is shaded as before.
+    pub fn subdivided(&self) -> Self {
+        let mut mesh = self.clone();
+        mesh.triangles = Vec::with_capacity(4 * self.triangles.len());
+        mesh.uvs.clear();
+        let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
+        for (i, t) in self.triangles.iter().enumerate() {
+            let edges = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+            let m = edges.map(|[a, b]| {
+                *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    let [a, b] = [a as usize, b as usize];
+                    mesh.positions
+                        .push((mesh.positions[a] + mesh.positions[b]) / 2.0);
+                    let normal = mesh.normals[a] + mesh.normals[b];
+                    mesh.normals.push(normal.normalize_or(mesh.normals[a]));
+                    if !mesh.colors.is_empty() {
+                        let mixed = |k: usize| (mesh.colors[a][k] + mesh.colors[b][k]) / 2.0;
+                        let mixed = [0, 1, 2, 3].map(mixed);
+                        mesh.colors.push(mixed);
+                    }
+                    mesh.positions.len() as u32 - 1
+                })
+            });
+            mesh.triangles.extend([
+                [t[0], m[0], m[2]],
+                [m[0], t[1], m[1]],
+                [m[2], m[1], t[2]],
+                [m[0], m[1], m[2]],
+            ]);
+            if let Some([a, b, c]) = self.uvs.get(i).copied() {
+                let [ab, bc, ca] = [(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0];
+                mesh.uvs
+                    .extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+            }
+        }
+        for part in &mut mesh.parts {
+            part.triangles = 4 * part.triangles.start..4 * part.triangles.end;
+        }
+        mesh
+    }
+
     /// The box around all corners that triangles use; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let mut corners = self
@@ -209,6 +264,38 @@ pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Cut triangles cover the same area, keep parts, places and orientation, and share their middles.
+    #[test]
+    fn a_cut_surface_is_the_same() {
+        let material = Material::unlit([1.0; 3], 0.5);
+        let shape = crate::shapes::Shape::Torus {
+            radius: 1.0,
+            tube: 0.3,
+            triangles: 200,
+        };
+        let mesh = shape.build(&material, true).expect("builds");
+        let cut = mesh.colored_by_height([[0.0; 4], [1.0; 4]]).subdivided();
+        assert_eq!(cut.triangles.len(), 4 * mesh.triangles.len());
+        assert_eq!(cut.parts[0].triangles, 0..cut.triangles.len());
+        assert_eq!(
+            (cut.uvs.len(), cut.colors.len()),
+            (cut.triangles.len(), cut.positions.len())
+        );
+        // A torus has three edges for two triangles: as many middles.
+        let edges = mesh.triangles.len() * 3 / 2;
+        assert_eq!(cut.positions.len(), mesh.positions.len() + edges);
+        let area = |mesh: &Mesh, t: usize| {
+            let [a, b, c] = mesh.triangles[t].map(|i| mesh.positions[i as usize]);
+            (b - a).cross(c - a)
+        };
+        for t in 0..mesh.triangles.len() {
+            let whole = area(&mesh, t);
+            for k in 0..4 {
+                assert!((area(&cut, 4 * t + k) * 4.0 - whole).length() < 1e-5);
+            }
+        }
+    }
 
     /// On a rectangle the tangent runs to the right of the image and normal × tangent, times the sign, up it; mirrored, the sign turns.
     #[test]

@@ -1,6 +1,6 @@
 //! `peelnet bench`: error against time for many methods.
 
-use super::{Context, bench_training};
+use super::{Context, bench_effects, bench_training};
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::learned;
@@ -27,6 +27,9 @@ use std::path::{Path, PathBuf};
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if !args.training.is_empty() {
         return bench_training::run(context, args);
+    }
+    if args.effects {
+        return bench_effects::run(context, args);
     }
     if args.scaling {
         return scale(context, args);

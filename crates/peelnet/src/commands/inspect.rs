@@ -1,14 +1,15 @@
 //! `peelnet inspect`: what a scene, a dataset or a model is.
 
-use super::Context;
+use super::{Context, bench_effects::METHOD};
 use crate::cli::InspectArgs;
 use crate::failure::{Failure, one_line};
 use crate::progress::thousands;
 use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Summary};
+use peelnet_eval::effects::{self, Cost, Settings};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodSpec, Renderer};
-use peelnet_scene::{Census, Effect, Scene};
+use peelnet_scene::{Census, Scene};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -89,54 +90,7 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
 const TIMED_AT: [u32; 2] = [512, 384];
 
 /// Timed frames with and without each effect, in turn.
-const TIMED_FRAMES: usize = 7;
-
-/// How much longer a frame takes with an effect than without it.
-#[derive(Clone, Debug, serde::Serialize)]
-struct Cost {
-    effect: &'static str,
-    ms_with: f64,
-    ms_without: f64,
-    ratio: f64,
-}
-
-/// Times every effect that is on: the frame as it is, and of the scene without it, drawn in turn.
-fn costs(context: &Context<'_>, scene: &Scene, census: &Census) -> Result<Vec<Cost>, Failure> {
-    let gpu = context.gpu()?;
-    let method: MethodSpec = "wboit-eq9".parse()?;
-    let camera = scene.views[0];
-    let mut all = Vec::new();
-    for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
-        let plain = scene.without(effect);
-        let [with, without] = [Renderer::new(&gpu, scene)?, Renderer::new(&gpu, &plain)?];
-        let mut frames = [
-            with.prepare(&method, TIMED_AT, None)?,
-            without.prepare(&method, TIMED_AT, None)?,
-        ];
-        let mut times = [Vec::new(), Vec::new()];
-        for _ in 0..=TIMED_FRAMES {
-            for (k, renderer) in [&with, &without].into_iter().enumerate() {
-                let (passes, wall) = renderer.time(&mut frames[k], &camera)?;
-                let micros: f64 = passes.iter().map(|p| p.micros).sum();
-                times[k].push(if micros > 0.0 { micros } else { wall } / 1e3);
-            }
-        }
-        let median = |times: &[f64]| {
-            // The first frame warms up.
-            let mut sorted = times[1..].to_vec();
-            sorted.sort_by(f64::total_cmp);
-            sorted[sorted.len() / 2]
-        };
-        let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
-        all.push(Cost {
-            effect: effect.name(),
-            ms_with,
-            ms_without,
-            ratio: ms_with / ms_without,
-        });
-    }
-    Ok(all)
-}
+const TIMED_FRAMES: u32 = 7;
 
 /// Triangles, and those of transparent surfaces.
 fn triangles(scene: &Scene) -> [u64; 2] {
@@ -166,7 +120,12 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
         }
     };
     let costs = if time {
-        costs(context, &scene, &census)?
+        let settings = Settings {
+            method: METHOD.parse()?,
+            size: TIMED_AT,
+            frames: TIMED_FRAMES,
+        };
+        effects::costs(&context.gpu()?, &scene, &settings)?
     } else {
         Vec::new()
     };
@@ -256,24 +215,24 @@ fn scene_text(
         "pipelines   at most {} in a pass over the surfaces",
         census.variants.len()
     );
-    t.push_str("\neffect          on   called for by\n");
+    t.push_str("\neffect                  on   called for by\n");
     for effect in &census.effects {
         let on = if effect.on { "yes" } else { "–" };
-        let _ = writeln!(t, "{:<15} {on:<4} {}", effect.name, few(&effect.why));
+        let _ = writeln!(t, "{:<23} {on:<4} {}", effect.name, few(&effect.why));
         if effect.on {
-            let _ = writeln!(t, "{:<20} adds {}", "", effect.adds);
+            let _ = writeln!(t, "{:<28} adds {}", "", effect.adds);
         }
     }
     if !costs.is_empty() {
         let [width, height] = TIMED_AT;
         let _ = writeln!(
             t,
-            "\neffect          with ms  without ms  ratio   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
+            "\neffect                  with ms  without ms  ratio   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
         );
         for c in costs {
             let _ = writeln!(
                 t,
-                "{:<15} {:>7.2} {:>11.2} {:>6.2}",
+                "{:<23} {:>7.2} {:>11.2} {:>6.2}",
                 c.effect, c.ms_with, c.ms_without, c.ratio
             );
         }

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod bench;
+mod bench_effects;
 mod bench_training;
 mod doctor;
 mod export;

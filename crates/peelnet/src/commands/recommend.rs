@@ -21,6 +21,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 // Nothing is written.
                 out: std::path::PathBuf::new(),
                 scaling: false,
+                effects: false,
                 training: Vec::new(),
                 redraw: false,
                 methods: MethodList::All,

@@ -1,0 +1,62 @@
+//! `peelnet bench --effects`: what effects cost.
+
+use super::Context;
+use crate::cli::BenchArgs;
+use crate::failure::Failure;
+use crate::parse::{MethodList, command_line};
+use crate::progress::Progress;
+use peelnet_eval::{
+    effects::{self, Settings},
+    table::plain,
+};
+use peelnet_scene::suite;
+use serde_json::json;
+
+/// Drawn where no method is named: one pass, nothing that could hide what an effect costs.
+pub(super) const METHOD: &str = "wboit-eq9";
+
+pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    let paths = if args.scenes.is_empty() {
+        let folder = suite::directory()?;
+        let folder = folder.parent().unwrap_or(&folder).join("effects");
+        suite::scenes(&folder)?
+    } else {
+        args.scenes.clone()
+    };
+    let scenes = context.scenes(&paths)?;
+    let method = match &args.methods {
+        MethodList::These(methods) => methods.first().cloned(),
+        MethodList::All => None,
+    };
+    let settings = Settings {
+        method: method.map_or_else(|| METHOD.parse(), Ok)?,
+        size: args.size.0,
+        frames: args.frames.max(1),
+    };
+    let gpu = context.gpu()?;
+    let bar = Progress::new(context.console, "effects", 0);
+    let mut done = 0;
+    let found = effects::measure(
+        &gpu,
+        &scenes,
+        &settings,
+        command_line(),
+        &args.out,
+        context.stop,
+        |what| {
+            done += 1;
+            bar.set(done, 0, what.to_owned());
+        },
+    )?;
+    drop(bar);
+    found.write(&args.out)?;
+    context.console.result(
+        || {
+            let tables = [found.table(), found.layer_table(), found.fill_table()];
+            let shown = tables.iter().filter(|(_, cells)| !cells.is_empty());
+            let shown: Vec<String> = shown.map(|(h, c)| plain(h, c)).collect();
+            shown.join("\n")
+        },
+        || json!(found),
+    )
+}
