@@ -7,7 +7,7 @@ struct Surface {
     // Linear depth: distance along the view axis in scene units. The sort key everywhere.
     @location(2) depth_linear: f32,
     // Index in the scene's list of triangles, object by object: the tie rule.
-    @location(3) @interpolate(flat) triangle: u32,
+    @if(numbered) @location(3) @interpolate(flat) triangle: u32,
     @location(4) @interpolate(flat) material: u32,
     @if(mapped) @location(5) uv: vec2f,
     // Direction of u; w: which way the second tangent points.

@@ -4,15 +4,15 @@ import package::scene::surface::Surface;
 
 struct Corner {
     @location(0) position: vec3f,
-    @if(lit) @location(1) normal: vec3f,
-    @location(2) material: u32,
-    @if(mapped) @location(3) uv: vec2f,
-    @if(normal_map) @location(4) tangent: vec4f,
-    @if(vertex_colors) @location(5) color: vec4f,
+    @location(1) material: u32,
+    @if(mapped) @location(2) uv: vec2f,
+    @if(normal_map) @location(3) tangent: vec4f,
+    @if(vertex_colors) @location(4) color: vec4f,
+    @if(lit) @location(5) normal: vec3f,
 }
 
 @vertex
-fn vertex_main(corner: Corner, @builtin(vertex_index) index: u32) -> Surface {
+fn vertex_main(corner: Corner, @if(numbered) @builtin(vertex_index) index: u32) -> Surface {
     var out: Surface;
     out.position = camera.clip_from_world * vec4f(corner.position, 1.0);
     @if(lit) {
@@ -24,7 +24,7 @@ fn vertex_main(corner: Corner, @builtin(vertex_index) index: u32) -> Surface {
     @if(vertex_colors) out.color = corner.color;
     // A perspective projection puts the distance along the view axis into w.
     out.depth_linear = out.position.w;
-    out.triangle = index / 3u;
+    @if(numbered) out.triangle = index / 3u;
     out.material = corner.material;
     return out;
 }

@@ -17,8 +17,63 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct Corner {
     position: [f32; 3],
-    normal: [f32; 3],
     material: u32,
+}
+
+/// What only some materials read of a corner, from buffers of their own, and the shader feature that reads it.
+const ATTRIBUTES: [(wgpu::VertexFormat, &str); 4] = [
+    (wgpu::VertexFormat::Float32x2, "mapped"),
+    (wgpu::VertexFormat::Float32x4, "normal_map"),
+    (wgpu::VertexFormat::Float32x4, "vertex_colors"),
+    (wgpu::VertexFormat::Float32x3, "lit"),
+];
+
+/// Links a pass's fragment shader for a variant with nothing that it does not read: a pass that needs no colour needs no normals and no
+/// images. Returns the features that are left and the text.
+fn linked<'a>(
+    pass: &GeometryPass<'a>,
+    mut features: Vec<&'a str>,
+) -> Result<(Vec<&'a str>, String), RenderError> {
+    /// What the text holds where it reads something, and the features that bring that with them.
+    const READ: [(&str, &[&str]); 3] = [
+        (".triangle", &["numbered"]),
+        (
+            ".world",
+            &[
+                "lit",
+                "phong",
+                "pbr",
+                "sun",
+                "normal_map",
+                "metallic_roughness_map",
+                "occlusion_map",
+            ],
+        ),
+        (
+            "textureSampleGrad",
+            &[
+                "mapped",
+                "color_map",
+                "normal_map",
+                "metallic_roughness_map",
+                "occlusion_map",
+                "emissive_map",
+            ],
+        ),
+    ];
+    features.push("numbered");
+    let text = peelnet_shaders::link(pass.shader, &features, pass.extra)?;
+    let before = features.len();
+    for (word, brought) in READ {
+        if !text.contains(word) {
+            features.retain(|f| !brought.contains(f));
+        }
+    }
+    if features.len() == before {
+        return Ok((features, text));
+    }
+    let text = peelnet_shaders::link(pass.shader, &features, pass.extra)?;
+    Ok((features, text))
 }
 
 /// Layout of `Material` in `scene/shade.wgsl`.
@@ -144,8 +199,8 @@ pub enum Surfaces {
 #[derive(Debug)]
 pub struct SceneBuffers {
     corners: wgpu::Buffer,
-    /// Places on images, tangents and colours, for every corner; each where any material reads it.
-    attributes: [Option<wgpu::Buffer>; 3],
+    /// In the order of [`ATTRIBUTES`], for every corner; each where any material reads it.
+    attributes: [Option<wgpu::Buffer>; 4],
     maps: MapSets,
     /// Which images any material reads.
     mapped: [bool; 5],
@@ -260,6 +315,7 @@ impl SceneBuffers {
             // Tangents turn with the surface, and over with a mirror.
             let turning = Turning {
                 world,
+                normal_matrix,
                 order,
                 mirrored: order[1] == 2,
             };
@@ -281,9 +337,6 @@ impl SceneBuffers {
                         let i = triangle[k] as usize;
                         corners.push(Corner {
                             position: world.transform_point3(object.mesh.positions[i]).to_array(),
-                            normal: (normal_matrix * object.mesh.normals[i])
-                                .normalize_or_zero()
-                                .to_array(),
                             material: index,
                         });
                     }
@@ -398,12 +451,11 @@ impl SceneBuffers {
 
     /// What the vertex shader reads of a corner.
     pub fn corner_attributes(&self) -> Vec<&'static str> {
-        let lit = self.lights.is_some().then_some("normal");
-        let names = ["places on images", "tangent", "color"].into_iter();
+        let names = ["places on images", "tangent", "color", "normal"].into_iter();
         let extra = names.zip(&self.attributes);
         let extra = extra.filter_map(|(name, buffer)| buffer.as_ref().map(|_| name));
         let always = ["position", "material"].into_iter();
-        always.chain(lit).chain(extra).collect()
+        always.chain(extra).collect()
     }
 
     /// Whether anything opaque can hide transparent fragments.
@@ -531,24 +583,35 @@ impl SceneBuffers {
                 variants.push((run.variant, run.maps));
             }
         }
-        let build = |variant: Variant, maps: Option<usize>| {
+        let opaque = surfaces == Surfaces::Transparent && self.has_opaque();
+        let mut built: Vec<(Vec<&str>, bool, wgpu::RenderPipeline)> = Vec::new();
+        let mut of_variants = Vec::with_capacity(variants.len());
+        for (variant, maps) in variants {
+            let mut features = pass.features.to_vec();
+            features.extend(variant.features());
+            features.extend(opaque.then_some("opaque"));
+            let (features, fragment) = linked(pass, features)?;
+            // Passes that need no colour draw many variants alike.
+            let alike = |(f, culled, _): &&(Vec<&str>, bool, _)| {
+                *f == features && *culled == variant.culled
+            };
+            if let Some((_, _, pipeline)) = built.iter().find(alike) {
+                of_variants.push((variant, pipeline.clone()));
+                continue;
+            }
+            let maps = maps.filter(|_| features.contains(&"mapped"));
             let maps = maps.map(|number| &self.maps.bound(number).layout);
             let mut layouts = vec![Some(&group.layout), pass.group, maps];
             while layouts.last().is_some_and(Option::is_none) {
                 layouts.pop();
             }
             let layout = gpu.layout(&layouts);
-            let mut features = pass.features.to_vec();
-            features.extend(variant.features());
-            if surfaces == Surfaces::Transparent && self.has_opaque() {
-                features.push("opaque");
-            }
-            self.pipeline(gpu, &layout, pass, &features, variant)
-        };
-        let built = variants
-            .into_iter()
-            .map(|(variant, maps)| Ok((variant, build(variant, maps)?)));
-        built.collect::<Result<_, _>>().map(GeometryPipelines)
+            let pipeline =
+                self.pipeline(gpu, &layout, pass, &features, &fragment, variant.culled)?;
+            built.push((features, variant.culled, pipeline.clone()));
+            of_variants.push((variant, pipeline));
+        }
+        Ok(GeometryPipelines(of_variants))
     }
 
     fn pipeline(
@@ -557,46 +620,47 @@ impl SceneBuffers {
         layout: &wgpu::PipelineLayout,
         pass: &GeometryPass<'_>,
         features: &[&str],
-        variant: Variant,
+        fragment: &str,
+        culled: bool,
     ) -> Result<wgpu::RenderPipeline, RenderError> {
-        let carried = ["lit", "mapped", "normal_map", "vertex_colors"];
-        let mut of_vertex = variant.features();
+        let carried = ["numbered", "lit", "mapped", "normal_map", "vertex_colors"];
+        let mut of_vertex = features.to_vec();
         of_vertex.retain(|f| carried.contains(f));
         let vertex = gpu.shader(
             "scene::vertex",
             &peelnet_shaders::link("scene::vertex", &of_vertex, &[])?,
         );
-        let fragment = gpu.shader(
-            pass.shader,
-            &peelnet_shaders::link(pass.shader, features, pass.extra)?,
-        );
-        let all = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
-        let unlit = [all[0], all[2]];
-        let attributes: &[_] = if variant.is_lit() { &all } else { &unlit };
-        // In the order of `Attributes`.
-        let extra: [[wgpu::VertexAttribute; 1]; 3] = [
-            wgpu::vertex_attr_array![3 => Float32x2],
-            wgpu::vertex_attr_array![4 => Float32x4],
-            wgpu::vertex_attr_array![5 => Float32x4],
-        ];
-        let read = Attributes::read_by(variant);
-        let of_extra = |k: usize| {
-            read[k].then(|| wgpu::VertexBufferLayout {
-                array_stride: extra[k][0].format.size(),
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &extra[k],
+        let fragment = gpu.shader(pass.shader, fragment);
+        let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
+        let extra = ATTRIBUTES.map(|(format, _)| format).into_iter().zip(2..);
+        let extra: Vec<[wgpu::VertexAttribute; 1]> = extra
+            .map(|(format, shader_location)| {
+                [wgpu::VertexAttribute {
+                    format,
+                    offset: 0,
+                    shader_location,
+                }]
             })
-        };
-        let mut buffers = vec![
-            Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Corner>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes,
-            }),
-            of_extra(0),
-            of_extra(1),
-            of_extra(2),
-        ];
+            .collect();
+        let mut buffers = vec![Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<Corner>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &always,
+        })];
+        buffers.extend(
+            ATTRIBUTES
+                .iter()
+                .zip(&extra)
+                .map(|((format, feature), attributes)| {
+                    features
+                        .contains(feature)
+                        .then(|| wgpu::VertexBufferLayout {
+                            array_stride: format.size(),
+                            step_mode: wgpu::VertexStepMode::Vertex,
+                            attributes,
+                        })
+                }),
+        );
         while buffers.last().is_some_and(Option::is_none) {
             buffers.pop();
         }
@@ -610,7 +674,7 @@ impl SceneBuffers {
                 buffers: &buffers,
             },
             primitive: wgpu::PrimitiveState {
-                cull_mode: variant.culled.then_some(wgpu::Face::Back),
+                cull_mode: culled.then_some(wgpu::Face::Back),
                 ..Default::default()
             },
             depth_stencil: pass.depth.clone(),
@@ -870,28 +934,22 @@ fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
 #[derive(Clone, Copy)]
 struct Turning {
     world: glam::Mat4,
+    normal_matrix: glam::Mat3,
     /// Of a triangle's corners.
     order: [usize; 3],
     mirrored: bool,
 }
 
-/// What only some materials read of a corner: places on images, tangents, colours.
+/// What only some materials read of a corner: places on images, tangents, colours, normals.
 #[derive(Default)]
 struct Attributes {
     uvs: Vec<[f32; 2]>,
     tangents: Vec<[f32; 4]>,
     colors: Vec<[f32; 4]>,
+    normals: Vec<[f32; 3]>,
 }
 
 impl Attributes {
-    fn read_by(variant: Variant) -> [bool; 3] {
-        [
-            variant.is_mapped(),
-            variant.has_normal_map(),
-            variant.vertex_colors,
-        ]
-    }
-
     /// Those of a part whose corners are numbered `at`.
     fn extend(
         &mut self,
@@ -901,19 +959,23 @@ impl Attributes {
         variant: Variant,
         Turning {
             world,
+            normal_matrix,
             order,
             mirrored,
         }: Turning,
     ) {
-        let [uvs, tangents, colors] = Self::read_by(variant);
         let mesh = &object.mesh;
-        if uvs && !mesh.uvs.is_empty() {
+        if variant.is_mapped() && !mesh.uvs.is_empty() {
             self.uvs.resize(at.start, [0.0; 2]);
             let all = mesh.uvs[triangles.clone()].iter();
             self.uvs
                 .extend(all.flat_map(|t| order.map(|k| t[k].to_array())));
         }
-        if let Some(found) = tangents.then(|| mesh.tangents(triangles.clone())).flatten() {
+        if let Some(found) = variant
+            .has_normal_map()
+            .then(|| mesh.tangents(triangles.clone()))
+            .flatten()
+        {
             let sign = if mirrored { -1.0 } else { 1.0 };
             let turned = |[x, y, z, w]: [f32; 4]| {
                 let tangent = world.transform_vector3(glam::Vec3::new(x, y, z));
@@ -924,15 +986,23 @@ impl Attributes {
             self.tangents
                 .extend(found.iter().flat_map(|t| order.map(|k| turned(t[k]))));
         }
-        if colors {
+        let corners = || {
+            mesh.triangles[triangles.clone()]
+                .iter()
+                .flat_map(|t| order.map(|k| t[k] as usize))
+        };
+        if variant.vertex_colors {
             self.colors.resize(at.start, [1.0; 4]);
-            let all = mesh.triangles[triangles].iter();
-            self.colors
-                .extend(all.flat_map(|t| order.map(|k| mesh.colors[t[k] as usize])));
+            self.colors.extend(corners().map(|i| mesh.colors[i]));
+        }
+        if variant.is_lit() {
+            self.normals.resize(at.start, [0.0; 3]);
+            let turned = |i: usize| (normal_matrix * mesh.normals[i]).normalize_or_zero();
+            self.normals.extend(corners().map(|i| turned(i).to_array()));
         }
     }
 
-    fn upload(mut self, gpu: &Gpu, corners: usize) -> [Option<wgpu::Buffer>; 3] {
+    fn upload(mut self, gpu: &Gpu, corners: usize) -> [Option<wgpu::Buffer>; 4] {
         fn one<T: Pod>(gpu: &Gpu, label: &str, all: &mut Vec<T>, n: usize) -> Option<wgpu::Buffer> {
             if all.is_empty() {
                 return None;
@@ -944,6 +1014,7 @@ impl Attributes {
             one(gpu, "places on images", &mut self.uvs, corners),
             one(gpu, "tangents", &mut self.tangents, corners),
             one(gpu, "corner colours", &mut self.colors, corners),
+            one(gpu, "normals", &mut self.normals, corners),
         ]
     }
 }

@@ -265,6 +265,10 @@ mod tests {
                     vec!["opaque", "sampled"],
                 ]
             };
+            // Which triangle a fragment belongs to, where a shader asks.
+            for variant in &mut variants {
+                variant.extend(text.contains("surface: Surface").then_some("numbered"));
+            }
             let first = variants[0].clone();
             let with = |more: &[&'static str]| [first.as_slice(), more].concat();
             if text.contains("surface: Surface") || text.contains("-> Surface") {
