@@ -185,6 +185,26 @@ fn extraction_repeats_and_shards_add_up() {
     assert_eq!(merged.rows(), whole.rows);
 }
 
+/// A dataset tells what its scenes called for.
+#[test]
+fn a_dataset_records_its_census() {
+    let gpu = gpu();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("d");
+    let mut all = scenes();
+    all[1].objects[0].materials[0].emission = [0.5, 0.0, 0.0];
+    all[1].objects[0].materials[0].double_sided = false;
+    run(&gpu, &all, &options(&out));
+    let found = Dataset::open(&out).unwrap();
+    let effects: Vec<_> = found
+        .manifest()
+        .scenes
+        .iter()
+        .map(|s| s.effects.clone())
+        .collect();
+    assert_eq!(effects, [vec![], vec!["culling", "emission"]]);
+}
+
 /// What is stopped leaves nothing behind.
 #[test]
 fn an_interrupted_extraction_leaves_nothing() {
@@ -225,6 +245,10 @@ fn requests_that_make_no_sense_are_refused() {
         ..options(&out)
     };
     assert!(refused(&all, &none).contains("above 0"));
+    // A dataset's transmittance is one number.
+    let mut stained = all[0].clone();
+    stained.objects[0].materials[0].transmission = [0.9, 0.1, 0.2];
+    assert!(refused(&[stained], &options(&out)).contains("transmission_color"));
     assert!(!out.exists());
 }
 

@@ -1154,6 +1154,45 @@ mod tests {
         assert!(scene.transparent_bounds().is_some());
     }
 
+    /// A state lies between the numbers of the states around it; images and meshes are those of the state before; what a state does not
+    /// name stays as it was.
+    #[test]
+    fn a_scene_ages() {
+        let text = format!(
+            "{CAMERA}[[object]]\nname = 'pot'\nmesh = {{ shape = 'sphere' }}\nmaterial = {{ color = [1, 0, 0], alpha = 0.2 }}\n\
+             [[timeline]]\ntime = 0\nlabel = 'new'\n\
+             [[timeline]]\ntime = 10\n[[timeline.object]]\nname = 'pot'\nmaterial = {{ alpha = 0.6, color_map = {{ pattern = 'noise', size = 8 }} }}\n\
+             [[timeline]]\ntime = 30\n[[timeline.object]]\nname = 'pot'\nmesh = {{ shape = 'box' }}\nmaterial = {{ color = [0, 0, 1] }}\n"
+        );
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let path = folder.path().join("s.toml");
+        fs::write(&path, &text).expect("writes");
+        let at = |time: f32| Scene::load_at(&path, Some(time)).expect("loads");
+        for (time, alpha, blue, mapped, name) in [
+            (0.0, 0.2, 0.0, false, "sphere"),
+            (5.0, 0.4, 0.0, false, "sphere"),
+            (10.0, 0.6, 0.0, true, "sphere"),
+            (20.0, 0.6, 0.5, true, "sphere"),
+            (30.0, 0.6, 1.0, true, "box"),
+        ] {
+            let scene = at(time);
+            let (object, m) = (&scene.objects[0], &scene.objects[0].materials[0]);
+            assert!((m.alpha - alpha).abs() < 1e-6, "{time}: {}", m.alpha);
+            assert!((m.color[2] - blue).abs() < 1e-6, "{time}: {:?}", m.color);
+            assert_eq!(m.maps.color.is_some(), mapped, "{time}");
+            assert_eq!(object.mesh.parts[0].name, name, "{time}");
+            assert_eq!((scene.time, scene.timeline.len()), (time, 3));
+        }
+        // Without a time it is the first state.
+        let first = Scene::load(&path).expect("loads");
+        assert_eq!((first.time, first.timeline[0].label.as_str()), (0.0, "new"));
+        let e = Scene::load_at(&path, Some(31.0)).expect_err("too late");
+        assert!(e.to_string().contains("from 0 to 30"), "{e}");
+        fs::write(&path, &text[..text.find("[[timeline]]").expect("states")]).expect("writes");
+        let e = Scene::load_at(&path, Some(1.0)).expect_err("no timeline");
+        assert!(e.to_string().contains("add [[timeline]]"), "{e}");
+    }
+
     /// Each bad scene gives one error that names the file, the line or key, and the mend.
     #[test]
     fn bad_scenes() {
@@ -1223,6 +1262,44 @@ mod tests {
                     "{CAMERA}[scatter]\ncount = 1\nmesh = {{ shape = 'box' }}\nmin = [0,0,0]\nmax = [1,1,1]\nalpha = [0.5, 1.5]"
                 ),
                 vec!["scatter 1.alpha", "0 … 1"],
+            ),
+            (
+                box_with("[object.material]\ncolor_map = { pattern = 'noise', size = 1 }"),
+                vec!["object 1.material.color_map", "4 … 4096"],
+            ),
+            (
+                box_with("[object.material]\ncolor_map = { pattern = 'wood' }"),
+                vec!["wood", "noise"],
+            ),
+            (
+                box_with("[object.material]\ncolor_map = 'none.png'"),
+                vec!["none.png", "cannot read"],
+            ),
+            (
+                format!(
+                    "{CAMERA}[[light]]\nposition = [1, 1, 1]\n[[object]]\nmesh = {{ shape = 'box' }}\n[object.material]\nmetallic_roughness_map = {{ pattern = 'noise' }}"
+                ),
+                vec!["metallic_roughness_map", "pbr"],
+            ),
+            (
+                format!("{CAMERA}[[light]]\nposition = [1, 1, 1]\ndirection = [1, 0, 0]"),
+                vec!["light 1", "either"],
+            ),
+            (
+                format!("{CAMERA}[[light]]\ndirection = [0, 0, 0]"),
+                vec!["light 1", "not zero"],
+            ),
+            (
+                box_with("vertex_colors = [[0, 0, 0, 0], [2, 0, 0, 1]]"),
+                vec!["object 1.vertex_colors", "0 … 1"],
+            ),
+            (
+                format!("{CAMERA}[[timeline]]\ntime = 1\n[[timeline]]\ntime = 1"),
+                vec!["timeline 2.time", "later"],
+            ),
+            (
+                format!("{CAMERA}[[timeline]]\ntime = 1\n[[timeline.object]]\nname = 'x'"),
+                vec!["timeline 1.object.name", "'x'"],
             ),
             ("name = \"x".to_owned(), vec!["s.toml:1"]),
         ] {

@@ -116,14 +116,7 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
             .missing
             .insert("skins (the bind pose is drawn)".into());
     }
-    let known = [
-        "KHR_lights_punctual",
-        "KHR_materials_unlit",
-        "KHR_materials_emissive_strength",
-        "KHR_materials_transmission",
-        "KHR_texture_transform",
-    ];
-    for extension in document.extensions_used().filter(|e| !known.contains(e)) {
+    for extension in document.extensions_used().filter(|e| !KNOWN.contains(e)) {
         reader.missing.insert(format!("extension {extension}"));
     }
     let Reader {
@@ -135,7 +128,12 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
     let told = missing.map(|what| format!("{}: not drawn: {what}", path.display()));
     loaded.warnings.extend(told);
     if loaded.mesh.triangles.is_empty() {
-        return Err(fail("holds no triangles; export a mesh".into()));
+        let instead: Vec<&str> = loaded.warnings.iter().map(String::as_str).collect();
+        return Err(fail(format!(
+            "holds no triangles; export a mesh{}{}",
+            if instead.is_empty() { "" } else { ". " },
+            instead.join("; ")
+        )));
     }
     Ok(loaded)
 }
@@ -155,8 +153,25 @@ fn check_references(bytes: &[u8]) -> Result<(), String> {
     let Ok(document) = serde_json::from_slice::<Value>(text) else {
         return Ok(());
     };
+    // The parser would look for what such an extension leaves out.
+    let required = document["extensionsRequired"].as_array();
+    let unknown = required.into_iter().flatten().filter_map(Value::as_str);
+    if let Some(name) = unknown.into_iter().find(|name| !KNOWN.contains(name)) {
+        return Err(format!(
+            "needs the extension {name}, which is not read; export it without"
+        ));
+    }
     check_value(&document, &document, "", "")
 }
+
+/// Extensions that are drawn.
+const KNOWN: [&str; 5] = [
+    "KHR_lights_punctual",
+    "KHR_materials_unlit",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_transmission",
+    "KHR_texture_transform",
+];
 
 /// The list that a field's number points into.
 fn list_of(field: &str, parent: &str) -> Option<&'static str> {

@@ -35,10 +35,11 @@ pub struct LoadedObj {
 /// # Errors
 /// A file that cannot be read, is empty or cut off, or holds numbers or indices that make no sense: with its line.
 pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError> {
-    let text = plain(&read_text(path)?);
+    let (text, told) = read_text(path)?;
+    let text = plain(&text);
     let facts = check(path, &text)?;
     let text = triangulated(&text);
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = told.into_iter().collect();
     let missing = RefCell::new(Vec::new());
     let bad_library = RefCell::new(None);
     let images = RefCell::new(Images::default());
@@ -55,7 +56,8 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
         // Whatever is wrong, the parser goes on with an empty library, and we tell afterwards.
         let empty = Ok((Vec::new(), Default::default()));
         match read_text(&file) {
-            Ok(text) => {
+            Ok((text, told)) => {
+                missing.borrow_mut().extend(told);
                 let text = plain(&text);
                 files.borrow_mut().push(file.clone());
                 match check_library(&file, &text) {
@@ -240,21 +242,37 @@ pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError
     })
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
+/// A file's text, and what was noticed: UTF-8, or Latin-1 as old exporters write it.
+fn read_text(path: &Path) -> Result<(String, Option<String>), SceneError> {
     let bytes = fs::read(path).map_err(|source| SceneError::Read {
         path: path.to_owned(),
         source,
     })?;
     // Old systems end lines with a carriage return alone, which the parser takes for a blank.
-    let text = String::from_utf8(bytes).map(|text| text.replace("\r\n", "\n").replace('\r', "\n"));
-    text.map_err(|e| {
-        let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
-        SceneError::Mesh {
+    let lines = |text: String| text.replace("\r\n", "\n").replace('\r', "\n");
+    let e = match String::from_utf8(bytes) {
+        Ok(text) => return Ok((lines(text), None)),
+        Err(e) => e,
+    };
+    let good = e.utf8_error().valid_up_to();
+    let bytes = e.into_bytes();
+    let line = 1 + bytes[..good].iter().filter(|&&b| b == b'\n').count();
+    // No text has these: it is UTF-16, or no text at all.
+    if bytes.contains(&0) {
+        return Err(SceneError::Mesh {
             path: path.to_owned(),
-            line: Some(1 + good.iter().filter(|&&b| b == b'\n').count()),
+            line: Some(line),
             message: "is not UTF-8 text; is it an OBJ file? Save it as plain text".into(),
-        }
-    })
+        });
+    }
+    let told = format!(
+        "{}:{line}: is not UTF-8 and is read as Latin-1; save it as UTF-8 where names look wrong",
+        path.display()
+    );
+    Ok((
+        lines(bytes.into_iter().map(char::from).collect()),
+        Some(told),
+    ))
 }
 
 /// The text without comments and with continued lines joined; every line keeps its number.
@@ -316,6 +334,10 @@ fn triangulated(text: &str) -> String {
             }
         } else {
             out.push_str(line);
+            // A name is missing: no material of that name, and not the parser's refusal.
+            if line.trim() == "usemtl" {
+                out.push_str(" none");
+            }
             if colored && is_position(line) && numbers(line) == 3 {
                 out.push_str(" 1 1 1");
             }
@@ -862,6 +884,53 @@ mod tests {
         assert_eq!(at_origin[0], at_origin[1]);
     }
 
+    /// Images of all kinds, options, an opacity of its own, heights as normals, colours of corners, Latin-1; what is not drawn is told.
+    #[test]
+    fn images_of_materials() {
+        let picture = |texels: [[u8; 4]; 2]| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            let image = image::RgbaImage::from_raw(2, 1, texels.concat()).expect("two texels");
+            let done = image.write_to(&mut bytes, image::ImageFormat::Png);
+            done.map(|()| bytes.into_inner()).expect("encodes")
+        };
+        let color = picture([[200, 0, 0, 9], [0, 100, 0, 9]]);
+        let leaf = picture([[0, 0, 0, 255], [255, 255, 255, 255]]);
+        let mtl = b"newmtl m\nKd 1 1 1\nmap_Kd -clamp on a b.png\nmap_d leaf.png\nmap_Bump -bm 2 -s 2 2 leaf.png\nmap_Pr leaf.png\nmap_Ke a b.png\nmap_Ks gone.png\n# caf\xe9\n";
+        let obj = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n";
+        let files: [(&str, &[u8]); 4] = [
+            ("a.obj", obj.as_bytes()),
+            ("a.mtl", mtl),
+            ("a b.png", &color),
+            ("leaf.png", &leaf),
+        ];
+        let loaded = load(&files).expect("loads");
+        let mesh = &loaded.mesh;
+        let m = &mesh.parts[0].material;
+        // Opacity comes of map_d alone, whatever the colour's file holds.
+        let color = m.maps.color.as_ref().expect("a map");
+        assert_eq!(color.texels, [[200, 0, 0, 0], [0, 100, 0, 255]]);
+        assert!(m.blend && m.maps.wrap == [Wrap::Clamp; 2]);
+        assert_eq!(m.maps.normal.as_ref().map(|n| n.size), Some([2, 1]));
+        let values = m.maps.metallic_roughness.as_ref().expect("a map");
+        assert_eq!((values.texels[1], m.roughness), ([255, 255, 255, 255], 1.0));
+        assert_eq!(m.emission, [1.0; 3]);
+        // v runs down.
+        assert_eq!(mesh.uvs[0][2], Vec2::new(1.0, 0.0));
+        assert_eq!(
+            mesh.colors[..3],
+            [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]]
+        );
+        let told = loaded.warnings.join("\n");
+        for word in ["option -s of map_Bump", "map_Ks", "Latin-1"] {
+            assert!(told.contains(word), "{word}: {told}");
+        }
+        assert_eq!(
+            (loaded.warnings.len(), loaded.files.len()),
+            (3, 4),
+            "{told}"
+        );
+    }
+
     #[test]
     fn a_missing_mtl_is_survived() {
         let obj = format!("mtllib gone.mtl\n{QUAD}usemtl glass\nf 1 2 3 4\n");
@@ -938,8 +1007,8 @@ mod tests {
                 "a.obj:5: a face of 2 corners",
             ),
             (
-                "binary",
-                vec![b'v', b'\n', 0xff, 0xfe],
+                "UTF-16",
+                vec![b'v', 0, b'\n', 0, 0xff, 0xfe],
                 "a.obj:2: is not UTF-8",
             ),
         ];
