@@ -41,6 +41,9 @@ fn wrong_usage_is_exit_code_2() {
         "render a.toml --out a.gif",
         "render a.toml --out a.png --method wbiot",
         "render a.toml --out a.png --method abuffer:speed=9",
+        "render a.toml --out a.png --method wboit-eq9 --highlight 1",
+        "render a.toml --out a.png --increasing",
+        "bench a.toml --out d --effects --scaling",
         "doctor --frobnicate",
     ] {
         let arguments: Vec<&str> = line.split_whitespace().collect();
@@ -297,4 +300,90 @@ fn an_unknown_adapter_is_refused() {
     let output = peelnet(&["doctor", "--adapter", "abacus 3000"], dir.path());
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("error: "));
+}
+
+/// The shipped vase: each layer highlighted at a time of its own, what there is not is refused, and `inspect` and the measurement of
+/// effects tell what it calls for.
+#[test]
+fn the_vase_shows_its_layers_and_its_age() {
+    let dir = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/effects");
+    let vase = data.join("vase.toml").display().to_string();
+    let run = |line: &str| {
+        let mut arguments: Vec<&str> = line.split_whitespace().collect();
+        arguments.insert(1, &vase);
+        peelnet(&arguments, dir.path())
+    };
+    let mut files = Vec::new();
+    for (k, line) in [
+        "render --size 64x48 --highlight 0 --time 0",
+        "render --size 64x48 --highlight 1 --time 40",
+        "render --size 64x48 --highlight 1 --time 55 --increasing",
+        "render --size 64x48 --time 55",
+    ]
+    .iter()
+    .enumerate()
+    {
+        let output = run(&format!("{line} --out {k}.png --json"));
+        let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let layer = words.iter().position(|w| *w == "--highlight");
+        let method = layer.map_or("abuffer".to_owned(), |at| {
+            format!("layer {}", words[at + 1])
+        });
+        assert_eq!(answer["method"], method, "{line}");
+        assert!(answer["time"].is_number(), "{line}");
+        files.push(std::fs::read(dir.path().join(format!("{k}.png"))).unwrap());
+    }
+    for (i, a) in files.iter().enumerate() {
+        assert!(
+            files[..i].iter().all(|b| a != b),
+            "picture {i} is like an earlier one"
+        );
+    }
+    for (line, word) in [
+        ("render --highlight 9 --out no.png", "[0, 1, 2]"),
+        ("render --time 61 --out no.png", "from 0 to 60"),
+    ] {
+        let output = run(line);
+        assert_eq!(output.status.code(), Some(1), "{line}");
+        assert!(stderr(&output).contains(word), "{}", stderr(&output));
+    }
+    assert!(!dir.path().join("no.png").exists());
+    let output = run("inspect --json");
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let on = |name: &str| {
+        let effects = answer["effects"].as_array().unwrap().iter();
+        effects
+            .clone()
+            .any(|e| e["name"] == name && e["on"] == true)
+    };
+    assert!(
+        ["layers", "ageing", "pbr", "normal-map"]
+            .iter()
+            .all(|name| on(name))
+    );
+    assert!(!on("cutout") && !on("monochrome"));
+    let mist = data.join("mist.toml").display().to_string();
+    let output = peelnet(
+        &[
+            "bench",
+            "--effects",
+            &mist,
+            "--size",
+            "32x24",
+            "--frames",
+            "1",
+            "--out",
+            "e",
+            "--json",
+        ],
+        dir.path(),
+    );
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let costs = answer["costs"].as_array().unwrap();
+    let names: Vec<&str> = costs.iter().filter_map(|c| c["effect"].as_str()).collect();
+    assert_eq!(names, ["opaque", "monochrome", "low-resolution"]);
+    let page = std::fs::read_to_string(dir.path().join("e/report.html")).unwrap();
+    assert!(page.matches("data:image/png").count() == 6 && page.contains("low-resolution"));
 }
