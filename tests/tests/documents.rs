@@ -283,3 +283,49 @@ fn the_committed_stress_is_whole() {
     assert!(!rows.contains(",fail,"));
     assert!(read(&format!("{RESULTS}/stress/stress.md")).contains(" 0 failures"));
 }
+
+/// What docs/effects.md says of costs is what the committed run measured, and every effect that has a picture of it stands there.
+#[test]
+fn costs_of_effects_are_those_measured() {
+    let text = read("docs/effects.md");
+    let measured = read("docs/results/llvmpipe-epyc-2cores/effects/effects.json");
+    let measured: peelnet_eval::effects::Effects = serde_json::from_str(&measured).unwrap();
+    let between = |name: &str| {
+        let (begin, end) = (
+            format!("<!-- {name}:begin -->\n"),
+            format!("<!-- {name}:end -->"),
+        );
+        text.split(&begin)
+            .nth(1)
+            .unwrap()
+            .split(&end)
+            .next()
+            .unwrap()
+            .to_owned()
+    };
+    let costs = between("costs");
+    for effect in peelnet_scene::Effect::ALL.map(peelnet_scene::Effect::name) {
+        let line = costs.lines().find(|l| l.contains(&format!("`{effect}`")));
+        let line = line.unwrap_or_else(|| panic!("{effect} is missing"));
+        let scene = if matches!(effect, "monochrome" | "low-resolution") {
+            "mist"
+        } else {
+            "still-life"
+        };
+        let mut all = measured.costs.iter();
+        let cost = all
+            .find(|c| c.scene == scene && c.effect == effect)
+            .unwrap();
+        assert!(line.ends_with(&format!("| {:.2} |", cost.ratio)), "{line}");
+    }
+    for layers in &measured.layers {
+        let line = format!("| {} | {:.2} |", layers.layers, layers.ratio);
+        assert!(between("layers").contains(&line), "{line}");
+    }
+    let first = measured.fills[0].ms_one;
+    for row in measured.fills.chunks(3) {
+        let cells = row.iter().map(|f| format!(" {:.2} |", f.ms_one / first));
+        let cells: String = cells.collect();
+        assert!(between("fills").contains(&cells), "{cells}");
+    }
+}
