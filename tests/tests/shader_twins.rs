@@ -103,10 +103,12 @@ fn guards_are_the_same_numbers() {
     let gpu = gpu();
     let got = evaluate(
         &gpu,
-        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX};",
-        "y = vec4f(SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX);",
-        &[[0.0; 4]],
+        "import package::helpers::guards::{SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX, EMISSIVE_ALPHA};",
+        "y = vec4f(SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX);
+        if x.x > 0.0 { y = vec4f(EMISSIVE_ALPHA); }",
+        &[[0.0; 4], [1.0; 4]],
     );
+    assert_eq!(got[1], [guards::EMISSIVE_ALPHA; 4]);
     assert_eq!(
         got[0],
         [

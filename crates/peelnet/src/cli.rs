@@ -269,6 +269,7 @@ pub struct ExportArgs {
   peelnet render scene.toml --out exact.png
   peelnet render scene.toml --method wboit-eq9:targets=f32 --out a.exr
   peelnet render scene.toml --method deep-thesis --model m.safetensors --view 2 --out b.npy
+  peelnet render data/effects/vase.toml --time 40 --highlight 1 --out glaze.png
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
 A learned method without --model takes the shipped model.")]

@@ -745,6 +745,9 @@ impl Scene {
             path.file_stem()
                 .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
         });
+        if !raw.timeline.is_empty() {
+            loader.hasher.update(age.time.to_le_bytes());
+        }
         let hash = loader.hasher.finalize();
         Ok(Self {
             name,

@@ -293,8 +293,8 @@ struct Reader<'a> {
     path: &'a Path,
     folder: &'a Path,
     buffers: Vec<gltf::buffer::Data>,
-    /// By number; `None` for what cannot be drawn.
-    images: HashMap<usize, Option<Arc<Texture>>>,
+    /// By number, with their opacity or without; `None` for what cannot be drawn.
+    images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What the file asks for and is not drawn, each once.
     missing: BTreeSet<String>,
     loaded: LoadedGltf,
@@ -506,10 +506,23 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// An image, read once; `None`, and told, where it cannot be drawn.
-    fn image(&mut self, image: &gltf::Image<'_>) -> Option<Arc<Texture>> {
-        if let Some(known) = self.images.get(&image.index()) {
+    /// An image, read once; `None`, and told, where it cannot be drawn. An `opaque` one is without what opacity its file holds.
+    fn image(&mut self, image: &gltf::Image<'_>, opaque: bool) -> Option<Arc<Texture>> {
+        let key = (image.index(), opaque);
+        if let Some(known) = self.images.get(&key) {
             return known.clone();
+        }
+        if opaque {
+            let whole = self.image(image, false);
+            let found = whole.map(|whole| {
+                if !whole.has_alpha() {
+                    return whole;
+                }
+                let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
+                Arc::new(Texture::joined(&whole, &whole, opaque))
+            });
+            self.images.insert(key, found.clone());
+            return found;
         }
         let name = image
             .name()
@@ -544,7 +557,7 @@ impl Reader<'_> {
                 None
             }
         };
-        self.images.insert(image.index(), found.clone());
+        self.images.insert(key, found.clone());
         found
     }
 
@@ -596,7 +609,11 @@ impl Reader<'_> {
             self.missing
                 .insert("samplers of its own for a map (the first map's is taken)".into());
         }
-        let mut images = textures.map(|texture| {
+        let alpha_mode = m.alpha_mode();
+        // Of the first, the base colour.
+        let mut opaque = alpha_mode == AlphaMode::Opaque;
+        let images = textures.map(|texture| {
+            let opaque = std::mem::take(&mut opaque);
             let (texture, own) = texture?;
             if own.transform != placing.transform {
                 self.missing.insert(
@@ -608,7 +625,7 @@ impl Reader<'_> {
                     .insert("maps on other texture coordinates than the first map's".into());
                 return None;
             }
-            self.image(&texture.source())
+            self.image(&texture.source(), opaque)
         });
         let (wrap_s, wrap_t, filter) =
             samplers
@@ -620,13 +637,6 @@ impl Reader<'_> {
             WrappingMode::MirroredRepeat => Wrap::Mirror,
             WrappingMode::ClampToEdge => Wrap::Clamp,
         };
-        let alpha_mode = m.alpha_mode();
-        if let (AlphaMode::Opaque, Some(color)) = (alpha_mode, &images[0])
-            && color.has_alpha()
-        {
-            let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
-            images[0] = Some(Arc::new(Texture::joined(color, color, opaque)));
-        }
         let finite = |x: f32, low: f32, high: f32| {
             if x.is_finite() {
                 x.clamp(low, high)
