@@ -16,7 +16,7 @@ use peelnet_core::{
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodSpec, Renderer};
-use peelnet_scene::{Scene, suite};
+use peelnet_scene::{Material, Scene, Texture, suite};
 use peelnet_tests::{gpu, shipped, walls};
 
 const ANCHORED: [Recipe; 3] = [Recipe::Small, Recipe::Medium, Recipe::Large];
@@ -632,5 +632,59 @@ fn shipped_networks_are_as_small_as_they_say() {
     ] {
         let parameters = shipped(recipe).mlp.parameters();
         assert!(parameters <= most, "{recipe}: {parameters}");
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What surfaces look like.
+
+/// One surface is exact for every learned method whatever it looks like: opacity from an image, and light that takes its colour.
+///
+/// Half floats of sums, of transmittances and of what divides them: six roundings, of values up to 1.
+#[test]
+fn a_surface_with_an_image_or_of_stained_glass_is_exact() {
+    let gpu = gpu();
+    let c0 = [0.8, 0.6, 0.9];
+    let halves = Texture::of("halves", [2, 1], |x, _| {
+        if x == 0 {
+            [255, 0, 255, 102]
+        } else {
+            [0, 255, 255, 255]
+        }
+    });
+    let mut mapped = Material::unlit([0.9, 0.8, 0.7], 0.75);
+    mapped.maps.color = Some(halves.into());
+    mapped.maps.nearest = true;
+    let mut glass = Material::unlit([0.2, 0.1, 0.3], 0.8);
+    glass.transmission = [0.9, 0.5, 0.1];
+    for recipe in ANCHORED {
+        let model = shipped(recipe);
+        for spec in specs(recipe) {
+            for material in [&mapped, &glass] {
+                let wall = peelnet_tests::wall(3.0, material.clone());
+                let scene = peelnet_tests::scene("one", c0, vec![wall]);
+                let image = draw(&gpu, &scene, &spec, &model, [16, 12]);
+                for (i, pixel) in image.pixels.iter().enumerate() {
+                    for k in 0..3 {
+                        let (color, covers) = if material.is_transmissive() {
+                            let covers = 0.8 * (1.0 - f64::from(material.transmission[k]));
+                            (0.8 * f64::from(material.color[k]), covers)
+                        } else {
+                            let left = i % 16 < 8;
+                            let texel = if left {
+                                [1.0, 0.0, 1.0]
+                            } else {
+                                [0.0, 1.0, 1.0]
+                            };
+                            let alpha = if left { 0.75 * 0.4 } else { 0.75 };
+                            (alpha * f64::from(material.color[k]) * texel[k], alpha)
+                        };
+                        let want = color + (1.0 - covers) * f64::from(c0[k]);
+                        let error = (f64::from(pixel[k]) - want).abs();
+                        assert!(error <= 6.0 * HALF, "{spec}, {i}: {pixel:?} for {want}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -30,8 +30,8 @@ pub enum RenderError {
     NeedsModel(String),
     /// Light that takes a colour, and a method that knows how much light passes and not which.
     #[error(
-        "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with abuffer, blended \
-         or a wboit method, or make transmission_color grey"
+        "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with abuffer, \
+         linked-list, blended, a wboit, mboit or deep method, or make transmission_color grey"
     )]
     OneTransmittance(String),
     /// A frame without pixels.

@@ -217,7 +217,15 @@ mod tests {
             "methods::wboit::gather" | "methods::wboit::resolve" | "methods::blended::gather" => {
                 &["packed", "tinted"]
             }
-            "methods::abuffer::composite" | "peel::sort" => &["tinted"],
+            "methods::abuffer::composite"
+            | "peel::sort"
+            | "methods::linked_list::build"
+            | "methods::linked_list::composite"
+            | "methods::mboit4::gather"
+            | "methods::mboit4::resolve"
+            | "methods::mboit6::gather"
+            | "methods::anchored::gather"
+            | "methods::anchored::resolve" => &["tinted"],
             "peel::store" => &["tinted", "layered", "dataset"],
             "methods::layers::composite" => &["increasing"],
             _ => &[],
@@ -256,6 +264,7 @@ mod tests {
                     vec![],
                     vec!["separate_ends"],
                     vec!["separate_ends", "opaque"],
+                    vec!["separate_ends", "tinted"],
                 ]
             } else {
                 vec![

@@ -2,6 +2,7 @@
 import package::helpers::absorbance::warped_depth;
 import package::learned::weight::peelnet_fragment;
 import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -12,6 +13,9 @@ struct Sums {
     @location(0) between: vec4f,
     @if(separate_ends)
     @location(1) ends: vec4f,
+    // Blended multiplicatively: dst * (1 - src).
+    @if(tinted && !separate_ends) @location(1) covering: vec4f,
+    @if(tinted && separate_ends) @location(2) covering: vec4f,
 }
 
 @fragment
@@ -26,8 +30,15 @@ fn fragment_main(surface: Surface) -> Sums {
     let e = textureLoad(extent, pixel, 0);
     let w = peelnet_fragment(color.a, zeta, m, e);
     let sum = color * w.x;
-    @if(separate_ends)
-    return Sums(select(sum, vec4f(0.0), w.y > 0.0), select(vec4f(0.0), sum, w.y > 0.0));
-    @else
-    return Sums(sum);
+    @if(tinted) let covers = vec4f(covering(surface), 0.0);
+    @if(separate_ends) {
+        let between = select(sum, vec4f(0.0), w.y > 0.0);
+        let end = select(vec4f(0.0), sum, w.y > 0.0);
+        @if(tinted) return Sums(between, end, covers);
+        @else return Sums(between, end);
+    }
+    @else {
+        @if(tinted) return Sums(sum, covers);
+        @else return Sums(sum);
+    }
 }

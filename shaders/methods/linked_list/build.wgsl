@@ -1,6 +1,7 @@
 // linked-list, the one geometry pass: every fragment becomes a node of its pixel's list (Yang et al. 2010).
 import package::scene::camera::camera;
 import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -11,6 +12,7 @@ import package::scene::visible::visible;
 @group(1) @binding(2) var<storage, read_write> next: array<u32>;
 @group(1) @binding(3) var<storage, read_write> depths: array<f32>;
 @group(1) @binding(4) var<storage, read_write> triangles: array<u32>;
+// Where light takes a colour two of a node: its colour, and what it covers of each channel.
 @group(1) @binding(5) var<storage, read_write> colors: array<vec4f>;
 
 @fragment
@@ -26,6 +28,10 @@ fn fragment_main(surface: Surface) {
     let pixel = vec2u(surface.position.xy);
     depths[node] = surface.depth_linear;
     triangles[node] = surface.triangle;
-    colors[node] = shade(surface);
+    @if(!tinted) colors[node] = shade(surface);
+    @if(tinted) {
+        colors[2u * node] = shade(surface);
+        colors[2u * node + 1u] = vec4f(covering(surface), 0.0);
+    }
     next[node] = atomicExchange(&heads[pixel.y * camera.frame.x + pixel.x], node + 1u);
 }

@@ -77,14 +77,23 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel = vec2u(index % frame.size.x, index / frame.size.x);
     var color = vec3f(0.0);
-    var transmittance = 1.0;
+    @if(!tinted) var transmittance = 1.0;
+    @if(tinted) var transmittance = vec3f(1.0);
     var node = sorted(heads[index]);
     while node != 0u {
-        let fragment = colors[node - 1u];
-        color += transmittance * fragment.rgb;
-        transmittance *= 1.0 - fragment.a;
+        @if(!tinted) {
+            let fragment = colors[node - 1u];
+            color += transmittance * fragment.rgb;
+            transmittance *= 1.0 - fragment.a;
+        }
+        @if(tinted) {
+            color += transmittance * colors[2u * node - 2u].rgb;
+            transmittance *= 1.0 - colors[2u * node - 1u].rgb;
+        }
         node = next[node - 1u];
     }
     let behind = textureLoad(background, pixel, 0).rgb;
-    textureStore(image, pixel, vec4f(color + transmittance * behind, 1.0 - transmittance));
+    @if(!tinted) let covered = 1.0 - transmittance;
+    @if(tinted) let covered = 1.0 - dot(transmittance, vec3f(1.0 / 3.0));
+    textureStore(image, pixel, vec4f(color + transmittance * behind, covered));
 }

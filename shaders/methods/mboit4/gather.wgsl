@@ -3,14 +3,21 @@ import package::helpers::absorbance::{absorbance, warped_depth};
 import package::helpers::guards::WEIGHT_FLOOR;
 import package::methods::mboit4::reconstruct::transmittance_from_moments;
 import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
 @group(1) @binding(0) var zeroth: texture_2d<f32>;
 @group(1) @binding(1) var higher: texture_2d<f32>;
 
+struct Sums {
+    @location(0) color: vec4f,
+    // Blended multiplicatively: dst * (1 - src).
+    @if(tinted) @location(1) covering: vec4f,
+}
+
 @fragment
-fn fragment_main(surface: Surface) -> @location(0) vec4f {
+fn fragment_main(surface: Surface) -> Sums {
     if !visible(surface) {
         discard;
     }
@@ -26,5 +33,6 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         moments -= b * vec4f(zeta, z2, z2 * zeta, z2 * z2);
     }
     let weight = max(transmittance_from_moments(total, moments, zeta), WEIGHT_FLOOR);
-    return color * weight;
+    @if(tinted) return Sums(color * weight, vec4f(covering(surface), 0.0));
+    @else return Sums(color * weight);
 }

@@ -1,10 +1,12 @@
 // mboit4: eq 6's resolve; the transmittance of the whole pixel is exp(-total absorbance).
-import package::helpers::resolve::normalised;
+@if(!tinted) import package::helpers::resolve::normalised;
+@if(tinted) import package::helpers::resolve::normalised_by_channel;
 import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
 @group(0) @binding(2) var zeroth: texture_2d<f32>;
+@if(tinted) @group(0) @binding(3) var tinted: texture_2d<f32>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -14,9 +16,8 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
-    return normalised(
-        textureLoad(sums, pixel, 0),
-        exp(-textureLoad(zeroth, pixel, 0).x),
-        textureLoad(background, pixel, 0).rgb,
-    );
+    let found = textureLoad(sums, pixel, 0);
+    let behind = textureLoad(background, pixel, 0).rgb;
+    @if(tinted) return normalised_by_channel(found, textureLoad(tinted, pixel, 0).rgb, behind);
+    @else return normalised(found, exp(-textureLoad(zeroth, pixel, 0).x), behind);
 }

@@ -3,6 +3,7 @@ import package::helpers::absorbance::{absorbance, warped_depth};
 import package::helpers::guards::WEIGHT_FLOOR;
 import package::methods::mboit6::reconstruct::transmittance_from_moments;
 import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -10,8 +11,14 @@ import package::scene::visible::visible;
 @group(1) @binding(1) var lower: texture_2d<f32>;
 @group(1) @binding(2) var higher: texture_2d<f32>;
 
+struct Sums {
+    @location(0) color: vec4f,
+    // Blended multiplicatively: dst * (1 - src).
+    @if(tinted) @location(1) covering: vec4f,
+}
+
 @fragment
-fn fragment_main(surface: Surface) -> @location(0) vec4f {
+fn fragment_main(surface: Surface) -> Sums {
     if !visible(surface) {
         discard;
     }
@@ -30,5 +37,6 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
         m56 -= b * vec2f(z4 * z, z4 * z2);
     }
     let weight = max(transmittance_from_moments(total, m1234, m56, z), WEIGHT_FLOOR);
-    return color * weight;
+    @if(tinted) return Sums(color * weight, vec4f(covering(surface), 0.0));
+    @else return Sums(color * weight);
 }

@@ -63,6 +63,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             resolve: "methods::anchored::resolve",
             resolve_features: features,
             resolve_reads: &resolve_reads,
+            tinted_by: Some(1),
             ..Plan::NONE
         },
     )

@@ -129,7 +129,18 @@ pub(crate) struct Plan<'a> {
     /// Targets that the resolve reads, after `C_0`, and storage after those.
     pub resolve_reads: &'a [usize],
     pub resolve_loads: &'a [usize],
+    /// The pass that, where light takes a colour, also writes what fragments cover of each channel, into one more target, its last; the
+    /// resolve reads that behind all others.
+    pub tinted_by: Option<usize>,
 }
+
+/// `T_∞` of red, green and blue.
+pub(super) const TINTED: Target = Target {
+    label: "tinted transmittance",
+    channels: 4,
+    full: false,
+    blend: Blend::Transmit,
+};
 
 impl Plan<'_> {
     /// What most methods leave out.
@@ -143,6 +154,7 @@ impl Plan<'_> {
         resolve_extra: &[],
         resolve_reads: &[],
         resolve_loads: &[],
+        tinted_by: None,
     };
 }
 
@@ -195,9 +207,12 @@ impl Target {
 
 /// Makes a plan ready, with 16- or 32-bit targets as the method's knob says.
 pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let tinting = plan.tinted_by.filter(|_| b.scene.tinted);
+    let mut all_targets = plan.targets.to_vec();
+    all_targets.extend(tinting.map(|_| TINTED));
     let knob = b.spec.full_precision()?;
     let is_full = |t: &Target| knob.unwrap_or(t.full);
-    if plan.targets.iter().any(is_full) {
+    if all_targets.iter().any(is_full) {
         b.gpu.need(
             wgpu::Features::FLOAT32_BLENDABLE,
             "float32-blendable",
@@ -206,7 +221,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         )?;
     }
     let mut targets = Vec::new();
-    for t in plan.targets {
+    for t in &all_targets {
         let view = b.gpu.texture(
             t.label,
             t.format(is_full(t)),
@@ -226,7 +241,13 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         .then(|| unwritten_texture(b.gpu, b.frame))
         .transpose()?;
     let mut passes = Vec::new();
-    for gather in plan.passes {
+    for (number, gather) in plan.passes.iter().enumerate() {
+        let mut features = gather.features.to_vec();
+        let mut writes = gather.writes.to_vec();
+        if tinting == Some(number) {
+            features.push("tinted");
+            writes.push(plan.targets.len());
+        }
         let textures = gather.reads.iter().map(|&i| Bind::Texture(&targets[i].0));
         let entries: Vec<_> = textures
             .chain(gather.loads.iter().map(|&i| Bind::Read(&storage[i])))
@@ -236,10 +257,9 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             b.gpu
                 .bind(gather.label, wgpu::ShaderStages::FRAGMENT, &entries)
         });
-        let mut states: Vec<_> = gather
-            .writes
+        let mut states: Vec<_> = writes
             .iter()
-            .map(|&i| Some(plan.targets[i].state(is_full(&plan.targets[i]))))
+            .map(|&i| Some(all_targets[i].state(is_full(&all_targets[i]))))
             .collect();
         if states.is_empty() {
             states.push(unwritten());
@@ -251,7 +271,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             &GeometryPass {
                 label: gather.label,
                 shader: gather.shader,
-                features: gather.features,
+                features: &features,
                 extra: gather.extra,
                 group: group.as_ref().map(|g| &g.layout),
                 targets: &states,
@@ -262,7 +282,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             label: gather.label,
             pipelines,
             group,
-            writes: gather.writes.to_vec(),
+            writes,
         });
     }
     let mut entries = vec![Bind::Texture(&b.frame.background)];
@@ -271,10 +291,12 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             .iter()
             .map(|&i| Bind::Texture(&targets[i].0)),
     );
+    entries.extend(tinting.map(|_| Bind::Texture(&targets[plan.targets.len()].0)));
     entries.extend(plan.resolve_loads.iter().map(|&i| Bind::Read(&storage[i])));
     let mut resolve_features = plan.resolve_features.to_vec();
+    resolve_features.extend(tinting.map(|_| "tinted"));
     let full_sums = |t: &Target| t.label == super::weighted::SUMS.label && is_full(t);
-    if plan.targets.iter().any(full_sums) {
+    if all_targets.iter().any(full_sums) {
         resolve_features.push("full_sums");
     }
     let resolve = FullscreenPass::new(
@@ -285,7 +307,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         &entries,
         &[Some(wgpu::TextureFormat::Rgba32Float.into())],
     )?;
-    let blended: u32 = plan.targets.iter().map(|t| t.bytes(is_full(t))).sum();
+    let blended: u32 = all_targets.iter().map(|t| t.bytes(is_full(t))).sum();
     let stored: u32 = plan.storage.iter().map(|s| s.bytes).sum();
     let sorted = Sorted::new(b.gpu, b.scene, plan.order)?;
     let order = sorted.as_ref().map_or(0, Sorted::bytes) as f64 / pixels as f64;

@@ -72,8 +72,9 @@ impl Pool {
         [heads, used, extent]: [&wgpu::Buffer; 3],
         nodes: u64,
     ) -> Result<Self, RenderError> {
+        let features: &[&str] = if scene.tinted { &["tinted"] } else { &[] };
         let next = gpu.storage("list links", nodes * 4)?;
-        let storage = FragmentStorage::new(gpu, nodes, false)?;
+        let storage = FragmentStorage::new(gpu, nodes, scene.tinted)?;
         let build_group = gpu.bind(
             "build",
             wgpu::ShaderStages::FRAGMENT,
@@ -93,7 +94,7 @@ impl Pool {
             &GeometryPass {
                 label: "build",
                 shader: "methods::linked_list::build",
-                features: &[],
+                features,
                 extra: &[],
                 group: Some(&build_group.layout),
                 targets: &[unwritten()],
@@ -114,7 +115,7 @@ impl Pool {
                 Bind::Store(&frame.image),
             ],
         );
-        let wgsl = peelnet_shaders::link("methods::linked_list::composite", &[], &[])?;
+        let wgsl = peelnet_shaders::link("methods::linked_list::composite", features, &[])?;
         Ok(Self {
             nodes,
             build,
@@ -160,13 +161,14 @@ impl Compositor for LinkedList {
             pass.dispatch_workgroups(x, y, 1);
         }
         let pixels = f64::from(cx.frame.pixels());
+        let node = BYTES_PER_NODE + if cx.scene.tinted { 16 } else { 0 };
         Ok(FrameStats {
             fragments: Some(total),
             tiles: 1,
             geometry_passes,
             fullscreen_passes: 1,
             // Heads and the unwritten attachment; then the pool.
-            bytes_per_pixel: 5.0 + (self.pool.nodes * BYTES_PER_NODE) as f64 / pixels,
+            bytes_per_pixel: 5.0 + (self.pool.nodes * node) as f64 / pixels,
             ..Default::default()
         })
     }

@@ -86,6 +86,7 @@ fn build(b: &Build<'_>, order: &Order) -> Result<Box<dyn Compositor>, RenderErro
             ],
             resolve: "methods::mboit4::resolve",
             resolve_reads: &[0, 1],
+            tinted_by: Some(1),
             ..Plan::NONE
         },
     )

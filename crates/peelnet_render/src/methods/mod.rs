@@ -188,7 +188,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[("nodes", "size of the first pool; it grows as needed")],
         learned: false,
         exact: true,
-        tinted: false,
+        tinted: true,
         build: linked_list::build,
     },
     MethodEntry {
@@ -341,7 +341,7 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
-        tinted: false,
+        tinted: true,
         build: mboit::four,
     },
     MethodEntry {
@@ -360,7 +360,7 @@ pub const METHODS: &[MethodEntry] = &[
         ],
         learned: false,
         exact: false,
-        tinted: false,
+        tinted: true,
         build: mboit::six,
     },
     MethodEntry {
@@ -451,7 +451,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: true,
         exact: false,
-        tinted: false,
+        tinted: true,
         build: anchored::build,
     },
     MethodEntry {
@@ -462,7 +462,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[TARGETS],
         learned: true,
         exact: false,
-        tinted: false,
+        tinted: true,
         build: anchored::build,
     },
     MethodEntry {
@@ -473,7 +473,7 @@ pub const METHODS: &[MethodEntry] = &[
         own_knobs: &[MOMENT_TARGETS],
         learned: true,
         exact: false,
-        tinted: false,
+        tinted: true,
         build: anchored::build,
     },
 ];

@@ -2,7 +2,7 @@
 
 use super::{
     Build, Compositor, MethodSpec,
-    commutative::{self, Blend, Gather, Plan, Target},
+    commutative::{self, Blend, Gather, Plan, TINTED, Target},
 };
 use crate::RenderError;
 use peelnet_core::weights::Weight;
@@ -21,12 +21,6 @@ pub(super) const TRANSMITTANCE: Target = Target {
     channels: 1,
     full: false,
     blend: Blend::Transmit,
-};
-
-/// `T_∞` of red, green and blue.
-const TINTED: Target = Target {
-    channels: 4,
-    ..TRANSMITTANCE
 };
 
 /// Of grey colours `Σ C w`, `Σ α w` and, where alpha is, `T_∞`: one target less.
