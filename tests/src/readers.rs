@@ -67,9 +67,25 @@ fn put(name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// A scene file; the meshes that it may name do not exist, but for `a.obj`.
+/// An image of two texels, half transparent red and green: PNG, in base 64.
+const IMAGE: &str = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR4nGP4z8DQwPCf4T8ADn0Dfur2k8AAAAAASUVORK5CYII=";
+
+/// The image as a file's bytes.
+fn image() -> Vec<u8> {
+    let texture = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = image::RgbaImage::from_raw(2, 1, texture).expect("two texels");
+    let written = image.write_to(&mut bytes, image::ImageFormat::Png);
+    written.map(|()| bytes.into_inner()).expect("encodes")
+}
+
+/// A scene file; the files that it may name do not exist, but for `a.obj` and `a.png`.
 fn scene(bytes: &[u8]) {
-    put("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    put(
+        "a.obj",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
+    );
+    put("a.png", &image());
     if let Ok(scene) = Scene::load(&put("s.toml", bytes)) {
         is_sound(&scene);
     }
@@ -87,6 +103,15 @@ fn is_sound(scene: &Scene) {
         let mut corners = mesh.triangles.iter().flatten();
         assert!(corners.all(|i| (*i as usize) < mesh.positions.len()));
         assert_eq!(object.materials.len(), mesh.parts.len());
+        assert!(mesh.uvs.iter().flatten().all(|uv| uv.is_finite()));
+        for (part, material) in mesh.parts.iter().zip(&object.materials) {
+            let Some(tangents) = mesh.tangents(part.triangles.clone()) else {
+                assert_eq!(material.maps.all().iter().flatten().count(), 0);
+                continue;
+            };
+            assert!(tangents.iter().flatten().flatten().all(|x| x.is_finite()));
+        }
+        assert!(mesh.colors.is_empty() || mesh.colors.len() == mesh.positions.len());
     }
 }
 
@@ -114,7 +139,26 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
 "bufferViews":[{{"buffer":0,"byteLength":36}}],
 "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{buffer}"}}]}}"#
     );
-    vec![text.into_bytes()]
+    // The same with places, colours of corners and an image.
+    let mapped = text
+        .replace(r#""POSITION":0"#, r#""POSITION":0,"COLOR_0":0,"TEXCOORD_0":1"#)
+        .replace(
+            r#""metallicFactor":0.1"#,
+            r#""baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[2,1],"rotation":1}}},"metallicRoughnessTexture":{"index":0}"#,
+        )
+        .replace(
+            r#""alphaMode""#,
+            r#""normalTexture":{"index":0,"scale":0.5},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.5}},"alphaMode""#,
+        )
+        .replace(
+            r#"],
+"bufferViews""#,
+            r#",{"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"}],
+"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":"data:image/png;base64,IMAGE"}],
+"bufferViews""#,
+        )
+        .replace("IMAGE", IMAGE);
+    vec![text.into_bytes(), mapped.into_bytes()]
 }
 
 fn scene_seeds() -> Vec<Vec<u8>> {
@@ -130,6 +174,13 @@ fn scene_seeds() -> Vec<Vec<u8>> {
         format!("{camera}{grid}"),
         format!("{camera}[[object]]\nmesh = {{ shape = 'box', size = [1, 2, 3] }}\n"),
         camera.to_owned(),
+        format!(
+            "{camera}[[light]]\ndirection = [0, -1, 0]\n{}",
+            object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]")
+        ),
+        format!(
+            "{camera}[[object]]\nname = 'a'\nvertex_colors = [[0, 0, 0, 0], [1, 1, 1, 1]]\nmesh = {{ shape = 'lathe', triangles = 60, offset = 0.1, profile = [[0, -1], [1, 0], [0, 1]] }}\n[[timeline]]\ntime = 0\n[[timeline]]\ntime = 1\nlabel = 'b'\n[[timeline.object]]\nname = 'a'\nmaterial = {{ alpha = 0.5 }}\n"
+        ),
     ]
     .map(String::into_bytes)
     .to_vec()
@@ -142,6 +193,7 @@ fn obj(bytes: &[u8]) {
         None => (bytes, &b""[..]),
     };
     put("m.mtl", materials);
+    put("a.png", &image());
     if let Ok(loaded) = obj::load_obj(&put("f.obj", mesh), Lighting::Phong) {
         let mesh = &loaded.mesh;
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
@@ -163,11 +215,10 @@ fn obj(bytes: &[u8]) {
 
 fn obj_seeds() -> Vec<Vec<u8>> {
     let mesh = "mtllib m.mtl\no part\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvn 0 0 1\ng side\nusemtl red\ns 1\nf 1/1/1 2/2/1 3//1\nf -4 -2 -1\nf 1 2 3 4\n";
-    let materials =
-        "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\n";
+    let materials = "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\nmap_d -clamp on a.png\nmap_Bump -bm 0.5 a.png\nmap_Ke a.png\n";
     vec![
         format!("{mesh}\0{materials}").into_bytes(),
-        b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end".to_vec(),
+        b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end \xe9".to_vec(),
         mesh.replace('\n', "\r\n").into_bytes(),
     ]
 }
