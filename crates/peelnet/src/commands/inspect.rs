@@ -52,8 +52,16 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     let m = dataset.manifest();
     context.console.result(
         || {
+            let called = m.scenes.iter().filter(|s| !s.effects.is_empty());
+            let census = called.map(|s| format!("  {:<33} {}\n", s.name, s.effects.join(", ")));
+            let census: String = census.collect();
+            let census = if census.is_empty() {
+                census
+            } else {
+                format!("\neffects that the scenes called for\n{census}")
+            };
             format!(
-                "dataset     {}\nwritten by  peelnet {} on {} ({} peeling, {} of the pixels, seed {})\ncommand     {}\n{}",
+                "dataset     {}\nwritten by  peelnet {} on {} ({} peeling, {} of the pixels, seed {})\ncommand     {}\n{}{census}",
                 path.display(),
                 m.tool_version,
                 m.adapter,
@@ -74,6 +82,8 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
             value["adapter"] = json!(m.adapter);
             value["command"] = json!(m.command);
             value["seed"] = json!(m.seed);
+            let effects = m.scenes.iter().map(|s| (s.name.clone(), json!(s.effects)));
+            value["effects"] = effects.collect::<serde_json::Map<_, _>>().into();
             value
         },
     )?;
