@@ -73,6 +73,7 @@ sources! {
     "peel::count" = "peel/count.wgsl",
     "peel::dual" = "peel/dual.wgsl",
     "peel::dual_init" = "peel/dual_init.wgsl",
+    "peel::runs" = "peel/runs.wgsl",
     "peel::scan_blocks" = "peel/scan_blocks.wgsl",
     "peel::scan_pixels" = "peel/scan_pixels.wgsl",
     "peel::scan_top" = "peel/scan_top.wgsl",
