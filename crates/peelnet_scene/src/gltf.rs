@@ -140,7 +140,7 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
 
 /// Every reference from one thing of the file to another must be to one that is there: the parser takes that for granted.
 fn check_references(bytes: &[u8]) -> Result<(), String> {
-    // The first chunk of a GLB file is the JSON; what is no JSON is left for the parser to refuse.
+    // The first chunk of a GLB file is the JSON.
     let text = match bytes.strip_prefix(b"glTF") {
         None => bytes,
         Some(rest) => {
@@ -150,9 +150,9 @@ fn check_references(bytes: &[u8]) -> Result<(), String> {
                 .unwrap_or_default()
         }
     };
-    let Ok(document) = serde_json::from_slice::<Value>(text) else {
-        return Ok(());
-    };
+    // The parser passes over names that it does not know without looking whether they are text.
+    let document = serde_json::from_slice::<Value>(text)
+        .map_err(|e| format!("is no glTF 2.0 file: {e}; export it again"))?;
     // The parser would look for what such an extension leaves out.
     let required = document["extensionsRequired"].as_array();
     let unknown = required.into_iter().flatten().filter_map(Value::as_str);

@@ -334,3 +334,19 @@ fn bad_files() {
         }
     }
 }
+
+/// A name that is no text hides nothing from the check of references: the parser passes over it. Found by fuzzing.
+#[test]
+fn bytes_that_are_no_text_are_refused() {
+    let mut broken = document();
+    broken["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 77.into();
+    broken["materials"][0]["hidden"] = "X".into();
+    let mut bytes = serde_json::to_vec(&broken).unwrap();
+    let at = bytes.windows(6).position(|w| w == b"hidden").unwrap();
+    bytes[at] = 0xa6;
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("thing.gltf");
+    std::fs::write(&path, bytes).unwrap();
+    let e = Scene::load(&path).unwrap_err().to_string();
+    assert!(e.contains("thing.gltf: is no glTF 2.0 file"), "{e}");
+}
