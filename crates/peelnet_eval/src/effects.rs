@@ -28,6 +28,12 @@ pub struct Cost {
     pub ms_without: f64,
     /// The former over the latter.
     pub ratio: f64,
+    /// Passes of the method.
+    #[serde(default)]
+    pub passes_with: u32,
+    /// The same without.
+    #[serde(default)]
+    pub passes_without: u32,
     /// Bytes a pixel of the method.
     pub bytes_with: f64,
     /// The same without.
@@ -119,15 +125,16 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
         Renderer::new(gpu, &plain).map_err(failed())?,
     ];
     let mut frames = Vec::new();
-    let mut bytes = [0.0; 2];
-    for (renderer, bytes) in renderers.iter().zip(&mut bytes) {
+    let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
+    for (k, renderer) in renderers.iter().enumerate() {
         let mut prepared = renderer
             .prepare(&settings.method, settings.size, None)
             .map_err(failed())?;
         let drawn = renderer
             .draw(&mut prepared, &scene.views[0])
             .map_err(failed())?;
-        *bytes = drawn.stats.bytes_per_pixel;
+        bytes[k] = drawn.stats.bytes_per_pixel;
+        passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
         frames.push(prepared);
     }
     let [a, b] = &mut frames[..] else {
@@ -145,6 +152,8 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
         ms_with,
         ms_without,
         ratio: ms_with / ms_without,
+        passes_with: passes[0],
+        passes_without: passes[1],
         bytes_with: bytes[0],
         bytes_without: bytes[1],
     })
@@ -542,6 +551,8 @@ mod tests {
                 ms_with: 3.0,
                 ms_without: 2.0,
                 ratio: 1.5,
+                passes_with: 2,
+                passes_without: 2,
                 bytes_with: 10.0,
                 bytes_without: 8.0,
             }],

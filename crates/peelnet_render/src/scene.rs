@@ -782,6 +782,36 @@ impl SceneBuffers {
     }
 }
 
+/// Bytes of shader text that a scene's surfaces link, without tests of visibility: the opaque pass and one that gathers premultiplied
+/// colour (`blended`), a text for each variant.
+///
+/// # Errors
+/// A shader that does not link.
+pub fn shader_bytes(scene: &Scene) -> Result<usize, RenderError> {
+    let setting = Setting::of(scene);
+    let mut texts: Vec<String> = Vec::new();
+    for object in &scene.objects {
+        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+            if part.triangles.is_empty() {
+                continue;
+            }
+            let features = Variant::of(material, object, setting).features();
+            let pass = if material.is_opaque() {
+                "scene::opaque"
+            } else {
+                "methods::blended::gather"
+            };
+            for (shader, features) in [("scene::vertex", &features), (pass, &features)] {
+                let text = peelnet_shaders::link(shader, features, &[])?;
+                if !texts.contains(&text) {
+                    texts.push(text);
+                }
+            }
+        }
+    }
+    Ok(texts.iter().map(String::len).sum())
+}
+
 /// The transparent surfaces in an order that depends on the view.
 #[derive(Debug)]
 pub struct Sorted {

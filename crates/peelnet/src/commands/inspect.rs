@@ -8,11 +8,11 @@ use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Summary};
 use peelnet_eval::effects::{self, Cost, Settings};
 use peelnet_model::Model;
-use peelnet_render::{FrameStats, MethodSpec, Renderer};
-use peelnet_scene::{Census, Scene};
+use peelnet_render::{FrameStats, MethodSpec, Renderer, scene::shader_bytes};
+use peelnet_scene::{Census, Effect, Scene};
 use serde_json::json;
-use std::fmt::Write as _;
 use std::path::Path;
+use std::{collections::HashMap, fmt::Write as _};
 
 /// Frame in which a scene's fragments are counted: view 0 at the size that `extract` and `render` use by default.
 const COUNTED_AT: [u32; 2] = [1024, 768];
@@ -129,6 +129,13 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             None
         }
     };
+    // Shader text of all surfaces, and how much of it each effect brings.
+    let shader = shader_bytes(&scene)?;
+    let brought = Effect::ALL.map(|effect| {
+        let without = shader_bytes(&scene.without(effect)).unwrap_or(shader);
+        (effect.name(), shader as i64 - without as i64)
+    });
+    let brought: HashMap<&str, i64> = brought.into_iter().collect();
     let costs = if time {
         let settings = Settings {
             method: METHOD.parse()?,
@@ -146,6 +153,7 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
                 &census,
                 [all, transparent],
                 counted.as_ref(),
+                (shader, &brought),
                 &costs,
             )
         },
@@ -153,6 +161,8 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             json!({
                 "kind": "scene",
                 "effects": census.effects,
+                "shader_bytes": shader,
+                "shader_bytes_brought": brought,
                 "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
                 "costs": costs,
                 "path": path,
@@ -191,6 +201,7 @@ fn scene_text(
     census: &Census,
     [all, transparent]: [u64; 2],
     counted: Option<&FrameStats>,
+    (shader, brought): (usize, &HashMap<&str, i64>),
     costs: &[Cost],
 ) -> String {
     let mut t = format!("scene       {}\n", scene.name);
@@ -222,32 +233,51 @@ fn scene_text(
     }
     let _ = writeln!(
         t,
-        "pipelines   at most {} in a pass over the surfaces",
-        census.variants.len()
+        "pipelines   at most {} in a pass over the surfaces, linked from {} bytes of shader text (blended)",
+        census.variants.len(),
+        thousands(shader as u64)
     );
     t.push_str("\neffect                  on   called for by\n");
     for effect in &census.effects {
         let on = if effect.on { "yes" } else { "–" };
         let _ = writeln!(t, "{:<23} {on:<4} {}", effect.name, few(&effect.why));
         if effect.on {
-            let _ = writeln!(t, "{:<28} adds {}", "", effect.adds);
+            let bytes = brought.get(effect.name).filter(|bytes| **bytes != 0);
+            let bytes = bytes.map_or_else(String::new, |bytes| {
+                format!("; {bytes:+} bytes of shader text")
+            });
+            let _ = writeln!(t, "{:<28} adds {}{bytes}", "", effect.adds);
         }
     }
     if !costs.is_empty() {
         let [width, height] = TIMED_AT;
         let _ = writeln!(
             t,
-            "\neffect                  with ms  without ms  ratio   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
+            "\neffect                  with ms  without ms  ratio  passes  bytes a pixel   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
         );
         for c in costs {
             let _ = writeln!(
                 t,
-                "{:<23} {:>7.2} {:>11.2} {:>6.2}",
-                c.effect, c.ms_with, c.ms_without, c.ratio
+                "{:<23} {:>7.2} {:>11.2} {:>6.2} {:>7} {:>14}",
+                c.effect,
+                c.ms_with,
+                c.ms_without,
+                c.ratio,
+                beside(f64::from(c.passes_with), f64::from(c.passes_without)),
+                beside(c.bytes_with, c.bytes_without),
             );
         }
     }
     t
+}
+
+/// A figure with an effect, and that without where it differs.
+fn beside(with: f64, without: f64) -> String {
+    if with == without {
+        format!("{with:.0}")
+    } else {
+        format!("{with:.0} ({without:.0})")
+    }
 }
 
 /// The first names, and how many more there are.
