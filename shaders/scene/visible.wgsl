@@ -1,12 +1,13 @@
 // Whether a transparent fragment counts at all.
 import package::scene::camera::camera;
+@if(cutout) import package::scene::shade::is_hole;
 @if(mapped) import package::scene::maps::remember_footprint;
 import package::helpers::hash::pixel_hash;
 import package::scene::surface::Surface;
 
 @if(opaque) @group(0) @binding(3) var opaque_depth: texture_depth_2d;
 
-// False behind opaque geometry, and outside of the pixel sample where one is taken.
+// False in holes, behind opaque geometry, and outside of the pixel sample where one is taken.
 //
 // The opaque depth is compared here and not by the fixed-function test, because storage writes of a fragment
 // shader happen before that test.
@@ -20,6 +21,11 @@ fn visible(surface: Surface) -> bool {
     }
     @if(opaque) {
         if surface.position.z >= textureLoad(opaque_depth, pixel, 0) {
+            return false;
+        }
+    }
+    @if(cutout) {
+        if is_hole(surface) {
             return false;
         }
     }

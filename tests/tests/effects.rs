@@ -58,7 +58,7 @@ fn scene_with(effect: Option<Effect>) -> Scene {
         Some(Effect::Culling) => material.double_sided = false,
         Some(Effect::Lighting) => material.lighting = Lighting::Phong,
         Some(Effect::Pbr) => material.lighting = Lighting::Pbr,
-        Some(Effect::Cutout) => material.alpha_cutoff = Some(0.3),
+        Some(Effect::Cutout) => (material.alpha_cutoff, material.blend) = (Some(0.3), false),
         Some(Effect::Emission) => material.emission = [0.2, 0.0, 0.1],
         Some(Effect::LowResolution) => all.transparency_scale = 0.5,
         Some(Effect::Transmission) => material.transmission = [0.5; 3],
@@ -593,6 +593,23 @@ fn a_layer_is_highlighted() {
             );
         }
     }
+    // Through a hole in a layer the next one is seen.
+    let mut holed = of(&[0, 1]);
+    let front = &mut holed.objects[0].materials[0];
+    front.maps.color = even([255, 255, 255, 90]);
+    (front.alpha_cutoff, front.blend) = (Some(0.5), false);
+    let holed = holed.layer_view(1, false).unwrap();
+    let renderer = Renderer::new(&gpu, &holed).unwrap();
+    let view = LayerView {
+        highlight: 1,
+        increasing: false,
+    };
+    let mut prepared = renderer.prepare_layers(view, [4, 3]).unwrap();
+    let image = renderer.draw(&mut prepared, &holed.views[0]).unwrap().image;
+    let found = image.pixels[5];
+    for k in 0..3 {
+        assert!((found[k] - colors[1][k]).abs() < 1e-6, "{found:?}");
+    }
     let e = of(&[0, 1]).layer_view(7, false).unwrap_err().to_string();
     assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
 }
@@ -647,6 +664,7 @@ fn cut_outs_are_holes_or_opaque() {
     for (alpha, whole) in [(0.29, false), (0.31, true), (1.0, true)] {
         let material = Material {
             alpha_cutoff: Some(0.3),
+            blend: false,
             ..Material::unlit([0.9, 0.5, 0.1], alpha)
         };
         let behind = wall(5.0, Material::unlit([0.0, 0.0, 1.0], 0.5));

@@ -216,7 +216,7 @@ fn fragments_carry_what_surfaces_look_like() {
     };
     // In front: its left half is a hole, its right half hides everything.
     let mut fence = Material::unlit([0.5; 3], 1.0);
-    fence.alpha_cutoff = Some(0.5);
+    (fence.alpha_cutoff, fence.blend) = (Some(0.5), false);
     fence.maps.color = halves([255, 255, 255, 0], [255; 4]);
     fence.maps.nearest = true;
     // Behind: opacity from an image, and from its corners.

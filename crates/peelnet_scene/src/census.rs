@@ -509,7 +509,7 @@ mod tests {
                 Effect::Lighting => material.lighting = Lighting::Phong,
                 Effect::Pbr => material.lighting = Lighting::Pbr,
                 Effect::Cutout => {
-                    material.alpha_cutoff = Some(0.4);
+                    (material.alpha_cutoff, material.blend) = (Some(0.4), false);
                     // A surface with holes is drawn with the opaque ones.
                     with.push("opaque");
                 }

@@ -38,11 +38,11 @@ pub struct Material {
     pub transmission: [f32; 3],
     /// Images on it.
     pub maps: Maps,
-    /// Cut-out: an opacity below this is a hole, one above it is opaque.
+    /// Cut-out: an opacity below this is a hole; one above it is opaque, unless it blends.
     pub alpha_cutoff: Option<f32>,
     /// Whether back faces are drawn.
     pub double_sided: bool,
-    /// Whether an opacity of 1 still takes the transparent path.
+    /// Whether it takes the transparent path even where its opacity is 1 or it has holes.
     pub blend: bool,
 }
 
@@ -115,7 +115,8 @@ impl Material {
 
     /// Whether it is drawn by the opaque pass.
     pub fn is_opaque(&self) -> bool {
-        self.alpha_cutoff.is_some() || (self.alpha >= 1.0 && !self.blend && !self.is_transmissive())
+        let whole = self.alpha_cutoff.is_some() || self.alpha >= 1.0;
+        whole && !self.blend && !self.is_transmissive()
     }
 
     /// Whether light passes through what its opacity covers.

@@ -186,7 +186,7 @@ impl Scene {
                 return Err(value("layer", message));
             };
             for material in &mut object.materials {
-                (material.blend, material.alpha_cutoff) = (true, None);
+                material.blend = true;
                 if layer != highlight && !shade_all {
                     material.lighting = Lighting::Unlit;
                     material.emission = [0.0; 3];
