@@ -7,6 +7,8 @@ use crate::{
 };
 use glam::{Mat2, Mat3, Mat4, Vec2, Vec3};
 use gltf::{
+    Semantic,
+    accessor::{DataType, Dimensions},
     camera::Projection,
     khr_lights_punctual::Kind,
     material::AlphaMode,
@@ -289,6 +291,56 @@ impl Placing {
     }
 }
 
+/// Whether an accessor holds what the parser reads of it for a meaning, or as indices: the parser takes it for granted.
+fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Semantic>) -> bool {
+    use DataType as T;
+    use Dimensions as D;
+    /// Beyond this, sums of offsets and lengths are no places in a file.
+    const FARTHEST_BYTE: usize = 1 << 40;
+    let kind = (accessor.dimensions(), accessor.data_type());
+    let fits = match semantic {
+        None => matches!(kind, (D::Scalar, T::U8 | T::U16 | T::U32)),
+        Some(Semantic::Positions | Semantic::Normals) => kind == (D::Vec3, T::F32),
+        Some(Semantic::TexCoords(_)) => matches!(kind, (D::Vec2, T::F32 | T::U8 | T::U16)),
+        Some(Semantic::Colors(0)) => {
+            matches!(kind, (D::Vec3 | D::Vec4, T::F32 | T::U8 | T::U16))
+        }
+        // Nobody reads it.
+        Some(_) => return true,
+    };
+    let view = |view: gltf::buffer::View<'_>, offset: usize, size: usize| {
+        let strided = view.stride().is_none_or(|stride| stride >= size);
+        strided
+            && [view.offset(), view.length(), offset]
+                .iter()
+                .all(|n| *n < FARTHEST_BYTE)
+    };
+    let size = accessor.size();
+    let sound = accessor
+        .view()
+        .is_none_or(|v| view(v, accessor.offset(), size));
+    let sparse = accessor.sparse().is_none_or(|sparse| {
+        let (indices, values) = (sparse.indices(), sparse.values());
+        (1..=accessor.count()).contains(&sparse.count())
+            && view(
+                indices.view(),
+                indices.offset(),
+                indices.index_type().size(),
+            )
+            && view(values.view(), values.offset(), size)
+    });
+    fits && sound && sparse && (1..=3 * MAX_TRIANGLES).contains(&accessor.count())
+}
+
+/// A value within its bounds; what is not finite is the lower one.
+fn finite(x: f32, low: f32, high: f32) -> f32 {
+    if x.is_finite() {
+        x.clamp(low, high)
+    } else {
+        low
+    }
+}
+
 struct Reader<'a> {
     path: &'a Path,
     folder: &'a Path,
@@ -389,6 +441,17 @@ impl Reader<'_> {
                 return Ok(());
             }
         };
+        let attributes = primitive.attributes();
+        let named = attributes.map(|(semantic, accessor)| (Some(semantic), accessor));
+        for (semantic, accessor) in named.chain(primitive.indices().map(|a| (None, a))) {
+            if !is_readable(&accessor, semantic.as_ref()) {
+                let what = semantic.map_or_else(|| "indices".into(), |s| s.to_string());
+                return Err(self.fail(format!(
+                    "{place}: accessor {} does not hold what {what} are made of; export it again",
+                    accessor.index()
+                )));
+            }
+        }
         let reader = primitive.reader(|b| self.buffers.get(b.index()).map(|d| d.0.as_slice()));
         let positions: Vec<Vec3> = reader
             .read_positions()
@@ -561,8 +624,8 @@ impl Reader<'_> {
         found
     }
 
-    /// A material, and where its maps lie.
-    fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placing) {
+    /// A material's maps, and where they lie.
+    fn maps(&mut self, m: &gltf::Material<'_>) -> (Maps, Placing) {
         let pbr = m.pbr_metallic_roughness();
         let infos = [
             pbr.base_color_texture(),
@@ -609,9 +672,8 @@ impl Reader<'_> {
             self.missing
                 .insert("samplers of its own for a map (the first map's is taken)".into());
         }
-        let alpha_mode = m.alpha_mode();
         // Of the first, the base colour.
-        let mut opaque = alpha_mode == AlphaMode::Opaque;
+        let mut opaque = m.alpha_mode() == AlphaMode::Opaque;
         let images = textures.map(|texture| {
             let opaque = std::mem::take(&mut opaque);
             let (texture, own) = texture?;
@@ -637,13 +699,6 @@ impl Reader<'_> {
             WrappingMode::MirroredRepeat => Wrap::Mirror,
             WrappingMode::ClampToEdge => Wrap::Clamp,
         };
-        let finite = |x: f32, low: f32, high: f32| {
-            if x.is_finite() {
-                x.clamp(low, high)
-            } else {
-                low
-            }
-        };
         let [
             color,
             normal_map,
@@ -662,6 +717,13 @@ impl Reader<'_> {
             wrap: [wrap(wrap_s), wrap(wrap_t)],
             nearest: filter == Some(MagFilter::Nearest),
         };
+        (maps, placing)
+    }
+
+    /// A material, and where its maps lie.
+    fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placing) {
+        let (maps, placing) = self.maps(m);
+        let pbr = m.pbr_metallic_roughness();
         let [r, g, b, a] = pbr.base_color_factor();
         let base = [r, g, b].map(|c| finite(c, 0.0, 1.0));
         let lighting = if m.unlit() {
@@ -678,7 +740,7 @@ impl Reader<'_> {
             }
             finite(t.transmission_factor(), 0.0, 1.0)
         });
-        let (alpha, blend, alpha_cutoff) = match alpha_mode {
+        let (alpha, blend, alpha_cutoff) = match m.alpha_mode() {
             AlphaMode::Opaque => (1.0, false, None),
             AlphaMode::Mask => (a, false, Some(m.alpha_cutoff().unwrap_or(0.5))),
             AlphaMode::Blend => (a, true, None),

@@ -1,6 +1,7 @@
 //! Images on surfaces: read from PNG and JPEG files, or made by code ([`crate::pattern`]).
 
 use crate::SceneError;
+use serde::Deserialize;
 use std::{path::Path, sync::Arc};
 
 /// An image of 8 bits a channel.
@@ -24,7 +25,8 @@ impl std::fmt::Debug for Texture {
 }
 
 /// What lies beyond an image's edge.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Wrap {
     /// The image again.
     #[default]

@@ -350,3 +350,24 @@ fn bytes_that_are_no_text_are_refused() {
     let e = Scene::load(&path).unwrap_err().to_string();
     assert!(e.contains("thing.gltf: is no glTF 2.0 file"), "{e}");
 }
+
+/// Accessors of another kind than what they are named for, of nothing, and beyond any file: the parser takes them for granted. Found by
+/// fuzzing.
+#[test]
+fn accessors_hold_what_they_are_named_for() {
+    for (accessor, key, value) in [
+        (0, "type", json!("VEC2")),
+        (0, "componentType", json!(5123)),
+        (0, "count", json!(0)),
+        (0, "byteOffset", json!(1u64 << 50)),
+        (1, "type", json!("VEC3")),
+        (1, "componentType", json!(5126)),
+    ] {
+        let mut d = document();
+        d["accessors"][accessor][key] = value.clone();
+        let e = load(&glb(&d, &square())).unwrap_err();
+        let named =
+            e.contains(&format!("accessor {accessor}")) || e.contains("is no glTF 2.0 file");
+        assert!(named, "{key} {value}: {e}");
+    }
+}

@@ -29,7 +29,7 @@ pub(super) struct RawMaterial {
     emissive_map: Option<MapRef>,
     normal_scale: Option<f32>,
     occlusion_strength: Option<f32>,
-    wrap: Option<RawWrap>,
+    wrap: Option<Wrap>,
     alpha_mode: Option<AlphaMode>,
     alpha_cutoff: Option<f32>,
     double_sided: Option<bool>,
@@ -77,15 +77,6 @@ impl RawMaterial {
             blend
         )
     }
-}
-
-/// Beyond the edges of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum RawWrap {
-    Repeat,
-    Mirror,
-    Clamp,
 }
 
 /// An image in a scene file: a path, or a table with `pattern = …`.
@@ -187,11 +178,6 @@ impl Loader<'_> {
         if let Some(x) = strength {
             return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
         }
-        let wrap = raw.wrap.map(|wrap| match wrap {
-            RawWrap::Repeat => Wrap::Repeat,
-            RawWrap::Mirror => Wrap::Mirror,
-            RawWrap::Clamp => Wrap::Clamp,
-        });
         let mut map = |map: &Option<MapRef>, of_pattern, key: &str, base: &Option<Arc<Texture>>| {
             let own = self.map(map.as_ref().filter(|_| read), of_pattern, &at(key))?;
             Ok::<_, SceneError>(own.or_else(|| base.clone()))
@@ -225,7 +211,7 @@ impl Loader<'_> {
             )?,
             normal_scale: raw.normal_scale.unwrap_or(base.normal_scale),
             occlusion_strength: raw.occlusion_strength.unwrap_or(base.occlusion_strength),
-            wrap: wrap.map_or(base.wrap, |wrap| [wrap; 2]),
+            wrap: raw.wrap.map_or(base.wrap, |wrap| [wrap; 2]),
             nearest: base.nearest,
         })
     }
