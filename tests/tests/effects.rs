@@ -435,6 +435,33 @@ fn images_lie_where_their_places_say() {
     }
 }
 
+/// A pass that reads opacity alone draws two materials alike whose other images differ, each with its own bindings.
+#[test]
+fn passes_without_colour_take_any_images() {
+    let gpu = gpu();
+    let mut first = Material::unlit([0.9, 0.5, 0.2], 0.5);
+    first.lighting = Lighting::Phong;
+    first.maps.color = even([255, 255, 255, 204]);
+    let mut second = first.clone();
+    second.maps.normal = even([128, 128, 255, 255]);
+    let mut both = scene(
+        "both",
+        [0.2; 3],
+        vec![wall(3.0, first.clone()), wall(5.0, second)],
+    );
+    both.lights.push(light(Vec3::new(0.5, 0.5, 1.0), [1.0; 3]));
+    let mut alike = both.clone();
+    alike.objects[1] = wall(5.0, first);
+    for spec in MethodSpec::all() {
+        let [a, b] = [&both, &alike].map(|s| draw(&gpu, s, &spec.to_string(), [8, 6]));
+        for (a, b) in a.pixels.iter().zip(&b.pixels) {
+            for k in 0..4 {
+                assert!((a[k] - b[k]).abs() <= 1.0 / 255.0, "{spec}: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
 /// A board much finer than pixels shows the mean of its light, and not one square or the other.
 #[test]
 fn fine_images_show_their_mean() {

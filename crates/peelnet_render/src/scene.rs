@@ -76,6 +76,16 @@ fn linked<'a>(
     Ok((features, text))
 }
 
+/// What tells the pipelines of one pass apart.
+#[derive(PartialEq)]
+struct PipelineKey {
+    culled: bool,
+    /// Images of the bind group, read or not; `None` where none is bound.
+    bound: Option<[bool; 5]>,
+    /// The linked text, which also says what the vertex shader hands on.
+    fragment: String,
+}
+
 /// Layout of `Material` in `scene/shade.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -584,31 +594,32 @@ impl SceneBuffers {
             }
         }
         let opaque = surfaces == Surfaces::Transparent && self.has_opaque();
-        let mut built: Vec<(Vec<&str>, bool, wgpu::RenderPipeline)> = Vec::new();
+        let mut built: Vec<(PipelineKey, wgpu::RenderPipeline)> = Vec::new();
         let mut of_variants = Vec::with_capacity(variants.len());
         for (variant, maps) in variants {
             let mut features = pass.features.to_vec();
             features.extend(variant.features());
             features.extend(opaque.then_some("opaque"));
             let (features, fragment) = linked(pass, features)?;
+            let maps = maps.filter(|_| features.contains(&"mapped"));
             // Passes that need no colour draw many variants alike.
-            let alike = |(f, culled, _): &&(Vec<&str>, bool, _)| {
-                *f == features && *culled == variant.culled
+            let key = PipelineKey {
+                culled: variant.culled,
+                bound: maps.map(|_| variant.maps),
+                fragment,
             };
-            if let Some((_, _, pipeline)) = built.iter().find(alike) {
+            if let Some((_, pipeline)) = built.iter().find(|(k, _)| *k == key) {
                 of_variants.push((variant, pipeline.clone()));
                 continue;
             }
-            let maps = maps.filter(|_| features.contains(&"mapped"));
             let maps = maps.map(|number| &self.maps.bound(number).layout);
             let mut layouts = vec![Some(&group.layout), pass.group, maps];
             while layouts.last().is_some_and(Option::is_none) {
                 layouts.pop();
             }
             let layout = gpu.layout(&layouts);
-            let pipeline =
-                self.pipeline(gpu, &layout, pass, &features, &fragment, variant.culled)?;
-            built.push((features, variant.culled, pipeline.clone()));
+            let pipeline = self.pipeline(gpu, &layout, pass, &features, &key)?;
+            built.push((key, pipeline.clone()));
             of_variants.push((variant, pipeline));
         }
         Ok(GeometryPipelines(of_variants))
@@ -620,8 +631,7 @@ impl SceneBuffers {
         layout: &wgpu::PipelineLayout,
         pass: &GeometryPass<'_>,
         features: &[&str],
-        fragment: &str,
-        culled: bool,
+        key: &PipelineKey,
     ) -> Result<wgpu::RenderPipeline, RenderError> {
         let carried = ["numbered", "lit", "mapped", "normal_map", "vertex_colors"];
         let mut of_vertex = features.to_vec();
@@ -630,7 +640,7 @@ impl SceneBuffers {
             "scene::vertex",
             &peelnet_shaders::link("scene::vertex", &of_vertex, &[])?,
         );
-        let fragment = gpu.shader(pass.shader, fragment);
+        let fragment = gpu.shader(pass.shader, &key.fragment);
         let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
         let extra = ATTRIBUTES.map(|(format, _)| format).into_iter().zip(2..);
         let extra: Vec<[wgpu::VertexAttribute; 1]> = extra
@@ -674,7 +684,7 @@ impl SceneBuffers {
                 buffers: &buffers,
             },
             primitive: wgpu::PrimitiveState {
-                cull_mode: culled.then_some(wgpu::Face::Back),
+                cull_mode: key.culled.then_some(wgpu::Face::Back),
                 ..Default::default()
             },
             depth_stencil: pass.depth.clone(),
