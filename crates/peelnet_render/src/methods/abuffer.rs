@@ -3,7 +3,7 @@
 use super::{Build, Compositor, DrawContext, FrameStats};
 use crate::{
     RenderError,
-    passes::sbuffer::{BYTES_PER_FRAGMENT, FragmentStorage, SBuffer},
+    passes::sbuffer::{FragmentStorage, SBuffer, bytes_per_fragment},
     scene::{FrameTargets, SceneBuffers},
 };
 use peelnet_gpu::{
@@ -92,7 +92,7 @@ impl Compositor for ABuffer {
             cx.recorder.submit();
         }
         let pixels = f64::from(cx.frame.pixels());
-        let bytes = BYTES_PER_FRAGMENT + if self.tinted { 16 } else { 0 };
+        let bytes = bytes_per_fragment(self.tinted);
         let stored = if tiles.len() > 1 {
             FragmentStorage::limit(gpu, None, self.tinted).min(found.total)
         } else {

@@ -7,7 +7,7 @@ use crate::{
     RenderError,
     passes::{
         count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
-        sbuffer::{BYTES_PER_FRAGMENT, FragmentStorage},
+        sbuffer::{FragmentStorage, bytes_per_fragment},
     },
     scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
 };
@@ -19,9 +19,6 @@ use peelnet_gpu::{
 
 /// Nodes that the first frame gets for each pixel.
 const FIRST_GUESS: u64 = 4;
-
-/// Bytes of a node: the fragment and a link.
-const BYTES_PER_NODE: u64 = BYTES_PER_FRAGMENT + 4;
 
 #[derive(Debug)]
 struct LinkedList {
@@ -161,7 +158,8 @@ impl Compositor for LinkedList {
             pass.dispatch_workgroups(x, y, 1);
         }
         let pixels = f64::from(cx.frame.pixels());
-        let node = BYTES_PER_NODE + if cx.scene.tinted { 16 } else { 0 };
+        // The fragment and a link.
+        let node = bytes_per_fragment(cx.scene.tinted) + 4;
         Ok(FrameStats {
             fragments: Some(total),
             tiles: 1,

@@ -16,8 +16,10 @@ use peelnet_gpu::{
     wgpu,
 };
 
-/// Bytes of one fragment in storage: depth, triangle, colour with alpha.
-pub const BYTES_PER_FRAGMENT: u64 = 4 + 4 + 16;
+/// Bytes of one fragment in storage: depth, triangle, and its colours.
+pub const fn bytes_per_fragment(tinted: bool) -> u64 {
+    4 + 4 + color_bytes(tinted)
+}
 
 /// Bytes of a fragment's colours: with alpha, or with what it covers of each channel.
 const fn color_bytes(tinted: bool) -> u64 {
