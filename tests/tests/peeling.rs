@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use glam::Vec3;
-use peelnet_core::{hash, scanline, tolerance::UNIT_ROUNDOFF};
+use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::scene::PixelSample;
@@ -21,12 +21,9 @@ const SNAP: f64 = 1.0 / 16.0;
 const DEPTH_TOLERANCE: f64 = 2e-3;
 
 /// Random triangles, three to an object: a closed form is not needed where a judge is.
-fn soup(objects: usize, seed: u32) -> Scene {
-    let mut state = seed;
-    let mut random = move || {
-        state = hash::pcg(state.wrapping_add(0x9e37_79b9));
-        state as f32 / u32::MAX as f32
-    };
+fn soup(objects: usize, seed: u64) -> Scene {
+    let mut stream = Random::new(seed, &[]);
+    let mut random = move || stream.unit();
     let objects: Vec<Object> = (0..objects)
         .map(|i| {
             let corners: Vec<[Vec3; 3]> = (0..3)

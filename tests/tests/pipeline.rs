@@ -4,9 +4,9 @@
 
 use peelnet_core::{
     fragment::{Fragment, worked_example},
-    hash::pcg,
     methods::deep,
     mlp::{Activation, Layer, Mlp},
+    random::Random,
 };
 use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
 use peelnet_gpu::Gpu;
@@ -44,11 +44,8 @@ fn scenes() -> Vec<Scene> {
         .into_iter()
         .zip(1..)
         .map(|(name, seed)| {
-            let mut state = seed;
-            let mut random = move || {
-                state = pcg(state);
-                state as f32 / u32::MAX as f32
-            };
+            let mut stream = Random::new(seed, &[]);
+            let mut random = move || stream.unit();
             let objects = (0..12)
                 .map(|i| {
                     let corners = [(); 3].map(|()| {
@@ -254,11 +251,8 @@ fn requests_that_make_no_sense_are_refused() {
 
 /// A small network with a known shape, random weights and the thesis's inputs.
 fn model() -> Model {
-    let mut state = 11;
-    let mut random = move || {
-        state = pcg(state);
-        (state as f32 / u32::MAX as f32 - 0.5) * 0.6
-    };
+    let mut stream = Random::new(11, &[]);
+    let mut random = move || stream.between(-0.3, 0.3);
     let layers = [(3, 10), (10, 8), (8, 1)]
         .into_iter()
         .map(|(inputs, outputs)| Layer {

@@ -1,47 +1,71 @@
-//! Random numbers that never change: scenes, datasets and weights made from a seed must be the same with every version of
-//! every library.
+//! Random numbers from a seed: the one generator behind scenes, datasets, initial weights and tests.
+//!
+//! The numbers are part of what a seed means: a scene, dataset or model made from a seed must be the same on every platform and
+//! with every version of every dependency. ChaCha with 8 rounds is fully specified, and `rand_chacha` implements it portably. The
+//! distributions of `rand` (floats, ranges, shuffles) may change their values between releases, so the few that are needed here
+//! are derived from the generator's raw 32-bit and 64-bit outputs.
 
-/// SplitMix64 (Steele, Lea & Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
+use rand_chacha::{
+    ChaCha8Rng,
+    rand_core::{Rng, SeedableRng},
+};
+
+/// A stream of random numbers.
+///
+/// ```
+/// use peelnet_core::random::Random;
+///
+/// let mut random = Random::new(7, &[1]);
+/// assert!((0.0..1.0).contains(&random.unit()));
+/// assert_eq!(Random::new(7, &[2]).word(), Random::new(7, &[2]).word());
+/// ```
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Random(ChaCha8Rng);
 
 impl Random {
-    /// A stream for a seed and any number of words that tell streams apart.
+    /// The stream of a seed and any number of words that distinguish its streams.
     pub fn new(seed: u64, words: &[u64]) -> Self {
-        let mut random = Self(seed);
-        for &word in words {
-            random.0 = random.word() ^ word;
+        let mut key = [0; 32];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        let mut random = Self(ChaCha8Rng::from_seed(key));
+        for word in words {
+            // Each word and 192 bits of the stream so far are the key of the next stream.
+            key[..8].copy_from_slice(&word.to_le_bytes());
+            random.0.fill_bytes(&mut key[8..]);
+            random.0 = ChaCha8Rng::from_seed(key);
         }
         random
     }
 
     /// 64 random bits.
     pub fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
-    /// Evenly from 0 (inclusive) to 1 (exclusive), 24 bits.
+    /// 32 random bits.
+    pub fn bits(&mut self) -> u32 {
+        self.0.next_u32()
+    }
+
+    /// Uniform from 0 (inclusive) to 1 (exclusive), in steps of 2⁻²⁴.
     pub fn unit(&mut self) -> f32 {
-        (self.word() >> 40) as f32 / (1u32 << 24) as f32
+        (self.bits() >> 8) as f32 / (1u32 << 24) as f32
     }
 
-    /// Evenly from `low` to `high`.
+    /// Uniform from `low` to `high`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + self.unit() * (high - low)
     }
 
-    /// Evenly on a logarithmic scale from `low` to `high`, both positive.
+    /// Uniform on a logarithmic scale from `low` to `high`, both positive.
     pub fn log_between(&mut self, low: f32, high: f32) -> f32 {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    /// A whole number below `n`, for small `n`.
+    /// A whole number below `n`; 0 if `n` is 0.
     pub fn below(&mut self, n: usize) -> usize {
-        ((self.unit() * n as f32) as usize).min(n.saturating_sub(1))
+        // By multiplication: the bias is below `n / 2⁶⁴`.
+        ((u128::from(self.word()) * n as u128) >> 64) as usize
     }
 
     /// A colour.
@@ -52,10 +76,9 @@ impl Random {
     /// `0..n` in random order (Fisher and Yates).
     pub fn permutation(&mut self, n: u32) -> Vec<u32> {
         let mut order: Vec<u32> = (0..n).collect();
-        for i in (1..n).rev() {
-            // By multiplication: the bias is below `i / 2⁶⁴`.
-            let j = (u128::from(self.word()) * u128::from(i + 1)) >> 64;
-            order.swap(i as usize, j as usize);
+        for i in (1..n as usize).rev() {
+            let j = self.below(i + 1);
+            order.swap(i, j);
         }
         order
     }
@@ -65,12 +88,42 @@ impl Random {
 mod tests {
     use super::*;
 
-    /// The published first outputs of SplitMix64 with seed 0.
+    /// ChaCha8 with an all-zero key and nonce: the first words of the published test vector (draft-strombergson-chacha-test-vectors,
+    /// TC1, 256-bit key, 8 rounds).
     #[test]
-    fn it_is_splitmix64() {
-        let mut r = Random(0);
-        assert_eq!(r.word(), 0xe220_a839_7b1d_cdaf);
-        assert_eq!(r.word(), 0x6e78_9e6a_a1b9_65f4);
+    fn it_is_chacha8() {
+        let mut random = Random::new(0, &[]);
+        assert_eq!(random.bits(), u32::from_le_bytes([0x3e, 0x00, 0xef, 0x2f]));
+        assert_eq!(random.bits(), u32::from_le_bytes([0x89, 0x5f, 0x40, 0xd6]));
+    }
+
+    #[test]
+    fn streams_differ_by_seed_words_and_their_order() {
+        let first = |seed, words: &[u64]| Random::new(seed, words).word();
+        let all = [
+            first(1, &[]),
+            first(2, &[]),
+            first(1, &[1]),
+            first(1, &[0]),
+            first(1, &[1, 2]),
+            first(1, &[2, 1]),
+            first(0, &[1]),
+        ];
+        for (i, a) in all.iter().enumerate() {
+            assert!(!all[..i].contains(a), "stream {i}");
+        }
+    }
+
+    /// Every value below n is drawn, none else: 1000 draws miss one of 7 values with probability 7·(6/7)¹⁰⁰⁰ ≈ 10⁻⁶⁶.
+    #[test]
+    fn values_below_a_number() {
+        let mut random = Random::new(3, &[]);
+        let mut seen = [false; 7];
+        for _ in 0..1000 {
+            seen[random.below(7)] = true;
+        }
+        assert_eq!(seen, [true; 7]);
+        assert_eq!((random.below(1), random.below(0)), (0, 0));
     }
 
     #[test]

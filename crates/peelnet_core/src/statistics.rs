@@ -419,11 +419,8 @@ mod tests {
     /// pixel's range multiplies by up to its inverse (here 10, as the range is at least a tenth of the frame's).
     #[test]
     fn both_precisions_agree() {
-        let mut state = 9u32;
-        let mut random = move || {
-            state = crate::hash::pcg(state);
-            f64::from(state >> 8) / f64::from(1 << 24)
-        };
+        let mut stream = crate::random::Random::new(9, &[]);
+        let mut random = move || f64::from(stream.unit());
         for _ in 0..500 {
             let n = 2 + (random() * 20.0) as usize;
             let (centre, width) = (random() - 0.5, 0.1 + 0.4 * random());

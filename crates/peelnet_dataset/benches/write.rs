@@ -10,12 +10,13 @@ mod common;
 
 use common::{header, info, view};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use peelnet_core::random::Random;
 use peelnet_dataset::*;
 
 fn write(c: &mut Criterion) {
     let mut rows = view(0, 640_000, 1);
     // Lit colours: hardly any repeats, which is the slow case for text.
-    let mut random = common::Random(5);
+    let mut random = Random::new(5, &[]);
     for color in [&mut rows.r, &mut rows.g, &mut rows.b] {
         color.iter_mut().for_each(|c| *c = random.unit());
     }

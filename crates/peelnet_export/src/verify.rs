@@ -4,7 +4,7 @@ use crate::{
     ExportError,
     wgsl::{function_name, self_test_inputs},
 };
-use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, hash::pcg, tolerance::EXPORT_F32};
+use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, random::Random, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
@@ -115,17 +115,13 @@ pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, Expo
 fn samples(model: &Model) -> Vec<Vec<f32>> {
     let count = model.meta.inputs.len();
     let mut all: Vec<Vec<f32>> = self_test_inputs(model).to_vec();
-    let mut state = 1u32;
-    let mut random = move || {
-        state = pcg(state.wrapping_add(0x9e37_79b9));
-        state as f32 / u32::MAX as f32
-    };
+    let mut random = Random::new(1, &[]);
     for _ in 0..RANDOM {
         let sample = model
             .meta
             .inputs
             .iter()
-            .map(|i| i.min + random() * (i.max - i.min))
+            .map(|i| random.between(i.min, i.max))
             .collect();
         all.push(sample);
     }
@@ -215,17 +211,14 @@ mod tests {
     use peelnet_model::{DatasetRef, Input, Losses, Metadata, Output, Recipe};
 
     /// A random network of the thesis's recipe with these hidden layers.
-    fn model(hidden: &[usize], seed: u32) -> Model {
+    fn model(hidden: &[usize], seed: u64) -> Model {
         model_of(Recipe::Thesis, hidden, seed)
     }
 
     /// A random network of a recipe.
-    fn model_of(recipe: Recipe, hidden: &[usize], seed: u32) -> Model {
-        let mut state = seed;
-        let mut random = move || {
-            state = pcg(state.wrapping_add(1));
-            state as f32 / u32::MAX as f32 * 2.0 - 1.0
-        };
+    fn model_of(recipe: Recipe, hidden: &[usize], seed: u64) -> Model {
+        let mut stream = Random::new(seed, &[]);
+        let mut random = move || stream.between(-1.0, 1.0);
         let (output, activation) = match recipe {
             Recipe::Thesis => (Output::Transmittance, Activation::Identity),
             Recipe::Nmt => (Output::Transmittance, Activation::Sigmoid),

@@ -5,17 +5,15 @@ use std::collections::{BTreeMap, HashMap};
 
 use peelnet_core::guards::WEIGHT_FLOOR;
 use peelnet_core::mlp::{Activation, Layer, Mlp};
+use peelnet_core::random::Random;
 use peelnet_model::*;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 
 /// The thesis's topology with weights that have all bits in use.
 fn model() -> Model {
-    let mut state = 1u32;
-    let mut random = || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 8) as f32 / 16_777_216.0 - 0.5
-    };
+    let mut stream = Random::new(1, &[]);
+    let mut random = || stream.between(-0.5, 0.5);
     let sizes = [3, 10, 8, 1];
     let layers = sizes
         .windows(2)

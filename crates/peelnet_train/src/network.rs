@@ -4,7 +4,7 @@ use burn::tensor::activation::{relu, sigmoid};
 use burn::tensor::{Gradients, Tensor};
 use peelnet_core::mlp::{Activation, Layer, Mlp, ShapeError};
 
-use crate::random::{Stream, signed_unit};
+use crate::streams::Stream;
 
 /// Widths and activations.
 ///
@@ -40,7 +40,7 @@ impl Shape {
                 let bound = 1.0 / (inputs as f32).sqrt();
                 std::iter::repeat_n(bound, (inputs + 1) * outputs)
             })
-            .map(|bound| bound * signed_unit(&mut random))
+            .map(|bound| bound * random.between(-1.0, 1.0))
             .collect()
     }
 
@@ -159,9 +159,7 @@ mod tests {
 
     fn random_inputs(rows: usize, seed: u64) -> Vec<f32> {
         let mut random = Stream::Split.of(seed);
-        (0..3 * rows)
-            .map(|_| 3.0 * signed_unit(&mut random))
-            .collect()
+        (0..3 * rows).map(|_| random.between(-3.0, 3.0)).collect()
     }
 
     /// Both forward passes round every product and sum once, in different orders. A sum of k terms errs by at most

@@ -2,7 +2,7 @@
 
 use peelnet_dataset::Subset;
 
-use crate::random::Stream;
+use crate::streams::Stream;
 
 /// Indices of the examples of each part, ascending.
 pub(crate) struct Split {

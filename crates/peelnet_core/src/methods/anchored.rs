@@ -184,22 +184,18 @@ pub fn composite(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::over;
+    use crate::{methods::over, random::Random};
 
     const C0: [f32; 3] = [0.3, 0.1, 0.7];
 
     fn stack(n: usize, seed: u32) -> Vec<Fragment> {
-        let mut state = seed;
-        let mut random = move || {
-            state = crate::hash::pcg(state);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut random = Random::new(seed.into(), &[]);
         (0..n)
             .map(|_| {
                 Fragment::new(
-                    0.1 * 5000f32.powf(random()),
-                    0.02 + 0.96 * random(),
-                    [random(), random(), random()],
+                    0.1 * 5000f32.powf(random.unit()),
+                    random.between(0.02, 0.98),
+                    random.color(),
                 )
             })
             .collect()

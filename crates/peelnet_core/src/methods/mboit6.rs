@@ -141,11 +141,8 @@ mod tests {
     fn more_moments_are_nearer() {
         let mut errors = [0.0; 2];
         for seed in 0..50 {
-            let mut state = seed;
-            let mut random = move || {
-                state = crate::hash::pcg(state);
-                f64::from(state >> 8) / f64::from(1 << 24)
-            };
+            let mut stream = crate::random::Random::new(seed, &[]);
+            let mut random = move || f64::from(stream.unit());
             let layers: Vec<_> = (0..8)
                 .map(|_| (0.1 + 0.5 * random(), 1.8 * random() - 0.9))
                 .collect();

@@ -415,18 +415,18 @@ impl PartSource for CsvSource {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
+    use peelnet_core::random::Random;
 
     /// The table must never answer with another float's text: all slots are hit many times.
     #[test]
     fn texts_read_back_to_the_same_bits() {
         let mut texts = FloatTexts::new(b',');
-        let mut state = 1u32;
+        let mut random = Random::new(1, &[]);
         for k in 0..200_000u32 {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let float = match k % 4 {
-                0 => f32::from_bits(state),
-                1 => (state >> 20) as f32 * 0.125,
-                2 => (state >> 8) as f32 / 16_777_216.0,
+                0 => f32::from_bits(random.bits()),
+                1 => (random.bits() >> 20) as f32 * 0.125,
+                2 => random.unit(),
                 _ => -0.0,
             };
             if !float.is_finite() {

@@ -7,40 +7,23 @@
 
 use std::path::Path;
 
+use peelnet_core::random::Random;
 use peelnet_dataset::*;
-
-/// A small generator (Knuth's MMIX constants, upper bits).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 32) as u32
-    }
-
-    /// Uniform in 0 … 1 (1 not included).
-    pub fn unit(&mut self) -> f32 {
-        (self.next() >> 8) as f32 / 16_777_216.0
-    }
-}
 
 /// Rows of a view as peeling gives them: whole pixels, sums that agree, a few colours and alphas.
 pub fn view(index: u32, pixels: u32, seed: u64) -> FragmentBatch {
-    let mut random = Random(seed ^ (u64::from(index) << 32));
+    let mut random = Random::new(seed, &[index.into()]);
     let mut rows = FragmentBatch::default();
     let palette: Vec<[f32; 4]> = (0..16)
         .map(|_| [random.unit(), random.unit(), random.unit(), random.unit()])
         .collect();
     for p in 0..pixels {
-        let n = 1 + random.next() % 12;
+        let n = 1 + random.bits() % 12;
         let first = rows.len();
         let (mut depth, mut t, mut sum) = (0.5f32, 1.0f32, 0.0f32);
         for layer in 0..n {
             depth += random.unit();
-            let [r, g, b, alpha] = palette[(random.next() % 16) as usize];
+            let [r, g, b, alpha] = palette[random.below(16)];
             sum += alpha;
             rows.one_minus_alpha.push(1.0 - alpha);
             rows.linear_depth.push(depth);

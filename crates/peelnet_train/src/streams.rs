@@ -1,4 +1,4 @@
-//! The streams of random numbers behind initial weights, the split and the order of rows.
+//! The streams of random numbers for initial weights, the split and the order of rows.
 
 use peelnet_core::random::Random;
 
@@ -21,11 +21,6 @@ impl Stream {
         };
         Random::new(seed, &[kind, index])
     }
-}
-
-/// Uniform in `[-1, 1)`, 24 bits.
-pub(crate) fn signed_unit(random: &mut Random) -> f32 {
-    (random.word() >> 40) as f32 / 8_388_608.0 - 1.0
 }
 
 #[cfg(test)]
