@@ -7,7 +7,6 @@ use peelnet_core::{fragment::Fragment, scanline};
 use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_scene::{Camera, Material, Object, Scene};
-use std::path::Path;
 
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
@@ -19,11 +18,7 @@ pub fn gpu() -> Gpu {
 
 /// The network that ships for a recipe.
 pub fn shipped(recipe: Recipe) -> Model {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
-    let file = root
-        .unwrap_or(Path::new("."))
-        .join(format!("models/{recipe}/model.safetensors"));
-    Model::load(&file).unwrap_or_else(|e| panic!("{e}; make it with: cargo xtask train-models"))
+    Model::shipped(recipe).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A camera at the origin that looks along −z with a square frame of 90°, so that a quad of half side `z` at depth

@@ -533,7 +533,7 @@ fn scale_changes_nothing_visible() {
     let gpu = gpu();
     let (mut total, mut visible, mut worst) = (0, 0, 0.0f32);
     for file in ["boxes-held", "foliage-held", "panes-held"] {
-        let base = Scene::load(&suite::directory().unwrap().join(format!("{file}.toml"))).unwrap();
+        let base = suite::load(file).unwrap();
         for recipe in ANCHORED {
             let model = shipped(recipe);
             for spec in specs(recipe) {

@@ -21,11 +21,11 @@ use std::path::PathBuf;
     after_help = "Examples:
   peelnet doctor                                        what will be used, and why
   peelnet run --out out/demo                            everything, on the shipped scenes
-  peelnet extract data/scenes/sixteen-050.toml --out d  peel a scene
+  peelnet extract sixteen-050 --out d                   peel a scene
   peelnet train d --out m.safetensors                   train the thesis's network on it
   peelnet export m.safetensors --out w.wgsl             bake the weights into a shader
-  peelnet render data/scenes/sixteen-050.toml --method deep-thesis --model m.safetensors --out a.png
-  peelnet recommend data/scenes/cups.toml --budget-ms 30   which method to take
+  peelnet render sixteen-050 --method deep-thesis --model m.safetensors --out a.png
+  peelnet recommend cups --budget-ms 30                 which method to take
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage.
 NO_COLOR switches colours off."
@@ -94,7 +94,7 @@ pub enum Command {
 DIR gets dataset/, dataset-summary.json and .txt, loss.csv, loss.svg, model.safetensors, model.wgsl, images/,
 table.md, results.json and report.html. Scenes that are marked held-out are compared but never trained on.")]
 pub struct RunArgs {
-    /// Scene files; without any, the shipped sixteen-model scenes
+    /// Scene files, or names of shipped scenes; by default the shipped sixteen-model scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Folder for everything that is written
@@ -120,7 +120,7 @@ pub struct RunArgs {
 /// `peelnet extract`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
-  peelnet extract data/scenes/sixteen-050.toml --out d
+  peelnet extract sixteen-050 --out d
   peelnet extract data/scenes/*.toml --out d --views all --pixels 0.1 --augment 4 --seed 7
   peelnet extract scene.toml --out d --format csv --size 640x480
   peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler
@@ -128,7 +128,7 @@ pub struct RunArgs {
 
 DATASET is a folder: manifest.json and the fragment files. The same seed gives the same bytes.")]
 pub struct ExtractArgs {
-    /// Scene files
+    /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required_unless_present = "synthetic")]
     pub scenes: Vec<PathBuf>,
     /// Make N fragment lists up instead of peeling scenes
@@ -269,12 +269,12 @@ pub struct ExportArgs {
   peelnet render scene.toml --out exact.png
   peelnet render scene.toml --method wboit-eq9:targets=f32 --out a.exr
   peelnet render scene.toml --method deep-thesis --model m.safetensors --view 2 --out b.npy
-  peelnet render data/effects/vase.toml --time 40 --highlight 1 --out glaze.png
+  peelnet render vase --time 40 --highlight 1 --out glaze.png
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
 A learned method without --model takes the shipped model.")]
 pub struct RenderArgs {
-    /// The scene file
+    /// Scene file, or name of a shipped scene
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// The image to write
@@ -306,7 +306,7 @@ pub struct RenderArgs {
 /// `peelnet bench`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
-  peelnet bench data/scenes/cups.toml --out out/bench
+  peelnet bench cups --out out/bench
   peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
   peelnet bench --scaling --out out/scaling
   peelnet bench --effects --out out/effects
@@ -316,7 +316,7 @@ pub struct RenderArgs {
 DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. A learned method takes the shipped model unless --models names
 another one of its recipe.")]
 pub struct BenchArgs {
-    /// Scene files
+    /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required_unless_present_any = ["scaling", "redraw", "effects"])]
     pub scenes: Vec<PathBuf>,
     /// Folder for everything that is written
@@ -392,14 +392,14 @@ pub struct StressArgs {
 /// `peelnet recommend`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
-  peelnet recommend data/scenes/cups.toml --budget-ms 30 --results out/bench
+  peelnet recommend cups --budget-ms 30 --results out/bench
   peelnet recommend scene.toml --max-error 1e-4
   peelnet recommend scene.toml --budget-ms 2 --max-bytes 40 --json | jq -r .method
 
 With --max-error the fastest method that keeps it is named, else the most accurate one within the other bounds. Without any bound
 that is the fastest exact one.")]
 pub struct RecommendArgs {
-    /// Scene file
+    /// Scene file, or name of a shipped scene
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// Longest frame time, milliseconds
@@ -435,13 +435,13 @@ pub struct RecommendArgs {
 /// `peelnet inspect`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
-  peelnet inspect data/scenes/sixteen-050.toml
+  peelnet inspect sixteen-050
   peelnet inspect d --json | jq .rows
   peelnet inspect m.safetensors
 
 A dataset is read whole: what its rows say about one another is recomputed, and exit code 1 tells that they disagree.")]
 pub struct InspectArgs {
-    /// A scene file (.toml), a dataset (a folder) or a model (.safetensors)
+    /// A scene (.toml, .gltf, .glb or the name of a shipped one), a dataset (a folder) or a model (.safetensors)
     #[arg(value_name = "SCENE|DATASET|MODEL")]
     pub what: PathBuf,
     /// Of a scene: also measure what each effect that it calls for costs on this machine

@@ -1,7 +1,6 @@
 //! The text that a learned method draws with.
 
 use crate::failure::Failure;
-use crate::shipped;
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{LearnedWeight, MethodSpec};
@@ -31,11 +30,10 @@ pub fn weight_of(
         .into_iter()
         .find(|r| r.method_name() == method.name())
         .ok_or_else(|| Failure::Failed(format!("method {} belongs to no recipe", method.name())))?;
-    let path = match model {
-        Some(path) => path.to_owned(),
-        None => shipped::model(recipe.name())?,
+    let Some(path) = model else {
+        return text_of(gpu, &Model::shipped(recipe)?).map(Some);
     };
-    let model = Model::load(&path)?;
+    let model = Model::load(path)?;
     if model.meta.recipe != recipe {
         return Err(Failure::Usage(format!(
             "{}: the model's recipe is {}, but method {} draws with recipe {recipe}; use --method {}",

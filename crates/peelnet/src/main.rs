@@ -13,7 +13,6 @@ mod interrupt;
 mod learned;
 mod parse;
 mod progress;
-mod shipped;
 mod summary_text;
 
 use clap::Parser as _;

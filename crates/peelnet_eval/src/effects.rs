@@ -582,8 +582,7 @@ mod tests {
     /// Sets around one another keep their order: outermost first.
     #[test]
     fn nested_layers_are_numbered_from_outside() {
-        let folder = peelnet_scene::suite::directory().unwrap();
-        let vase = Scene::load(&folder.join("../effects/vase.toml")).unwrap();
+        let vase = peelnet_scene::suite::load("vase").unwrap();
         let six = nested(&vase, 2);
         assert_eq!(six.layers(), [0, 1, 2, 3, 4, 5]);
         let width = |o: &peelnet_scene::Object| {

@@ -28,6 +28,9 @@ pub enum ModelError {
         /// What is wrong.
         problem: Problem,
     },
+    /// A recipe whose network does not ship.
+    #[error("no network ships for recipe {0}; train one and name its file")]
+    NotShipped(Recipe),
 }
 
 /// What is wrong with a model.

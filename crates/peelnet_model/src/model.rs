@@ -9,7 +9,7 @@ use peelnet_core::{
 
 use crate::error::{ModelError, Problem};
 use crate::file;
-use crate::metadata::Metadata;
+use crate::metadata::{Metadata, Recipe};
 
 /// A trained network that knows its features.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,24 @@ impl Model {
     /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         file::load(path.as_ref())
+    }
+
+    /// The network that ships for a recipe.
+    ///
+    /// ```
+    /// use peelnet_model::{Model, Recipe};
+    ///
+    /// let medium = Model::shipped(Recipe::Medium)?;
+    /// assert_eq!(medium.mlp.topology(), "5-12-1");
+    /// # Ok::<(), peelnet_model::ModelError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError::NotShipped`] for a recipe that was added but not yet trained for a release.
+    pub fn shipped(recipe: Recipe) -> Result<Self, ModelError> {
+        let name = recipe.name();
+        let shipped = peelnet_models::find(name).ok_or(ModelError::NotShipped(recipe))?;
+        Self::from_bytes(shipped.file, format!("models/{name}/model.safetensors"))
     }
 
     /// Reads a model from the bytes of a file; `path` only serves messages.

@@ -11,15 +11,14 @@ use peelnet_peel::{
     rows::{RawTile, ViewConstants, append_rows},
 };
 use peelnet_render::{Renderer, scene::PixelSample};
-use peelnet_scene::{Scene, suite};
+use peelnet_scene::suite;
 use std::{hint::black_box, time::Duration};
 
 const SIZE: [u32; 2] = [1024, 768];
 
 fn benches(c: &mut Criterion) {
     let gpu = Gpu::new(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"));
-    let folder = suite::directory().unwrap_or_else(|e| panic!("{e}"));
-    let scene = Scene::load(&folder.join("sixteen-050.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let scene = suite::load("sixteen-050").unwrap_or_else(|e| panic!("{e}"));
     let camera = scene.views[0];
     println!("adapter {}, {}×{}", gpu.info.name, SIZE[0], SIZE[1]);
 

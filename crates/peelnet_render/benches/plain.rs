@@ -261,10 +261,8 @@ fn main() {
         "adapter {}, {}x{}, wboit-eq9, medians of {FRAMES} frames in turn",
         gpu.info.name, SIZE[0], SIZE[1]
     );
-    let folder = suite::directory().unwrap_or_else(|e| panic!("{e}"));
     for name in ["sixteen-050", "smoke-30", "panes"] {
-        let scene =
-            Scene::load(&folder.join(format!("{name}.toml"))).unwrap_or_else(|e| panic!("{e}"));
+        let scene = suite::load(name).unwrap_or_else(|e| panic!("{e}"));
         // Unlit, two-sided, without anything opaque.
         let scene = [Effect::Opaque, Effect::Lighting, Effect::Culling]
             .into_iter()

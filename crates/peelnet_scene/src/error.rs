@@ -41,12 +41,15 @@ pub enum SceneError {
         /// What is wrong and what would be right.
         message: String,
     },
-    /// The folder of shipped scenes.
-    #[error(
-        "no folder data/scenes here or in any folder above {start}: run inside the project, or name scene files"
-    )]
-    NoSuite {
-        /// Where the search began.
-        start: PathBuf,
+    /// A name that no shipped scene has.
+    #[error("there is no scene '{name}'; name a file, or a shipped scene: {known}", known = shipped())]
+    NotShipped {
+        /// The name.
+        name: String,
     },
+}
+
+fn shipped() -> String {
+    let all = peelnet_data::SCENES.iter().chain(peelnet_data::EFFECTS);
+    all.map(|s| s.name).collect::<Vec<_>>().join(", ")
 }

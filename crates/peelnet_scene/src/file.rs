@@ -326,7 +326,15 @@ impl Scene {
             path: path.to_owned(),
             source,
         })?;
-        let raw: RawScene = toml::from_str(&text).map_err(|e| {
+        Self::from_toml(path, &text, time)
+    }
+
+    /// A scene from the text of a scene file. `path` appears in messages, and files that the text names are looked for beside it.
+    ///
+    /// # Errors
+    /// See [`Scene::load_at`].
+    pub fn from_toml(path: &Path, text: &str, time: Option<f32>) -> Result<Self, SceneError> {
+        let raw: RawScene = toml::from_str(text).map_err(|e| {
             let line = e.span().map_or(1, |s| {
                 1 + text[..s.start.min(text.len())].matches('\n').count()
             });

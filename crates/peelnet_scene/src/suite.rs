@@ -1,51 +1,62 @@
-//! The scenes that ship, in `data/scenes`.
+//! The scenes that ship. They are embedded, so an installed program needs no folder beside it.
 
 use crate::{Scene, SceneError};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// The folder `data/scenes`, here or in a folder above, or in the sources this was built from.
+pub use peelnet_data::{EFFECTS, SCENES, SceneFile, find};
+
+/// Loads a shipped scene by its name.
+///
+/// ```
+/// let cups = peelnet_scene::suite::load("cups")?;
+/// assert_eq!(cups.views.len(), 3);
+/// # Ok::<(), peelnet_scene::SceneError>(())
+/// ```
 ///
 /// # Errors
-/// [`SceneError::NoSuite`] where there is none.
-pub fn directory() -> Result<PathBuf, SceneError> {
-    let start = std::env::current_dir().unwrap_or_default();
-    start
-        .ancestors()
-        .chain(Path::new(env!("CARGO_MANIFEST_DIR")).ancestors())
-        .map(|f| f.join("data").join("scenes"))
-        .find(|f| f.is_dir())
-        .ok_or(SceneError::NoSuite { start })
-}
-
-/// All scene files of a folder, by name.
-///
-/// # Errors
-/// A folder that cannot be read.
-pub fn scenes(folder: &Path) -> Result<Vec<PathBuf>, SceneError> {
-    let failed = |source| SceneError::Read {
-        path: folder.to_owned(),
-        source,
-    };
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            paths.push(path);
-        }
+/// [`SceneError::NotShipped`] for an unknown name; see also [`Scene::load`].
+pub fn load(name: &str) -> Result<Scene, SceneError> {
+    match find(name) {
+        Some(file) => load_file(file, None),
+        None => Err(SceneError::NotShipped {
+            name: name.to_owned(),
+        }),
     }
-    paths.sort();
-    Ok(paths)
 }
 
-/// Loads the whole suite.
+/// Loads a scene file or, where there is no such file, the shipped scene of that name (`cups`) or of that path in the
+/// repository (`data/scenes/cups.toml`), at a time of its timeline.
+///
+/// # Errors
+/// See [`Scene::load_at`].
+pub fn open(path: &Path, time: Option<f32>) -> Result<Scene, SceneError> {
+    if path.exists() {
+        return Scene::load_at(path, time);
+    }
+    match path.to_str().and_then(find) {
+        Some(file) => load_file(file, time),
+        // A single word without an ending was meant as a name.
+        None if path.extension().is_none() && path.components().count() == 1 => {
+            load(&path.to_string_lossy())
+        }
+        None => Scene::load_at(path, time),
+    }
+}
+
+/// Loads a shipped scene at a time of its timeline.
+///
+/// # Errors
+/// See [`Scene::load_at`].
+pub fn load_file(file: &SceneFile, time: Option<f32>) -> Result<Scene, SceneError> {
+    Scene::from_toml(Path::new(file.path), file.text, time)
+}
+
+/// Loads the whole suite, without [`EFFECTS`].
 ///
 /// # Errors
 /// The first scene that does not load.
 pub fn load_all() -> Result<Vec<Scene>, SceneError> {
-    scenes(&directory()?)?
-        .iter()
-        .map(|p| Scene::load(p))
-        .collect()
+    SCENES.iter().map(|file| load_file(file, None)).collect()
 }
 
 #[cfg(test)]
@@ -85,6 +96,28 @@ mod tests {
                 .count()
                 >= 6
         );
+    }
+
+    #[test]
+    fn a_shipped_scene_has_a_name_and_a_path() {
+        let named = load("cups").expect("ships");
+        let by_path = open("data/scenes/cups.toml".as_ref(), None).expect("ships");
+        assert_eq!(named.hash, by_path.hash);
+        assert_eq!(named.source, Path::new("data/scenes/cups.toml"));
+        for error in [load("nowhere"), open("nowhere".as_ref(), None)] {
+            let error = error.expect_err("is not there");
+            assert!(error.to_string().contains("nowhere"), "{error}");
+        }
+    }
+
+    /// A file is meant where there is one, whatever ships under its name.
+    #[test]
+    fn files_win_over_names() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("cups");
+        let text = find("boxes").expect("ships").text;
+        std::fs::write(&file, text).expect("writes");
+        assert_eq!(open(&file, None).expect("loads").name, "boxes");
     }
 
     #[test]

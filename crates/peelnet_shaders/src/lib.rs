@@ -5,9 +5,7 @@
 //! it is the only place that knows the linker (WESL). Text that is not in the repository — an exported network, a
 //! method's constants — joins as an extra module. [`validate`] runs naga over the result.
 
-mod sources;
-
-pub use sources::SOURCES;
+pub use peelnet_wgsl::SOURCES;
 
 use std::{
     borrow::Cow,
@@ -300,32 +298,6 @@ mod tests {
         }
         assert!(roots >= 20, "only {roots} shaders found");
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-    }
-
-    /// The table lists exactly the files of the folder, so that none is forgotten.
-    #[test]
-    fn the_table_is_complete() {
-        fn walk(dir: &std::path::Path, prefix: &str, out: &mut Vec<String>) {
-            for entry in std::fs::read_dir(dir).expect("shader folder") {
-                let entry = entry.expect("entry");
-                let name = entry.file_name().into_string().expect("utf-8");
-                if entry.path().is_dir() {
-                    walk(&entry.path(), &format!("{prefix}{name}::"), out);
-                } else if let Some(stem) = name.strip_suffix(".wgsl") {
-                    out.push(format!("{prefix}{stem}"));
-                }
-            }
-        }
-        let mut found = Vec::new();
-        walk(
-            std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders")),
-            "",
-            &mut found,
-        );
-        found.sort();
-        let mut listed: Vec<_> = SOURCES.iter().map(|(p, _)| (*p).to_owned()).collect();
-        listed.sort();
-        assert_eq!(found, listed);
     }
 
     #[test]

@@ -6,7 +6,6 @@ use crate::failure::Failure;
 use crate::learned;
 use crate::parse::{MethodList, command_line};
 use crate::progress::Progress;
-use crate::shipped;
 use peelnet_eval::{
     Machine, Partial,
     compare::{EXACT, Event, Plan, compare},
@@ -18,7 +17,7 @@ use peelnet_eval::{
     table::plain,
 };
 use peelnet_gpu::Gpu;
-use peelnet_model::{Model, Recipe};
+use peelnet_model::{Model, ModelError, Recipe};
 use peelnet_render::{LearnedWeight, MethodSpec};
 use peelnet_scene::Scene;
 use serde_json::json;
@@ -223,12 +222,11 @@ pub(super) fn chosen(
         {
             continue;
         }
-        let shipped: Result<PathBuf, Failure> = shipped::model(recipe.name());
-        match shipped {
-            Ok(path) => models.push(Model::load(&path)?),
+        match Model::shipped(recipe) {
+            Ok(model) => models.push(model),
             // Only what was named must be there.
-            Err(_) if all => missing.push(name),
-            Err(e) => return Err(e),
+            Err(ModelError::NotShipped(_)) if all => missing.push(name),
+            Err(e) => return Err(e.into()),
         }
     }
     if !missing.is_empty() {

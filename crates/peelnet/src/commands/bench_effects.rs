@@ -16,14 +16,11 @@ use serde_json::json;
 pub(super) const METHOD: &str = "wboit-eq9";
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let paths = if args.scenes.is_empty() {
-        let folder = suite::directory()?;
-        let folder = folder.parent().unwrap_or(&folder).join("effects");
-        suite::scenes(&folder)?
+    let scenes = if args.scenes.is_empty() {
+        context.shipped(suite::EFFECTS)?
     } else {
-        args.scenes.clone()
+        context.scenes(&args.scenes)?
     };
-    let scenes = context.scenes(&paths)?;
     let method = match &args.methods {
         MethodList::These(methods) => methods.first().cloned(),
         MethodList::All => None,

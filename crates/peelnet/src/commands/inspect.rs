@@ -9,7 +9,7 @@ use peelnet_dataset::{Dataset, Summary};
 use peelnet_eval::effects::{self, Cost, Settings};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodSpec, Renderer, scene::shader_bytes};
-use peelnet_scene::{Census, Effect, Scene};
+use peelnet_scene::{Census, Effect, Scene, suite};
 use serde_json::json;
 use std::path::Path;
 use std::{collections::HashMap, fmt::Write as _};
@@ -25,6 +25,8 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         .unwrap_or_default();
     if path.is_dir() {
         dataset(context, path)
+    } else if !path.exists() && path.to_str().and_then(suite::find).is_some() {
+        scene(context, path, args.time)
     } else if !path.exists() {
         Err(Failure::Failed(format!(
             "{}: there is no such file or folder",

@@ -18,7 +18,10 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt;
 use peelnet_gpu::Gpu;
-use peelnet_scene::Scene;
+use peelnet_scene::{
+    Scene,
+    suite::{self, SceneFile},
+};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -60,11 +63,22 @@ impl Context<'_> {
 
     /// A scene at a time of its timeline.
     fn scene_at(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
-        let scene = Scene::load_at(path, time)?;
+        let scene = suite::open(path, time)?;
         for warning in &scene.warnings {
             self.console.warn(warning);
         }
         Ok(scene)
+    }
+
+    /// Loads scenes that ship.
+    fn shipped<'f>(
+        &self,
+        files: impl IntoIterator<Item = &'f SceneFile>,
+    ) -> Result<Vec<Scene>, Failure> {
+        files
+            .into_iter()
+            .map(|file| Ok(suite::load_file(file, None)?))
+            .collect()
     }
 
     /// An error if Ctrl-C was pressed.

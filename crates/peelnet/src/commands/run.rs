@@ -5,7 +5,6 @@ use crate::cli::RunArgs;
 use crate::failure::Failure;
 use crate::parse::{Size, command_line};
 use crate::progress::{Progress, thousands};
-use crate::shipped;
 use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Format, Summary};
 use peelnet_eval::compare::{EXACT, Event, Plan, compare};
@@ -16,10 +15,10 @@ use peelnet_gpu::Gpu;
 use peelnet_model::Recipe;
 use peelnet_peel::{ExtractOptions, Peel, Views};
 use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
-use peelnet_scene::Scene;
+use peelnet_scene::{Scene, suite};
 use peelnet_train::{Config, RunOptions};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// Shipped scenes whose names begin so are the thesis's family.
@@ -77,7 +76,7 @@ impl Clock<'_> {
 
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
     let sizes = Sizes::of(args)?;
-    let scenes = context.scenes(&scene_files(args)?)?;
+    let scenes = scenes(context, args)?;
     if scenes.iter().all(|s| s.held_out) {
         return Err(Failure::Usage(
             "every scene is marked held-out, so there is none to train on; add one that is not"
@@ -208,28 +207,12 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
 }
 
 /// The scenes to work on: those named, or the shipped family.
-fn scene_files(args: &RunArgs) -> Result<Vec<PathBuf>, Failure> {
+fn scenes(context: &Context<'_>, args: &RunArgs) -> Result<Vec<Scene>, Failure> {
     if !args.scenes.is_empty() {
-        return Ok(args.scenes.clone());
+        return context.scenes(&args.scenes);
     }
-    let folder = shipped::scenes()?;
-    let family: Vec<PathBuf> = peelnet_scene::suite::scenes(&folder)?
-        .into_iter()
-        .filter(|path| in_family(path))
-        .collect();
-    if family.is_empty() {
-        return Err(Failure::Failed(format!(
-            "{}: there is no scene named {FAMILY}*.toml; name scene files",
-            folder.display()
-        )));
-    }
-    Ok(family)
-}
-
-fn in_family(path: &Path) -> bool {
-    path.file_name()
-        .and_then(|name| name.to_str())
-        .is_some_and(|name| name.starts_with(FAMILY))
+    let all = suite::SCENES.iter();
+    context.shipped(all.filter(|file| file.name.starts_with(FAMILY)))
 }
 
 /// Fragments of the training scenes' views, estimated from view 0 of each.
@@ -363,16 +346,4 @@ fn text(record: &Record) -> String {
         "{}\nmean squared error, 0–255 scale, against the exact image\n\n{findings}",
         plain(&table.headings(), &table.cells())
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_family_is_known_by_name() {
-        assert!(in_family(Path::new("data/scenes/sixteen-025.toml")));
-        assert!(!in_family(Path::new("data/scenes/cups.toml")));
-        assert!(!in_family(Path::new("sixteen-025/cups.toml")));
-    }
 }

@@ -466,8 +466,7 @@ fn generated(name: &str, objects: Vec<Object>) -> Trial {
 }
 
 fn sixteen(alpha: f32) -> Result<Trial, EvalError> {
-    let file = suite::directory()?.join("sixteen-050.toml");
-    let mut scene = Scene::load(&file)?;
+    let mut scene = suite::load("sixteen-050")?;
     for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
         material.alpha = alpha;
     }

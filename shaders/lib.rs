@@ -1,0 +1,12 @@
+//! The text of every shader of peelnet, embedded.
+//!
+//! Each file is a WESL module: it imports others by path and switches parts with `@if(feature)`. The crate
+//! `peelnet_shaders` links them to plain WGSL.
+//!
+//! ```
+//! let (path, text) = peelnet_wgsl::SOURCES[0];
+//! assert!(path.contains("::") && !text.is_empty());
+//! ```
+
+/// Module path (such as `methods::wboit::gather`) and text of every shader, sorted by path.
+pub const SOURCES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/sources.rs"));
