@@ -43,7 +43,7 @@ fn an_installed_program_draws_shipped_scenes_with_shipped_networks() {
     assert!(vase.contains("vase"), "{vase}");
     let stress = installed(
         folder,
-        "stress --methods deep-small --cases coplanar --json",
+        "stress --methods deep-small:targets=f16 --cases coplanar --json",
     );
     assert!(stress.contains("deep-small"), "{stress}");
 }
