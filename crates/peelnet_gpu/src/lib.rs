@@ -11,8 +11,10 @@ mod device;
 mod error;
 pub mod readback;
 pub mod record;
+mod scope;
 
 pub use adapter::AdapterRequest;
 pub use device::Gpu;
 pub use error::GpuError;
+pub use scope::AdapterScope;
 pub use wgpu;

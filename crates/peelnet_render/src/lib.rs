@@ -11,6 +11,7 @@
 //! storage writes of a fragment shader happen before that test; it exists only in scenes that have opaque objects.
 
 mod error;
+pub mod flaw;
 mod image;
 mod maps;
 pub mod methods;
@@ -18,6 +19,7 @@ pub mod passes;
 pub mod scene;
 
 pub use error::RenderError;
+pub use flaw::{Flaw, Property};
 pub use image::Image;
 pub use methods::{FrameStats, METHODS, MethodSpec, layers::LayerView};
 

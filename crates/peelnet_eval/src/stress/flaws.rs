@@ -1,21 +1,16 @@
-//! What is known to fail, with its reason and source. One that stops failing fails the run, so that the list stays true.
+//! Known flaws of methods, each with its reason, its source and the adapters on which it is expected. A declared flaw that stops
+//! failing on one of its adapters fails the run, so the list stays true.
 
-use super::properties::Property;
+use peelnet_gpu::{AdapterScope, wgpu};
+use peelnet_render::{Flaw, Property};
 
-/// A flaw of some methods in some cases.
-#[derive(Clone, Copy, Debug)]
-pub struct Flaw {
-    /// Methods with their knobs; one that ends in `*` stands for all that begin so.
-    pub methods: &'static [&'static str],
-    /// Names of the cases.
-    pub cases: &'static [&'static str],
-    /// The property that does not hold.
-    pub property: Property,
-    /// Why, and who says so.
-    pub reason: &'static str,
-}
+/// Flaws that follow from a method's mathematics, or from the range of a format.
+const ANY: AdapterScope = AdapterScope::ANY;
 
-/// All of them.
+/// Flaws of half floats that depend on how an adapter rounds when it blends: this one is the only adapter that they were seen on.
+const LLVMPIPE: AdapterScope = AdapterScope::LLVMPIPE;
+
+/// All declared flaws.
 pub const FLAWS: &[Flaw] = &[
     Flaw {
         methods: &["weighted-sum:*"],
@@ -41,6 +36,7 @@ pub const FLAWS: &[Flaw] = &[
         ],
         property: Property::Background,
         reason: "covers by the sum of opacities, which may exceed 1 (Meshkin 2007)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["weighted-sum:*"],
@@ -53,6 +49,7 @@ pub const FLAWS: &[Flaw] = &[
         ],
         property: Property::Dark,
         reason: "takes more of C_0 than there is where opacities add up to more than 1 (Meshkin 2007)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["weighted-average:*"],
@@ -69,36 +66,42 @@ pub const FLAWS: &[Flaw] = &[
         ],
         property: Property::Background,
         reason: "covers as layers of the mean opacity would, not as those that are there (Bavoil & Myers 2008)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["dual-peel"],
         cases: &["coplanar"],
         property: Property::Background,
         reason: "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["dual-peel"],
         cases: &["coplanar"],
         property: Property::Exact,
         reason: "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["dual-peel"],
         cases: &["coplanar"],
         property: Property::Hull,
         reason: "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["depth-peel", "dfaoit:*"],
         cases: &["coplanar"],
         property: Property::Order,
         reason: "coincident fragments are told apart by a depth test that keeps the first drawn, so that they must be drawn in the order of their numbers",
+        adapters: ANY,
     },
     Flaw {
         methods: &["kbuffer-4:*", "hybrid-4:*"],
         cases: &["coplanar"],
         property: Property::Order,
         reason: "of more coincident fragments than places, those drawn first are kept",
+        adapters: ANY,
     },
     Flaw {
         methods: &[
@@ -117,6 +120,7 @@ pub const FLAWS: &[Flaw] = &[
         cases: &["alpha-tiny"],
         property: Property::Hull,
         reason: "half floats: a sum of hundreds of terms swallows what is small beside it",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &[
@@ -145,6 +149,7 @@ pub const FLAWS: &[Flaw] = &[
         cases: &["deep"],
         property: Property::Hull,
         reason: "half floats: a sum of hundreds of terms swallows what is small beside it",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &[
@@ -163,12 +168,14 @@ pub const FLAWS: &[Flaw] = &[
         cases: &["near-overflow"],
         property: Property::Hull,
         reason: "half floats: a sum of hundreds of terms swallows what is small beside it",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &["wboit-eq9:targets=f16"],
         cases: &["deep"],
         property: Property::Hull,
         reason: "half floats end at 65,504: after 22 layers of weight 3e3 nothing is left but the coverage (McGuire & Bavoil 2013)",
+        adapters: ANY,
     },
     Flaw {
         methods: &[
@@ -181,24 +188,28 @@ pub const FLAWS: &[Flaw] = &[
         cases: &["near-overflow"],
         property: Property::Hull,
         reason: "half floats end at 65,504: after 22 layers of weight 3e3 nothing is left but the coverage (McGuire & Bavoil 2013)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["wboit-inverse-power:targets=f16"],
         cases: &["far"],
         property: Property::Hull,
         reason: "half floats end at 6e-8: weights of (z + 5)^-2 vanish from depth 4,000 on",
+        adapters: ANY,
     },
     Flaw {
         methods: &["wboit-inverse-power:targets=f16"],
         cases: &["far"],
         property: Property::Dark,
         reason: "half floats end at 6e-8: weights of (z + 5)^-2 vanish from depth 4,000 on",
+        adapters: ANY,
     },
     Flaw {
         methods: &["wboit-inverse-power:targets=f16"],
         cases: &["far"],
         property: Property::Single,
         reason: "half floats end at 6e-8: weights of (z + 5)^-2 vanish from depth 4,000 on",
+        adapters: ANY,
     },
     Flaw {
         methods: &[
@@ -216,24 +227,35 @@ pub const FLAWS: &[Flaw] = &[
         cases: &["alpha-near-one"],
         property: Property::Opaque,
         reason: "a weight of depth alone, or of depth and sums, does not know what lies in front (McGuire & Bavoil 2013, section 5)",
+        adapters: ANY,
     },
     Flaw {
-        methods: &["mboit4*", "mboit6:targets=f16"],
+        methods: &["mboit4*"],
         cases: &["alpha-near-one"],
         property: Property::Opaque,
         reason: "moments blur what lies close together (Münstermann et al. 2018)",
+        adapters: ANY,
+    },
+    Flaw {
+        methods: &["mboit6:targets=f16"],
+        cases: &["alpha-near-one"],
+        property: Property::Opaque,
+        reason: "moments blur what lies close together (Münstermann et al. 2018)",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &["nmt*"],
         cases: &["alpha-near-one"],
         property: Property::Opaque,
         reason: "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["stochastic-16:*"],
         cases: &["alpha-near-one"],
         property: Property::Opaque,
         reason: "noise: one sample of sixteen weighs 0.06 (Enderton et al. 2010)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["deep-thesis:*"],
@@ -253,83 +275,95 @@ pub const FLAWS: &[Flaw] = &[
         ],
         property: Property::Scale,
         reason: "reads depth in scene units (Papakostas 2022)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["deep-thesis:targets=f16"],
         cases: &["alpha-tiny", "deep"],
         property: Property::Scale,
         reason: "reads depth in scene units (Papakostas 2022)",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &["deep-small:targets=f16"],
         cases: &["high-alpha"],
         property: Property::Scale,
         reason: "depths are rounded otherwise, and a sum in half floats falls on the other side of a rounding (docs/learned-weights.md)",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &["painter-object:*"],
         cases: &["passing"],
         property: Property::Steady,
         reason: "objects swap whole (popping)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["mboit4:targets=f16", "mboit6:targets=f16"],
         cases: &["passing"],
         property: Property::Steady,
         reason: "16-bit moments without the paper's quantisation: roots jump where they come close",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &["mboit6:targets=f16"],
         cases: &["moving-camera"],
         property: Property::Steady,
         reason: "16-bit moments without the paper's quantisation: roots jump where they come close",
+        adapters: LLVMPIPE,
     },
     Flaw {
         methods: &["mboit4*", "mboit6*"],
         cases: &["isolated", "two-layers", "coplanar"],
         property: Property::Transmittance,
         reason: "a fragment's own absorbance counts for a quarter, as published (Münstermann et al. 2018); own=out leaves it out",
+        adapters: ANY,
     },
     Flaw {
         methods: &["wavelet-3"],
         cases: &["two-layers"],
         property: Property::Transmittance,
         reason: "rank 3 tells apart eight depths (Aizenshtein et al. 2022)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["nmt*"],
         cases: &["isolated", "two-layers", "coplanar"],
         property: Property::Transmittance,
         reason: "the network's own error (Tsopouridis et al. 2024)",
+        adapters: ANY,
     },
     Flaw {
         methods: &["deep-thesis:*"],
         cases: &["isolated", "two-layers", "coplanar"],
         property: Property::Transmittance,
         reason: "its output is a weight among others, not a transmittance that stands alone",
+        adapters: ANY,
     },
     Flaw {
         methods: &["deep-small:*", "deep-large*"],
         cases: &["coplanar"],
         property: Property::Transmittance,
         reason: "the network's own error at a layer between sixteen coincident ones and the end: 0.010 and 0.007; where the sixteen stand before one, it is exact",
+        adapters: ANY,
     },
     Flaw {
         methods: &["deep-thesis:*", "nmt*"],
         cases: &["half-float"],
         property: Property::Half,
         reason: "wide layers and inputs of scene units: roundings of the first layers add up to more than the last layer's own",
+        adapters: ANY,
     },
 ];
 
-/// The flaw that is declared of a method in a case.
-pub fn declared(method: &str, case: &str, property: Property) -> Option<&'static Flaw> {
-    FLAWS.iter().find(|flaw| {
-        flaw.property == property
-            && flaw.cases.contains(&case)
-            && flaw.methods.iter().any(|m| {
-                m.strip_suffix('*')
-                    .map_or(*m == method, |start| method.starts_with(start))
-            })
-    })
+/// The flaw that a method declares in a case on an adapter.
+pub fn declared(
+    method: &str,
+    case: &str,
+    property: Property,
+    adapter: &wgpu::AdapterInfo,
+) -> Option<&'static Flaw> {
+    FLAWS
+        .iter()
+        .find(|flaw| flaw.is_about(method, case, property, adapter))
 }

@@ -18,16 +18,17 @@ mod subject;
 mod trial;
 
 pub use catalogue::{CASES, Case, Examine, Work};
-pub use flaws::{FLAWS, Flaw};
+pub use flaws::FLAWS;
 pub use network::Network;
-pub use properties::{Finding, Property};
+pub use peelnet_render::{Flaw, Property};
+pub use properties::Finding;
 pub use result::Stressed;
 pub use subject::Subject;
 pub use trial::{Kind, Stack, Trial, Truth};
 
 use crate::{EvalError, compare::EXACT, compare::image_name, transmittance};
 use peelnet_core::fragment::Fragment;
-use peelnet_gpu::Gpu;
+use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
 use peelnet_render::{Image, Renderer, scene::Submission};
 use peelnet_scene::Camera;
 use serde::{Deserialize, Serialize};
@@ -76,7 +77,8 @@ const SCALES: [f32; 2] = [1e-3, 1e3];
 type Findings = BTreeMap<(usize, Property), Finding>;
 
 /// Draws a case with every subject and judges what is seen; `tell` learns of every subject before it is drawn, and may end the
-/// run. `strict` asks that declared flaws fail: it is meant for shipped networks, not for a user's own. Pictures of what fails are
+/// run. With `strict`, a flaw that is declared for this adapter and does not occur is a failure: meant for shipped networks, not for
+/// a user's own. Pictures of what fails are
 /// saved in the folder `images`, beside the exact ones.
 ///
 /// # Errors
@@ -123,7 +125,7 @@ pub fn stress(
         }
         drawn.push((scene, frames));
     }
-    let rows = rows(case, subjects, &findings, strict);
+    let rows = rows(case, subjects, &findings, strict, &gpu.info);
     if let Some(folder) = images {
         let failed = |method: &str| {
             let of_method = |r: &Row| r.result == Outcome::Fail && r.method == method;
@@ -174,12 +176,18 @@ fn examine_networks(
 }
 
 /// What became of every property that was looked at.
-fn rows(case: &Case, subjects: &[Subject], findings: &Findings, strict: bool) -> Vec<Row> {
+fn rows(
+    case: &Case,
+    subjects: &[Subject],
+    findings: &Findings,
+    strict: bool,
+    adapter: &AdapterInfo,
+) -> Vec<Row> {
     findings
         .iter()
         .map(|(&(i, property), finding)| {
             let method = subjects[i].method.to_string();
-            let flaw = flaws::declared(&method, case.id, property);
+            let flaw = flaws::declared(&method, case.id, property, adapter);
             let (result, reason) = match (finding.holds(), flaw) {
                 (true, None) => (Outcome::Pass, None),
                 (true, Some(flaw)) if strict => (
@@ -359,9 +367,17 @@ impl<'a> Stage<'a> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
+    use peelnet_gpu::wgpu::{Backend, DeviceType};
 
-    fn outcome(method: &str, property: Property, value: f64, strict: bool) -> Outcome {
-        let case = CASES.iter().find(|c| c.id == "coplanar").unwrap();
+    fn outcome(
+        method: &str,
+        case: &str,
+        property: Property,
+        value: f64,
+        strict: bool,
+        adapter: &AdapterInfo,
+    ) -> Outcome {
+        let case = CASES.iter().find(|c| c.id == case).unwrap();
         let subjects = [Subject::new(method.parse().unwrap(), None)];
         let finding = Finding {
             value,
@@ -369,21 +385,59 @@ mod tests {
             place: "here".into(),
         };
         let findings = Findings::from([((0, property), finding)]);
-        rows(case, &subjects, &findings, strict)[0].result
+        rows(case, &subjects, &findings, strict, adapter)[0].result
+    }
+
+    fn llvmpipe() -> AdapterInfo {
+        AdapterInfo {
+            driver: "llvmpipe".to_owned(),
+            ..AdapterInfo::new(DeviceType::Cpu, Backend::Vulkan)
+        }
     }
 
     /// A declared flaw that stops failing fails a strict run; one that is not declared fails any.
     #[test]
     fn the_list_of_flaws_stays_true() {
-        let coplanar = |value, strict| outcome("dual-peel", Property::Exact, value, strict);
+        let judge = |method, value, strict| {
+            outcome(
+                method,
+                "coplanar",
+                Property::Exact,
+                value,
+                strict,
+                &llvmpipe(),
+            )
+        };
+        let coplanar = |value, strict| judge("dual-peel", value, strict);
         assert_eq!(coplanar(2.0, true), Outcome::Declared);
         assert_eq!(coplanar(0.5, true), Outcome::Fail);
         assert_eq!(coplanar(0.5, false), Outcome::Pass);
-        let sound = |value| outcome("abuffer", Property::Exact, value, true);
+        let sound = |value| judge("abuffer", value, true);
         assert_eq!([sound(0.5), sound(2.0)], [Outcome::Pass, Outcome::Fail]);
     }
 
-    /// Every flaw names methods, cases and properties that there are.
+    /// A flaw declared for one adapter is neither expected nor missed on another.
+    #[test]
+    fn flaws_are_scoped_by_adapter() {
+        let other = AdapterInfo::new(DeviceType::DiscreteGpu, Backend::Metal);
+        let rounding = |value, adapter: &AdapterInfo| {
+            let (method, case) = ("wboit-eq7:targets=f16", "deep");
+            outcome(method, case, Property::Hull, value, true, adapter)
+        };
+        assert_eq!(rounding(2.0, &llvmpipe()), Outcome::Declared);
+        assert_eq!(rounding(0.5, &llvmpipe()), Outcome::Fail);
+        assert_eq!(rounding(2.0, &other), Outcome::Fail);
+        assert_eq!(rounding(0.5, &other), Outcome::Pass);
+        // What follows from the mathematics is expected everywhere.
+        let coplanar = |value, adapter: &AdapterInfo| {
+            let property = Property::Exact;
+            outcome("dual-peel", "coplanar", property, value, true, adapter)
+        };
+        assert_eq!(coplanar(2.0, &other), Outcome::Declared);
+        assert_eq!(coplanar(0.5, &other), Outcome::Fail);
+    }
+
+    /// Every flaw names methods and cases that exist.
     #[test]
     fn flaws_name_what_there_is() {
         let methods: Vec<String> = Subject::all_methods()
@@ -395,12 +449,11 @@ mod tests {
                 assert!(CASES.iter().any(|c| c.id == *case), "{case}");
             }
             for pattern in flaw.methods {
-                let names = |m: &&String| {
-                    pattern
-                        .strip_suffix('*')
-                        .map_or(m.as_str() == *pattern, |start| m.starts_with(start))
+                let alone = Flaw {
+                    methods: std::slice::from_ref(pattern),
+                    ..*flaw
                 };
-                assert!(methods.iter().any(|m| names(&m)), "{pattern}");
+                assert!(methods.iter().any(|m| alone.names(m)), "{pattern}");
             }
             assert!(flaw.reason.len() > 10);
         }

@@ -1,6 +1,6 @@
 //! Cases that evaluate a network without drawing.
 
-use super::{Note, properties::Property};
+use super::{Note, Property};
 use crate::EvalError;
 use peelnet_core::{random::Random, tolerance::EXPORT_F16};
 use peelnet_gpu::Gpu;

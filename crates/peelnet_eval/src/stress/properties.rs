@@ -5,65 +5,7 @@ use super::{
     subject::Subject,
     trial::{Kind, Trial, Truth},
 };
-use peelnet_render::Image;
-use serde::{Deserialize, Serialize};
-use std::fmt;
-
-/// A property that a method's frames have or lack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Property {
-    /// No NaN and no infinity in the image, nor in what the network answers. Value: 1 where there is one.
-    Finite,
-    /// A pixel without fragments keeps `C_0` bit for bit, and the coverage is right. Value: the error of the coverage.
-    Background,
-    /// The colour lies in the convex hull of the fragments' colours and `C_0`. Value: how far outside, linear light.
-    Hull,
-    /// A pixel with one fragment is exact. Value: the error, linear light.
-    Single,
-    /// Neither the reverse nor a shuffled order of drawing changes anything. Value: the largest change, linear light.
-    Order,
-    /// Exact methods agree with compositing in 64 bits. Value: the error, linear light.
-    Exact,
-    /// Multiplying all lengths by 1e-3 or 1e3 changes nothing visible. Value: the change on the display, of 255.
-    Scale,
-    /// No pixel is darker than the darkest of its fragments and `C_0`. Value: by how much, luminance in linear light.
-    Dark,
-    /// What lies behind nearly opaque layers does not show. Value: the error on the display, of 255.
-    Opaque,
-    /// The transmittance that the weights stand for is right. Value: the largest error of any fragment.
-    Transmittance,
-    /// Between two frames of a movement pixels jump by no more than in the exact image. Value: the mean excess, linear light.
-    Steady,
-    /// The network answers in half floats what it answers in 64 bits. Value: the difference.
-    Half,
-}
-
-impl Property {
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Finite => "finite",
-            Self::Background => "background",
-            Self::Hull => "hull",
-            Self::Single => "single",
-            Self::Order => "order",
-            Self::Exact => "exact",
-            Self::Scale => "scale",
-            Self::Dark => "dark",
-            Self::Opaque => "opaque",
-            Self::Transmittance => "transmittance",
-            Self::Steady => "steady",
-            Self::Half => "half",
-        }
-    }
-}
-
-impl fmt::Display for Property {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+use peelnet_render::{Image, Property};
 
 /// What was found of one property: the value that comes nearest to its limit, or goes farthest beyond it.
 #[derive(Clone, Debug, Default, PartialEq)]
