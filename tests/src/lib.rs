@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use peelnet_core::{fragment::Fragment, scanline};
 use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
+use peelnet_render::{LearnedWeight, MethodSpec};
 use peelnet_scene::{Camera, Material, Object, Scene};
 
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
@@ -19,6 +20,16 @@ pub fn gpu() -> Gpu {
 /// The network that ships for a recipe.
 pub fn shipped(recipe: Recipe) -> Model {
     Model::shipped(recipe).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The network that ships for a method, with its exported text; `None` for a method without a network.
+pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
+    let of_method = |r: &Recipe| method.needs_model() && r.method_name() == method.name();
+    let recipe = Recipe::ALL.into_iter().find(of_method)?;
+    let model = shipped(recipe);
+    let wgsl = peelnet_export::wgsl(&model, &Default::default());
+    let wgsl = wgsl.unwrap_or_else(|e| panic!("{method}: {e}"));
+    Some((LearnedWeight { recipe, wgsl }, model))
 }
 
 /// A camera at the origin that looks along −z with a square frame of 90°, so that a quad of half side `z` at depth

@@ -1,18 +1,18 @@
-//! Stacked walls whose every pixel holds known fragments × every method: the GPU against the CPU twin.
+//! Every method × stacked walls, whose every pixel holds known fragments: the GPU against the CPU twin that the method declares.
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{Fragment, worked_example},
-    methods::{
-        blended, kbuffer, mboit4, mboit6, over, stochastic, wavelet, wboit, weighted_average,
-        weighted_sum,
-    },
-    weights::Weight,
+    methods::over,
 };
-use peelnet_render::{MethodSpec, Renderer};
-use peelnet_tests::{gpu, walls};
+use peelnet_model::Model;
+use peelnet_render::{
+    Frame, METHODS, MethodSpec, Renderer,
+    methods::{Pixel, Precision},
+};
+use peelnet_tests::{gpu, network_of, walls};
 
 /// Relative rounding of a half float.
 const HALF: f32 = 1.0 / 2048.0;
@@ -24,45 +24,53 @@ fn half_bound(n: usize, peak: f32) -> f32 {
 
 /// Bound for moments in 32 bits against 64: rounding of the moments (2⁻²⁴ each) is divided by the smallest pivot that the
 /// bias of 5e−7 leaves (about 2e−7 for coinciding points), and the root of a polynomial answers with its square
-/// root; as a colour error far below what the method itself errs by.
+/// root; as a colour error far below the method's own.
 const MOMENTS: f32 = 2e-2;
 
-/// What a pixel must show; `half` says which of a wall's two triangles covers it.
-fn twin(spec: &MethodSpec, f: &[Fragment], c0: [f32; 3], pixel: [u32; 2], half: u32) -> [f32; 3] {
-    // The walls are flat: their boxes span just the fragments' depths.
-    let warp = || {
-        let depths = f.iter().map(|f| f64::from(f.depth));
-        let near = depths.clone().fold(f64::INFINITY, f64::min);
-        DepthWarp::new(near, depths.fold(0.0, f64::max))
-    };
-    let size = spec.size();
-    match spec.name() {
-        // The walls neither intersect nor overlap in a cycle.
-        "abuffer" | "linked-list" | "depth-peel" | "dual-peel" | "painter-object"
-        | "painter-triangle" => over::composite(f, c0),
-        "weighted-sum" => weighted_sum::composite(f, c0),
-        "weighted-average" => weighted_average::composite(f, c0),
-        "blended" => blended::composite(f, c0),
-        "mboit4" => mboit4::composite(f, c0, &warp(), &mboit4::Settings::PAPER),
-        "mboit6" => mboit6::composite(f, c0, &warp(), &mboit6::PAPER),
-        "wavelet-3" => wavelet::composite(f, c0, &warp(), true),
-        "kbuffer" => kbuffer::composite(f, c0, size as usize, None),
-        "hybrid" => kbuffer::composite(f, c0, size as usize, Some(Weight::Eq9)),
-        "stochastic" => {
-            let mut f = f.to_vec();
-            for (f, wall) in f.iter_mut().zip(0..) {
-                f.triangle = 2 * wall + half;
-            }
-            stochastic::composite(&f, c0, size, pixel)
-        }
-        name => {
-            let weight = Weight::ALL
-                .into_iter()
-                .find(|w| name == format!("wboit-{}", w.name()))
-                .unwrap_or_else(|| panic!("method {name} has no twin in this test: add it"));
-            wboit::composite(f, c0, weight)
-        }
+/// The largest difference between a frame of `n` layers and the twin; `None` where the error of 16-bit statistics has no simple
+/// bound, because roots of them are taken.
+fn bound(spec: &MethodSpec, n: usize) -> Option<f32> {
+    let promises = spec.promises();
+    match (promises.root, promises.statistics, promises.sums) {
+        _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
+        (Some(_), Precision::Half, _) => None,
+        (Some(_), Precision::Full, _) => Some(MOMENTS),
+        // Shaders may contract or reorder; divisions and pow are allowed 2.5 and 16 units: 1e-4 is 800 units.
+        (None, _, Precision::Full) => Some(1e-4),
+        // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
+        (None, _, Precision::Half) => Some(half_bound(n, 3.0)),
     }
+}
+
+/// What a pixel must show; `half` says which of a wall's two triangles covers it.
+fn twin(
+    spec: &MethodSpec,
+    model: Option<&Model>,
+    stack: &Stack,
+    position: [u32; 2],
+    half: u32,
+) -> Option<[f32; 3]> {
+    let mut fragments = stack.fragments.clone();
+    for (f, wall) in fragments.iter_mut().zip(0..) {
+        f.triangle = 2 * wall + half;
+    }
+    // The walls are flat: their boxes span just the fragments' depths.
+    let depths = || fragments.iter().map(|f| f64::from(f.depth));
+    let near = depths().fold(f64::INFINITY, f64::min);
+    spec.twin(&Pixel {
+        fragments: &fragments,
+        background: stack.background,
+        warp: DepthWarp::new(near, depths().fold(0.0, f64::max)),
+        position,
+        model,
+    })
+}
+
+/// Walls one behind the other.
+struct Stack {
+    name: &'static str,
+    fragments: Vec<Fragment>,
+    background: [f32; 3],
 }
 
 /// The window depth that the test camera gives to depth z.
@@ -103,49 +111,102 @@ fn cases() -> Vec<(&'static str, Vec<Fragment>)> {
     ]
 }
 
+/// Every method with every point of its curve, and in 32 bits where it has the choice.
+fn specs() -> Vec<MethodSpec> {
+    let mut all = MethodSpec::curve();
+    for spec in MethodSpec::curve() {
+        if spec.method().has_targets() && spec.targets().is_none() {
+            all.push(spec.with("targets", "f32").unwrap());
+        }
+    }
+    all
+}
+
 #[test]
 fn every_method_agrees_with_its_twin() {
     let gpu = gpu();
-    let c0 = [0.25, 0.5, 0.75];
-    for (case, fragments) in cases() {
-        let fragments = with_window_depth(fragments);
-        let scene = walls(&fragments, c0);
+    let networks: Vec<_> = METHODS
+        .iter()
+        .map(|m| network_of(&MethodSpec::representative(m)))
+        .collect();
+    for (name, fragments) in cases() {
+        let stack = Stack {
+            name,
+            fragments: with_window_depth(fragments),
+            background: [0.25, 0.5, 0.75],
+        };
+        let scene = walls(&stack.fragments, stack.background);
         let renderer = Renderer::new(&gpu, &scene).unwrap();
-        for spec in MethodSpec::all() {
-            let mut variants = vec![spec.clone()];
-            if spec.entry().knobs().any(|(k, _)| k == "targets") {
-                variants.push(format!("{spec}:targets=f32").parse().unwrap());
-            }
-            for spec in variants {
-                let mut prepared = renderer.prepare(&spec, [5, 3], None).unwrap();
+        for (method, network) in METHODS.iter().zip(&networks) {
+            for spec in specs().iter().filter(|s| s.name() == method.name) {
+                let learned = network.as_ref().map(|(text, _)| text);
+                let mut prepared = renderer.prepare(spec, SIZE, learned).unwrap();
                 let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
-                let bound = if spec.entry().exact {
-                    peelnet_core::tolerance::EXACT as f32
-                } else if spec.name().starts_with("mboit") {
-                    MOMENTS
-                } else if spec.to_string().ends_with("f32") {
-                    // Shaders may contract or reorder; divisions and pow are allowed 2.5 and 16 units: 1e-4 is 800 units.
-                    1e-4
-                } else {
-                    // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
-                    half_bound(fragments.len(), 3.0)
-                };
-                for (p, i) in frame.image.pixels.iter().zip(0..) {
-                    // Walls are similar: all of a pixel's fragments lie in the same half.
-                    let wants =
-                        [0, 1].map(|half| twin(&spec, &fragments, c0, [i % 5, i / 5], half));
-                    assert!(
-                        wants
-                            .iter()
-                            .any(|want| (0..3).all(|k| (p[k] - want[k]).abs() <= bound)),
-                        "{case}, {spec}: {p:?} instead of {wants:?} (bound {bound})"
-                    );
-                }
-                if fragments.is_empty() {
-                    assert_eq!(frame.image.pixels[7][..3], c0, "{spec} keeps C_0");
-                }
-                assert_eq!(frame.stats.lost, 0, "{case}, {spec}");
+                compare(
+                    spec,
+                    network.as_ref().map(|(_, model)| model),
+                    &stack,
+                    &frame,
+                );
             }
+        }
+    }
+}
+
+const SIZE: [u32; 2] = [5, 3];
+
+fn compare(spec: &MethodSpec, model: Option<&Model>, stack: &Stack, frame: &Frame) {
+    let Stack {
+        name,
+        fragments,
+        background,
+    } = stack;
+    if fragments.is_empty() {
+        assert_eq!(frame.image.pixels[7][..3], *background, "{spec} keeps C_0");
+    }
+    // A peel that is capped counts what it leaves out.
+    if spec.promises().exact || !spec.method().is_exact() {
+        assert_eq!(frame.stats.lost, 0, "{name}, {spec}");
+    }
+    let Some(bound) = bound(spec, fragments.len()) else {
+        return;
+    };
+    for (p, i) in frame.image.pixels.iter().zip(0..) {
+        let position = [i % SIZE[0], i / SIZE[0]];
+        // Walls are similar: all of a pixel's fragments lie in the same half.
+        let wants = [0, 1].map(|half| twin(spec, model, stack, position, half));
+        let [Some(first), Some(second)] = wants else {
+            return;
+        };
+        let near = |want: [f32; 3]| (0..3).all(|k| (p[k] - want[k]).abs() <= bound);
+        assert!(
+            near(first) || near(second),
+            "{name}, {spec}: {p:?} instead of {wants:?} (bound {bound})"
+        );
+    }
+}
+
+/// Every method has a twin, with its default parameters and in 32 bits, and a bound on the difference in at least one precision.
+#[test]
+fn every_method_has_a_twin() {
+    let stack = Stack {
+        name: "worked example",
+        fragments: worked_example().to_vec(),
+        background: [0.0; 3],
+    };
+    for method in METHODS {
+        let default = MethodSpec::representative(method);
+        let network = network_of(&default);
+        let model = network.as_ref().map(|(_, model)| model);
+        let all = specs();
+        let own = || all.iter().filter(|s| s.name() == method.name);
+        assert!(own().any(|s| bound(s, 4).is_some()), "{}", method.name);
+        for spec in own().chain([&default]).filter(|s| !s.is_scaled()) {
+            let color = twin(spec, model, &stack, [0, 0], 0);
+            assert!(
+                color.is_some_and(|c| c.iter().all(|x| x.is_finite())),
+                "{spec}"
+            );
         }
     }
 }

@@ -31,13 +31,14 @@ fn what_does_not_vary_is_unchanged() {
     let gpu = gpu();
     let walls = walls(&worked_example(), [0.25, 0.5, 0.75]);
     for spec in MethodSpec::all() {
-        // Its samples differ from pixel to pixel by design.
-        if spec.name() == "stochastic" {
+        // Samples differ from pixel to pixel by design.
+        if spec.promises().noisy {
             continue;
         }
         let full = draw(&gpu, &walls, &spec.to_string(), [7, 5]);
         for scale in ["0.5", "0.3", "1"] {
-            let low = draw(&gpu, &walls, &format!("{spec}:scale={scale}"), [7, 5]);
+            let scaled = spec.with("scale", scale).unwrap().to_string();
+            let low = draw(&gpu, &walls, &scaled, [7, 5]);
             let apart = furthest(&full, &low);
             assert!(apart <= ROUNDING, "{spec} at {scale}: {apart}");
             if scale == "1" {
@@ -110,14 +111,13 @@ fn detail_is_lost_by_degrees() {
     assert!(0.0 < half && half < quarter, "{half} {quarter}");
 }
 
+/// Every method refuses them when its name is parsed.
 #[test]
 fn other_scales_are_refused() {
-    let gpu = gpu();
-    let walls = walls(&worked_example(), [0.0; 3]);
-    let renderer = Renderer::new(&gpu, &walls).unwrap();
-    for scale in ["0", "-1", "1.5", "nan", "half"] {
-        let spec: MethodSpec = format!("blended:scale={scale}").parse().unwrap();
-        let e = renderer.prepare(&spec, [4, 4], None).unwrap_err();
-        assert!(e.to_string().contains("scale"), "{e}");
+    for spec in MethodSpec::curve() {
+        for scale in ["0", "-1", "1.5", "nan", "half"] {
+            let e = spec.with("scale", scale).unwrap_err();
+            assert!(e.to_string().contains("scale"), "{e}");
+        }
     }
 }

@@ -3,25 +3,18 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use peelnet_eval::stress::{CASES, Outcome, Row, Subject, Work, stress};
-use peelnet_model::{Model, Recipe};
-use peelnet_render::LearnedWeight;
-use peelnet_tests::{gpu, shipped};
+use peelnet_tests::{gpu, network_of};
 
 /// Every method with its precisions, learned ones with the shipped network.
 fn subjects() -> Vec<Subject> {
-    let mut subjects = Vec::new();
-    for method in Subject::all_methods() {
-        let recipe = Recipe::ALL
-            .into_iter()
-            .find(|r| method.needs_model() && r.method_name() == method.name());
-        let learned = recipe.map(|r| {
-            let model: Model = shipped(r);
-            let wgsl = peelnet_export::wgsl(&model, &Default::default()).unwrap();
-            (LearnedWeight { recipe: r, wgsl }, model)
-        });
-        subjects.push(Subject::new(method, learned));
-    }
-    subjects
+    let with_network = |method| {
+        let network = network_of(&method);
+        Subject::new(method, network)
+    };
+    Subject::all_methods()
+        .into_iter()
+        .map(with_network)
+        .collect()
 }
 
 fn run(id: &str) {

@@ -4,13 +4,13 @@ use crate::transmittance::Sample;
 use crate::{EvalError, Row, metrics, perceptual::Displayed};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
-use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, RenderError, Renderer};
+use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, RenderError, Renderer, Role};
 use peelnet_scene::Scene;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The method that judges all others.
-pub const EXACT: &str = "abuffer";
+pub const EXACT: &str = Role::Reference.method();
 
 /// What is drawn.
 #[derive(Clone, Debug)]

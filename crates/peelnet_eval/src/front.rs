@@ -1,9 +1,10 @@
 //! Error against time: a point for every method and its knobs, and the Pareto front of them.
 
 use crate::{Row, table::geometric_mean};
+use peelnet_render::Role;
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting. The ratio travels between machines.
-pub const BASE: &str = "painter-object:sort=off";
+pub const BASE: &str = Role::HardwareBlending.method();
 
 /// Errors below count as this: a mean squared error of (1e-5)², the agreement that exact methods are held to, in linear
 /// light. It keeps geometric means and logarithmic axes finite.

@@ -321,14 +321,15 @@ fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
         let (scene, exact) = stacks(layers);
         let failed = |method: &str| EvalError::render(&scene.name, method);
         let renderer = Renderer::new(gpu, &scene).map_err(failed("upload"))?;
-        for entry in peelnet_render::METHODS {
-            if entry.learned || !entry.knobs().any(|(knob, _)| knob == "targets") {
+        for declared in peelnet_render::METHODS {
+            if declared.learned || !declared.has_targets() {
                 continue;
             }
-            let method = entry.representative();
+            let spec = MethodSpec::representative(declared);
+            let method = spec.to_string();
             let draw = |targets: &str| -> Result<Image, EvalError> {
-                let name = format!("{method}:targets={targets}");
-                let spec: MethodSpec = name.parse().map_err(failed(&name))?;
+                let spec = spec.with("targets", targets).map_err(failed(&method))?;
+                let name = spec.to_string();
                 let prepared = renderer.prepare(&spec, STACKS, None);
                 let mut prepared = prepared.map_err(failed(&name))?;
                 let frame = renderer.draw(&mut prepared, &scene.views[0]);
@@ -351,8 +352,8 @@ fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
                 worst,
                 typical: (squares / (3 * exact.len()) as f64).sqrt(),
                 own_error,
-                bound: (!entry.name.starts_with("mboit"))
-                    .then(|| 3.0 * (n + 1.0) * 0.5f64.powi(10)),
+                // Roots of the statistics have no bound as simple.
+                bound: (spec.promises().root.is_none()).then(|| 3.0 * (n + 1.0) * 0.5f64.powi(10)),
             });
         }
     }

@@ -1,12 +1,13 @@
 //! Methods against one another: the errors of each as ratios to those of two references, over scenes and views.
 
 use crate::{Row, front::BASE, table::geometric_mean};
+use peelnet_render::Role;
 use std::collections::BTreeMap;
 
 /// The weighted blending that errors are compared with.
-pub const WEIGHTED: &str = "wboit-eq9";
+pub const WEIGHTED: &str = Role::WeightedBlending.method();
 /// The moment method that errors and times are compared with.
-pub const MOMENTS: &str = "mboit4";
+pub const MOMENTS: &str = Role::MomentBlending.method();
 
 /// A method's figures over all scenes and views.
 #[derive(Clone, Debug, PartialEq)]

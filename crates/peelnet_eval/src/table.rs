@@ -1,6 +1,6 @@
 //! The table like the thesis's 4.1: weighted blending and learned weighted blending on every scene.
 
-use crate::{Row, thesis};
+use crate::{Row, ratios, thesis};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -131,7 +131,7 @@ impl Table {
         [
             "scene",
             thesis::WEIGHTED,
-            "wboit-eq9",
+            ratios::WEIGHTED,
             &best,
             thesis::DEEP,
             "deep / thesis's weight",
@@ -157,7 +157,7 @@ impl Table {
                 vec![
                     line.scene.clone(),
                     error(thesis::WEIGHTED),
-                    error("wboit-eq9"),
+                    error(ratios::WEIGHTED),
                     error(best),
                     error(thesis::DEEP),
                     number(line.ratio(thesis::DEEP, thesis::WEIGHTED), 2),

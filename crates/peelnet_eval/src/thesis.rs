@@ -2,6 +2,8 @@
 //! peeling, with its 16 models of 11,102 polygons. Its meshes and camera are not known, so absolute values differ
 //! from ours, and the ratio of its two columns is what compares.
 
+use peelnet_render::Role;
+
 /// One line of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
@@ -53,7 +55,7 @@ pub fn line(scene: &str) -> Option<Measured> {
 }
 
 /// Method name of weighted blending with the thesis's own weight.
-pub const WEIGHTED: &str = "wboit-papakostas";
+pub const WEIGHTED: &str = Role::ThesisWeight.method();
 
 /// Method name of weighted blending with the thesis's network.
-pub const DEEP: &str = "deep-thesis";
+pub const DEEP: &str = Role::ThesisNetwork.method();

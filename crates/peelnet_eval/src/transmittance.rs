@@ -1,22 +1,17 @@
-//! How far the transmittance that a method's weights stand for is from the exact one, fragment by fragment.
+//! The error of the transmittance that a method's weights stand for, fragment by fragment.
 //!
-//! Computed by the methods' CPU twins in 64 bits, over the fragments of a sample of pixels: the method's own error, but for the
-//! learned methods without that of its targets, whose sums are rounded as the method rounds them.
+//! It is computed by the methods' CPU twins in 64 bits, over the fragments of a sample of pixels. It is the method's own error,
+//! without that of its targets; only the learned methods' sums are rounded as the method rounds them.
 
 use crate::EvalError;
-use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
-    hash::sample_threshold,
-    methods::{mboit4, mboit6, wavelet},
-    statistics::SumPrecision,
-};
+use peelnet_core::{absorbance::DepthWarp, hash::sample_threshold};
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{MethodSpec, scene::PixelSample};
 use peelnet_scene::Scene;
 
-/// The share of pixels that is looked at.
+/// The share of pixels that is sampled.
 pub const SHARE: f64 = 0.02;
 
 /// The fragments of a view's sampled pixels.
@@ -80,13 +75,9 @@ impl<'a> Sample<'a> {
 impl Stacks {
     /// Mean `|T̂_i − T_i|` over all fragments; `None` for a method whose weights are no transmittance, and of no fragment.
     pub fn error(&self, method: &MethodSpec, model: Option<&Model>) -> Option<f64> {
-        if method.knob("scale").is_some() {
-            // A pixel is then mixed of others', and has no transmittance of its own.
-            return None;
-        }
         let (mut sum, mut n) = (0.0, 0u64);
         for points in &self.pixels {
-            let estimates = estimates(method, points, &self.warp, model)?;
+            let estimates = method.transmittances(points, &self.warp, model)?;
             let mut exact = 1.0;
             for (estimate, &(_, alpha)) in estimates.iter().zip(points) {
                 sum += (estimate - exact).abs();
@@ -107,7 +98,7 @@ pub fn worst(
     model: Option<&Model>,
     counts: &dyn Fn(usize) -> bool,
 ) -> Option<f64> {
-    let estimates = estimates(method, points, warp, model)?;
+    let estimates = method.transmittances(points, warp, model)?;
     let (mut exact, mut worst) = (1.0, 0.0f64);
     for (i, (estimate, &(_, alpha))) in estimates.iter().zip(points).enumerate() {
         if counts(i) {
@@ -116,102 +107,6 @@ pub fn worst(
         exact *= 1.0 - f64::from(alpha);
     }
     Some(worst)
-}
-
-/// The transmittance in front of every fragment as a method's weights tell it.
-fn estimates(
-    method: &MethodSpec,
-    points: &[(f32, f32)],
-    warp: &DepthWarp,
-    model: Option<&Model>,
-) -> Option<Vec<f64>> {
-    let zeta = |depth: f32| warp.apply(depth.into());
-    let own_out = |default: bool| method.knob("own").map_or(default, |word| word == "out");
-    let settings = |paper: mboit4::Settings| {
-        let number = |knob: &str, default: f64| {
-            let given = method.knob(knob).and_then(|text| text.parse().ok());
-            given.unwrap_or(default)
-        };
-        mboit4::Settings {
-            overestimation: number("overestimation", paper.overestimation),
-            bias: number("bias", paper.bias),
-            own_share_out: own_out(paper.own_share_out),
-        }
-    };
-    // Adds and takes away fragments, and tells what the sums say.
-    fn with_own<S: Copy>(
-        points: &[(f64, f64)],
-        empty: S,
-        own_out: bool,
-        add: impl Fn(&mut S, f64, f64),
-        tell: impl Fn(&S, f64) -> f64,
-    ) -> Vec<f64> {
-        let mut sums = empty;
-        for &(b, zeta) in points {
-            add(&mut sums, b, zeta);
-        }
-        points
-            .iter()
-            .map(|&(b, zeta)| {
-                let mut seen = sums;
-                if own_out {
-                    add(&mut seen, -b, zeta);
-                }
-                tell(&seen, zeta)
-            })
-            .collect()
-    }
-    let warped: Vec<(f64, f64)> = points
-        .iter()
-        .map(|&(depth, alpha)| (absorbance(alpha), zeta(depth)))
-        .collect();
-    match method.name() {
-        "mboit4" => {
-            let s = settings(mboit4::Settings::PAPER);
-            let none = mboit4::Moments::default();
-            let tell = |m: &mboit4::Moments, z| m.transmittance(z, &s);
-            Some(with_own(
-                &warped,
-                none,
-                s.own_share_out,
-                mboit4::Moments::add,
-                tell,
-            ))
-        }
-        "mboit6" => {
-            let s = settings(mboit6::PAPER);
-            let none = mboit6::Moments::default();
-            let tell = |m: &mboit6::Moments, z| m.transmittance(z, &s);
-            Some(with_own(
-                &warped,
-                none,
-                s.own_share_out,
-                mboit6::Moments::add,
-                tell,
-            ))
-        }
-        "wavelet-3" => {
-            let none = wavelet::Averages::default();
-            let tell = |a: &wavelet::Averages, z| (-a.in_front(z)).exp().min(1.0);
-            Some(with_own(
-                &warped,
-                none,
-                own_out(true),
-                wavelet::Averages::add,
-                tell,
-            ))
-        }
-        _ => {
-            let model = model?;
-            let precision = match method.knob("targets") {
-                Some("f32") => SumPrecision::Exact,
-                Some(_) => SumPrecision::Half,
-                None => model.meta.recipe.sum_precision(),
-            };
-            let all = model.transmittances(points, warp, precision);
-            (!all.is_empty()).then_some(all)
-        }
-    }
 }
 
 #[cfg(test)]

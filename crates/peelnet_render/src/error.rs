@@ -17,9 +17,9 @@ pub enum RenderError {
         /// The names there are.
         known: String,
     },
-    /// A knob that the method does not have, or a value it cannot take.
+    /// A parameter that the method does not have, a value it cannot take, or a model that was trained for another method.
     #[error("method {method}: {message}")]
-    Knob {
+    Parameter {
         /// The method.
         method: String,
         /// What is wrong and what would be right.
@@ -28,10 +28,11 @@ pub enum RenderError {
     /// A learned method without its network.
     #[error("method {0} draws with a trained network: give its model file with --model")]
     NeedsModel(String),
-    /// Light that takes a colour, and a method that knows how much light passes and not which.
+    /// Light that takes a colour where it passes, and a method that keeps one transmittance for all colours.
     #[error(
-        "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with abuffer, \
-         linked-list, blended, a wboit, mboit or deep method, or make transmission_color grey"
+        "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of {tinted}, \
+         or make transmission_color grey",
+        tinted = crate::methods::tinted()
     )]
     OneTransmittance(String),
     /// A frame without pixels.

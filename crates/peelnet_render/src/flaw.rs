@@ -1,5 +1,6 @@
 //! What must hold of every method in the hard cases of `peelnet_eval::stress`, and the flaws that methods declare.
 
+use crate::{MethodSpec, methods::Precision};
 use peelnet_gpu::{AdapterScope, wgpu};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -8,7 +9,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Property {
-    /// No NaN and no infinity in the image, nor in what the network answers. Value: 1 where there is one.
+    /// No NaN and no infinity in the image, nor in the network's output. Value: 1 where there is one.
     Finite,
     /// A pixel without fragments keeps `C_0` bit for bit, and the coverage is right. Value: the error of the coverage.
     Background,
@@ -30,7 +31,7 @@ pub enum Property {
     Transmittance,
     /// Between two frames of a movement pixels jump by no more than in the exact image. Value: the mean excess, linear light.
     Steady,
-    /// The network answers in half floats what it answers in 64 bits. Value: the difference.
+    /// The network's output in half floats is that in 64 bits. Value: the difference.
     Half,
 }
 
@@ -60,18 +61,18 @@ impl fmt::Display for Property {
     }
 }
 
-/// A property that does not hold of a method in some hard cases.
+/// A property that a method does not have in some hard cases.
 ///
 /// A flaw that follows from the method's mathematics is declared for [`AdapterScope::ANY`]; one that depends on how an adapter
 /// rounds or blends, for the adapters that it was seen on.
 #[derive(Clone, Copy, Debug)]
 pub struct Flaw {
-    /// Methods with their parameters; one that ends in `*` stands for all names that begin so.
-    pub methods: &'static [&'static str],
-    /// Names of the cases.
-    pub cases: &'static [&'static str],
     /// The property that does not hold.
     pub property: Property,
+    /// Names of the cases.
+    pub cases: &'static [&'static str],
+    /// The parameters with which it does not hold.
+    pub when: fn(&MethodSpec) -> bool,
     /// Why, with its source.
     pub reason: &'static str,
     /// The adapters on which it does not hold.
@@ -79,26 +80,84 @@ pub struct Flaw {
 }
 
 impl Flaw {
-    /// Whether a method's name is among [`Flaw::methods`].
-    pub fn names(&self, method: &str) -> bool {
-        self.methods.iter().any(|pattern| {
-            pattern
-                .strip_suffix('*')
-                .map_or(*pattern == method, |start| method.starts_with(start))
-        })
-    }
-
-    /// Whether it says that a method lacks a property in a case on an adapter.
-    pub fn is_about(
-        &self,
-        method: &str,
+    /// The flaw that a method declares of a property in a case on an adapter.
+    pub fn declared(
+        method: &MethodSpec,
         case: &str,
         property: Property,
         adapter: &wgpu::AdapterInfo,
-    ) -> bool {
-        self.property == property
-            && self.cases.contains(&case)
-            && self.names(method)
-            && self.adapters.contains(adapter)
+    ) -> Option<&'static Self> {
+        method.method().flaws.iter().find(|flaw| {
+            flaw.property == property
+                && flaw.cases.contains(&case)
+                && (flaw.when)(method)
+                && flaw.adapters.contains(adapter)
+        })
     }
+
+    /// A flaw of a method's mathematics, whatever its parameters.
+    pub(crate) const fn new(
+        property: Property,
+        cases: &'static [&'static str],
+        reason: &'static str,
+    ) -> Self {
+        Self {
+            property,
+            cases,
+            when: |_| true,
+            reason,
+            adapters: AdapterScope::ANY,
+        }
+    }
+
+    /// The same flaw with some parameters only.
+    pub(crate) const fn when(self, when: fn(&MethodSpec) -> bool) -> Self {
+        Self { when, ..self }
+    }
+
+    /// The same flaw where it was seen only: it depends on how that adapter rounds when it blends.
+    pub(crate) const fn seen_on_llvmpipe(self) -> Self {
+        Self {
+            adapters: AdapterScope::LLVMPIPE,
+            ..self
+        }
+    }
+
+    /// Sums of hundreds of terms in half floats.
+    pub(crate) const fn swallowed(cases: &'static [&'static str]) -> Self {
+        let reason = "half floats: a sum of hundreds of terms swallows what is small beside it";
+        Self::new(Property::Hull, cases, reason)
+            .when(half_sums)
+            .seen_on_llvmpipe()
+    }
+
+    /// Sums of large weights in half floats.
+    pub(crate) const fn overflowing(cases: &'static [&'static str]) -> Self {
+        let reason = "half floats end at 65,504: after 22 layers of weight 3e3 nothing is left but the coverage (McGuire & Bavoil 2013)";
+        Self::new(Property::Hull, cases, reason).when(half_sums)
+    }
+
+    /// Weights that do not depend on the layers in front.
+    pub(crate) const BLIND: Self = Self::new(
+        Property::Opaque,
+        &["alpha-near-one"],
+        "a weight of depth alone, or of depth and sums, does not know what lies in front (McGuire & Bavoil 2013, section 5)",
+    );
+
+    /// Networks that half floats do not evaluate within their limit.
+    pub(crate) const WIDE_LAYERS: Self = Self::new(
+        Property::Half,
+        &["half-float"],
+        "wide layers and inputs of scene units: roundings of the first layers add up to more than the last layer's own",
+    );
+}
+
+/// Whether the sums of colour have 16 bits.
+pub(crate) fn half_sums(spec: &MethodSpec) -> bool {
+    spec.promises().sums == Precision::Half
+}
+
+/// Whether the statistics have 16 bits.
+pub(crate) fn half_statistics(spec: &MethodSpec) -> bool {
+    spec.promises().statistics == Precision::Half
 }

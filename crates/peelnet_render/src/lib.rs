@@ -21,7 +21,7 @@ pub mod scene;
 pub use error::RenderError;
 pub use flaw::{Flaw, Property};
 pub use image::Image;
-pub use methods::{FrameStats, METHODS, MethodSpec, layers::LayerView};
+pub use methods::{FrameStats, METHODS, Method, MethodSpec, Role, layers::LayerView};
 
 use methods::{Build, Compositor, DrawContext};
 use peelnet_gpu::{

@@ -16,7 +16,7 @@ pub fn thesis_inputs(fragment: &Fragment, pixel: &[Fragment]) -> [f32; 3] {
 pub fn composite(
     fragments: &[Fragment],
     background: [f32; 3],
-    weight: impl Fn(&Fragment) -> f32,
+    weight: impl FnMut(&Fragment) -> f32,
 ) -> [f32; 3] {
     normalised(&Sums::of(fragments, weight), background)
 }

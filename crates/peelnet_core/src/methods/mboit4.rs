@@ -124,6 +124,19 @@ pub fn share_bounds<F: Float>(moments: [F; 4], bias: F, zeta: F) -> (F, F) {
     (low, low + own)
 }
 
+/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
+pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
+    let estimate = |m: &Moments, zeta| m.transmittance(zeta, settings);
+    super::transmittances(
+        fragments,
+        warp,
+        Moments::default(),
+        settings.own_share_out,
+        Moments::add,
+        estimate,
+    )
+}
+
 /// Eq 6's composite with the estimated transmittance as the weight.
 pub fn composite(
     fragments: &[Fragment],

@@ -5,6 +5,7 @@
 pub mod anchored;
 pub mod blended;
 pub mod deep;
+pub mod dfaoit;
 pub mod kbuffer;
 pub mod mboit4;
 pub mod mboit6;
@@ -15,6 +16,36 @@ pub mod wavelet;
 pub mod wboit;
 pub mod weighted_average;
 pub mod weighted_sum;
+
+use crate::absorbance::{DepthWarp, absorbance};
+
+/// Asks the sums over a pixel's fragments, given as (linear depth, α), for the transmittance in front of each: with the
+/// fragment's own absorbance in the sums or taken out of them.
+fn transmittances<S: Copy>(
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
+    empty: S,
+    own_out: bool,
+    add: impl Fn(&mut S, f64, f64),
+    estimate: impl Fn(&S, f64) -> f64,
+) -> Vec<f64> {
+    let point = |&(depth, alpha): &(f32, f32)| (absorbance(alpha), warp.apply(depth.into()));
+    let mut sums = empty;
+    for (b, zeta) in fragments.iter().map(point) {
+        add(&mut sums, b, zeta);
+    }
+    fragments
+        .iter()
+        .map(point)
+        .map(|(b, zeta)| {
+            let mut seen = sums;
+            if own_out {
+                add(&mut seen, -b, zeta);
+            }
+            estimate(&seen, zeta)
+        })
+        .collect()
+}
 
 #[cfg(test)]
 mod tests {

@@ -43,6 +43,19 @@ impl Averages {
     }
 }
 
+/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
+pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, own_share_out: bool) -> Vec<f64> {
+    let estimate = |a: &Averages, zeta| (-a.in_front(zeta)).exp().min(1.0);
+    super::transmittances(
+        fragments,
+        warp,
+        Averages::default(),
+        own_share_out,
+        Averages::add,
+        estimate,
+    )
+}
+
 /// Eq 6's composite with the estimated transmittance as the weight; `own_share_out` leaves a fragment's own absorbance out
 /// of what it asks for.
 pub fn composite(

@@ -16,7 +16,7 @@ pub struct Sums {
 
 impl Sums {
     /// Accumulates a pixel with the given weight.
-    pub fn of(fragments: &[Fragment], weight: impl Fn(&Fragment) -> f32) -> Self {
+    pub fn of(fragments: &[Fragment], mut weight: impl FnMut(&Fragment) -> f32) -> Self {
         let mut sums = Self {
             color: [0.0; 3],
             alpha: 0.0,

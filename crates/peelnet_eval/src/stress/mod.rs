@@ -1,6 +1,6 @@
 //! Hard cases: every method drawn where transparency is known to break, and what must hold of it there.
 //!
-//! [`CASES`] makes the scenes, [`Property`] says what must hold, with its limit, and [`FLAWS`] what is known not to.
+//! [`CASES`] makes the scenes, [`Property`] says what must hold, with its limit, and each method's declaration what is known not to ([`Flaw`]).
 //! [`stress`] draws a case with a list of methods and gives a [`Row`] for each method and property.
 //!
 //! ```text
@@ -10,7 +10,6 @@
 //! ```
 
 mod catalogue;
-mod flaws;
 mod network;
 mod properties;
 mod result;
@@ -18,7 +17,6 @@ mod subject;
 mod trial;
 
 pub use catalogue::{CASES, Case, Examine, Work};
-pub use flaws::FLAWS;
 pub use network::Network;
 pub use peelnet_render::{Flaw, Property};
 pub use properties::Finding;
@@ -40,9 +38,9 @@ use std::{collections::BTreeMap, path::Path};
 pub enum Outcome {
     /// It holds.
     Pass,
-    /// It does not, as [`FLAWS`] says.
+    /// It does not, as the method declares.
     Declared,
-    /// It does not, or it does although [`FLAWS`] says that it does not.
+    /// It does not, or it does although the method declares a flaw.
     Fail,
 }
 
@@ -186,8 +184,8 @@ fn rows(
     findings
         .iter()
         .map(|(&(i, property), finding)| {
-            let method = subjects[i].method.to_string();
-            let flaw = flaws::declared(&method, case.id, property, adapter);
+            let method = &subjects[i].method;
+            let flaw = Flaw::declared(method, case.id, property, adapter);
             let (result, reason) = match (finding.holds(), flaw) {
                 (true, None) => (Outcome::Pass, None),
                 (true, Some(flaw)) if strict => (
@@ -199,7 +197,7 @@ fn rows(
                 (false, None) => (Outcome::Fail, None),
             };
             Row {
-                method,
+                method: method.to_string(),
                 case: case.id.to_owned(),
                 property,
                 result,
@@ -292,7 +290,7 @@ impl<'a> Stage<'a> {
             properties::compare_frames([&last, &next], exact, note);
             last = next;
         }
-        if !subject.is_scaled() {
+        if !subject.method.is_scaled() {
             for order in ORDERS {
                 self.renderer.submit(order);
                 let other = self.renderer.draw(&mut prepared, &views[0]);
@@ -437,25 +435,20 @@ mod tests {
         assert_eq!(coplanar(0.5, &other), Outcome::Fail);
     }
 
-    /// Every flaw names methods and cases that exist.
+    /// Every flaw that a method declares names cases that exist, and belongs to at least one of the methods that run.
     #[test]
-    fn flaws_name_what_there_is() {
-        let methods: Vec<String> = Subject::all_methods()
-            .iter()
-            .map(ToString::to_string)
-            .collect();
-        for flaw in FLAWS {
-            for case in flaw.cases {
-                assert!(CASES.iter().any(|c| c.id == *case), "{case}");
+    fn flaws_are_of_cases_and_methods_that_run() {
+        let run = Subject::all_methods();
+        for method in peelnet_render::METHODS {
+            for flaw in method.flaws {
+                let at = format!("{} of {}", flaw.property, method.name);
+                for case in flaw.cases {
+                    assert!(CASES.iter().any(|c| c.id == *case), "{at}: {case}");
+                }
+                let mut of_method = run.iter().filter(|m| m.name() == method.name);
+                assert!(of_method.any(flaw.when), "{at} is never seen");
+                assert!(flaw.reason.len() > 10, "{at}");
             }
-            for pattern in flaw.methods {
-                let alone = Flaw {
-                    methods: std::slice::from_ref(pattern),
-                    ..*flaw
-                };
-                assert!(methods.iter().any(|m| alone.names(m)), "{pattern}");
-            }
-            assert!(flaw.reason.len() > 10);
         }
     }
 }

@@ -65,11 +65,11 @@ const TRANSMITTANCE: [(&str, f64, f64); 3] = [
     ("coplanar", 0.01, 5e-3),
 ];
 
-/// The limit of [`Property::Transmittance`] in a case; none where it is not asked for.
+/// The limit of [`Property::Transmittance`] in a case; `None` in cases without one.
 pub(super) fn transmittance_limit(case: &str, subject: &Subject) -> Option<f64> {
-    let ours = subject.method.name().starts_with("deep-");
+    let close = subject.promises.close_estimate;
     let found = TRANSMITTANCE.iter().find(|(id, ..)| *id == case);
-    found.map(|&(_, public, least)| if ours { least } else { public })
+    found.map(|&(_, public, least)| if close { least } else { public })
 }
 
 impl Subject {
@@ -83,7 +83,7 @@ impl Subject {
     /// another order differ by `2n` roundings; two of them are divided, and a third is the coverage. What is reconstructed from
     /// statistics adds its own: a share of the absorbance, and `e^−b·share` changes by `b` times as much at most.
     fn order_limit(&self, kind: &Kind) -> f64 {
-        if self.sorts() {
+        if self.promises.sorted {
             return 0.0;
         }
         let n = kind.fragments.len() as f64;
@@ -133,7 +133,7 @@ pub(super) fn judge(
             &place,
         );
         let error = (0..3).fold(0.0, |e: f64, c| nan_max(e, (p64[c] - kind.exact[c]).abs()));
-        if subject.is_exact() {
+        if subject.promises.exact {
             let limit = peelnet_core::tolerance::EXACT * kind.peak;
             note(Property::Exact, error, limit, &place);
         }
@@ -142,7 +142,7 @@ pub(super) fn judge(
             let limit = (SINGLE + 6.0 * subject.rounding()) * kind.peak;
             note(Property::Single, error, limit, &place);
         }
-        if subject.is_normalised() {
+        if subject.promises.normalised {
             let outside = directions().zip(&supports[k]).map(|(d, &[least, most])| {
                 let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let along = dot(d, &p64);

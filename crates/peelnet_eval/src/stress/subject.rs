@@ -1,101 +1,70 @@
-//! A method under test, and what may be asked of it.
+//! A method under test, and the limits that follow from its promises.
 
 use peelnet_model::Model;
-use peelnet_render::{LearnedWeight, METHODS, MethodSpec};
+use peelnet_render::{
+    LearnedWeight, METHODS, MethodSpec,
+    methods::{Precision, Promises},
+};
 
 /// A method with the network it draws with.
 #[derive(Clone, Debug)]
 pub struct Subject {
-    /// The method and its knobs.
+    /// The method with its parameters.
     pub method: MethodSpec,
     /// The network's text and itself, for learned methods.
     pub learned: Option<(LearnedWeight, Model)>,
-    /// Whether sums are kept in 16 bits.
-    pub(super) half_sums: bool,
-    /// Whether statistics are kept in 16 bits.
-    half_statistics: bool,
+    pub(super) promises: Promises,
 }
 
 impl Subject {
     /// A method as it is drawn.
     pub fn new(method: MethodSpec, learned: Option<(LearnedWeight, Model)>) -> Self {
-        let entry = method.entry();
-        let targets = method.knob("targets");
-        let has_targets = entry.knobs().any(|(knob, _)| knob == "targets");
-        // Methods whose statistics have 32 bits by default name 16 bits as a point of their curve.
-        let full_statistics = !has_targets || entry.points.contains(&":targets=f16");
         Self {
-            // Wavelets have no choice: statistics of 32 bits, sums of 16.
-            half_sums: (has_targets || method.name() == "wavelet-3") && targets != Some("f32"),
-            half_statistics: targets.map_or(!full_statistics, |t| t == "f16"),
+            promises: method.promises(),
             method,
             learned,
         }
     }
 
-    /// Every method, and every knob of each that changes a precision. Of those with a number, one in the middle.
+    /// Every method in every precision. Of those with a number, one in the middle of its curve.
     pub fn all_methods() -> Vec<MethodSpec> {
         let mut all: Vec<MethodSpec> = Vec::new();
-        for entry in METHODS {
-            let name = entry.representative();
-            let mut names = vec![name.clone()];
-            if entry.knobs().any(|(knob, _)| knob == "targets") {
-                // One of them may be the default; both are named, so that the rows say what was drawn.
-                names = ["f16", "f32"]
-                    .map(|t| format!("{name}:targets={t}"))
-                    .to_vec();
-                if entry.points.contains(&":targets=f16") {
-                    // By default 32-bit statistics and 16-bit sums.
-                    names.insert(0, name);
-                }
+        for method in METHODS {
+            let default = MethodSpec::representative(method);
+            if !method.has_targets() {
+                all.push(default);
+                continue;
             }
-            // Made from the list's own names: they parse.
-            all.extend(names.iter().filter_map(|n| n.parse().ok()));
+            // Where 16 bits for all are a point of the curve of their own, they are not the default.
+            if method.curve.contains(&":targets=f16") {
+                all.push(default.clone());
+            }
+            // One of them may be the default; both are named, so that rows state the precision.
+            let precisions = ["f16", "f32"].map(|word| default.with("targets", word));
+            // The method has the parameter.
+            all.extend(precisions.into_iter().flatten());
         }
         all
     }
 
-    /// Whether it is exact by definition, and not capped.
-    pub(super) fn is_exact(&self) -> bool {
-        self.method.entry().exact && self.method.knob("passes").is_none() && !self.is_scaled()
-    }
-
-    /// Whether transparency is drawn at a lower resolution: pixels then mix their neighbours.
-    pub(super) fn is_scaled(&self) -> bool {
-        self.method.knob("scale").is_some()
-    }
-
-    /// Whether its colour is a mean of the fragments' colours and the background.
-    pub(super) fn is_normalised(&self) -> bool {
-        !matches!(self.method.name(), "weighted-sum" | "dfaoit") && !self.is_scaled()
-    }
-
-    /// Whether a different order of drawing gives the very same operations.
-    pub(super) fn sorts(&self) -> bool {
-        let sorted_first = self.method.name().starts_with("painter");
-        self.is_exact() || (sorted_first && self.method.knob("sort") != Some("off"))
-    }
-
-    /// What each addition to the sums rounds by, relative to what is in them.
+    /// The rounding of each addition to the sums, relative to the sum.
     pub(super) fn rounding(&self) -> f64 {
-        if self.half_sums { HALF } else { FULL }
+        unit_roundoff(self.promises.sums)
     }
 
     /// What roundings of the statistics of `n` fragments may change, as a share of the colour. Positions are roots of a polynomial
-    /// of the moments: where roots coincide, a change of the moments moves them by its square root (four moments), or
-    /// cube root (six).
+    /// of the statistics: where roots coincide, a change of the statistics moves them by its root of the same degree.
     pub(super) fn reconstruction(&self, n: f64) -> f64 {
-        let rounding = if self.half_statistics { HALF } else { FULL };
-        let roots = match self.method.name() {
-            "mboit6" => 3.0,
-            "mboit4" | "nmt" | "deep-small" | "deep-medium" | "deep-large" => 2.0,
-            _ => return 0.0,
-        };
-        4.0 * (n * rounding).powf(1.0 / roots)
+        self.promises.root.map_or(0.0, |degree| {
+            let rounding = n * unit_roundoff(self.promises.statistics);
+            4.0 * rounding.powf(1.0 / f64::from(degree))
+        })
     }
 }
 
-/// Unit roundoff of half floats.
-const HALF: f64 = 1.0 / 2048.0;
-/// Unit roundoff of 32-bit floats.
-const FULL: f64 = 1.0 / 16_777_216.0;
+fn unit_roundoff(precision: Precision) -> f64 {
+    match precision {
+        Precision::Half => 1.0 / 2048.0,
+        Precision::Full => 1.0 / 16_777_216.0,
+    }
+}

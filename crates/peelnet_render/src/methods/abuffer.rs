@@ -1,15 +1,37 @@
 //! `abuffer`: every fragment stored, sorted and composited (S-buffer, Vasilakis & Fudos 2012).
 
-use super::{Build, Compositor, DrawContext, FrameStats};
+use super::{Build, Compositor, Count, DrawContext, FrameStats, Method, Parameter, Promises, Role};
 use crate::{
     RenderError,
     passes::sbuffer::{FragmentStorage, SBuffer, bytes_per_fragment},
     scene::{FrameTargets, SceneBuffers},
 };
+use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
     wgpu,
+};
+
+const BUDGET: Count = Count {
+    name: "budget",
+    about: "fragments that one tile may hold",
+};
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[Parameter::Count(BUDGET)],
+    promises: |_| Promises {
+        tinted: true,
+        ..Promises::EXACT
+    },
+    curve: &["", ":scale=0.5"],
+    roles: &[(Role::Reference, "abuffer")],
+    twin: Some(|_, p| Some(over::composite(p.fragments, p.background))),
+    ..Method::new(
+        "abuffer",
+        "exact: S-buffer, every fragment stored and sorted",
+        build,
+    )
 };
 
 #[derive(Debug)]
@@ -20,14 +42,14 @@ struct ABuffer {
     tinted: bool,
 }
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let features: &[&str] = if b.scene.tinted { &["tinted"] } else { &[] };
     let wgsl = peelnet_shaders::link("methods::abuffer::composite", features, &[])?;
     build_with(
         b.gpu,
         b.scene,
         b.frame,
-        b.spec.count("budget")?,
+        BUDGET.given(b.spec),
         features,
         &wgsl,
     )

@@ -2,15 +2,102 @@
 //! the exported text itself. The CPU twin is `peelnet_core::methods::anchored`.
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, MOMENT_TARGETS, Method, MethodSpec, Pixel, Precision, Promises, TARGETS,
     commutative::{self, Blend, Gather, Plan, Target},
+    learned_transmittances,
     weighted::SUMS,
 };
-use crate::RenderError;
-use peelnet_core::statistics::SumPrecision;
-use peelnet_model::Recipe;
+use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use peelnet_core::{methods::anchored, statistics::SumPrecision};
+use peelnet_model::{Output, Recipe};
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+const fn promises(statistics: Precision) -> Promises {
+    Promises {
+        tinted: true,
+        statistics,
+        root: Some(2),
+        close_estimate: true,
+        ..Promises::NORMALISED
+    }
+}
+
+fn twin(_: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
+    let model = p.model?;
+    let separate_ends = model.meta.output == Output::AnchoredShareSeparateEnds;
+    let inputs = model.meta.inputs.len();
+    let share = |features: &[f64; 9]| model.forward_raw_f64(&features[..inputs])[0];
+    let (fragments, c0) = (p.fragments, p.background);
+    Some(anchored::composite(
+        fragments,
+        c0,
+        &p.warp,
+        separate_ends,
+        share,
+    ))
+}
+
+/// What the three sizes have in common.
+macro_rules! anchored {
+    ($name:literal, $about:literal) => {
+        Method {
+            learned: true,
+            twin: Some(twin),
+            transmittances: Some(learned_transmittances),
+            ..Method::new($name, $about, build)
+        }
+    };
+}
+
+const BEHIND_COINCIDENT: Flaw = Flaw::new(
+    Property::Transmittance,
+    &["coplanar"],
+    "the network's own error at a layer between sixteen coincident ones and the end: 0.010 and 0.007; where the sixteen stand before one, it is exact",
+);
+
+pub(super) const SMALL: Method = Method {
+    parameters: &[TARGETS],
+    promises: |_| promises(Precision::Half),
+    curve: &["", ":targets=f32"],
+    flaws: &[
+        Flaw::swallowed(&["deep"]),
+        Flaw::new(
+            Property::Scale,
+            &["high-alpha"],
+            "depths are rounded otherwise, and a sum in half floats falls on the other side of a rounding (docs/learned-weights.md)",
+        )
+        .when(half_sums)
+        .seen_on_llvmpipe(),
+        BEHIND_COINCIDENT,
+    ],
+    ..anchored!(
+        "deep-small",
+        "a learned share of what lies between the pixel's ends, 5-8-1"
+    )
+};
+
+pub(super) const MEDIUM: Method = Method {
+    parameters: &[TARGETS],
+    promises: |_| promises(Precision::Half),
+    curve: &["", ":targets=f32", ":scale=0.5"],
+    flaws: &[Flaw::swallowed(&["alpha-tiny", "deep", "near-overflow"])],
+    ..anchored!(
+        "deep-medium",
+        "the same with exact ends, 5-12-1: the one to ship"
+    )
+};
+
+pub(super) const LARGE: Method = Method {
+    parameters: &[MOMENT_TARGETS],
+    promises: |_| promises(Precision::Full),
+    curve: &["", ":targets=f16", ":scale=0.5"],
+    flaws: &[Flaw::swallowed(&["alpha-tiny", "deep"]), BEHIND_COINCIDENT],
+    ..anchored!(
+        "deep-large",
+        "the same with more features, 9-14-9-1: the most accurate"
+    )
+};
+
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
     let separate_ends = learned.recipe != Recipe::Small;
     let full = learned.recipe.sum_precision() == SumPrecision::Exact;

@@ -4,7 +4,7 @@
 //! A method states its targets, its storage, its passes and its resolve; their bindings, bytes and passes follow from that.
 //! All but the painter's methods give the same image whatever the order of drawing.
 
-use super::{Build, Compositor, DrawContext, FrameStats};
+use super::{Build, Compositor, DrawContext, FrameStats, Precision};
 use crate::{
     RenderError,
     passes::count::{unwritten, unwritten_attachment, unwritten_texture},
@@ -73,7 +73,7 @@ pub(crate) struct Target {
     pub label: &'static str,
     /// 1, 2 or 4.
     pub channels: u32,
-    /// Whether it has 32 bits a channel unless the method's knob says otherwise.
+    /// Whether it has 32 bits a channel unless `targets` says otherwise.
     pub full: bool,
     pub blend: Blend,
 }
@@ -205,13 +205,13 @@ impl Target {
     }
 }
 
-/// Makes a plan ready, with 16- or 32-bit targets as the method's knob says.
+/// Makes a plan ready, with 16- or 32-bit targets as the method's `targets` says.
 pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let tinting = plan.tinted_by.filter(|_| b.scene.tinted);
     let mut all_targets = plan.targets.to_vec();
     all_targets.extend(tinting.map(|_| TINTED));
-    let knob = b.spec.full_precision()?;
-    let is_full = |t: &Target| knob.unwrap_or(t.full);
+    let asked = b.spec.targets();
+    let is_full = |t: &Target| asked.map_or(t.full, |p| p == Precision::Full);
     if all_targets.iter().any(is_full) {
         b.gpu.need(
             wgpu::Features::FLOAT32_BLENDABLE,

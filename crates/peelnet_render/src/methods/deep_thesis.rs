@@ -1,13 +1,70 @@
 //! `deep-thesis`: eq 6 with the weight of the thesis's network (Papakostas 2022), drawn with the exported text itself.
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, Method, Promises, Role, TARGETS,
     commutative::{self, Blend, Gather, Plan, Target},
+    learned_transmittances,
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::RenderError;
+use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use peelnet_core::methods::deep;
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+const IN_SCENE_UNITS: &str = "reads depth in scene units (Papakostas 2022)";
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[TARGETS],
+    learned: true,
+    promises: |_| Promises {
+        close_estimate: true,
+        ..Promises::NORMALISED
+    },
+    roles: &[(Role::ThesisNetwork, "deep-thesis")],
+    twin: Some(|_, p| {
+        let model = p.model?;
+        Some(deep::composite(p.fragments, p.background, |f| {
+            model.forward_raw(&deep::thesis_inputs(f, p.fragments))[0]
+        }))
+    }),
+    transmittances: Some(learned_transmittances),
+    flaws: &[
+        Flaw::swallowed(&["alpha-tiny", "deep", "near-overflow"]),
+        Flaw::BLIND,
+        Flaw::new(
+            Property::Scale,
+            &[
+                "alpha-near-one",
+                "alpha-one",
+                "coplanar",
+                "far",
+                "high-alpha",
+                "intersecting",
+                "moving-camera",
+                "opaque-mix",
+                "passing",
+                "thin-slab",
+                "two-layers",
+                "wide-range",
+            ],
+            IN_SCENE_UNITS,
+        ),
+        Flaw::new(Property::Scale, &["alpha-tiny", "deep"], IN_SCENE_UNITS)
+            .when(half_sums)
+            .seen_on_llvmpipe(),
+        Flaw::new(
+            Property::Transmittance,
+            &["isolated", "two-layers", "coplanar"],
+            "its output is a weight among others, not a transmittance that stands alone",
+        ),
+        Flaw::WIDE_LAYERS,
+    ],
+    ..Method::new(
+        "deep-thesis",
+        "Papakostas 2022: eq 6 with a network's weight",
+        build,
+    )
+};
+
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
     let statistics = Target {
         label: "statistics",

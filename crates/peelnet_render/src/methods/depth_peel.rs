@@ -1,8 +1,8 @@
 //! `depth-peel`: front to back, one layer a pass (Everitt 2001), until a pass peels nothing.
 
-use super::{Build, Compositor, DrawContext, FrameStats};
+use super::{Build, Compositor, Count, DrawContext, FrameStats, Method, Parameter, Promises};
 use crate::{
-    RenderError,
+    Flaw, Property, RenderError,
     passes::{
         count::CountPass,
         fullscreen::FullscreenPass,
@@ -10,7 +10,42 @@ use crate::{
     },
     scene::clear_color,
 };
+use peelnet_core::methods::over;
 use peelnet_gpu::{bind::Bind, wgpu};
+
+pub(super) const PASSES: Count = Count {
+    name: "passes",
+    about: "a cap on the number of peeling passes",
+};
+
+/// Coincident fragments that are drawn in another order.
+pub(super) const COINCIDENT: Flaw = Flaw::new(
+    Property::Order,
+    &["coplanar"],
+    "coincident fragments are told apart by a depth test that keeps the first drawn, so that they must be drawn in the order of their numbers",
+);
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[Parameter::Count(PASSES)],
+    promises: |s| Promises {
+        exact: PASSES.given(s).is_none(),
+        sorted: PASSES.given(s).is_none(),
+        ..Promises::EXACT
+    },
+    curve: &["", ":passes=2", ":passes=4", ":passes=8"],
+    twin: Some(|s, p| {
+        let sorted = over::sorted(p.fragments);
+        let passes = PASSES.given(s).unwrap_or(u64::MAX) as usize;
+        let reached = &sorted[..passes.min(sorted.len())];
+        Some(over::composite(reached, p.background))
+    }),
+    flaws: &[COINCIDENT.when(|s| PASSES.given(s).is_none())],
+    ..Method::new(
+        "depth-peel",
+        "exact: front to back, one layer a pass",
+        build,
+    )
+};
 
 #[derive(Debug)]
 struct DepthPeel {
@@ -24,7 +59,7 @@ struct DepthPeel {
     max_passes: u64,
 }
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
     let peel = SinglePeel::new(gpu, b.scene, frame, &[])?;
     let format = wgpu::TextureFormat::Rgba32Float;
@@ -77,7 +112,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         accumulated,
         found,
         count: None,
-        max_passes: b.spec.count("passes")?.unwrap_or(u64::MAX),
+        max_passes: PASSES.given(b.spec).unwrap_or(u64::MAX),
     }))
 }
 

@@ -2,8 +2,9 @@
 //! drawn with the exported text itself.
 
 use super::{
-    Build, Compositor, DrawContext, FrameStats,
+    Build, Compositor, DrawContext, FrameStats, Method, Precision, Promises, TARGETS,
     commutative::{Blend, Target},
+    depth_peel::COINCIDENT,
     weighted::SUMS,
 };
 use crate::{
@@ -14,9 +15,34 @@ use crate::{
     },
     scene::{GeometryPass, GeometryPipelines, Surfaces, clear_color},
 };
+use peelnet_core::methods::dfaoit;
 use peelnet_gpu::{
     bind::{Bind, Bound},
     wgpu,
+};
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[TARGETS],
+    learned: true,
+    // The tail's colour is the network's, not a mean.
+    promises: |_| Promises {
+        normalised: false,
+        ..Promises::NORMALISED
+    },
+    twin: Some(|_, p| {
+        let model = p.model?;
+        let tail = |inputs: [f32; 10]| {
+            let color = model.forward_raw(&inputs);
+            [color[0], color[1], color[2]]
+        };
+        Some(dfaoit::composite(p.fragments, p.background, tail))
+    }),
+    flaws: &[COINCIDENT],
+    ..Method::new(
+        "dfaoit",
+        "Tsopouridis et al. 2024: two layers exact, the colour of the rest from a network",
+        build,
+    )
 };
 
 /// Layers that are composited exactly.
@@ -35,10 +61,10 @@ struct Dfaoit {
     bytes_per_pixel: f64,
 }
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
     let learned = b.learned_weight()?;
-    let full = b.spec.full_precision()? == Some(true);
+    let full = b.spec.targets() == Some(Precision::Full);
     if full {
         gpu.need(
             wgpu::Features::FLOAT32_BLENDABLE,

@@ -1,9 +1,11 @@
 //! `dual-peel`: two layers a pass, one from the front (under) and one from the back (over), until nothing is left
 //! (Bavoil & Myers 2008).
 
-use super::{Build, Compositor, DrawContext, FrameStats};
+use super::{
+    Build, Compositor, DrawContext, FrameStats, Method, Parameter, Promises, depth_peel::PASSES,
+};
 use crate::{
-    RenderError,
+    Flaw, Property, RenderError,
     passes::{
         count::{CountPass, FragmentCount},
         dual::{self, DualPeel},
@@ -11,7 +13,42 @@ use crate::{
     },
     scene::{attachment, clear_color},
 };
+use peelnet_core::methods::over;
 use peelnet_gpu::{bind::Bind, wgpu};
+
+const fn coplanar(property: Property) -> Flaw {
+    let reason = "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)";
+    Flaw::new(property, &["coplanar"], reason).when(|s| PASSES.given(s).is_none())
+}
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[Parameter::Count(PASSES)],
+    promises: |s| Promises {
+        exact: PASSES.given(s).is_none(),
+        sorted: PASSES.given(s).is_none(),
+        ..Promises::EXACT
+    },
+    curve: &["", ":passes=2", ":passes=4"],
+    twin: Some(|s, p| {
+        let mut reached = over::sorted(p.fragments);
+        // One layer a pass from either end.
+        let n = reached.len();
+        let front = n.min(PASSES.given(s).unwrap_or(u64::MAX) as usize);
+        let back = front.min(n - front);
+        reached.drain(front..n - back);
+        Some(over::composite(&reached, p.background))
+    }),
+    flaws: &[
+        coplanar(Property::Background),
+        coplanar(Property::Exact),
+        coplanar(Property::Hull),
+    ],
+    ..Method::new(
+        "dual-peel",
+        "exact but for coplanar fragments: both ends, two layers a pass",
+        build,
+    )
+};
 
 #[derive(Debug)]
 struct Dual {
@@ -26,7 +63,7 @@ struct Dual {
     max_passes: u64,
 }
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     use wgpu::BlendFactor::{DstAlpha, One, OneMinusSrcAlpha, Zero};
     let (gpu, frame) = (b.gpu, b.frame);
     let peel = DualPeel::new(gpu, b.scene, frame, &[])?;
@@ -94,7 +131,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         resolve,
         found,
         count: None,
-        max_passes: b.spec.count("passes")?.unwrap_or(u64::MAX),
+        max_passes: PASSES.given(b.spec).unwrap_or(u64::MAX),
     }))
 }
 

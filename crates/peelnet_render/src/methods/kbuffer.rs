@@ -2,25 +2,97 @@
 //! CPU twin is `peelnet_core::methods::kbuffer`.
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, Method, MethodSpec, Numbered, Parameter, TARGETS, Word,
     commutative::{self, Gather, Plan, Storage},
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::RenderError;
+use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use peelnet_core::{methods::kbuffer, weights::Weight};
+
+const WEIGHT: Word = Word {
+    name: "weight",
+    about: "of the tail: eq9 (default), eq7 or eq8",
+    words: &["eq9", "eq7", "eq8"],
+};
+
+const K: Option<Numbered> = Some(Numbered {
+    most: 64,
+    power_of_two: false,
+});
+
+/// Flaws were seen with four places.
+fn four(spec: &MethodSpec) -> bool {
+    spec.number() == 4
+}
+
+fn four_in_half(spec: &MethodSpec) -> bool {
+    four(spec) && half_sums(spec)
+}
+
+const TOO_FEW_PLACES: Flaw = Flaw::new(
+    Property::Order,
+    &["coplanar"],
+    "of more coincident fragments than places, those drawn first are kept",
+)
+.when(four);
+
+pub(super) const PLAIN: Method = Method {
+    numbered: K,
+    parameters: &[TARGETS],
+    curve: &["-2", "-4", "-8"],
+    twin: Some(|s, p| {
+        let places = s.number() as usize;
+        Some(kbuffer::composite(p.fragments, p.background, places, None))
+    }),
+    flaws: &[
+        TOO_FEW_PLACES,
+        Flaw::swallowed(&["alpha-tiny", "deep"]).when(four_in_half),
+    ],
+    ..Method::new(
+        "kbuffer",
+        "the K nearest exactly, the rest blended by eq 5",
+        plain,
+    )
+};
+
+pub(super) const HYBRID: Method = Method {
+    numbered: K,
+    parameters: &[TARGETS, Parameter::Word(WEIGHT)],
+    curve: &["-2", "-4", "-8"],
+    twin: Some(|s, p| {
+        let places = s.number() as usize;
+        let weight = match WEIGHT.of(s) {
+            "eq7" => Weight::Eq7,
+            "eq8" => Weight::Eq8,
+            _ => Weight::Eq9,
+        };
+        let tail = Some(weight);
+        Some(kbuffer::composite(p.fragments, p.background, places, tail))
+    }),
+    flaws: &[
+        TOO_FEW_PLACES,
+        Flaw::swallowed(&["deep"]).when(four_in_half),
+        Flaw::overflowing(&["near-overflow"]).when(four_in_half),
+    ],
+    ..Method::new(
+        "hybrid",
+        "the K nearest exactly, the rest blended by eq 6",
+        hybrid,
+    )
+};
 
 /// The tail by eq 5.
-pub(super) fn plain(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn plain(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     build(b, "unweighted")
 }
 
 /// The tail by eq 6.
-pub(super) fn hybrid(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let weight = b.spec.word("weight", &["eq9", "eq7", "eq8"])?;
-    build(b, weight)
+fn hybrid(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    build(b, WEIGHT.of(b.spec))
 }
 
 fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError> {
-    let k = b.spec.size();
+    let k = b.spec.number();
     let parameters = format!("const K: u32 = {k}u;\n");
     let extra = [("parameters", parameters.as_str())];
     let (nearest, triangles, colors) = (0, 1, 2);

@@ -2,7 +2,7 @@
 //!
 //! A pool that turns out too small is made larger and the pass drawn again: nothing is dropped.
 
-use super::{Build, Compositor, DrawContext, FrameStats};
+use super::{Build, Compositor, Count, DrawContext, FrameStats, Method, Parameter, Promises};
 use crate::{
     RenderError,
     passes::{
@@ -11,10 +11,30 @@ use crate::{
     },
     scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
 };
+use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
     wgpu,
+};
+
+const NODES: Count = Count {
+    name: "nodes",
+    about: "size of the first pool; it grows as needed",
+};
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[Parameter::Count(NODES)],
+    promises: |_| Promises {
+        tinted: true,
+        ..Promises::EXACT
+    },
+    twin: Some(|_, p| Some(over::composite(p.fragments, p.background))),
+    ..Method::new(
+        "linked-list",
+        "exact: one pass into a list for each pixel, sorted by relinking",
+        build,
+    )
 };
 
 /// Nodes that the first frame gets for each pixel.
@@ -38,7 +58,7 @@ struct Pool {
     composite_group: Bound,
 }
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
     let pixels = frame.pixels();
     let heads = gpu.storage("list heads", u64::from(pixels) * 4)?;
@@ -49,7 +69,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         &[width, height, groups_2d(pixels)[0], 0],
         wgpu::BufferUsages::UNIFORM,
     );
-    let nodes = b.spec.count("nodes")?;
+    let nodes = NODES.given(b.spec);
     let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);
     let pool = Pool::new(gpu, b.scene, frame, [&heads, &used, &extent], first)?;
     Ok(Box::new(LinkedList {

@@ -1,4 +1,4 @@
-//! `scale=S`, a knob of every method: transparency at S times the resolution, upsampled by depth.
+//! `scale=S`, a parameter of every method: transparency at S times the resolution, upsampled by depth.
 //!
 //! The method composites over black, at its own size and against its own opaque depth. What comes out is normalised,
 //! premultiplied colour with coverage, which may be interpolated; sums and moments may not.
@@ -29,7 +29,7 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
         .map(|n| ((n as f32 * scale).round() as u32).max(1));
     let frame = b.scene.targets_of(b.gpu, size, b.frame.aspect)?;
     let opaque = b.scene.opaque_pipelines(b.gpu, &frame)?;
-    let method = (b.spec.entry().build)(&Build {
+    let method = (b.spec.method().build)(&Build {
         frame: &frame,
         ..*b
     })?;

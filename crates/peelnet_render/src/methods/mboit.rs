@@ -1,11 +1,162 @@
 //! `mboit4` and `mboit6`: moment-based transparency with four and six power moments (Münstermann et al. 2018).
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, MOMENT_TARGETS, Method, MethodSpec, Number, Parameter, Precision, Promises,
+    Role, Word,
     commutative::{self, Blend, Gather, Plan, Target},
     weighted::SUMS,
 };
-use crate::RenderError;
+use crate::{Flaw, Property, RenderError, flaw::half_statistics};
+use peelnet_core::methods::{
+    mboit4::{self, Settings},
+    mboit6,
+};
+
+const OVERESTIMATION: Number = Number::any(
+    "overestimation",
+    Settings::PAPER.overestimation,
+    "0.25 by default",
+);
+
+/// The default is that of 32-bit moments.
+const BIAS_4: Number = Number::any(
+    "bias",
+    Settings::PAPER.bias,
+    "5e-7 by default, 6e-5 with 16-bit moments",
+);
+
+const BIAS_6: Number = Number::any(
+    "bias",
+    mboit6::PAPER.bias,
+    "5e-6 by default, 6e-4 with 16-bit moments",
+);
+
+const OWN: Word = Word {
+    name: "own",
+    about: "in (default, as published) or out: a fragment's own absorbance",
+    words: &["in", "out"],
+};
+
+fn own_out(spec: &MethodSpec) -> bool {
+    OWN.of(spec) == "out"
+}
+
+/// The bias that was given, or the paper's for the moments' precision.
+fn bias(spec: &MethodSpec, bias: Number, half: f64) -> f64 {
+    let paper = if half_statistics(spec) {
+        half
+    } else {
+        bias.default
+    };
+    bias.given(spec).unwrap_or(paper)
+}
+
+fn settings(spec: &MethodSpec, bias: f64) -> Settings {
+    Settings {
+        overestimation: OVERESTIMATION.of(spec),
+        bias,
+        own_share_out: own_out(spec),
+    }
+}
+
+fn settings_4(spec: &MethodSpec) -> Settings {
+    settings(spec, bias(spec, BIAS_4, 6e-5))
+}
+
+fn settings_6(spec: &MethodSpec) -> Settings {
+    settings(spec, bias(spec, BIAS_6, 6e-4))
+}
+
+const fn promises(root: u32) -> Promises {
+    Promises {
+        tinted: true,
+        statistics: Precision::Full,
+        root: Some(root),
+        ..Promises::NORMALISED
+    }
+}
+
+const OWN_SHARE: Flaw = Flaw::new(
+    Property::Transmittance,
+    &["isolated", "two-layers", "coplanar"],
+    "a fragment's own absorbance counts for a quarter, as published (Münstermann et al. 2018); own=out leaves it out",
+)
+.when(|s| !own_out(s));
+
+const BLURRED: Flaw = Flaw::new(
+    Property::Opaque,
+    &["alpha-near-one"],
+    "moments blur what lies close together (Münstermann et al. 2018)",
+);
+
+const fn jumping(cases: &'static [&'static str]) -> Flaw {
+    let reason =
+        "16-bit moments without the paper's quantisation: roots jump where they come close";
+    Flaw::new(Property::Steady, cases, reason)
+        .when(half_statistics)
+        .seen_on_llvmpipe()
+}
+
+pub(super) const FOUR: Method = Method {
+    parameters: &[
+        MOMENT_TARGETS,
+        Parameter::Number(OVERESTIMATION),
+        Parameter::Number(BIAS_4),
+        Parameter::Word(OWN),
+    ],
+    promises: |_| promises(2),
+    curve: &[
+        "",
+        ":targets=f16",
+        ":overestimation=0.5",
+        ":own=out",
+        ":scale=0.5",
+    ],
+    roles: &[(Role::MomentBlending, "mboit4")],
+    twin: Some(|s, p| {
+        let (fragments, c0) = (p.fragments, p.background);
+        Some(mboit4::composite(fragments, c0, &p.warp, &settings_4(s)))
+    }),
+    transmittances: Some(|s, fragments, warp, _| {
+        Some(mboit4::transmittances(fragments, warp, &settings_4(s)))
+    }),
+    flaws: &[
+        Flaw::swallowed(&["deep", "near-overflow"]),
+        BLURRED,
+        jumping(&["passing"]),
+        OWN_SHARE,
+    ],
+    ..Method::new(
+        "mboit4",
+        "Münstermann et al. 2018, four power moments",
+        four,
+    )
+};
+
+pub(super) const SIX: Method = Method {
+    parameters: &[
+        MOMENT_TARGETS,
+        Parameter::Number(OVERESTIMATION),
+        Parameter::Number(BIAS_6),
+        Parameter::Word(OWN),
+    ],
+    promises: |_| promises(3),
+    curve: &["", ":own=out"],
+    twin: Some(|s, p| {
+        let (fragments, c0) = (p.fragments, p.background);
+        Some(mboit6::composite(fragments, c0, &p.warp, &settings_6(s)))
+    }),
+    transmittances: Some(|s, fragments, warp, _| {
+        Some(mboit6::transmittances(fragments, warp, &settings_6(s)))
+    }),
+    flaws: &[
+        Flaw::swallowed(&["deep"]).when(half_statistics),
+        BLURRED.when(half_statistics).seen_on_llvmpipe(),
+        jumping(&["passing", "moving-camera"]),
+        OWN_SHARE,
+    ],
+    ..Method::new("mboit6", "Münstermann et al. 2018, six power moments", six)
+};
 
 const fn moments(label: &'static str, channels: u32) -> Target {
     Target {
@@ -18,8 +169,6 @@ const fn moments(label: &'static str, channels: u32) -> Target {
 
 /// What four and six moments differ in.
 struct Order {
-    /// The paper's bias for power moments in 32 and in 16 bits.
-    bias: [f32; 2],
     targets: &'static [Target],
     moments: &'static str,
     gather: &'static str,
@@ -27,16 +176,14 @@ struct Order {
     reads: &'static [usize],
 }
 
-const FOUR: Order = Order {
-    bias: [5e-7, 6e-5],
+const FOUR_MOMENTS: Order = Order {
     targets: &[SUMS, moments("absorbance", 1), moments("moments", 4)],
     moments: "methods::mboit4::moments",
     gather: "methods::mboit4::gather",
     reads: &[1, 2],
 };
 
-const SIX: Order = Order {
-    bias: [5e-6, 6e-4],
+const SIX_MOMENTS: Order = Order {
     targets: &[
         SUMS,
         moments("absorbance", 1),
@@ -48,19 +195,21 @@ const SIX: Order = Order {
     reads: &[1, 2, 3],
 };
 
-pub(super) fn four(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    build(b, &FOUR)
+fn four(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    build(b, &FOUR_MOMENTS, &settings_4(b.spec))
 }
 
-pub(super) fn six(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    build(b, &SIX)
+fn six(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    build(b, &SIX_MOMENTS, &settings_6(b.spec))
 }
 
-fn build(b: &Build<'_>, order: &Order) -> Result<Box<dyn Compositor>, RenderError> {
-    let half = b.spec.full_precision()? == Some(false);
-    let bias = b.spec.number("bias", order.bias[usize::from(half)])?;
-    let overestimation = b.spec.number("overestimation", 0.25)?;
-    let features = own_share(b, "in")?;
+fn build(
+    b: &Build<'_>,
+    order: &Order,
+    settings: &Settings,
+) -> Result<Box<dyn Compositor>, RenderError> {
+    let (bias, overestimation) = (settings.bias as f32, settings.overestimation as f32);
+    let features = own_share(settings.own_share_out);
     // `{:?}` prints the shortest text that reads back the same, with a point or an exponent.
     let parameters =
         format!("const BIAS: f32 = {bias:?};\nconst OVERESTIMATION: f32 = {overestimation:?};\n");
@@ -92,14 +241,7 @@ fn build(b: &Build<'_>, order: &Order) -> Result<Box<dyn Compositor>, RenderErro
     )
 }
 
-/// The shader feature for the knob `own`: whether a fragment's own absorbance is `in` or `out` of what lies in front of it.
-pub(super) fn own_share(
-    b: &Build<'_>,
-    default: &'static str,
-) -> Result<&'static [&'static str], RenderError> {
-    let other = if default == "in" { "out" } else { "in" };
-    Ok(match b.spec.word("own", &[default, other])? {
-        "out" => &["own_share_out"],
-        _ => &[],
-    })
+/// The shader feature that leaves a fragment's own absorbance out of the absorbance in front of it.
+pub(super) const fn own_share(out: bool) -> &'static [&'static str] {
+    if out { &["own_share_out"] } else { &[] }
 }

@@ -2,13 +2,52 @@
 //! exported text itself.
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, MOMENT_TARGETS, Method, Precision, Promises,
     commutative::{self, Blend, Gather, Plan, Target},
+    learned_transmittances,
     weighted::SUMS,
 };
-use crate::RenderError;
+use crate::{Flaw, Property, RenderError};
+use peelnet_core::methods::deep;
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+pub(super) const METHOD: Method = Method {
+    parameters: &[MOMENT_TARGETS],
+    learned: true,
+    promises: |_| Promises {
+        statistics: Precision::Full,
+        root: Some(2),
+        ..Promises::NORMALISED
+    },
+    curve: &["", ":targets=f16"],
+    twin: Some(|s, p| {
+        let points: Vec<(f32, f32)> = p.fragments.iter().map(|f| (f.depth, f.alpha)).collect();
+        let mut weights = s.transmittances(&points, &p.warp, p.model)?.into_iter();
+        // One weight a fragment.
+        let next = |_: &_| weights.next().unwrap_or_default() as f32;
+        Some(deep::composite(p.fragments, p.background, next))
+    }),
+    transmittances: Some(learned_transmittances),
+    flaws: &[
+        Flaw::new(
+            Property::Opaque,
+            &["alpha-near-one"],
+            "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
+        ),
+        Flaw::new(
+            Property::Transmittance,
+            &["isolated", "two-layers", "coplanar"],
+            "the network's own error (Tsopouridis et al. 2024)",
+        ),
+        Flaw::WIDE_LAYERS,
+    ],
+    ..Method::new(
+        "nmt",
+        "Tsopouridis et al. 2024: a network reads four moments",
+        build,
+    )
+};
+
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
     let target = |label, channels| Target {
         label,

@@ -2,24 +2,46 @@
 //! `peelnet_core::methods::stochastic`.
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, Method, Numbered, Promises, TARGETS,
     commutative::{self, Gather, Plan, Storage},
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::RenderError;
+use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use peelnet_core::methods::stochastic;
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let samples = b.spec.size();
-    if !samples.is_power_of_two() {
-        return Err(RenderError::Knob {
-            method: b.spec.to_string(),
-            message: format!(
-                "the number of samples must be a power of two: {} or {}",
-                samples.next_power_of_two() / 2,
-                samples.next_power_of_two()
-            ),
-        });
-    }
+pub(super) const METHOD: Method = Method {
+    numbered: Some(Numbered {
+        most: 256,
+        power_of_two: true,
+    }),
+    parameters: &[TARGETS],
+    promises: |_| Promises {
+        noisy: true,
+        ..Promises::NORMALISED
+    },
+    curve: &["-4", "-16", "-64"],
+    twin: Some(|s, p| {
+        let (fragments, c0) = (p.fragments, p.background);
+        Some(stochastic::composite(fragments, c0, s.number(), p.position))
+    }),
+    flaws: &[
+        Flaw::swallowed(&["deep", "near-overflow"]).when(|s| s.number() == 16 && half_sums(s)),
+        Flaw::new(
+            Property::Opaque,
+            &["alpha-near-one"],
+            "noise: one sample of sixteen weighs 0.06 (Enderton et al. 2010)",
+        )
+        .when(|s| s.number() == 16),
+    ],
+    ..Method::new(
+        "stochastic",
+        "Enderton et al. 2010, S screen-door samples with alpha correction",
+        build,
+    )
+};
+
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let samples = b.spec.number();
     let parameters = format!("const SAMPLES: u32 = {samples}u;\n");
     let extra = [("parameters", parameters.as_str())];
     commutative::build(

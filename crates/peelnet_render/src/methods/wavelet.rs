@@ -2,14 +2,51 @@
 //! `peelnet_core::methods::wavelet`.
 
 use super::{
-    Build, Compositor,
+    Build, Compositor, Method, MethodSpec, Parameter, Word,
     commutative::{self, Blend, Gather, Plan, Target},
     mboit::own_share,
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::RenderError;
+use crate::{Flaw, Property, RenderError};
+use peelnet_core::methods::wavelet;
 
-pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+const OWN: Word = Word {
+    name: "own",
+    about: "out (default) or in: a fragment's own absorbance",
+    words: &["out", "in"],
+};
+
+fn own_out(spec: &MethodSpec) -> bool {
+    OWN.of(spec) == "out"
+}
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[Parameter::Word(OWN)],
+    curve: &["", ":own=in"],
+    twin: Some(|s, p| {
+        let (fragments, c0) = (p.fragments, p.background);
+        Some(wavelet::composite(fragments, c0, &p.warp, own_out(s)))
+    }),
+    transmittances: Some(|s, fragments, warp, _| {
+        Some(wavelet::transmittances(fragments, warp, own_out(s)))
+    }),
+    flaws: &[
+        Flaw::swallowed(&["deep"]),
+        Flaw::new(
+            Property::Transmittance,
+            &["two-layers"],
+            "rank 3 tells apart eight depths (Aizenshtein et al. 2022)",
+        )
+        .when(own_out),
+    ],
+    ..Method::new(
+        "wavelet-3",
+        "Aizenshtein, Smal & McGuire 2022, Haar wavelets of rank 3",
+        build,
+    )
+};
+
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     // Four targets of 16 bits fill the 32 bytes a pixel that portable WebGPU lets one pass write.
     let coefficients = |label| Target {
         label,
@@ -17,7 +54,7 @@ pub(super) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         full: false,
         blend: Blend::Add,
     };
-    let features = own_share(b, "out")?;
+    let features = own_share(own_out(b.spec));
     commutative::build(
         b,
         &Plan {

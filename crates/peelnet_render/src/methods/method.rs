@@ -1,0 +1,221 @@
+//! The declaration of a method: all that is known of it, in one place.
+//!
+//! Lists, help texts, benchmarks, hard cases and tests iterate over [`METHODS`](super::METHODS) and read these fields; none of
+//! them knows a method by its name.
+
+use super::{Build, Compositor, METHODS, MethodSpec, Parameter, Precision};
+use crate::{Flaw, RenderError};
+use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
+use peelnet_model::Model;
+
+/// A method.
+#[derive(Clone, Copy, Debug)]
+pub struct Method {
+    /// Its name.
+    pub name: &'static str,
+    /// One line for help texts.
+    pub about: &'static str,
+    /// The number that its name ends in, as in `kbuffer-8`; `None` for a name that stands alone.
+    pub numbered: Option<Numbered>,
+    /// Its own parameters; see [`Method::all_parameters`].
+    pub parameters: &'static [Parameter],
+    /// Whether it draws with a trained network.
+    pub learned: bool,
+    /// What it promises, before a choice of targets or a lower resolution; see [`MethodSpec::promises`].
+    pub promises: fn(&MethodSpec) -> Promises,
+    /// What a benchmark of all methods draws: endings of its name, the default first.
+    pub curve: &'static [&'static str],
+    /// What reports use it as, with the text of the [`MethodSpec`] that they draw.
+    pub roles: &'static [(Role, &'static str)],
+    /// Its CPU twin.
+    pub twin: Option<Twin>,
+    /// Its estimate of every fragment's transmittance.
+    pub transmittances: Option<Estimate>,
+    /// Properties that it is known not to have.
+    pub flaws: &'static [Flaw],
+    pub(super) build: BuildMethod,
+}
+
+/// Makes a method ready to draw.
+pub(super) type BuildMethod = fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>;
+
+/// The colour that a pixel must have; `None` without the model that a learned method needs.
+pub type Twin = fn(&MethodSpec, &Pixel<'_>) -> Option<[f32; 3]>;
+
+/// The transmittance in front of each fragment, given as (linear depth, α), nearest first; `None` without the model that a
+/// learned method needs.
+pub type Estimate = fn(&MethodSpec, &[(f32, f32)], &DepthWarp, Option<&Model>) -> Option<Vec<f64>>;
+
+/// What a CPU twin composites.
+#[derive(Clone, Copy, Debug)]
+pub struct Pixel<'a> {
+    /// The transparent fragments, in the order of drawing.
+    pub fragments: &'a [Fragment],
+    /// `C_0`.
+    pub background: [f32; 3],
+    /// The warp of the view's depths.
+    pub warp: DepthWarp,
+    /// Its position in the frame.
+    pub position: [u32; 2],
+    /// The network of a learned method.
+    pub model: Option<&'a Model>,
+}
+
+/// The number at the end of a method's name.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbered {
+    /// The largest; the smallest is 1.
+    pub most: u32,
+    /// Whether it must be a power of two.
+    pub power_of_two: bool,
+}
+
+/// What a method promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Promises {
+    /// Every pixel equals the composite of its sorted fragments in 64 bits.
+    pub exact: bool,
+    /// It sorts what it draws: another order of drawing gives the very same operations.
+    pub sorted: bool,
+    /// A pixel's colour is a mean of its fragments' colours and `C_0`: it lies in their convex hull.
+    pub normalised: bool,
+    /// It draws light that takes a colour where it passes through surfaces.
+    pub tinted: bool,
+    /// Pixels that hold the same fragments may differ: it draws random numbers of the pixel's position.
+    pub noisy: bool,
+    /// Precision of the sums of colour.
+    pub sums: Precision,
+    /// Precision of the statistics that transmittance is estimated from.
+    pub statistics: Precision,
+    /// The estimate is a root of a polynomial of the statistics: where roots coincide, an error of the statistics moves them
+    /// by its root of this degree.
+    pub root: Option<u32>,
+    /// Its estimate of transmittance is held to a fraction of the limits that published methods are held to.
+    pub close_estimate: bool,
+}
+
+impl Promises {
+    /// Of exact methods, whose fragments are kept in 32 bits.
+    pub(super) const EXACT: Self = Self {
+        exact: true,
+        sorted: true,
+        normalised: true,
+        tinted: false,
+        noisy: false,
+        sums: Precision::Full,
+        statistics: Precision::Full,
+        root: None,
+        close_estimate: false,
+    };
+
+    /// Of methods that normalise sums kept in 16 bits.
+    pub(super) const NORMALISED: Self = Self {
+        exact: false,
+        sorted: false,
+        sums: Precision::Half,
+        statistics: Precision::Half,
+        ..Self::EXACT
+    };
+}
+
+/// What reports use a method as: each role belongs to one method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The exact image that all others are compared with.
+    Reference,
+    /// The cheapest that hardware does, which times are ratios to.
+    HardwareBlending,
+    /// The weighted blending that errors are ratios to.
+    WeightedBlending,
+    /// The moment-based method that errors and times are ratios to.
+    MomentBlending,
+    /// Weighted blending as in the thesis of Papakostas (Ioannina 2022).
+    ThesisWeight,
+    /// The thesis's network.
+    ThesisNetwork,
+}
+
+impl Role {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Reference,
+        Self::HardwareBlending,
+        Self::WeightedBlending,
+        Self::MomentBlending,
+        Self::ThesisWeight,
+        Self::ThesisNetwork,
+    ];
+
+    /// The method that has it, with its parameters: the text of a [`MethodSpec`].
+    ///
+    /// # Panics
+    /// If no method declares the role: then constants made of it do not compile.
+    pub const fn method(self) -> &'static str {
+        let mut i = 0;
+        // Constants are computed with loops.
+        while i < METHODS.len() {
+            let mut k = 0;
+            while k < METHODS[i].roles.len() {
+                let (role, spec) = METHODS[i].roles[k];
+                if role as u8 == self as u8 {
+                    return spec;
+                }
+                k += 1;
+            }
+            i += 1;
+        }
+        panic!("a role that no method declares")
+    }
+}
+
+impl Numbered {
+    /// Reads the number behind `name`.
+    pub(super) fn parse(self, name: &str, text: &str) -> Result<u32, String> {
+        let most = self.most;
+        match text.parse::<u32>() {
+            Ok(n) if n == 0 || n > most => {}
+            Ok(n) if self.power_of_two && !n.is_power_of_two() => {
+                let above = n.next_power_of_two();
+                return Err(format!(
+                    "the number behind '{name}-' must be a power of two: {} or {above}, not '{n}'",
+                    above / 2
+                ));
+            }
+            Ok(n) => return Ok(n),
+            Err(_) => {}
+        }
+        Err(format!(
+            "the number behind '{name}-' must be 1 to {most}, not '{text}'"
+        ))
+    }
+}
+
+impl Method {
+    /// Whether it is exact with its default parameters.
+    pub fn is_exact(&'static self) -> bool {
+        MethodSpec::representative(self).promises().exact
+    }
+
+    /// Whether it draws light that takes a colour where it passes through surfaces.
+    pub fn is_tinted(&'static self) -> bool {
+        MethodSpec::representative(self).promises().tinted
+    }
+
+    /// A method with what most have in common: normalised sums in 16 bits, no parameters, one point on its curve.
+    pub(super) const fn new(name: &'static str, about: &'static str, build: BuildMethod) -> Self {
+        Self {
+            name,
+            about,
+            numbered: None,
+            parameters: &[],
+            learned: false,
+            promises: |_| Promises::NORMALISED,
+            curve: &[""],
+            roles: &[],
+            twin: None,
+            transmittances: None,
+            flaws: &[],
+            build,
+        }
+    }
+}

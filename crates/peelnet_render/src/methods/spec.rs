@@ -1,0 +1,385 @@
+//! A method's name with its parameters, parsed once.
+
+use super::{
+    METHODS, Method,
+    method::{Pixel, Promises},
+    parameter::{Parameter, Precision, SCALE, Targets, Value},
+};
+use crate::RenderError;
+use peelnet_core::absorbance::DepthWarp;
+use peelnet_model::Model;
+use std::{cmp::Ordering, collections::BTreeMap, fmt, str::FromStr};
+
+/// A method's name with its parameters, such as `wboit-eq10:factor=3e4,targets=f32`. Every value in it is allowed.
+#[derive(Clone, Debug)]
+pub struct MethodSpec {
+    method: &'static Method,
+    /// The number that the name ends in, where it ends in one.
+    number: Option<u32>,
+    /// By name: the text as it was given, and its value.
+    values: BTreeMap<&'static str, (String, Value)>,
+}
+
+impl MethodSpec {
+    /// Every method that draws without a model, with its default parameters.
+    pub fn all() -> Vec<Self> {
+        METHODS
+            .iter()
+            .filter(|m| !m.learned)
+            .filter_map(|m| Self::points(m).next())
+            .collect()
+    }
+
+    /// Every method with the parameters that belong to its curve of error against time.
+    pub fn curve() -> Vec<Self> {
+        METHODS.iter().flat_map(Self::points).collect()
+    }
+
+    /// The points of one method's curve, the default first.
+    pub fn points(method: &'static Method) -> impl Iterator<Item = Self> {
+        let name = method.name;
+        // A test parses them all.
+        method
+            .curve
+            .iter()
+            .filter_map(move |ending| format!("{name}{ending}").parse().ok())
+    }
+
+    /// The method with its parameters' defaults, or with a number in the middle of its curve.
+    pub fn representative(method: &'static Method) -> Self {
+        // Points of a curve are numbers where the name ends in one; a test parses them.
+        let middle = method.curve[method.curve.len() / 2];
+        Self {
+            method,
+            number: method.numbered.and_then(|_| middle[1..].parse().ok()),
+            values: BTreeMap::new(),
+        }
+    }
+
+    /// The method's name without number and parameters.
+    pub const fn name(&self) -> &'static str {
+        self.method.name
+    }
+
+    /// The method's declaration.
+    pub const fn method(&self) -> &'static Method {
+        self.method
+    }
+
+    /// Whether it draws with a trained network.
+    pub const fn needs_model(&self) -> bool {
+        self.method.learned
+    }
+
+    /// The number that the name ends in; 0 where it ends in none.
+    pub fn number(&self) -> u32 {
+        self.number.unwrap_or_default()
+    }
+
+    /// The precision that was asked for of all targets; `None` leaves it to the method.
+    pub fn targets(&self) -> Option<Precision> {
+        match self.value(Targets::NAME) {
+            Some(Value::Targets(precision)) => Some(precision),
+            _ => None,
+        }
+    }
+
+    /// Whether transparency is drawn at a lower resolution: pixels then mix their neighbours' fragments.
+    pub fn is_scaled(&self) -> bool {
+        SCALE.of(self) < 1.0
+    }
+
+    /// What the method promises with these parameters.
+    pub fn promises(&self) -> Promises {
+        let own = (self.method.promises)(self);
+        let scaled = self.is_scaled();
+        Promises {
+            exact: own.exact && !scaled,
+            normalised: own.normalised && !scaled,
+            tinted: own.tinted && !scaled,
+            sums: self.targets().unwrap_or(own.sums),
+            statistics: self.targets().unwrap_or(own.statistics),
+            ..own
+        }
+    }
+
+    /// The colour that a pixel must have, by the method's CPU twin; `None` where it has none: at a lower resolution, and for a
+    /// learned method without a model.
+    pub fn twin(&self, pixel: &Pixel<'_>) -> Option<[f32; 3]> {
+        let twin = self.method.twin.filter(|_| !self.is_scaled())?;
+        twin(self, pixel)
+    }
+
+    /// The transmittance in front of each of a pixel's fragments that the method's weights stand for, in 64 bits by the CPU
+    /// twin. Fragments are (linear depth, α), nearest first. `None` where the weights are no transmittance, at a lower
+    /// resolution, and for a learned method without a model.
+    pub fn transmittances(
+        &self,
+        fragments: &[(f32, f32)],
+        warp: &DepthWarp,
+        model: Option<&Model>,
+    ) -> Option<Vec<f64>> {
+        let estimate = self.method.transmittances.filter(|_| !self.is_scaled())?;
+        estimate(self, fragments, warp, model)
+    }
+
+    /// The same method with one more parameter, or another value of it.
+    ///
+    /// # Errors
+    /// A parameter that the method does not have, or a value it cannot take.
+    pub fn with(&self, name: &str, value: &str) -> Result<Self, RenderError> {
+        let mut changed = self.clone();
+        changed.set(name, value)?;
+        Ok(changed)
+    }
+
+    pub(super) fn value(&self, name: &str) -> Option<Value> {
+        self.values.get(name).map(|(_, value)| *value)
+    }
+
+    fn set(&mut self, name: &str, text: &str) -> Result<(), RenderError> {
+        let all = || self.method.all_parameters();
+        let Some(parameter) = all().find(|p| p.name() == name) else {
+            let known: Vec<String> = all()
+                .map(|p| format!("{} ({})", p.name(), p.about()))
+                .collect();
+            return Err(self.bad(format!(
+                "there is no parameter '{name}'; there are: {}",
+                known.join(", ")
+            )));
+        };
+        let Some(value) = parameter.parse(text) else {
+            let allowed = parameter.allowed();
+            return Err(self.bad(format!("{name} must be {allowed}, not '{text}'")));
+        };
+        self.values
+            .insert(parameter.name(), (text.to_owned(), value));
+        Ok(())
+    }
+
+    fn bad(&self, message: String) -> RenderError {
+        RenderError::Parameter {
+            method: self.name().to_owned(),
+            message,
+        }
+    }
+
+    /// What makes it itself: two specifications with the same text are the same.
+    fn key(
+        &self,
+    ) -> (
+        &'static str,
+        Option<u32>,
+        impl Iterator<Item = (&str, &str)>,
+    ) {
+        let values = self.values.iter();
+        let texts = values.map(|(name, (text, _))| (*name, text.as_str()));
+        (self.name(), self.number, texts)
+    }
+}
+
+impl PartialEq for MethodSpec {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for MethodSpec {}
+
+impl PartialOrd for MethodSpec {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for MethodSpec {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let ((name, number, values), (name_2, number_2, values_2)) = (self.key(), other.key());
+        (name, number)
+            .cmp(&(name_2, number_2))
+            .then_with(|| values.cmp(values_2))
+    }
+}
+
+impl FromStr for MethodSpec {
+    type Err = RenderError;
+
+    fn from_str(text: &str) -> Result<Self, RenderError> {
+        let (name, parameters) = text.split_once(':').unwrap_or((text, ""));
+        let of = |name: &str, numbered: bool| {
+            METHODS
+                .iter()
+                .find(|m| m.name == name && m.numbered.is_some() == numbered)
+        };
+        let numbered = || {
+            let (name, number) = name.rsplit_once('-')?;
+            Some((of(name, true)?, number))
+        };
+        let (method, number) = match (of(name, false), numbered()) {
+            (Some(method), _) => (method, None),
+            (None, Some((method, number))) => (method, Some(number)),
+            (None, None) => return Err(unknown(name)),
+        };
+        let mut spec = Self {
+            method,
+            number: None,
+            values: BTreeMap::new(),
+        };
+        if let (Some(numbered), Some(text)) = (method.numbered, number) {
+            spec.number = Some(numbered.parse(method.name, text).map_err(|e| spec.bad(e))?);
+        }
+        for pair in parameters.split(',').filter(|p| !p.is_empty()) {
+            let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
+            spec.set(name, value)?;
+        }
+        Ok(spec)
+    }
+}
+
+fn unknown(name: &str) -> RenderError {
+    let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
+    RenderError::UnknownMethod {
+        name: name.to_owned(),
+        known: known.join(", "),
+    }
+}
+
+impl fmt::Display for MethodSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())?;
+        if let Some(number) = self.number {
+            write!(f, "-{number}")?;
+        }
+        for (i, (name, (text, _))) in self.values.iter().enumerate() {
+            write!(f, "{}{name}={text}", if i == 0 { ':' } else { ',' })?;
+        }
+        Ok(())
+    }
+}
+
+impl Method {
+    /// Its parameters: its own, and those that every method has.
+    pub fn all_parameters(&self) -> impl Iterator<Item = Parameter> {
+        let own = self.parameters.iter().copied();
+        own.chain([Parameter::Number(SCALE)])
+    }
+
+    /// Whether the precision of its targets can be chosen.
+    pub fn has_targets(&self) -> bool {
+        let mut all = self.parameters.iter();
+        all.any(|p| matches!(p, Parameter::Targets(_)))
+    }
+
+    /// Its name as it is written, `-N` where a number follows.
+    pub fn usage(&self) -> String {
+        let ending = if self.numbered.is_some() { "-N" } else { "" };
+        format!("{}{ending}", self.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    #[test]
+    fn names_and_parameters_round_trip() {
+        for text in [
+            "abuffer",
+            "wboit-eq10:factor=3e4,targets=f32",
+            "deep-thesis:targets=f32",
+            "kbuffer-8",
+            "hybrid-4:weight=eq7",
+        ] {
+            assert_eq!(text.parse::<MethodSpec>().unwrap().to_string(), text);
+        }
+    }
+
+    #[test]
+    fn unknown_names_and_parameters_are_refused_with_those_there_are() {
+        let e = "wbiot".parse::<MethodSpec>().unwrap_err().to_string();
+        assert!(e.contains("wboit-eq9"), "{e}");
+        let e = "abuffer:targets=f32".parse::<MethodSpec>().unwrap_err();
+        assert!(e.to_string().contains("budget"), "{e}");
+    }
+
+    /// A value that is not allowed is refused when it is parsed; the message names parameter, value and what is allowed.
+    #[test]
+    fn values_are_checked() {
+        for (text, allowed) in [
+            ("depth-peel:passes=0", "a positive whole number"),
+            ("blended:targets=f64", "f16 or f32"),
+            ("mboit4:own=maybe", "in or out"),
+            ("wavelet-3:own=", "out or in"),
+            ("wboit-eq10:factor=inf", "a number"),
+            ("mboit4:bias=1e39", "a number"),
+            ("wboit-inverse-power:k=17", "a whole number from 0 to 16"),
+            ("abuffer:scale=0", "a number above 0 and at most 1"),
+            ("abuffer:scale=nan", "a number above 0 and at most 1"),
+        ] {
+            let e = text.parse::<MethodSpec>().unwrap_err().to_string();
+            let (name, value) = text.split_once(':').unwrap().1.split_once('=').unwrap();
+            let want = format!("{name} must be {allowed}, not '{value}'");
+            assert!(e.ends_with(&want), "{e} does not end with {want}");
+        }
+    }
+
+    #[test]
+    fn every_point_of_every_curve_parses() {
+        let points: usize = METHODS.iter().map(|m| m.curve.len()).sum();
+        assert_eq!(MethodSpec::curve().len(), points);
+        for method in METHODS {
+            let one = MethodSpec::representative(method).to_string();
+            assert_eq!(one.parse::<MethodSpec>().unwrap().to_string(), one);
+        }
+    }
+
+    #[test]
+    fn numbers_are_checked() {
+        for bad in ["kbuffer", "kbuffer-", "kbuffer-0", "kbuffer-65", "mboit4-2"] {
+            assert!(bad.parse::<MethodSpec>().is_err(), "{bad}");
+        }
+        let e = "kbuffer-900".parse::<MethodSpec>().unwrap_err().to_string();
+        assert!(e.contains("1 to 64"), "{e}");
+        let e = "stochastic-9".parse::<MethodSpec>().unwrap_err();
+        assert!(e.to_string().contains("8 or 16"), "{e}");
+    }
+
+    /// Parameters have one name, and their defaults are allowed values.
+    #[test]
+    fn declarations_are_sound() {
+        let mut names: Vec<_> = METHODS.iter().map(|m| m.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), METHODS.len());
+        for method in METHODS {
+            let mut names: Vec<_> = method.all_parameters().map(|p| p.name()).collect();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), method.parameters.len() + 1, "{}", method.name);
+            for parameter in method.all_parameters() {
+                let default = match parameter {
+                    Parameter::Number(p) => p.default.to_string(),
+                    Parameter::Whole(p) => p.default.to_string(),
+                    Parameter::Word(p) => p.words[0].to_owned(),
+                    Parameter::Count(_) | Parameter::Targets(_) => continue,
+                };
+                let at = format!("{} of {}", parameter.name(), method.name);
+                assert!(parameter.parse(&default).is_some(), "{at}: {default}");
+            }
+        }
+    }
+
+    /// What a parameter changes of the promises.
+    #[test]
+    fn promises_depend_on_parameters() {
+        let of = |text: &str| text.parse::<MethodSpec>().unwrap().promises();
+        assert!(of("depth-peel").exact && !of("depth-peel:passes=2").exact);
+        assert!(of("abuffer").tinted && !of("abuffer:scale=0.5").exact);
+        assert!(of("painter-object").sorted && !of("painter-object:sort=off").sorted);
+        assert_eq!(of("mboit4").statistics, Precision::Full);
+        assert_eq!(of("mboit4").sums, Precision::Half);
+        assert_eq!(of("mboit4:targets=f16").statistics, Precision::Half);
+        assert_eq!(of("blended:targets=f32").sums, Precision::Full);
+    }
+}

@@ -1,0 +1,147 @@
+//! `wboit-*`: the weighted mean colour with the exact coverage (McGuire & Bavoil 2013, eq 6), by a named weight.
+
+use super::{
+    Build, Compositor, Method, Number, Parameter, Promises, Role, TARGETS, Whole,
+    commutative::Gather,
+    weighted::{build_sums, gather},
+};
+use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use peelnet_core::{methods::wboit, weights::Weight};
+
+const FACTOR: Number = Number::any("factor", 3e3, "largest weight, 3e3 by default");
+
+const EXPONENT: Whole = Whole {
+    name: "k",
+    about: "a whole exponent, 2 by default",
+    default: 2,
+    most: 16,
+};
+
+const EPSILON: Number = Number::any("epsilon", 5.0, "offset in scene units, 5 by default");
+
+/// A method with a weight that may depend on parameters.
+macro_rules! wboit {
+    ($name:literal, $about:literal, $weight:expr) => {
+        Method {
+            parameters: &[TARGETS],
+            promises: |_| Promises {
+                tinted: true,
+                ..Promises::NORMALISED
+            },
+            curve: &["", ":targets=f32"],
+            twin: Some(|s, p| Some(wboit::composite(p.fragments, p.background, $weight(s)))),
+            ..Method::new($name, $about, |b| build(b, $weight(b.spec)))
+        }
+    };
+}
+
+pub(super) const EQ7: Method = Method {
+    flaws: &[
+        Flaw::swallowed(&["alpha-tiny", "deep"]),
+        Flaw::overflowing(&["near-overflow"]),
+        Flaw::BLIND,
+    ],
+    ..wboit!(
+        "wboit-eq7",
+        "McGuire & Bavoil 2013, eq 6 with weight 7",
+        |_| Weight::Eq7
+    )
+};
+
+pub(super) const EQ8: Method = Method {
+    flaws: &[
+        Flaw::swallowed(&["deep"]),
+        Flaw::overflowing(&["near-overflow"]),
+        Flaw::BLIND,
+    ],
+    ..wboit!(
+        "wboit-eq8",
+        "McGuire & Bavoil 2013, eq 6 with weight 8",
+        |_| Weight::Eq8
+    )
+};
+
+pub(super) const EQ9: Method = Method {
+    curve: &["", ":targets=f32", ":scale=0.5"],
+    roles: &[(Role::WeightedBlending, "wboit-eq9")],
+    flaws: &[Flaw::overflowing(&["deep", "near-overflow"]), Flaw::BLIND],
+    ..wboit!(
+        "wboit-eq9",
+        "McGuire & Bavoil 2013, eq 6 with weight 9",
+        |_| Weight::Eq9
+    )
+};
+
+pub(super) const EQ10: Method = Method {
+    parameters: &[TARGETS, Parameter::Number(FACTOR)],
+    flaws: &[
+        Flaw::swallowed(&["alpha-tiny", "deep"]),
+        Flaw::overflowing(&["near-overflow"]),
+        Flaw::BLIND,
+    ],
+    ..wboit!(
+        "wboit-eq10",
+        "McGuire & Bavoil 2013, eq 6 with weight 10",
+        |s| Weight::Eq10 {
+            factor: FACTOR.of(s) as f32
+        }
+    )
+};
+
+pub(super) const PAPAKOSTAS: Method = Method {
+    roles: &[(Role::ThesisWeight, "wboit-papakostas")],
+    flaws: &[Flaw::swallowed(&["deep", "near-overflow"]), Flaw::BLIND],
+    ..wboit!(
+        "wboit-papakostas",
+        "eq 6 with the weight of Papakostas 2022",
+        |_| Weight::Papakostas
+    )
+};
+
+const fn vanishing(property: Property) -> Flaw {
+    let reason = "half floats end at 6e-8: weights of (z + 5)^-2 vanish from depth 4,000 on";
+    Flaw::new(property, &["far"], reason).when(half_sums)
+}
+
+pub(super) const INVERSE_POWER: Method = Method {
+    parameters: &[
+        TARGETS,
+        Parameter::Whole(EXPONENT),
+        Parameter::Number(EPSILON),
+    ],
+    flaws: &[
+        Flaw::swallowed(&["deep", "near-overflow"]),
+        vanishing(Property::Hull),
+        vanishing(Property::Dark),
+        vanishing(Property::Single),
+        Flaw::BLIND,
+    ],
+    ..wboit!("wboit-inverse-power", "eq 6 with (z + epsilon)^-k", |s| {
+        Weight::InversePower {
+            k: EXPONENT.of(s),
+            epsilon: EPSILON.of(s) as f32,
+        }
+    })
+};
+
+fn build(b: &Build<'_>, weight: Weight) -> Result<Box<dyn Compositor>, RenderError> {
+    let (mut factor, mut power, mut offset) = (0.0, 0, 0.0);
+    match weight {
+        Weight::Eq10 { factor: f } => factor = f,
+        Weight::InversePower { k, epsilon } => (power, offset) = (k, epsilon),
+        _ => {}
+    }
+    // `{:?}` prints a float with a point or exponent, and as the shortest text that reads back the same.
+    let parameters = format!(
+        "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
+    );
+    let feature = weight.name().replace('-', "_");
+    build_sums(
+        b,
+        Gather {
+            features: &[&feature],
+            extra: &[("parameters", &parameters)],
+            ..gather("methods::wboit::gather", &[])
+        },
+    )
+}
