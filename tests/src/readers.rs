@@ -86,7 +86,7 @@ fn scene(bytes: &[u8]) {
         b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
     );
     put("a.png", &image());
-    if let Ok(scene) = Scene::load(&put("s.toml", bytes)) {
+    if let Ok(scene) = Scene::load(put("s.toml", bytes)) {
         is_sound(&scene);
     }
 }
@@ -122,7 +122,7 @@ fn gltf(bytes: &[u8]) {
     } else {
         "g.gltf"
     };
-    if let Ok(scene) = Scene::load(&put(name, bytes)) {
+    if let Ok(scene) = Scene::load(put(name, bytes)) {
         is_sound(&scene);
     }
 }

@@ -8,18 +8,17 @@ pub use looks::MapRef;
 
 use crate::{
     Camera, Light, Lighting, Material, Mesh, Object, Scene, SceneError, Source, State, Texture,
-    gltf::load_gltf,
-    obj::load_obj,
+    files::{FileKind, Files, read_file},
+    gltf, obj,
     scatter::{Scatter, fixed_axes},
     shapes::Shape,
 };
 use glam::{Mat4, Vec3};
 use looks::RawMaterial;
 use serde::{Deserialize, Deserializer, de::Error as _};
-use sha2::{Digest, Sha256};
 use std::{
     collections::HashMap,
-    fs,
+    io,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -168,9 +167,9 @@ impl<'de> Deserialize<'de> for MeshRef {
 struct Loader<'a> {
     path: &'a Path,
     lighting: Lighting,
-    hasher: Sha256,
+    files: Files<'a>,
     warnings: Vec<String>,
-    files: HashMap<PathBuf, Arc<Mesh>>,
+    meshes: HashMap<PathBuf, Arc<Mesh>>,
     shapes: Vec<(Shape, bool, Arc<Mesh>)>,
     images: HashMap<PathBuf, Arc<Texture>>,
 }
@@ -202,7 +201,7 @@ impl Loader<'_> {
             }
             MeshRef::File(name) => {
                 let file = self.path.parent().unwrap_or(Path::new(".")).join(name);
-                if let Some(mesh) = self.files.get(&file) {
+                if let Some(mesh) = self.meshes.get(&file) {
                     return Ok(Arc::clone(mesh));
                 }
                 let ending = file
@@ -210,15 +209,15 @@ impl Loader<'_> {
                     .and_then(|e| e.to_str())
                     .unwrap_or_default()
                     .to_lowercase();
-                let (mesh, warnings, files) = match ending.as_str() {
+                let (mesh, warnings) = match ending.as_str() {
                     "obj" => {
-                        let loaded = load_obj(&file, self.lighting)?;
-                        (loaded.mesh, loaded.warnings, loaded.files)
+                        let loaded = obj::load(&file, self.lighting, &mut self.files)?;
+                        (loaded.mesh, loaded.warnings)
                     }
                     "gltf" | "glb" => {
-                        let loaded = load_gltf(&file)?;
+                        let loaded = gltf::load(&file, &mut self.files)?;
                         // A scene file has lights and cameras of its own.
-                        (loaded.mesh, loaded.warnings, loaded.files)
+                        (loaded.mesh, loaded.warnings)
                     }
                     _ => {
                         return Err(self.value(
@@ -230,16 +229,9 @@ impl Loader<'_> {
                         ));
                     }
                 };
-                for read in &files {
-                    let bytes = fs::read(read).map_err(|source| SceneError::Read {
-                        path: read.clone(),
-                        source,
-                    })?;
-                    self.hasher.update(&bytes);
-                }
                 self.warnings.extend(warnings);
                 let mesh = Arc::new(mesh);
-                self.files.insert(file, Arc::clone(&mesh));
+                self.meshes.insert(file, Arc::clone(&mesh));
                 Ok(mesh)
             }
         }
@@ -294,12 +286,12 @@ impl Loader<'_> {
 }
 
 impl Scene {
-    /// Reads a scene file and everything it names, an ageing one in its first state. A glTF or GLB file is drawn with its own lights and
-    /// cameras; where it has none, with two lights, and a camera that sees all of it.
+    /// Reads a scene file and everything it names from the file system, a scene with a timeline in its first state. A glTF or GLB file is a
+    /// scene too: with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it.
     ///
     /// # Errors
-    /// The first thing wrong, with file, line or key, and the mend.
-    pub fn load(path: &Path) -> Result<Self, SceneError> {
+    /// The first thing that is wrong, with file, line or key, and a hint.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         Self::load_at(path, None)
     }
 
@@ -307,14 +299,61 @@ impl Scene {
     ///
     /// # Errors
     /// See [`Scene::load`]; a time outside of the timeline, or of a scene without one.
-    pub fn load_at(path: &Path, time: Option<f32>) -> Result<Self, SceneError> {
+    pub fn load_at(path: impl AsRef<Path>, time: Option<f32>) -> Result<Self, SceneError> {
+        Self::from_bytes_at(path, time, read_file)
+    }
+
+    /// Reads the scene file `name` and everything it names through a function that returns a file's bytes, so that an archive, a web page
+    /// or a test can be the file system. Names that a file contains are joined to its folder.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), peelnet_scene::SceneError> {
+    /// let files = |path: &std::path::Path| match path.to_str() {
+    ///     Some("room/scene.toml") => Ok(b"
+    ///         [camera]
+    ///         position = [0, 0, 6]
+    ///         target = [0, 0, 0]
+    ///         near = 0.1
+    ///         far = 100
+    ///         [[object]]
+    ///         mesh = 'pane.obj'"
+    ///         .to_vec()),
+    ///     Some("room/pane.obj") => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3".to_vec()),
+    ///     _ => Err(std::io::ErrorKind::NotFound.into()),
+    /// };
+    /// let scene = peelnet_scene::Scene::from_bytes("room/scene.toml", files)?;
+    /// assert_eq!(scene.triangles(), 1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// See [`Scene::load`].
+    pub fn from_bytes(
+        name: impl AsRef<Path>,
+        read: impl Fn(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Self, SceneError> {
+        Self::from_bytes_at(name, None, read)
+    }
+
+    /// The same at a time of the scene's timeline, see [`Scene::load_at`].
+    ///
+    /// # Errors
+    /// See [`Scene::load_at`].
+    pub fn from_bytes_at(
+        name: impl AsRef<Path>,
+        time: Option<f32>,
+        read: impl Fn(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Self, SceneError> {
+        let path = name.as_ref();
+        let mut files = Files::new(&read);
         let ending = path.extension().and_then(|e| e.to_str());
         if matches!(
             ending.map(str::to_lowercase).as_deref(),
             Some("gltf" | "glb")
         ) {
             return match time {
-                None => of_gltf(path),
+                None => of_gltf(path, files),
                 Some(_) => Err(SceneError::Value {
                     path: path.to_owned(),
                     field: "timeline".into(),
@@ -322,19 +361,13 @@ impl Scene {
                 }),
             };
         }
-        let text = fs::read_to_string(path).map_err(|source| SceneError::Read {
+        let bytes = files.read(path, FileKind::Scene)?;
+        files.record(path, &bytes);
+        let text = String::from_utf8(bytes).map_err(|e| SceneError::Read {
             path: path.to_owned(),
-            source,
+            source: io::Error::new(io::ErrorKind::InvalidData, e.utf8_error()),
         })?;
-        Self::from_toml(path, &text, time)
-    }
-
-    /// A scene from the text of a scene file. `path` appears in messages, and files that the text names are looked for beside it.
-    ///
-    /// # Errors
-    /// See [`Scene::load_at`].
-    pub fn from_toml(path: &Path, text: &str, time: Option<f32>) -> Result<Self, SceneError> {
-        let raw: RawScene = toml::from_str(text).map_err(|e| {
+        let raw: RawScene = toml::from_str(&text).map_err(|e| {
             let line = e.span().map_or(1, |s| {
                 1 + text[..s.start.min(text.len())].matches('\n').count()
             });
@@ -349,14 +382,12 @@ impl Scene {
         } else {
             Lighting::Phong
         };
-        let mut hasher = Sha256::new();
-        hasher.update(text.as_bytes());
         let mut loader = Loader {
             path,
             lighting,
-            hasher,
+            files,
             warnings: Vec::new(),
-            files: HashMap::new(),
+            meshes: HashMap::new(),
             shapes: Vec::new(),
             images: HashMap::new(),
         };
@@ -420,13 +451,12 @@ impl Scene {
                 .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
         });
         if !raw.timeline.is_empty() {
-            loader.hasher.update(age.time.to_le_bytes());
+            loader.files.hash_value(&age.time.to_le_bytes());
         }
-        let hash = loader.hasher.finalize();
         Ok(Self {
             name,
             source: path.to_owned(),
-            hash: hash.iter().map(|b| format!("{b:02x}")).collect(),
+            hash: loader.files.hash(),
             background: raw.background,
             transparency_scale: raw.transparency_scale,
             views,
@@ -448,16 +478,8 @@ impl Scene {
 }
 
 /// A glTF file as a whole scene: its own lights, its first camera, or one that sees all of it.
-fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
-    let loaded = load_gltf(path)?;
-    let mut hasher = Sha256::new();
-    for file in &loaded.files {
-        let bytes = fs::read(file).map_err(|source| SceneError::Read {
-            path: file.clone(),
-            source,
-        })?;
-        hasher.update(&bytes);
-    }
+fn of_gltf(path: &Path, mut files: Files<'_>) -> Result<Scene, SceneError> {
+    let loaded = gltf::load(path, &mut files)?;
     let (low, high) = loaded.mesh.bounds().unwrap_or_default();
     let (middle, radius) = ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6));
     let fit = || {
@@ -527,11 +549,10 @@ fn of_gltf(path: &Path) -> Result<Scene, SceneError> {
         world_from_object: Mat4::IDENTITY,
         layer: None,
     };
-    let hash = hasher.finalize();
     Ok(Scene {
         name,
         source: path.to_owned(),
-        hash: hash.iter().map(|b| format!("{b:02x}")).collect(),
+        hash: files.hash(),
         background: [1.0; 3],
         transparency_scale: 1.0,
         views: if views.is_empty() { vec![fit()] } else { views },
@@ -697,6 +718,7 @@ fn scatter_objects(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     const CAMERA: &str =
         "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100\n";

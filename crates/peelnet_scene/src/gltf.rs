@@ -3,7 +3,8 @@
 
 use crate::{
     Light, Lighting, Maps, Material, Mesh, Part, SceneError, Source, Texture, Wrap,
-    mesh::{Corners, smooth_normals},
+    files::{FileKind, Files, MAX_FILE_BYTES, read_file},
+    mesh::{PartGeometry, smooth_normals},
 };
 use glam::{Mat2, Mat3, Mat4, Vec2, Vec3};
 use gltf::{
@@ -18,6 +19,7 @@ use gltf::{
 use serde_json::Value;
 use std::{
     collections::{BTreeSet, HashMap},
+    io,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -56,26 +58,42 @@ const MAX_TRIANGLES: usize = 50_000_000;
 /// Positions beyond this overflow when they are squared.
 const FARTHEST: f32 = 1e15;
 
-/// Reads a glTF or GLB file and the buffers that it names.
+/// Reads a glTF or GLB file and the buffers and images that it names.
 ///
 /// # Errors
 /// A file that cannot be read, is no glTF 2.0, needs an extension that is not known here, or holds numbers or indices that make no
 /// sense.
 pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
+    load_gltf_from(path, read_file)
+}
+
+/// The same with a function that reads files: from an archive, or from memory.
+///
+/// # Errors
+/// See [`load_gltf`].
+pub fn load_gltf_from(
+    path: &Path,
+    read: impl Fn(&Path) -> io::Result<Vec<u8>>,
+) -> Result<LoadedGltf, SceneError> {
+    load(path, &mut Files::new(&read))
+}
+
+/// Reads a glTF or GLB file.
+pub(crate) fn load(path: &Path, files: &mut Files<'_>) -> Result<LoadedGltf, SceneError> {
     let fail = |message: String| SceneError::Mesh {
         path: path.to_owned(),
         line: None,
         message,
     };
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let first = files.used().len();
+    let bytes = files.read(path, FileKind::Mesh)?;
+    files.record(path, &bytes);
     check_references(&bytes).map_err(&fail)?;
     let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes)
         .map_err(|e| fail(format!("is no glTF 2.0 file: {e}; export it again")))?;
+    drop(bytes);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let buffers = gltf::import_buffers(&document, Some(folder), blob).map_err(|e| {
+    let buffers = read_buffers(&document, folder, blob, files).map_err(|e| {
         fail(format!(
             "a buffer cannot be read: {e}; keep the .bin files beside it"
         ))
@@ -83,6 +101,7 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
     let mut reader = Reader {
         path,
         folder,
+        files,
         buffers,
         images: HashMap::new(),
         missing: BTreeSet::new(),
@@ -91,16 +110,9 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
             lights: Vec::new(),
             cameras: Vec::new(),
             warnings: Vec::new(),
-            files: vec![path.to_owned()],
+            files: Vec::new(),
         },
     };
-    for buffer in document.buffers() {
-        if let gltf::buffer::Source::Uri(uri) = buffer.source()
-            && !uri.starts_with("data:")
-        {
-            reader.loaded.files.push(folder.join(uri));
-        }
-    }
     let scene = document
         .default_scene()
         .or_else(|| document.scenes().next())
@@ -124,8 +136,10 @@ pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
     let Reader {
         mut loaded,
         missing,
+        files,
         ..
     } = reader;
+    loaded.files = files.used()[first..].to_vec();
     let missing = missing.into_iter();
     let told = missing.map(|what| format!("{}: not drawn: {what}", path.display()));
     loaded.warnings.extend(told);
@@ -220,44 +234,70 @@ fn check_value(document: &Value, value: &Value, field: &str, parent: &str) -> Re
                 "'{field}' is {number}, but there are {there} {list}; export the file again"
             ))
         }
-        // A file's name in per cent codes that are no text.
-        Value::String(uri) if field == "uri" && !uri.starts_with("data:") => {
-            let bytes = uri.split('%').skip(1).map(|code| code.get(..2));
-            let high = |code: Option<&str>| {
-                code.is_none_or(|c| u8::from_str_radix(c, 16).is_ok_and(|b| b > 127))
-            };
-            if bytes.into_iter().any(high) && percent_decoded(uri).is_none() {
-                return Err(format!(
-                    "'{uri}' is no name of a file; rename the file and export again"
-                ));
-            }
-            Ok(())
-        }
         _ => Ok(()),
     }
 }
 
-/// A text with per cent codes, decoded; `None` where that gives no UTF-8.
-fn percent_decoded(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let Some((first, after)) = rest.split_first() {
-        let code = (*first == b'%')
-            .then(|| after.get(..2).and_then(|c| std::str::from_utf8(c).ok()))
-            .flatten()
-            .and_then(|c| u8::from_str_radix(c, 16).ok());
-        match code {
-            Some(byte) => {
-                bytes.push(byte);
-                rest = &after[2..];
-            }
-            None => {
-                bytes.push(*first);
-                rest = after;
-            }
-        }
+/// The file that a URI names. The `gltf` crate would read it itself, from the file system only.
+fn uri_path(uri: &str, folder: &Path) -> Result<PathBuf, String> {
+    let absolute = uri
+        .strip_prefix("file://")
+        .or_else(|| uri.strip_prefix("file:"));
+    if let Some(path) = absolute {
+        return Ok(path.into());
     }
-    String::from_utf8(bytes).ok()
+    if uri.contains(':') {
+        return Err(format!("'{uri}' has a scheme that is not read"));
+    }
+    let name = urlencoding::decode(uri);
+    let name = name.map_err(|_| format!("'{uri}' is no name of a file; rename the file"))?;
+    Ok(folder.join(&*name))
+}
+
+/// The bytes that a URI names or holds.
+fn read_uri(
+    uri: &str,
+    folder: &Path,
+    kind: FileKind,
+    files: &mut Files<'_>,
+) -> Result<Vec<u8>, String> {
+    if uri.starts_with("data:") {
+        let data = gltf::buffer::Data::from_source(gltf::buffer::Source::Uri(uri), None);
+        return data.map(|data| data.0).map_err(|e| e.to_string());
+    }
+    let path = uri_path(uri, folder)?;
+    let bytes = files.read(&path, kind).map_err(|e| match e {
+        SceneError::Read { source, .. } => source.to_string(),
+        e => e.to_string(),
+    })?;
+    files.record(&path, &bytes);
+    Ok(bytes)
+}
+
+/// The buffers of a document; `blob` is the binary chunk of a GLB file.
+fn read_buffers(
+    document: &gltf::Document,
+    folder: &Path,
+    mut blob: Option<Vec<u8>>,
+    files: &mut Files<'_>,
+) -> Result<Vec<Vec<u8>>, String> {
+    let mut buffers = Vec::new();
+    for buffer in document.buffers() {
+        let bytes = match buffer.source() {
+            gltf::buffer::Source::Bin => blob.take().ok_or("there is no binary chunk")?,
+            gltf::buffer::Source::Uri(uri) => read_uri(uri, folder, FileKind::Mesh, files)?,
+        };
+        if bytes.len() < buffer.length() {
+            return Err(format!(
+                "buffer {} has {} bytes instead of {}",
+                buffer.index(),
+                bytes.len(),
+                buffer.length()
+            ));
+        }
+        buffers.push(bytes);
+    }
+    Ok(buffers)
 }
 
 /// Where a map lies on its texture coordinates.
@@ -295,8 +335,8 @@ impl Placing {
 fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Semantic>) -> bool {
     use DataType as T;
     use Dimensions as D;
-    /// Beyond this, sums of offsets and lengths are no places in a file.
-    const FARTHEST_BYTE: usize = 1 << 40;
+    /// Beyond this, sums of offsets and lengths could overflow.
+    const FARTHEST_BYTE: u64 = MAX_FILE_BYTES;
     let kind = (accessor.dimensions(), accessor.data_type());
     let fits = match semantic {
         None => matches!(kind, (D::Scalar, T::U8 | T::U16 | T::U32)),
@@ -313,7 +353,7 @@ fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Semantic>) -> bo
         strided
             && [view.offset(), view.length(), offset]
                 .iter()
-                .all(|n| *n < FARTHEST_BYTE)
+                .all(|n| (*n as u64) < FARTHEST_BYTE)
     };
     let size = accessor.size();
     let sound = accessor
@@ -341,10 +381,11 @@ fn finite(x: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-struct Reader<'a> {
+struct Reader<'a, 'f> {
     path: &'a Path,
     folder: &'a Path,
-    buffers: Vec<gltf::buffer::Data>,
+    files: &'a mut Files<'f>,
+    buffers: Vec<Vec<u8>>,
     /// By number, with their opacity or without; `None` for what cannot be drawn.
     images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What the file asks for and is not drawn, each once.
@@ -352,7 +393,7 @@ struct Reader<'a> {
     loaded: LoadedGltf,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn fail(&self, message: String) -> SceneError {
         SceneError::Mesh {
             path: self.path.to_owned(),
@@ -452,7 +493,7 @@ impl Reader<'_> {
                 )));
             }
         }
-        let reader = primitive.reader(|b| self.buffers.get(b.index()).map(|d| d.0.as_slice()));
+        let reader = primitive.reader(|b| self.buffers.get(b.index()).map(Vec::as_slice));
         let positions: Vec<Vec3> = reader
             .read_positions()
             .ok_or_else(|| self.fail(format!("{place} has no positions; export it again")))?
@@ -539,7 +580,7 @@ impl Reader<'_> {
         // Opacity of corners counts for what blends or has holes.
         let is_opaque = primitive.material().alpha_mode() == AlphaMode::Opaque;
         let (material, placing) = self.material(&primitive.material());
-        let reader = primitive.reader(|b| self.buffers.get(b.index()).map(|d| d.0.as_slice()));
+        let reader = primitive.reader(|b| self.buffers.get(b.index()).map(Vec::as_slice));
         let uvs: Option<Vec<Vec2>> = reader.read_tex_coords(placing.set).map(|uvs| {
             let (turned, moved) = placing.transform;
             let place = |uv: [f32; 2]| turned * Vec2::from(uv) + moved;
@@ -547,7 +588,7 @@ impl Reader<'_> {
             uvs.into_f32().map(|uv| sound(place(uv))).collect()
         });
         let n = positions.len();
-        let corners = Corners {
+        let corners = PartGeometry {
             uvs: uvs.filter(|uvs| uvs.len() == n),
             colors: colors.filter(|c| c.len() == n).map(|mut colors| {
                 if is_opaque {
@@ -595,22 +636,14 @@ impl Reader<'_> {
                 let bytes = self.buffers.get(view.buffer().index());
                 let end = view.offset().saturating_add(view.length());
                 bytes
-                    .and_then(|b| b.0.get(view.offset()..end))
+                    .and_then(|b| b.get(view.offset()..end))
                     .ok_or_else(|| "lies beyond its buffer".to_owned())
                     .and_then(|bytes| Texture::decode(&name, bytes))
             }
             gltf::image::Source::Uri { uri, .. } => {
-                // The crate's reader of what a URI names.
-                let source = gltf::buffer::Source::Uri(uri);
-                gltf::buffer::Data::from_source(source, Some(self.folder))
+                read_uri(uri, self.folder, FileKind::Image, self.files)
                     .map_err(|e| format!("cannot be read: {e}"))
-                    .and_then(|data| {
-                        if !uri.starts_with("data:") {
-                            let file = percent_decoded(uri).unwrap_or_else(|| uri.to_owned());
-                            self.loaded.files.push(self.folder.join(file));
-                        }
-                        Texture::decode(&name, &data.0)
-                    })
+                    .and_then(|bytes| Texture::decode(&name, &bytes))
             }
         };
         let found = match decoded {

@@ -9,6 +9,7 @@ mod camera;
 pub mod census;
 mod error;
 pub mod file;
+pub mod files;
 pub mod gltf;
 mod material;
 mod mesh;

@@ -68,9 +68,9 @@ impl Mesh {
 
     /// Appends a part: its corners, and triangles whose indices count from its first corner. Its maps are dropped where it has no places
     /// on them; tells so.
-    pub(crate) fn push(&mut self, corners: Corners, mut part: Part) -> Option<String> {
+    pub(crate) fn push(&mut self, corners: PartGeometry, mut part: Part) -> Option<String> {
         let (base, first) = (self.positions.len(), self.triangles.len());
-        let Corners {
+        let PartGeometry {
             positions,
             normals,
             colors,
@@ -193,7 +193,7 @@ impl Mesh {
 }
 
 /// What a part adds to a mesh.
-pub(crate) struct Corners {
+pub(crate) struct PartGeometry {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     /// One for each position.
@@ -302,7 +302,7 @@ mod tests {
     fn tangents_of_a_rectangle() {
         for mirrored in [false, true] {
             let u = |x: f32| if mirrored { 1.0 - x } else { x };
-            let corners = Corners {
+            let corners = PartGeometry {
                 positions: vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y],
                 normals: vec![Vec3::Z; 4],
                 colors: None,

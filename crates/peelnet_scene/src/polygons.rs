@@ -1,69 +1,75 @@
-//! Cutting polygons into triangles.
+//! Triangulation of polygons.
 
-use glam::{DVec2, DVec3};
+use earcut::{Earcut, utils3d::project3d_to_2d};
+use glam::DVec3;
 
-/// Cuts a polygon, given by its corners in order, into n − 2 triangles of corner numbers. Convex polygons become fans;
-/// others lose one ear after another (Meisters 1975). Where no ear can be found (a polygon that meets itself), the rest
-/// becomes a fan, so that nothing is lost.
-pub(crate) fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
-    let n = corners.len();
-    let fan = |rest: &[usize]| -> Vec<[usize; 3]> {
-        (1..rest.len().saturating_sub(1))
-            .map(|i| [rest[0], rest[i], rest[i + 1]])
-            .collect()
-    };
-    let mut left: Vec<usize> = (0..n).collect();
-    if n <= 3 {
-        return fan(&left);
+/// Cuts polygons into triangles; keeps its buffers from polygon to polygon.
+pub(crate) struct Triangulator {
+    earcut: Earcut<f64>,
+    flat: Vec<[f64; 2]>,
+}
+
+impl Triangulator {
+    pub fn new() -> Self {
+        Self {
+            earcut: Earcut::new(),
+            flat: Vec::new(),
+        }
     }
-    // Newell's normal: of all polygons, also those that are not quite flat.
-    let normal: DVec3 = (0..n)
-        .map(|i| (corners[i] - corners[0]).cross(corners[(i + 1) % n] - corners[0]))
-        .sum();
-    let Some(normal) = normal.try_normalize() else {
-        return fan(&left);
-    };
-    let (u, v) = normal.any_orthonormal_pair();
-    // u × v must be the normal, so that the flat polygon runs counterclockwise.
-    let v = if u.cross(v).dot(normal) < 0.0 { -v } else { v };
-    let flat: Vec<DVec2> = corners
-        .iter()
-        .map(|&c| DVec2::new((c - corners[0]).dot(u), (c - corners[0]).dot(v)))
-        .collect();
-    let turn = |a: usize, b: usize, c: usize| (flat[b] - flat[a]).perp_dot(flat[c] - flat[b]);
-    if (0..n).all(|i| turn(i, (i + 1) % n, (i + 2) % n) >= 0.0) {
-        return fan(&left);
-    }
-    let mut triangles = Vec::with_capacity(n - 2);
-    while left.len() > 3 {
-        let m = left.len();
-        let ear = (0..m).find(|&i| {
-            let [a, b, c] = [left[(i + m - 1) % m], left[i], left[(i + 1) % m]];
-            turn(a, b, c) > 0.0
-                && left.iter().all(|&p| {
-                    [a, b, c].contains(&p)
-                        || turn(a, b, p) < 0.0
-                        || turn(b, c, p) < 0.0
-                        || turn(c, a, p) < 0.0
-                })
+
+    /// Triangles of a polygon, as indices of its vertices, in the polygon's orientation. A convex polygon becomes a fan around its first
+    /// vertex, as most programs draw it (`earcut` would choose other diagonals). A polygon that cannot be triangulated (without area, or
+    /// meeting itself) becomes a fan too, so that nothing is lost.
+    pub fn triangulate(&mut self, vertices: &[DVec3]) -> Vec<[usize; 3]> {
+        let n = vertices.len();
+        let fan = || (1..n.saturating_sub(1)).map(|i| [0, i, i + 1]).collect();
+        if n <= 3 {
+            return fan();
+        }
+        // Far from the origin the projection would lose digits.
+        let near: Vec<[f64; 3]> = vertices
+            .iter()
+            .map(|&v| (v - vertices[0]).to_array())
+            .collect();
+        if !project3d_to_2d(&near, n, &mut self.flat) {
+            return fan();
+        }
+        // Twice the signed area: the projection makes the polygon counter-clockwise.
+        let flat = &self.flat;
+        let turn = |[a, b, c]: [usize; 3]| {
+            let [a, b, c] = [flat[a], flat[b], flat[c]];
+            (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+        };
+        if (0..n).all(|i| turn([i, (i + 1) % n, (i + 2) % n]) >= 0.0) {
+            return fan();
+        }
+        let mut indices: Vec<usize> = Vec::new();
+        self.earcut.earcut_slice(&self.flat, &[], &mut indices);
+        let triangles = indices.chunks_exact(3).map(|t| {
+            let t = [t[0], t[1], t[2]];
+            if turn(t) < 0.0 { [t[0], t[2], t[1]] } else { t }
         });
-        let Some(i) = ear else { break };
-        triangles.push([left[(i + m - 1) % m], left[i], left[(i + 1) % m]]);
-        left.remove(i);
+        let triangles: Vec<[usize; 3]> = triangles.collect();
+        if triangles.is_empty() {
+            return fan();
+        }
+        triangles
     }
-    triangles.extend(fan(&left));
-    triangles
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn area(corners: &[DVec3], triangles: &[[usize; 3]]) -> Vec<f64> {
+    fn triangulate(vertices: &[DVec3]) -> Vec<[usize; 3]> {
+        Triangulator::new().triangulate(vertices)
+    }
+
+    fn areas(vertices: &[DVec3], triangles: &[[usize; 3]]) -> Vec<f64> {
         triangles
             .iter()
             .map(|t| {
-                let [a, b, c] = t.map(|i| corners[i]);
+                let [a, b, c] = t.map(|i| vertices[i]);
                 (b - a).cross(c - a).z / 2.0
             })
             .collect()
@@ -87,16 +93,27 @@ mod tests {
         ];
         for (points, exact) in cases {
             for start in 0..points.len() {
-                let corners: Vec<DVec3> = (0..points.len())
+                let vertices: Vec<DVec3> = (0..points.len())
                     .map(|i| points[(start + i) % points.len()])
                     .map(|[x, y]| DVec3::new(x, y, 5.0))
                     .collect();
-                let triangles = triangulate(&corners);
+                let triangles = triangulate(&vertices);
                 assert_eq!(triangles.len(), points.len() - 2);
-                let areas = area(&corners, &triangles);
+                let areas = areas(&vertices, &triangles);
                 assert!(areas.iter().all(|a| *a >= 0.0), "{areas:?}");
                 assert!((areas.iter().sum::<f64>() - exact).abs() < 1e-12);
             }
         }
+    }
+
+    /// Polygons without area, and one that meets itself, lose no vertex and do not panic.
+    #[test]
+    fn polygons_that_are_none_become_fans() {
+        let line: Vec<DVec3> = (0..5).map(|i| DVec3::X * f64::from(i)).collect();
+        assert_eq!(triangulate(&line).len(), 3);
+        assert_eq!(triangulate(&[DVec3::ONE; 4]).len(), 2);
+        let bow = [[0., 0.], [1., 1.], [1., 0.], [0., 1.]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        assert!(!triangulate(&bow).is_empty());
+        assert!(triangulate(&[DVec3::ONE; 2]).is_empty());
     }
 }

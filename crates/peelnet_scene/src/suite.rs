@@ -1,7 +1,7 @@
 //! The scenes that ship. They are embedded, so an installed program needs no folder beside it.
 
 use crate::{Scene, SceneError};
-use std::path::Path;
+use std::{io, path::Path};
 
 pub use peelnet_data::{EFFECTS, SCENES, SceneFile, find};
 
@@ -48,7 +48,12 @@ pub fn open(path: &Path, time: Option<f32>) -> Result<Scene, SceneError> {
 /// # Errors
 /// See [`Scene::load_at`].
 pub fn load_file(file: &SceneFile, time: Option<f32>) -> Result<Scene, SceneError> {
-    Scene::from_toml(Path::new(file.path), file.text, time)
+    // A shipped scene names no other file.
+    let read = |path: &Path| {
+        let own = (path == Path::new(file.path)).then(|| file.text.into());
+        own.ok_or_else(|| io::ErrorKind::NotFound.into())
+    };
+    Scene::from_bytes_at(file.path, time, read)
 }
 
 /// Loads the whole suite, without [`EFFECTS`].

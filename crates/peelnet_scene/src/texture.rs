@@ -1,8 +1,7 @@
 //! Images on surfaces: read from PNG and JPEG files, or made by code ([`crate::pattern`]).
 
-use crate::SceneError;
 use serde::Deserialize;
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 /// An image of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
@@ -105,22 +104,6 @@ impl Texture {
             grey: texels.iter().all(|[r, g, b, _]| r == g && g == b),
             texels,
         }
-    }
-
-    /// Reads a PNG or JPEG file.
-    ///
-    /// # Errors
-    /// A file that cannot be read, or is neither, or is too large.
-    pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        Self::decode(&path.display().to_string(), &bytes).map_err(|message| SceneError::Mesh {
-            path: path.to_owned(),
-            line: None,
-            message,
-        })
     }
 
     /// Reads a PNG or JPEG image from memory.

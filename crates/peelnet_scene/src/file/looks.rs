@@ -1,11 +1,11 @@
 //! A material in a scene file: what it says of a mesh's own one, and its images.
 
 use super::Loader;
-use crate::{Lighting, Maps, Material, SceneError, Texture, Wrap, pattern::Pattern};
+use crate::{
+    Lighting, Maps, Material, SceneError, Texture, Wrap, files::FileKind, pattern::Pattern,
+};
 use serde::{Deserialize, Deserializer, de::Error as _};
-use sha2::Digest as _;
 use std::{
-    fs,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -151,12 +151,14 @@ impl Loader<'_> {
         if let Some(known) = self.images.get(&file) {
             return Ok(Some(Arc::clone(known)));
         }
-        let texture = Arc::new(Texture::load(&file)?);
-        let bytes = fs::read(&file).map_err(|source| SceneError::Read {
+        let bytes = self.files.read(&file, FileKind::Image)?;
+        let texture = Texture::decode(&file.display().to_string(), &bytes);
+        let texture = Arc::new(texture.map_err(|message| SceneError::Mesh {
             path: file.clone(),
-            source,
-        })?;
-        self.hasher.update(&bytes);
+            line: None,
+            message,
+        })?);
+        self.files.record(&file, &bytes);
         self.images.insert(file, Arc::clone(&texture));
         Ok(Some(texture))
     }

@@ -1,13 +1,17 @@
-//! The images that MTL files name.
+//! Textures that MTL files name.
 
-use crate::{Lighting, Maps, Material, Texture, Wrap};
+use crate::{
+    files::{FileKind, Files},
+    material::{Lighting, Material},
+    texture::{Maps, Texture, Wrap},
+};
 use std::{
     collections::{BTreeMap, HashMap},
     path::{Path, PathBuf},
     sync::Arc,
 };
 
-/// What an image of an MTL file is for.
+/// What a texture of an MTL file is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Use {
     Color,
@@ -33,7 +37,24 @@ pub(super) fn drawn_as(key: &str) -> Option<Use> {
     })
 }
 
-/// A statement such as `map_Bump -bm 0.5 -clamp on bricks.png`.
+/// The texture statements of a material, by key, without the key: some `tobj` knows, the others it leaves as text.
+fn statements(m: &tobj::Material) -> BTreeMap<&str, &str> {
+    let known = [
+        ("map_Kd", &m.diffuse_texture),
+        ("map_d", &m.dissolve_texture),
+        ("map_Bump", &m.normal_texture),
+    ];
+    let known = known
+        .into_iter()
+        .filter_map(|(key, text)| Some((key, text.as_deref()?)));
+    let others = m
+        .unknown_param
+        .iter()
+        .map(|(k, v)| (k.as_str(), v.as_str()));
+    known.chain(others).collect()
+}
+
+/// The arguments of a statement such as `map_Bump -bm 0.5 -clamp on bricks.png`.
 #[derive(Clone, Debug)]
 struct Statement {
     file: PathBuf,
@@ -42,156 +63,130 @@ struct Statement {
     clamp: bool,
 }
 
-/// The images that MTL files name, read once each.
+/// The textures of all materials, each file read once.
 #[derive(Default)]
 pub(super) struct Images {
-    of: HashMap<String, BTreeMap<Use, Statement>>,
     read: HashMap<PathBuf, Option<Arc<Texture>>>,
     pub warnings: Vec<String>,
-    pub files: Vec<PathBuf>,
 }
 
 impl Images {
-    /// Lists the images of an MTL's materials; the last statement of a kind counts.
-    pub fn list(&mut self, library: &Path, text: &str) {
-        let folder = library.parent().unwrap_or(Path::new("."));
-        let mut material = String::new();
-        for line in text.lines() {
-            let words: Vec<&str> = line.split_ascii_whitespace().collect();
-            let Some((&key, mut rest)) = words.split_first() else {
-                continue;
+    /// Reads a statement's arguments; `None`, with a warning, where it names no file.
+    fn statement(&mut self, library: &Path, key: &str, text: &str) -> Option<Statement> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let mut rest = words.as_slice();
+        let mut statement = Statement {
+            file: PathBuf::new(),
+            strength: 1.0,
+            clamp: false,
+        };
+        while let Some((option, after)) = rest.split_first()
+            && option.starts_with('-')
+        {
+            let is_number = |w: &&&str| w.parse::<f32>().is_ok();
+            let taken = match *option {
+                "-o" | "-s" | "-t" => after.iter().take(3).take_while(is_number).count(),
+                "-mm" => 2,
+                _ => 1,
             };
-            if key == "newmtl" {
-                material = rest.join(" ");
+            match (*option, after.first()) {
+                ("-bm", Some(value)) => statement.strength = value.parse().unwrap_or(1.0),
+                ("-clamp", Some(value)) => statement.clamp = *value == "on",
+                _ => self.warnings.push(format!(
+                    "{}: option {option} of {key} is not drawn",
+                    library.display()
+                )),
             }
-            let Some(kind) = drawn_as(key) else { continue };
-            let mut statement = Statement {
-                file: PathBuf::new(),
-                strength: 1.0,
-                clamp: false,
-            };
-            while let Some((option, after)) = rest.split_first()
-                && option.starts_with('-')
-            {
-                let is_number = |w: &&&str| w.parse::<f32>().is_ok();
-                let taken = match *option {
-                    "-o" | "-s" | "-t" => after.iter().take(3).take_while(is_number).count(),
-                    "-mm" => 2,
-                    _ => 1,
-                };
-                match (*option, after.first()) {
-                    ("-bm", Some(value)) => statement.strength = value.parse().unwrap_or(1.0),
-                    ("-clamp", Some(value)) => statement.clamp = *value == "on",
-                    _ => self.warnings.push(format!(
-                        "{}: option {option} of {key} is not drawn",
-                        library.display()
-                    )),
-                }
-                rest = &after[taken.min(after.len())..];
-            }
-            if rest.is_empty() {
-                self.warnings
-                    .push(format!("{}: {key} names no file", library.display()));
-                continue;
-            }
-            // Written on Windows, read anywhere.
-            statement.file = folder.join(rest.join(" ").replace('\\', "/"));
-            let all = self.of.entry(material.clone()).or_default();
-            all.insert(kind, statement);
+            rest = &after[taken.min(after.len())..];
         }
+        if rest.is_empty() {
+            let warning = format!("{}: {key} names no file", library.display());
+            self.warnings.push(warning);
+            return None;
+        }
+        // Windows writes backslashes, which other systems do not read.
+        let folder = library.parent().unwrap_or(Path::new("."));
+        statement.file = folder.join(rest.join(" ").replace('\\', "/"));
+        Some(statement)
     }
 
-    /// An image; `None`, and a warning, where it cannot be drawn.
-    fn image(&mut self, file: &Path) -> Option<Arc<Texture>> {
+    /// A texture; `None`, and a warning, where it cannot be drawn.
+    fn texture(&mut self, files: &mut Files<'_>, file: &Path) -> Option<Arc<Texture>> {
         if let Some(known) = self.read.get(file) {
             return known.clone();
         }
-        let image = match Texture::load(file) {
-            Ok(texture) => {
-                self.files.push(file.to_owned());
-                Some(Arc::new(texture))
-            }
-            Err(e) => {
-                self.warnings.push(format!("{e}; drawn without it"));
-                None
-            }
+        let texture = match files.read(file, FileKind::Image) {
+            Err(e) => Err(e.to_string()),
+            Ok(bytes) => match Texture::decode(&file.display().to_string(), &bytes) {
+                Err(e) => Err(format!("{}: {e}", file.display())),
+                Ok(texture) => {
+                    files.record(file, &bytes);
+                    Ok(Arc::new(texture))
+                }
+            },
         };
-        self.read.insert(file.to_owned(), image.clone());
-        image
+        let texture = texture
+            .map_err(|e| self.warnings.push(format!("{e}; drawn without it")))
+            .ok();
+        self.read.insert(file.to_owned(), texture.clone());
+        texture
     }
 
-    /// A material with its images.
-    pub fn put_on(&mut self, m: &tobj::Material, mut material: Material) -> Material {
-        let Some(statements) = self.of.get(&m.name).cloned() else {
-            return material;
-        };
+    /// A material with its textures. `library` is the MTL file that `m` comes from.
+    pub fn put_on(
+        &mut self,
+        files: &mut Files<'_>,
+        library: &Path,
+        m: &tobj::Material,
+        mut material: Material,
+    ) -> Material {
+        let mut uses: BTreeMap<Use, Statement> = BTreeMap::new();
+        for (key, text) in statements(m) {
+            let Some(kind) = drawn_as(key) else { continue };
+            if let Some(statement) = self.statement(library, key, text) {
+                uses.insert(kind, statement);
+            }
+        }
         let mut found: BTreeMap<Use, Arc<Texture>> = BTreeMap::new();
-        for (kind, statement) in &statements {
-            if let Some(image) = self.image(&statement.file) {
-                found.insert(*kind, image);
+        for (kind, statement) in &uses {
+            if let Some(texture) = self.texture(files, &statement.file) {
+                found.insert(*kind, texture);
             }
         }
         let mut maps = Maps::NONE;
-        if statements.values().any(|s| s.clamp) {
+        if uses.values().any(|s| s.clamp) {
             maps.wrap = [Wrap::Clamp; 2];
         }
-        let opaque = |t: [u8; 4]| [t[0], t[1], t[2], 255];
-        let of_alpha = |image: &Texture| {
-            let by_alpha = image.has_alpha();
-            move |t: [u8; 4]| if by_alpha { t[3] } else { t[0] }
-        };
-        maps.color = match (found.get(&Use::Color), found.get(&Use::Alpha)) {
-            (None, None) => None,
-            // Opacity is what `map_d` says, and nothing else.
-            (Some(color), None) if !color.has_alpha() => Some(Arc::clone(color)),
-            (Some(color), None) => Some(Arc::new(Texture::joined(color, color, |t, _| opaque(t)))),
-            (None, Some(alpha)) => {
-                let value = of_alpha(alpha);
-                Some(Arc::new(Texture::joined(alpha, alpha, |t, _| {
-                    [255, 255, 255, value(t)]
-                })))
-            }
-            (Some(color), Some(alpha)) => {
-                let value = of_alpha(alpha);
-                let join = |c: [u8; 4], a| [c[0], c[1], c[2], value(a)];
-                Some(Arc::new(Texture::joined(color, alpha, join)))
-            }
-        };
+        maps.color = color_map(found.get(&Use::Color), found.get(&Use::Alpha));
         if found.contains_key(&Use::Alpha) {
             material.blend = true;
         }
-        let heights = |image: &Texture, strength: f32| {
-            // A rise of white over black by an eightieth of the image's width.
-            Arc::new(image.normals_of_heights(strength * image.size[0] as f32 / 80.0))
+        let heights = |heights: &Texture, strength: f32| {
+            // White rises over black by an eightieth of the texture's width.
+            Arc::new(heights.normals_of_heights(strength * heights.size[0] as f32 / 80.0))
         };
         maps.normal = match (found.get(&Use::Normal), found.get(&Use::Bump)) {
             (Some(normals), _) => Some(Arc::clone(normals)),
-            (None, Some(bump)) if bump.is_grey() => {
-                Some(heights(bump, statements[&Use::Bump].strength))
-            }
+            (None, Some(bump)) if bump.is_grey() => Some(heights(bump, uses[&Use::Bump].strength)),
             (None, bump) => bump.cloned(),
         };
-        let is_pbr = material.lighting != Lighting::Unlit;
-        let of_key = |key: &str| m.unknown_param.contains_key(key);
-        let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
-        let rough = found.get(&Use::Roughness);
-        let metal = found.get(&Use::Metallic);
+        let has = |key: &str| m.unknown_param.contains_key(key);
+        let (rough, metal) = (found.get(&Use::Roughness), found.get(&Use::Metallic));
         if rough.is_some() || metal.is_some() {
+            let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
             let values = Texture::joined(
                 rough.map_or(&white, |t| t.as_ref()),
                 metal.map_or(&white, |t| t.as_ref()),
                 |rough, metal| [255, rough[0], metal[0], 255],
             );
             maps.metallic_roughness = Some(Arc::new(values));
-            material.lighting = if is_pbr {
-                Lighting::Pbr
-            } else {
-                material.lighting
-            };
-            if rough.is_some() && !of_key("Pr") {
+            if material.lighting != Lighting::Unlit {
+                material.lighting = Lighting::Pbr;
+            }
+            if rough.is_some() && !has("Pr") {
                 material.roughness = 1.0;
             }
-            if metal.is_some() && !of_key("Pm") {
+            if metal.is_some() && !has("Pm") {
                 material.metallic = 1.0;
             }
         }
@@ -201,4 +196,30 @@ impl Images {
         }
         Material { maps, ..material }
     }
+}
+
+/// Base colour with the opacity of `map_d`, which alone counts: opacity in the colour's own file is dropped.
+fn color_map(color: Option<&Arc<Texture>>, alpha: Option<&Arc<Texture>>) -> Option<Arc<Texture>> {
+    let opacity = |texture: &Texture| {
+        let by_alpha = texture.has_alpha();
+        move |t: [u8; 4]| if by_alpha { t[3] } else { t[0] }
+    };
+    Some(match (color, alpha) {
+        (None, None) => return None,
+        (Some(color), None) if !color.has_alpha() => Arc::clone(color),
+        (Some(color), None) => {
+            let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
+            Arc::new(Texture::joined(color, color, opaque))
+        }
+        (None, Some(alpha)) => {
+            let value = opacity(alpha);
+            let white = |t, _| [255, 255, 255, value(t)];
+            Arc::new(Texture::joined(alpha, alpha, white))
+        }
+        (Some(color), Some(alpha)) => {
+            let value = opacity(alpha);
+            let join = |c: [u8; 4], a| [c[0], c[1], c[2], value(a)];
+            Arc::new(Texture::joined(color, alpha, join))
+        }
+    })
 }

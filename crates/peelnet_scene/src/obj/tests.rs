@@ -1,0 +1,242 @@
+//! OBJ and MTL files as exporters write them, and as they should not.
+
+use super::*;
+use std::fs;
+
+fn load(files: &[(&str, &[u8])]) -> Result<LoadedObj, SceneError> {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    for (name, bytes) in files {
+        fs::write(folder.path().join(name), bytes).expect("writes");
+    }
+    load_obj(&folder.path().join(files[0].0), Lighting::Unlit)
+}
+
+const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn polygons_negative_indices_groups_and_materials() {
+    let obj = format!(
+        "mtllib a.mtl\n{QUAD}g left\nusemtl glass\nf 1 2 3 4\ng right\nusemtl fog\nf -4 -3 -2\n"
+    );
+    let mtl = b"newmtl glass\nKd 0.25 0.5 1\nd 0.3\nnewmtl fog\nKd 1 1 1\nTr 0.9\n";
+    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+    let m = &loaded.mesh;
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    assert_eq!(loaded.files.len(), 2);
+    assert_eq!(m.triangles.len(), 3);
+    assert_eq!(m.parts.len(), 2);
+    assert_eq!(
+        (m.parts[0].name.as_str(), m.parts[0].material.alpha),
+        ("left", 0.3)
+    );
+    assert_eq!(m.parts[0].material.color, [0.25, 0.5, 1.0]);
+    assert!((m.parts[1].material.alpha - 0.1).abs() < 1e-6);
+    assert!(m.normals.iter().all(|n| *n == Vec3::Z));
+}
+
+/// An L-shaped face (concave), comments behind data, a continued line, and a texture that is not there.
+#[test]
+fn what_exporters_write() {
+    let obj = "mtllib\ta.mtl # library\nv 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\n";
+    let mtl = b"newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n";
+    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+    let m = &loaded.mesh;
+    let area: f32 = m
+        .triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|i| m.positions[i as usize]);
+            (b - a).cross(c - a).z / 2.0
+        })
+        .sum();
+    assert_eq!((m.triangles.len(), area), (4, 3.0));
+    assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
+    assert_eq!(loaded.warnings.len(), 1);
+    assert!(
+        loaded.warnings[0].contains("brass.png"),
+        "{:?}",
+        loaded.warnings
+    );
+}
+
+#[test]
+fn bad_materials_name_their_line() {
+    let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
+    for (mtl, expected) in [
+        ("newmtl m\nKd 1 0\n", "a.mtl:2: 'Kd' needs 3 numbers"),
+        ("newmtl m\nd nan\n", "a.mtl:2: 'd nan' is not finite"),
+        ("newmtl m\n\nTr 1.5\n", "a.mtl:3: Tr 1.5 must lie in 0 … 1"),
+    ] {
+        let e = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())]).expect_err(mtl);
+        assert!(e.to_string().contains(expected), "{e}");
+    }
+}
+
+/// Corners that a texture seam splits keep one normal: the surface is smooth there.
+#[test]
+fn physically_based_values_and_emission() {
+    let mtl = b"newmtl m\nKd 1 0 0\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
+    let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
+    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+    let m = &loaded.mesh.parts[0].material;
+    assert_eq!(
+        (m.roughness, m.metallic, m.emission),
+        (0.3, 0.8, [2.0, 0.0, 1.0])
+    );
+    // Unlit scenes stay unlit; these tests load so, or with Phong.
+    assert_ne!(m.lighting, Lighting::Phong);
+}
+
+#[test]
+fn seams_do_not_split_normals() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 4/2 2/2\n";
+    let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
+    let m = &loaded.mesh;
+    let at_origin: Vec<Vec3> = (0..m.positions.len())
+        .filter(|&i| m.positions[i] == Vec3::ZERO)
+        .map(|i| m.normals[i])
+        .collect();
+    assert_eq!(at_origin.len(), 2);
+    assert_eq!(at_origin[0], at_origin[1]);
+}
+
+/// Images of all kinds, options, an opacity of its own, heights as normals, colours of corners, Latin-1; what is not drawn is told.
+#[test]
+fn images_of_materials() {
+    let picture = |texels: [[u8; 4]; 2]| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = image::RgbaImage::from_raw(2, 1, texels.concat()).expect("two texels");
+        let done = image.write_to(&mut bytes, image::ImageFormat::Png);
+        done.map(|()| bytes.into_inner()).expect("encodes")
+    };
+    let color = picture([[200, 0, 0, 9], [0, 100, 0, 9]]);
+    let leaf = picture([[0, 0, 0, 255], [255, 255, 255, 255]]);
+    let mtl = b"newmtl m\nKd 1 1 1\nmap_Kd -clamp on a b.png\nmap_d leaf.png\nmap_Bump -bm 2 -s 2 2 leaf.png\nmap_Pr leaf.png\nmap_Ke a b.png\nmap_Ks gone.png\n# caf\xe9\n";
+    let obj = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n";
+    let files: [(&str, &[u8]); 4] = [
+        ("a.obj", obj.as_bytes()),
+        ("a.mtl", mtl),
+        ("a b.png", &color),
+        ("leaf.png", &leaf),
+    ];
+    let loaded = load(&files).expect("loads");
+    let mesh = &loaded.mesh;
+    let m = &mesh.parts[0].material;
+    // Opacity comes of map_d alone, whatever the colour's file holds.
+    let color = m.maps.color.as_ref().expect("a map");
+    assert_eq!(color.texels, [[200, 0, 0, 0], [0, 100, 0, 255]]);
+    assert!(m.blend && m.maps.wrap == [crate::Wrap::Clamp; 2]);
+    assert_eq!(m.maps.normal.as_ref().map(|n| n.size), Some([2, 1]));
+    let values = m.maps.metallic_roughness.as_ref().expect("a map");
+    assert_eq!((values.texels[1], m.roughness), ([255, 255, 255, 255], 1.0));
+    assert_eq!(m.emission, [1.0; 3]);
+    // v runs down.
+    assert_eq!(mesh.uvs[0][2], Vec2::new(1.0, 0.0));
+    assert_eq!(
+        mesh.colors[..3],
+        [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]]
+    );
+    let told = loaded.warnings.join("\n");
+    for word in ["option -s of map_Bump", "map_Ks", "Latin-1"] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    assert_eq!(
+        (loaded.warnings.len(), loaded.files.len()),
+        (3, 4),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_missing_mtl_is_survived() {
+    let obj = format!("mtllib gone.mtl\n{QUAD}usemtl glass\nf 1 2 3 4\n");
+    let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
+    assert_eq!(loaded.warnings.len(), 1);
+    assert!(
+        loaded.warnings[0].contains("gone.mtl"),
+        "{:?}",
+        loaded.warnings
+    );
+    assert_eq!(loaded.mesh.parts[0].material.color, [0.8; 3]);
+}
+
+#[test]
+fn bad_normals_are_computed_and_flat_triangles_left_out() {
+    let obj = format!("{QUAD}vn 0 0 0\nvn 0 0 -0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
+    let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
+    assert_eq!(loaded.mesh.triangles.len(), 1);
+    assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
+    for n in &loaded.mesh.normals {
+        assert!((n.length() - 1.0).abs() < 1e-6);
+    }
+}
+
+/// Each bad file gives one error that names the file, the line and the mend.
+#[test]
+fn bad_files() {
+    let cases: [(&str, Vec<u8>, &str); 11] = [
+        (
+            "NaN position",
+            b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
+            "a.obj:2: position 'nan'",
+        ),
+        (
+            "NaN normal",
+            format!("{QUAD}vn 0 nan 0\nf 1//1 2//1 3//1\n").into_bytes(),
+            "a.obj:5: normal 'nan'",
+        ),
+        (
+            "NaN w",
+            b"v 0 0 0\nv 1 0 0 nan\nv 0 1 0\nf 1 2 3\n".to_vec(),
+            "a.obj:2: position 'nan'",
+        ),
+        (
+            "tiny w",
+            b"v 0 0 0\nv 1 0 0 1e-42\nv 0 1 0\nf 1 2 3\n".to_vec(),
+            "a.obj:2: a position with w = 1e-42",
+        ),
+        (
+            "word",
+            b"v 0 zero 0\nf 1 1 1\n".to_vec(),
+            "a.obj:1: 'zero' is not a number",
+        ),
+        (
+            "beyond",
+            format!("{QUAD}f 1 2 5\n").into_bytes(),
+            "a.obj:5: index 5 points at none of the 4 vertices",
+        ),
+        (
+            "zero",
+            format!("{QUAD}f 0 1 2\n").into_bytes(),
+            "a.obj:5: index 0",
+        ),
+        (
+            "too far back",
+            format!("{QUAD}f -1 -2 -5\n").into_bytes(),
+            "a.obj:5: index -5",
+        ),
+        ("empty", Vec::new(), "a.obj: holds no faces"),
+        (
+            "cut off",
+            format!("{QUAD}f 1 2").into_bytes(),
+            "a.obj:5: a face of 2 vertices",
+        ),
+        (
+            "UTF-16",
+            vec![b'v', 0, b'\n', 0, 0xff, 0xfe],
+            "a.obj:2: is not UTF-8",
+        ),
+    ];
+    for (name, bytes, expected) in cases {
+        let e = load(&[("a.obj", &bytes)]).expect_err(name).to_string();
+        assert!(e.contains(expected), "{name}: {e}");
+        assert!(
+            e.contains("repair") || e.contains('?'),
+            "{name} names no mend: {e}"
+        );
+    }
+    assert!(matches!(
+        load_obj(Path::new("no/such.obj"), Lighting::Unlit),
+        Err(SceneError::Read { .. })
+    ));
+}
