@@ -57,6 +57,26 @@ pub struct ExtractOptions {
     pub budget: Option<u64>,
 }
 
+impl ExtractOptions {
+    /// All views at 1024×768, every pixel, Parquet files, no varied copies.
+    pub fn new(out: impl Into<PathBuf>) -> Self {
+        Self {
+            out: out.into(),
+            size: [1024, 768],
+            views: Views::All,
+            format: Format::Parquet,
+            peel: Peel::SBuffer,
+            max_passes: None,
+            pixels: 1.0,
+            augment: 0,
+            seed: 1,
+            shard: None,
+            command: String::new(),
+            budget: None,
+        }
+    }
+}
+
 /// How far an extraction is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {

@@ -1,0 +1,71 @@
+
+// What follows the exported text: four layers, and the three passes that the text describes.
+
+// Colour and opacity; distance to the camera. Drawn in this order, which is neither front to back nor back to front.
+const COLORS = array(vec4f(0.0, 0.0, 1.0, 0.5), vec4f(1.0, 1.0, 1.0, 0.9), vec4f(1.0, 0.0, 0.0, 0.5), vec4f(0.0, 1.0, 0.0, 0.5));
+const DEPTHS = array(4.0, 8.0, 1.0, 2.0);
+const LOWEST = array(vec2f(-0.6, -0.6), vec2f(-1.0, -1.0), vec2f(-0.2, -0.9), vec2f(-0.9, -0.2));
+
+struct Varyings {
+    @builtin(position) position: vec4f,
+    @location(0) color: vec4f,
+    @location(1) depth: f32,
+}
+
+@vertex
+fn layer(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Varyings {
+    var colors = COLORS;
+    var depths = DEPTHS;
+    var lowest = LOWEST;
+    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
+    return Varyings(vec4f(mix(lowest[instance], -lowest[instance], corner), 0.5, 1.0), colors[instance], depths[instance]);
+}
+
+@vertex
+fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0, 0.5, 1.0);
+}
+
+@group(0) @binding(0) var moments: texture_2d<f32>;
+@group(0) @binding(1) var extent: texture_2d<f32>;
+@group(0) @binding(2) var sums: texture_2d<f32>;
+@group(0) @binding(3) var ends: texture_2d<f32>;
+
+// The same function in both passes, over the range of depth that the layers span.
+fn zeta(depth: f32) -> f32 {
+    return clamp(2.0 * log(depth / 1.0) / log(8.0 / 1.0) - 1.0, -1.0, 1.0);
+}
+
+struct Two {
+    @location(0) first: vec4f,
+    @location(1) second: vec4f,
+}
+
+@fragment
+fn statistics(in: Varyings) -> Two {
+    let s = peelnet_statistics(in.color.a, zeta(in.depth));
+    return Two(s.moments, s.extent);
+}
+
+@fragment
+fn weighted(in: Varyings) -> Two {
+    let at = vec2u(in.position.xy);
+    let w = peelnet_fragment(in.color.a, zeta(in.depth), textureLoad(moments, at, 0), textureLoad(extent, at, 0));
+    let contribution = vec4f(in.color.rgb, 1.0) * in.color.a * w.x;
+    return Two(select(vec4f(0.0), contribution, w.y == 0.0), select(contribution, vec4f(0.0), w.y == 0.0));
+}
+
+@fragment
+fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let at = vec2u(position.xy);
+    let background = vec3f(0.0);
+    let t = exp(-textureLoad(moments, at, 0).x);
+    if t == 1.0 {
+        return vec4f(background, 1.0);
+    }
+    let s = textureLoad(sums, at, 0);
+    let e = textureLoad(ends, at, 0);
+    let k = select(min((1.0 - t) / e.a, 1.0), (1.0 - t) / e.a, s.a == 0.0);
+    let between = s.rgb / max(s.a, 1e-30) * max(1.0 - t - e.a * k, 0.0);
+    return vec4f(e.rgb * k + between + background * t, 1.0);
+}

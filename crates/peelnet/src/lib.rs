@@ -1,0 +1,73 @@
+//! Learned order-independent transparency: draw scenes with every published method, peel them into datasets of
+//! fragments, train small networks on those, export the networks as shader text, and measure what each method costs.
+//!
+//! This crate gathers the parts. Each is a crate of its own and can be used alone:
+//!
+//! | here | crate | for |
+//! |---|---|---|
+//! | [`Gpu`], [`gpu`] | `peelnet_gpu` | an adapter and a device, opened here or handed in |
+//! | [`Scene`], [`scene`] | `peelnet_scene` | TOML, glTF and OBJ files, generated meshes, cameras, shipped scenes |
+//! | [`Renderer`], [`render`] | `peelnet_render` | drawing a scene with any method |
+//! | [`extract`] | `peelnet_peel` | every fragment of a scene as a row |
+//! | [`dataset`] | `peelnet_dataset` | reading those rows: Parquet, CSV and NPY |
+//! | [`Model`], [`model`] | `peelnet_model` | model files; [`Model::shipped`] has the shipped networks |
+//! | [`train`] | `peelnet_train` | networks from datasets (feature `train`) |
+//! | [`export`] | `peelnet_export` | a network as verified WGSL |
+//! | [`bench`] | `peelnet_eval` | errors against the exact image, times, hard cases |
+//! | [`models`] | `peelnet_models` | model files and WGSL of the shipped networks, embedded |
+//!
+//! # Use
+//!
+//! A network as text for a shader of your own needs no GPU and no file:
+//!
+//! ```
+//! use peelnet::{Model, Recipe, export};
+//!
+//! let model = Model::shipped(Recipe::Medium)?;
+//! let text = export::wgsl(&model, &export::Options::default())?;
+//! assert!(text.contains("fn peelnet_fragment"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Rows of a shipped scene, on whatever adapter there is:
+//!
+//! ```no_run
+//! use peelnet::{AdapterRequest, Gpu, dataset::Dataset, extract, scene::suite};
+//! use std::sync::atomic::AtomicBool;
+//!
+//! let gpu = Gpu::new(&AdapterRequest::Auto)?;
+//! let options = extract::ExtractOptions::new("rows");
+//! let stop = AtomicBool::new(false);
+//! extract::extract(&gpu, &[suite::load("cups")?], &options, &stop, &mut |_| ())?;
+//! println!("{} rows", Dataset::open("rows")?.rows());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The folder `examples/` holds whole programs: rows as `ndarray` arrays, training and export, drawing a glTF file, and
+//! an exported network in a wgpu program that uses no renderer of this crate.
+//!
+//! # Features
+//!
+//! - `cli` (default): the program `peelnet` and what only it needs. Libraries turn default features off.
+//! - `train`: [`train`], and with it burn, which takes the longest to compile. Part of `cli`.
+
+#[doc(inline)]
+pub use peelnet_gpu::{AdapterRequest, Gpu};
+#[doc(inline)]
+pub use peelnet_model::{Model, Recipe};
+#[doc(inline)]
+pub use peelnet_render::{MethodSpec, Renderer};
+#[doc(inline)]
+pub use peelnet_scene::{Camera, Scene};
+
+pub use peelnet_dataset as dataset;
+pub use peelnet_eval as bench;
+pub use peelnet_export as export;
+pub use peelnet_gpu as gpu;
+pub use peelnet_model as model;
+pub use peelnet_models as models;
+pub use peelnet_peel as extract;
+pub use peelnet_render as render;
+pub use peelnet_scene as scene;
+#[cfg(feature = "train")]
+pub use peelnet_train as train;

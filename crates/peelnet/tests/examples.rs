@@ -1,0 +1,88 @@
+//! Runs every program of `examples/` and looks at what it wrote.
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use std::path::Path;
+use std::process::Command;
+
+/// Runs an example and returns what it printed.
+fn example(name: &str, arguments: &[&Path]) -> String {
+    // Examples lie beside the folder of tests.
+    let tests = std::env::current_exe().unwrap();
+    let target = tests.ancestors().nth(2).unwrap();
+    let program = target
+        .join("examples")
+        .join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    assert!(
+        program.exists(),
+        "{} is missing: cargo build -p peelnet --examples",
+        program.display()
+    );
+    let output = Command::new(&program).args(arguments).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {stderr}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn pixels(path: &Path) -> image::RgbaImage {
+    image::open(path).unwrap().into_rgba8()
+}
+
+/// Every example has a test here.
+#[test]
+fn every_example_is_run() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let tested = include_str!("examples.rs");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() || path.extension().is_some_and(|e| e == "rs") {
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            assert!(tested.contains(&format!("example(\"{name}\"")), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_gltf_file_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("glass.png");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/glass.gltf");
+    let said = example("render_gltf", &[&file, &out]);
+    assert!(said.contains("abuffer"), "{said}");
+    let image = pixels(&out);
+    assert_eq!(image.dimensions(), (640, 480));
+    // Panes of three colours cross one another, over a floor.
+    let colors: std::collections::HashSet<_> = image.pixels().collect();
+    assert!(colors.len() > 10, "{}", colors.len());
+}
+
+#[test]
+fn rows_become_arrays() {
+    let said = example("rows_to_ndarray", &[]);
+    assert!(
+        said.contains("features [") && said.contains(", 3]"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_network_is_trained_and_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = example("train_and_export", &[folder.path()]);
+    assert!(said.contains("epoch 4"), "{said}");
+    let text = std::fs::read_to_string(folder.path().join("model.wgsl")).unwrap();
+    assert!(text.contains("fn peelnet_weight"), "{text}");
+}
+
+/// The middle of the picture holds the four fragments whose exact colour the README gives.
+#[test]
+fn an_exported_text_draws_in_a_foreign_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("layers.png");
+    example("own_renderer", &[&out]);
+    let middle = pixels(&out).get_pixel(128, 128).0;
+    for (found, exact) in middle.into_iter().zip([0.6125, 0.3625, 0.2375]) {
+        let off = f64::from(found) / 255.0 - exact;
+        // Half a step of the picture, and the network's own error on the two layers between the ends.
+        assert!(off.abs() < 0.03, "{middle:?}");
+    }
+}

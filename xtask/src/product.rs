@@ -1,0 +1,129 @@
+//! What runs the program itself: the demo, and the shipped networks.
+
+use crate::setup::ensure_driver;
+use crate::{cargo, root, run};
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Compiles the release build of `peelnet`, with cargo's own progress, and returns the program.
+fn build() -> Result<PathBuf, String> {
+    let args = ["build", "--release", "--package", "peelnet"];
+    run(cargo().args(args), "cargo build")?;
+    // This program lies in target/debug.
+    let here = env::current_exe().map_err(|e| format!("this program cannot be found: {e}"))?;
+    let target = here.ancestors().nth(2).unwrap_or(&here);
+    let program = format!("peelnet{}", env::consts::EXE_SUFFIX);
+    Ok(target.join("release").join(program))
+}
+
+pub fn demo(full: bool) -> Result<(), String> {
+    ensure_driver()?;
+    println!("Compiling peelnet: minutes the first time.");
+    let program = build()?;
+    let out = if full { "out/full" } else { "out/demo" };
+    let mut command = Command::new(program);
+    command.args(["run", "--out", out]);
+    if full {
+        command.arg("--full");
+    }
+    run(&mut command, "demo")?;
+    println!(
+        "\nThe report: {}",
+        root().join(out).join("report.html").display()
+    );
+    Ok(())
+}
+
+/// Training against PyTorch, transparency against VTK and pygfx.
+pub fn peers() -> Result<(), String> {
+    ["train", "transparency"].into_iter().try_for_each(|name| {
+        let script = format!("benches/peers/{name}.py");
+        run(Command::new("python3").arg(script), "peers")
+    })
+}
+
+/// Recipes that learn from synthetic lists and peeled scenes together.
+const PIXEL_RECIPES: [&str; 5] = ["small", "medium", "large", "nmt", "dfaoit"];
+
+/// Makes everything in `models/` from the shipped scenes and the seed.
+pub fn train_models() -> Result<(), String> {
+    ensure_driver()?;
+    // Built once: networks that change on the way would make cargo build it again.
+    let program = build()?;
+    let step = |args: &[&str]| {
+        println!("\n== peelnet {}", args.join(" "));
+        run(Command::new(&program).args(args), args[0])
+    };
+    // What an earlier run left would be in the way of extraction.
+    let _ = std::fs::remove_dir_all(root().join("out/models"));
+    let scenes = scene_files()?;
+    let (synthetic, peeled) = ("out/models/synthetic", "out/models/peeled");
+    step(&["extract", "--synthetic", "600000", "--out", synthetic])?;
+    let mut peel = vec!["extract"];
+    peel.extend(scenes.iter().map(String::as_str));
+    // Many small views teach more than few large ones.
+    peel.extend(["--size", "256x192", "--augment", "5", "--pixels", "0.12"]);
+    peel.extend(["--out", peeled]);
+    step(&peel)?;
+    step(&["run", "--full", "--out", "out/models/thesis"])?;
+    finish(
+        &program,
+        "thesis",
+        &["out/models/thesis/dataset"],
+        &["--resume"],
+    )?;
+    for recipe in PIXEL_RECIPES {
+        finish(&program, recipe, &[synthetic, peeled], &[])?;
+    }
+    println!(
+        "\nmodels/ is complete; compare with: cargo run --release -- bench data/scenes/*-held.toml --out out/bench"
+    );
+    Ok(())
+}
+
+/// Trains a recipe in `out/models` and puts the model, its text and its figures into `models`.
+fn finish(program: &Path, recipe: &str, data: &[&str], more: &[&str]) -> Result<(), String> {
+    let made = format!("out/models/{recipe}/model.safetensors");
+    let shipped = root().join("models").join(recipe);
+    let io = |e: std::io::Error| format!("models/{recipe}: {e}");
+    std::fs::create_dir_all(root().join(format!("out/models/{recipe}"))).map_err(io)?;
+    std::fs::create_dir_all(&shipped).map_err(io)?;
+    let mut args = vec!["train"];
+    args.extend(data);
+    args.extend(["--recipe", recipe, "--out", &made, "--json"]);
+    args.extend(more);
+    println!("\n== peelnet {}", args.join(" "));
+    let output = Command::new(program)
+        .args(&args)
+        .current_dir(root())
+        .stderr(std::process::Stdio::inherit())
+        .output()
+        .map_err(|e| format!("train: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("training {recipe} failed ({})", output.status));
+    }
+    let text = format!("models/{recipe}/model.wgsl");
+    println!("== peelnet export {made} --out {text}");
+    run(
+        Command::new(program).args(["export", &made, "--out", &text]),
+        "export",
+    )?;
+    std::fs::write(shipped.join("metrics.json"), output.stdout).map_err(io)?;
+    std::fs::copy(root().join(made), shipped.join("model.safetensors")).map_err(io)?;
+    Ok(())
+}
+
+/// The shipped scenes, relative to the root, in the order of their names.
+fn scene_files() -> Result<Vec<String>, String> {
+    let folder = root().join("data/scenes");
+    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut files: Vec<String> = entries
+        .flatten()
+        .filter_map(|e| e.file_name().into_string().ok())
+        .filter(|name| name.ends_with(".toml"))
+        .map(|name| format!("data/scenes/{name}"))
+        .collect();
+    files.sort();
+    Ok(files)
+}
