@@ -2,6 +2,7 @@
 //
 // `range` holds (-nearest, farthest) of what was left before this pass; MAX blending forms the next one. A fragment
 // that is neither goes on to the next pass; the first pass has an open range and only initialises it.
+// Variants: none | dataset
 @if(dataset) import package::scene::shade::radiance as shade;
 @if(!dataset) import package::scene::shade::shade;
 import package::scene::surface::Surface;

@@ -3,6 +3,7 @@
 // The test runs on linear depth scaled by a power of two, which loses no bit, so its key is the one key of the
 // project. Coplanar fragments follow one another by triangle: triangles are drawn in order, and the test (LESS)
 // keeps the first of equals. Unlike in the original, none is lost.
+// Variants: none | dataset
 import package::scene::camera::camera;
 @if(dataset) import package::scene::shade::radiance as shade;
 @if(!dataset) import package::scene::shade::shade;

@@ -2,6 +2,7 @@
 //
 // Shell sort (Shell 1959, gaps of Ciura 2001): in place, no recursion, insertion sort for the short runs that
 // almost all pixels have, and n^1.3 for the rest. Depths are positive, so comparing their bits compares them.
+// Variants: none | tinted
 import package::peel::tile::Tile;
 
 @group(0) @binding(0) var<uniform> tile: Tile;

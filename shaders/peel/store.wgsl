@@ -1,4 +1,5 @@
 // S-buffer, pass 2: every fragment into its pixel's own run of slots.
+// Variants: none | tinted | layered | dataset
 import package::scene::camera::camera;
 @if(dataset) import package::scene::shade::radiance as shade;
 @if(layered) import package::scene::shade::layered as shade;

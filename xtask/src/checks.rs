@@ -101,7 +101,7 @@ pub fn docs() -> Result<(), String> {
 
 /// A million random lists of fragments.
 pub fn search() -> Result<(), String> {
-    again("PROPTEST_CASES", "1000000", "peelnet_core", "random_lists")
+    again("PROPTEST_CASES", "1000000", "peelnet_tests", "random_lists")
 }
 
 /// Commands that are killed again and again.

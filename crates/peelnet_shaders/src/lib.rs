@@ -149,6 +149,7 @@ pub fn validate(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     /// A stand-in for a network that was exported for the methods in `folder`.
     fn learned(folder: &str) -> String {
@@ -178,9 +179,21 @@ mod tests {
         )
     }
 
-    const PARAMETERS: &str = "const FACTOR: f32 = 3e3;\nconst POWER: u32 = 2u;\nconst EPSILON: f32 = 5.0;\nconst BIAS: f32 = 5e-7;\nconst OVERESTIMATION: f32 = 0.25;\nconst K: u32 = 4u;\nconst SAMPLES: u32 = 8u;\nconst HIGHLIGHT: f32 = 1.0;\nconst HIGHLIGHT_SHARE: f32 = 0.5;\n";
+    /// Stand-ins for the constants that methods write: whole numbers, which take the type that is needed.
+    fn parameters() -> String {
+        let imports = SOURCES.iter().flat_map(|(_, text)| text.lines());
+        let names: BTreeSet<&str> = imports
+            .filter_map(|line| line.trim().strip_prefix("import package::parameters::"))
+            .flat_map(|names| names.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'))
+            .filter(|name| !name.is_empty())
+            .collect();
+        names
+            .into_iter()
+            .map(|name| format!("const {name} = 4;\n"))
+            .collect()
+    }
 
-    /// What materials call for: alone, and all of it.
+    /// Features that materials need: some alone, and all of them.
     const MATERIALS: [&[&str]; 10] = [
         &["lit", "phong"],
         &["lit", "pbr"],
@@ -209,84 +222,74 @@ mod tests {
         ],
     ];
 
-    /// What the colours of a scene call for, and where.
-    fn of_colors(path: &str) -> &'static [&'static str] {
-        match path {
-            "methods::wboit::gather" | "methods::wboit::resolve" | "methods::blended::gather" => {
-                &["packed", "tinted"]
-            }
-            "methods::abuffer::composite"
-            | "peel::sort"
-            | "methods::linked_list::build"
-            | "methods::linked_list::composite"
-            | "methods::mboit4::gather"
-            | "methods::mboit4::resolve"
-            | "methods::mboit6::gather"
-            | "methods::anchored::gather"
-            | "methods::anchored::resolve" => &["tinted"],
-            "peel::store" => &["tinted", "layered", "dataset"],
-            "methods::layers::composite" => &["increasing"],
-            _ => &[],
-        }
+    /// The sets of features that a shader is linked with, by the line `// Variants: a | b c | none` at its head; only one without
+    /// any where it has no such line. Features of materials and views are not among them.
+    fn variants(text: &'static str) -> Vec<Vec<&'static str>> {
+        let mut lines = text.lines().take_while(|line| line.starts_with("//"));
+        let line = lines.find_map(|line| line.strip_prefix("// Variants: "));
+        line.unwrap_or("none")
+            .split('|')
+            .map(|set| set.split_whitespace().filter(|f| *f != "none").collect())
+            .collect()
     }
 
-    /// Every root (a module with an entry point) links and validates in every feature it names; all failures are
-    /// reported at once.
+    /// Features that a view may bring to any pass over surfaces.
+    const OF_VIEWS: [&[&str]; 4] = [&[], &["opaque"], &["sampled"], &["opaque", "sampled"]];
+
+    /// Features that a text switches on, but for those of materials and views.
+    fn own_features(text: &'static str) -> BTreeSet<&'static str> {
+        let conditions = text
+            .split("@if(")
+            .skip(1)
+            .filter_map(|t| t.split(')').next());
+        let words =
+            conditions.flat_map(|c| c.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'));
+        let of_scenes = |f: &&str| {
+            let known = MATERIALS.into_iter().chain(OF_VIEWS);
+            *f == "numbered" || known.flatten().any(|k| k == f)
+        };
+        words.filter(|f| !f.is_empty() && !of_scenes(f)).collect()
+    }
+
+    /// Every root (a module with an entry point) links and validates in every variant that its head names, with every material
+    /// and view; all failures are reported at once.
     #[test]
     fn every_shader_links_and_validates() {
+        let parameters = parameters();
         let mut failures = Vec::new();
         let mut roots = 0;
         for (path, text) in SOURCES {
-            if !["@vertex", "@fragment", "@compute"]
-                .iter()
-                .any(|s| text.contains(s))
-            {
+            let entries = ["@vertex", "@fragment", "@compute"];
+            if !entries.iter().any(|s| text.contains(s)) {
                 continue;
             }
             roots += 1;
-            let mut variants: Vec<Vec<&str>> = if *path == "methods::wboit::gather" {
-                ["eq7", "eq8", "eq9", "eq10", "inverse_power", "papakostas"]
-                    .map(|w| vec![w, "opaque"])
-                    .to_vec()
-            } else if *path == "methods::kbuffer::gather" {
-                ["unweighted", "eq7", "eq8", "eq9"]
-                    .map(|w| vec![w, "opaque"])
-                    .to_vec()
-            } else if ["mboit4", "mboit6", "wavelet"]
-                .iter()
-                .any(|m| *path == format!("methods::{m}::gather"))
-            {
-                vec![vec![], vec!["own_share_out", "opaque"]]
-            } else if path.starts_with("methods::anchored") {
-                vec![
-                    vec![],
-                    vec!["separate_ends"],
-                    vec!["separate_ends", "opaque"],
-                    vec!["separate_ends", "tinted"],
-                ]
-            } else {
-                vec![
-                    vec![],
-                    vec!["opaque"],
-                    vec!["sampled"],
-                    vec!["opaque", "sampled"],
-                ]
+            let own = variants(text);
+            for feature in own_features(text) {
+                if !own.iter().flatten().any(|f| *f == feature) {
+                    failures.push(format!(
+                        "{path}: no variant has the feature {feature}; name one at the head of the file, as in // Variants: none | {feature}"
+                    ));
+                }
+            }
+            let numbered = text.contains("surface: Surface").then_some("numbered");
+            let with = |set: &[&'static str], more: &[&'static str]| {
+                let all = set.iter().chain(more).copied();
+                all.chain(numbered).collect::<Vec<_>>()
             };
-            // Which triangle a fragment belongs to, where a shader asks.
-            for variant in &mut variants {
-                variant.extend(text.contains("surface: Surface").then_some("numbered"));
-            }
-            let first = variants[0].clone();
-            let with = |more: &[&'static str]| [first.as_slice(), more].concat();
+            let views = own
+                .iter()
+                .flat_map(|set| OF_VIEWS.map(|view| with(set, view)));
+            let mut all: Vec<Vec<&str>> = views.collect();
             if text.contains("surface: Surface") || text.contains("-> Surface") {
-                variants.extend(MATERIALS.map(with));
+                all.extend(MATERIALS.map(|material| with(&own[0], material)));
             }
-            variants.extend(of_colors(path).iter().map(|feature| with(&[*feature])));
-            for features in variants {
-                let learned = learned(path.rsplit_once("::").map_or("", |(folder, _)| folder));
+            let folder = path.rsplit_once("::").map_or("", |(folder, _)| folder);
+            let learned = learned(folder);
+            for features in all {
                 let extra = [
                     ("learned::weight", learned.as_str()),
-                    ("parameters", PARAMETERS),
+                    ("parameters", parameters.as_str()),
                 ];
                 let result = link(path, &features, &extra).and_then(|wgsl| {
                     validate(path, &wgsl, naga::valid::Capabilities::empty()).map(drop)

@@ -1,4 +1,5 @@
 // S-buffer: composites each sorted run front to back over C_0 (under-blending).
+// Variants: none | tinted
 import package::peel::runs::{background, fragments, image, run_of};
 
 @compute @workgroup_size(64)

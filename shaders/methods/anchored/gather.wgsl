@@ -1,4 +1,5 @@
 // Learned methods with anchors, pass 2: the exported text's weight.
+// Variants: none | separate_ends | tinted | separate_ends tinted
 import package::helpers::absorbance::warped_depth;
 import package::learned::weight::peelnet_fragment;
 import package::scene::shade::shade;

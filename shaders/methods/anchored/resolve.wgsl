@@ -1,5 +1,6 @@
 // Learned methods with anchors: eq 6's resolve, or the ends exact and the rest normalised to what they leave.
 // Twin of peelnet_core::methods::anchored.
+// Variants: none | separate_ends | tinted | separate_ends tinted
 import package::helpers::guards::FILL_MAX;
 import package::helpers::resolve::{divisor, normalised, normalised_by_channel, within};
 import package::helpers::screen::screen_corner;

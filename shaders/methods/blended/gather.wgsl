@@ -1,4 +1,5 @@
 // blended (McGuire & Bavoil 2013, eq 5): sum C, sum alpha and the transmittance of the whole pixel.
+// Variants: none | packed | tinted
 import package::helpers::sums::{Sums, sums_of};
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;

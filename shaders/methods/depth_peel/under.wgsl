@@ -1,5 +1,6 @@
 // Depth peeling: puts one peeled layer under what is composited so far. Ping-pong between two targets, because
 // 32-bit targets cannot be blended everywhere.
+// Variants: none | counted
 import package::helpers::screen::screen_corner;
 
 // rgb: colour so far, a: transmittance so far.

@@ -1,4 +1,5 @@
 // Dual depth peeling: blends the two layers of one pass, the front one under, the back one over.
+// Variants: none | counted
 import package::helpers::screen::screen_corner;
 
 // What was left before the pass, and what is left after it.

@@ -1,4 +1,5 @@
 // kbuffer and hybrid, pass 2: a fragment among the K nearest stores its colour in its place, any other one is blended.
+// Variants: unweighted | eq7 | eq8 | eq9
 import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9};
 import package::methods::kbuffer::key::{first_place, nearness};
 import package::parameters::K;

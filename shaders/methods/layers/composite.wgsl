@@ -1,5 +1,6 @@
 // The view of layers (of a renderer of ageing materials, 2018): the nearest fragment of the highlighted layer takes the share
 // HIGHLIGHT_SHARE of the pixel, all in front of it the rest in equal parts, and what lies behind is not seen.
+// Variants: none | increasing
 import package::parameters::{HIGHLIGHT, HIGHLIGHT_SHARE};
 import package::peel::runs::{background, fragments, image, run_of};
 

@@ -1,4 +1,5 @@
 // linked-list, the one geometry pass: every fragment becomes a node of its pixel's list (Yang et al. 2010).
+// Variants: none | tinted
 import package::scene::camera::camera;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;

@@ -1,4 +1,5 @@
 // linked-list: sorts each pixel's list by (linear depth, triangle) and composites it front to back over C_0.
+// Variants: none | tinted
 struct Frame {
     size: vec2u,
     // Workgroups in a row of the dispatch.

@@ -1,4 +1,5 @@
 // mboit4: eq 6's resolve; the transmittance of the whole pixel is exp(-total absorbance).
+// Variants: none | tinted
 @if(!tinted) import package::helpers::resolve::normalised;
 @if(tinted) import package::helpers::resolve::normalised_by_channel;
 import package::helpers::screen::screen_corner;

@@ -1,4 +1,5 @@
 // mboit6, pass 2: eq 6 with the transmittance that the moments tell.
+// Variants: none | own_share_out | tinted
 import package::helpers::absorbance::{absorbance, warped_depth};
 import package::helpers::guards::WEIGHT_FLOOR;
 import package::methods::mboit6::reconstruct::transmittance_from_moments;

@@ -1,4 +1,5 @@
 // wavelet, pass 2: eq 6 with the transmittance that the wavelets tell, between the averages of two bins.
+// Variants: none | own_share_out
 import package::helpers::absorbance::absorbance;
 import package::helpers::guards::WEIGHT_FLOOR;
 import package::methods::wavelet::haar::{Coefficients, average, in_bins};

@@ -1,4 +1,5 @@
 // wboit (McGuire & Bavoil 2013, eq 6): sum C w, sum alpha w and the transmittance of the whole pixel.
+// Variants: eq7 | eq8 | eq9 | eq10 | inverse_power | papakostas | eq7 packed | eq7 tinted
 import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9, weight_eq10, weight_inverse_power, weight_papakostas};
 import package::parameters::{FACTOR, POWER, EPSILON};
 import package::helpers::sums::{Sums, sums_of};

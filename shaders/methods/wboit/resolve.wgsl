@@ -1,4 +1,5 @@
 // Eq 6's resolve, shared by every method that accumulates (sum C w, sum alpha w) and T.
+// Variants: none | packed | tinted
 @if(!tinted) import package::helpers::resolve::normalised;
 @if(tinted) import package::helpers::resolve::normalised_by_channel;
 import package::helpers::screen::screen_corner;

@@ -1,5 +1,5 @@
-//! Properties that hold of any list of fragments, searched for counterexamples: 10,000 lists for each, or as many as the
-//! environment's `PROPTEST_CASES` says (`cargo xtask search` asks for a million).
+//! Properties of any list of fragments, searched for counterexamples: 10,000 lists for each, or as many as the environment variable
+//! `PROPTEST_CASES` says (`cargo xtask search` sets a million). Methods take part by their declarations.
 //!
 //! proptest chooses a list's seed, length and kind, and shrinks the last two: a list of 512 fragments is then made in microseconds.
 
@@ -8,16 +8,15 @@
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     fragment::{Fragment, transmittances},
-    methods::{
-        anchored, blended, kbuffer, mboit4, mboit6, over, stochastic, wavelet, wboit,
-        weighted_average,
-    },
+    methods::{anchored, mboit4, mboit6, over, wavelet},
     random::Random,
     statistics::{Statistics, SumPrecision, features},
     tolerance,
     weights::Weight,
 };
+use peelnet_render::{Flaw, MethodSpec, Property, methods::Pixel};
 use proptest::prelude::*;
+use std::sync::LazyLock;
 
 fn config() -> ProptestConfig {
     let asked = std::env::var("PROPTEST_CASES").ok();
@@ -90,49 +89,50 @@ fn warp(list: &[Fragment]) -> DepthWarp {
     }
 }
 
-/// A share that no network would answer: anything in 0 … 1.
+/// A share that no network would predict: anything in 0 … 1.
 fn share(features: &[f64; 9]) -> f64 {
     (features.iter().sum::<f64>() * 12.9898).sin().abs()
 }
 
-/// Every normalised method's colour of a pixel.
-fn normalised(f: &[Fragment], c0: [f32; 3]) -> Vec<(String, [f32; 3])> {
-    let warp = warp(f);
-    let mut all = vec![
-        ("over".to_owned(), over::composite(f, c0)),
-        (
-            "weighted-average".to_owned(),
-            weighted_average::composite(f, c0),
-        ),
-        ("blended".to_owned(), blended::composite(f, c0)),
-        ("kbuffer-4".to_owned(), kbuffer::composite(f, c0, 4, None)),
-        (
-            "hybrid-4".to_owned(),
-            kbuffer::composite(f, c0, 4, Some(Weight::Eq9)),
-        ),
-        (
-            "stochastic-16".to_owned(),
-            stochastic::composite(f, c0, 16, [3, 5]),
-        ),
-        (
-            "mboit4".to_owned(),
-            mboit4::composite(f, c0, &warp, &mboit4::Settings::PAPER),
-        ),
-        (
-            "mboit6".to_owned(),
-            mboit6::composite(f, c0, &warp, &mboit6::PAPER),
-        ),
-        (
-            "wavelet-3".to_owned(),
-            wavelet::composite(f, c0, &warp, true),
-        ),
-    ];
-    for ends in [false, true] {
-        let color = anchored::composite(f, c0, &warp, ends, share);
-        all.push((format!("anchored, separate ends {ends}"), color));
-    }
-    all.extend(Weight::ALL.map(|w| (format!("wboit-{}", w.name()), wboit::composite(f, c0, w))));
-    all
+/// A normalised method's colour of a pixel.
+struct Normalised {
+    name: String,
+    color: [f32; 3],
+    /// Whether its weights are declared to vanish far from the camera.
+    vanishes: bool,
+}
+
+/// Every point of every method's curve that needs no network.
+static POINTS: LazyLock<Vec<MethodSpec>> = LazyLock::new(|| {
+    let all = MethodSpec::curve().into_iter();
+    // Twins know no precision of targets.
+    all.filter(|s| s.promises().normalised && !s.needs_model() && s.targets().is_none())
+        .collect()
+});
+
+/// Every normalised method's colour, and that of the learned weights with a network that predicts anything.
+fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<Normalised> {
+    let pixel = Pixel {
+        fragments,
+        background,
+        warp: warp(fragments),
+        position: [3, 5],
+        model: None,
+    };
+    let far = |f: &Flaw| f.property == Property::Hull && f.cases.contains(&"far");
+    let twins = POINTS.iter().filter_map(|spec| {
+        Some(Normalised {
+            name: spec.to_string(),
+            color: spec.twin(&pixel)?,
+            vanishes: spec.method().flaws.iter().any(far),
+        })
+    });
+    let anchored = [false, true].into_iter().map(|ends| Normalised {
+        name: format!("anchored, separate ends {ends}"),
+        color: anchored::composite(fragments, background, &pixel.warp, ends, share),
+        vanishes: false,
+    });
+    twins.chain(anchored).collect()
 }
 
 /// Twenty roundings of each of `n` sums of values ≤ 1, relative to what is divided by: the same terms.
@@ -178,14 +178,14 @@ proptest! {
     fn normalised_methods_stay_in_the_hull(of in lists()) {
         let f = list(of);
         let c0 = [0.2, 0.7, 0.4];
-        for (name, color) in normalised(&f, c0) {
+        for Normalised { name, color, vanishes } in normalised(&f, c0) {
             for k in 0..3 {
                 let all = || f.iter().map(|f| f.color[k]).chain([c0[k]]);
                 let (low, high) = all().fold((f32::INFINITY, 0.0f32), |(l, h), c| (l.min(c), h.max(c)));
                 let slack = if is_faint(&f) { 1e-4 } else { rounding(f.len()) };
                 let inside = color[k] >= low - slack && color[k] <= high + slack;
                 // The published weights end at 2^-24 of opacity times weight: depths of 1e30 vanish, a declared flaw.
-                let vanishes = name == "wboit-inverse-power" && f.iter().any(|f| f.depth > 1e2);
+                let vanishes = vanishes && f.iter().any(|f| f.depth > 1e2);
                 prop_assert!(inside || (vanishes && color[k].is_finite()), "{}: {:?} outside of {} … {}", name, color, low, high);
             }
         }
@@ -197,8 +197,8 @@ proptest! {
         let f = list((seed, 1, kind));
         let c0 = [0.2, 0.7, 0.4];
         let exact = over::composite(&f, c0);
-        for (name, color) in normalised(&f, c0) {
-            let vanishes = name == "wboit-inverse-power" && f[0].depth > 1e2;
+        for Normalised { name, color, vanishes } in normalised(&f, c0) {
+            let vanishes = vanishes && f[0].depth > 1e2;
             for k in 0..3 {
                 let slack = if is_faint(&f) { 1e-4 } else { rounding(1) };
                 prop_assert!((color[k] - exact[k]).abs() <= slack || vanishes, "{}: {:?} for {:?}", name, color, exact);
