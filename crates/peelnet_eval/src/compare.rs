@@ -23,7 +23,7 @@ pub struct Plan<'a> {
     pub learned: &'a [LearnedWeight],
     /// The models that those weights come from, as far as their estimates shall be judged fragment by fragment.
     pub models: &'a [Model],
-    /// Whether a method that needs more than this adapter allows is left out, and told of, instead of ending the comparison.
+    /// Whether a method that needs more than this adapter allows is left out and reported, instead of ending the comparison.
     pub lenient: bool,
     /// Views of each scene; all of them when none.
     pub views: Option<usize>,
@@ -33,7 +33,21 @@ pub struct Plan<'a> {
     pub images: Option<&'a Path>,
 }
 
-impl Plan<'_> {
+impl<'a> Plan<'a> {
+    /// These methods on all views, five timed frames each, without networks and pictures.
+    pub fn new(size: [u32; 2], methods: &'a [MethodSpec]) -> Self {
+        Self {
+            size,
+            methods,
+            learned: &[],
+            models: &[],
+            lenient: false,
+            views: None,
+            frames: 5,
+            images: None,
+        }
+    }
+
     /// How many views of a scene are drawn.
     pub fn views_of(&self, scene: &Scene) -> usize {
         let all = scene.views.len();
@@ -69,7 +83,7 @@ pub enum Event<'a> {
     View(Vec<Row>),
 }
 
-/// Compares every method of the plan on every view of a scene but those that `done` names, and tells of frames and views.
+/// Compares every method of the plan on every view of a scene except those in `done`, and reports frames and views.
 ///
 /// # Errors
 /// If a method cannot draw or a picture cannot be written, or what `tell` returns; [`EvalError::Interrupted`] once `stop` is

@@ -1,7 +1,7 @@
 //! What effects cost: each that a scene calls for with and without it, shading of one layer against all, and how the view of layers
 //! grows with triangles and with the part of the frame that it fills.
 
-use crate::{EvalError, Machine, compare, lines, table, write_atomically, write_json};
+use crate::{EvalError, compare};
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
 use peelnet_render::{Image, LayerView, MethodSpec, Prepared, RenderError, Renderer};
@@ -73,10 +73,6 @@ pub struct Fill {
 /// A finished measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effects {
-    /// What it was measured on.
-    pub machine: Machine,
-    /// The command line.
-    pub command: String,
     /// The method that effects are measured with.
     pub method: String,
     /// Frame size in pixels.
@@ -280,14 +276,11 @@ pub fn measure(
     gpu: &Gpu,
     scenes: &[Scene],
     settings: &Settings,
-    command: String,
     folder: &Path,
     stop: &AtomicBool,
     mut tick: impl FnMut(&str),
 ) -> Result<Effects, EvalError> {
     let mut found = Effects {
-        machine: Machine::of(gpu),
-        command,
         method: settings.method.to_string(),
         size: settings.size,
         frames: settings.frames,
@@ -364,7 +357,7 @@ pub fn measure(
 }
 
 /// The picture of a scene with or without an effect.
-pub(crate) fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> std::path::PathBuf {
+pub fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> std::path::PathBuf {
     let state = if on { "on" } else { "off" };
     folder
         .join("images")
@@ -381,203 +374,10 @@ fn picture(gpu: &Gpu, scene: &Scene, settings: &Settings, file: &Path) -> Result
     draw().map_err(EvalError::render(&scene.name, &settings.method.to_string()))
 }
 
-impl Effects {
-    /// Headings and cells of the effects.
-    pub fn table(&self) -> (Vec<String>, Vec<Vec<String>>) {
-        let headings = [
-            "scene",
-            "effect",
-            "with, ms",
-            "without, ms",
-            "time with / without",
-            "bytes a pixel",
-        ];
-        let cells = self.costs.iter().map(|c| {
-            let bytes = if c.bytes_with == c.bytes_without {
-                format!("{:.0}", c.bytes_with)
-            } else {
-                format!("{:.0}, without {:.0}", c.bytes_with, c.bytes_without)
-            };
-            vec![
-                c.scene.clone(),
-                c.effect.clone(),
-                format!("{:.2}", c.ms_with),
-                format!("{:.2}", c.ms_without),
-                format!("{:.2}", c.ratio),
-                bytes,
-            ]
-        });
-        (headings.map(str::to_owned).to_vec(), cells.collect())
-    }
-
-    /// Headings and cells of shading one layer against all.
-    pub fn layer_table(&self) -> (Vec<String>, Vec<Vec<String>>) {
-        let headings = [
-            "scene",
-            "layers",
-            "one shaded, ms",
-            "all shaded, ms",
-            "one / all",
-        ];
-        let cells = self.layers.iter().map(|l| {
-            vec![
-                l.scene.clone(),
-                l.layers.to_string(),
-                format!("{:.2}", l.ms_one),
-                format!("{:.2}", l.ms_all),
-                format!("{:.2}", l.ratio),
-            ]
-        });
-        (headings.map(str::to_owned).to_vec(), cells.collect())
-    }
-
-    /// Headings and cells of triangles against the part of the frame filled: times over that of the scene's first cell.
-    pub fn fill_table(&self) -> (Vec<String>, Vec<Vec<String>>) {
-        let mut headings = vec!["scene".to_owned(), "triangles".to_owned()];
-        for part in FILLED {
-            headings.push(format!("{:.0} % filled", part * 100.0));
-        }
-        for part in FILLED {
-            headings.push(format!("{:.0} %, one / all", part * 100.0));
-        }
-        let rows = self.fills.chunks(FILLED.len()).map(|row| {
-            let of_scene = |f: &&Fill| f.scene == row[0].scene;
-            let first = self.fills.iter().find(of_scene).map_or(1.0, |f| f.ms_one);
-            let mut cells = vec![row[0].scene.clone(), row[0].triangles.to_string()];
-            cells.extend(row.iter().map(|f| format!("{:.2}", f.ms_one / first)));
-            cells.extend(row.iter().map(|f| format!("{:.2}", f.ms_one / f.ms_all)));
-            cells
-        });
-        (headings, rows.collect())
-    }
-
-    /// The curve of layers as SVG text.
-    pub fn layer_chart(&self) -> String {
-        let line = |name: &str, ms: fn(&LayerCost) -> f64| -> lines::Line {
-            let points = self.layers.iter().map(|l| (f64::from(l.layers), ms(l)));
-            (name.to_owned(), points.collect())
-        };
-        let all = [
-            line("all layers shaded", |l| l.ms_all),
-            line("one layer shaded", |l| l.ms_one),
-        ];
-        lines::chart(&all, "layers", "frame time, ms")
-    }
-
-    /// Writes `effects.json`, `effects.md`, `effects-layers.svg` and `report.html` into a folder; pictures are taken from `images/` in it.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or a picture not be read.
-    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        write_json(&folder.join("effects.json"), self)?;
-        let tables = [self.table(), self.layer_table(), self.fill_table()];
-        let titles = [EFFECTS, LAYERS, FILLS];
-        let mut text = String::new();
-        for ((headings, cells), (title, note)) in tables.iter().zip(titles) {
-            if !cells.is_empty() {
-                text += &format!(
-                    "## {title}\n\n{note}\n\n{}\n",
-                    table::markdown(headings, cells)
-                );
-            }
-        }
-        text += &format!(
-            "`{}`, {}x{}, medians of {} frames in turn. {}\n",
-            self.method,
-            self.size[0],
-            self.size[1],
-            self.frames,
-            self.machine.credit(&self.command)
-        );
-        write_atomically(&folder.join("effects.md"), text.as_bytes())?;
-        if !self.layers.is_empty() {
-            let svg = self.layer_chart();
-            write_atomically(&folder.join("effects-layers.svg"), svg.as_bytes())?;
-        }
-        let page = crate::report::effects_page(self, folder)?;
-        write_atomically(&folder.join("report.html"), page.as_bytes())
-    }
-}
-
-/// Title and note of each table.
-pub(crate) const EFFECTS: (&str, &str) = (
-    "What each effect costs",
-    "A frame of the scene as it is, over one of the scene as if nothing called for the effect; both drawn in turn in one run.",
-);
-pub(crate) const LAYERS: (&str, &str) = (
-    "One layer shaded, or all",
-    "The view of layers with physically based shading of the highlighted layer alone, against shading all layers.",
-);
-pub(crate) const FILLS: (&str, &str) = (
-    "Triangles and the part of the frame filled",
-    "The view of layers with one layer shaded: times over that of the fewest triangles at half of the frame; then times over those with \
-     all layers shaded.",
-);
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-
-    fn layer(layers: u32, ms_one: f64, ms_all: f64) -> LayerCost {
-        LayerCost {
-            scene: "vase".into(),
-            layers,
-            ms_one,
-            ms_all,
-            ratio: ms_one / ms_all,
-        }
-    }
-
-    /// Ratios are those of the times, and the table of triangles counts from its first cell.
-    #[test]
-    fn tables_are_ratios() {
-        let fill = |triangles, filled, ms_one, ms_all| Fill {
-            scene: "vase".into(),
-            triangles,
-            filled,
-            ms_one,
-            ms_all,
-        };
-        let effects = Effects {
-            machine: crate::report::machine_of_tests(),
-            command: "peelnet bench --effects".into(),
-            method: "wboit-eq9".into(),
-            size: [4, 3],
-            frames: 1,
-            costs: vec![Cost {
-                scene: "vase".into(),
-                effect: "pbr".into(),
-                ms_with: 3.0,
-                ms_without: 2.0,
-                ratio: 1.5,
-                passes_with: 2,
-                passes_without: 2,
-                bytes_with: 10.0,
-                bytes_without: 8.0,
-            }],
-            layers: vec![layer(3, 2.0, 4.0), layer(6, 3.0, 9.0)],
-            fills: vec![
-                fill(100, 0.5, 2.0, 4.0),
-                fill(100, 0.75, 3.0, 4.0),
-                fill(100, 1.0, 4.0, 4.0),
-            ],
-        };
-        assert_eq!(effects.table().1[0][4..], ["1.50", "10, without 8"]);
-        assert_eq!(effects.layer_table().1[1][4], "0.33");
-        assert_eq!(
-            effects.fill_table().1[0][2..],
-            ["1.00", "1.50", "2.00", "0.50", "0.75", "1.00"]
-        );
-        let folder = tempfile::tempdir().unwrap();
-        effects.write(folder.path()).unwrap();
-        let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
-        assert!(
-            page.contains("0.33") && page.contains("one layer shaded"),
-            "{page}"
-        );
-        assert!(folder.path().join("effects-layers.svg").exists());
-    }
 
     /// Sets around one another keep their order: outermost first.
     #[test]

@@ -1,7 +1,7 @@
 use peelnet_render::RenderError;
 use std::path::PathBuf;
 
-/// What can go wrong when methods are compared or a report is written.
+/// What can go wrong when methods are measured.
 #[derive(Debug, thiserror::Error)]
 pub enum EvalError {
     /// The file system refused.
@@ -13,16 +13,6 @@ pub enum EvalError {
         action: &'static str,
         /// The system's reason.
         source: std::io::Error,
-    },
-    /// A picture of the report could not be read or written.
-    #[error("{}: cannot {action} the picture: {source}", path.display())]
-    Picture {
-        /// The file.
-        path: PathBuf,
-        /// What was tried.
-        action: &'static str,
-        /// The decoder's reason.
-        source: image::ImageError,
     },
     /// Drawing failed.
     #[error("scene '{scene}', method '{method}': {source}")]
@@ -63,8 +53,8 @@ pub enum EvalError {
         /// Pixels of the other one.
         approximate: usize,
     },
-    /// An interrupted run cannot be gone on with.
-    #[error("{}: cannot resume: {why}; leave out --resume to start afresh", path.display())]
+    /// An interrupted run cannot be resumed.
+    #[error("{}: cannot resume: {why}", path.display())]
     Resume {
         /// The file of the interrupted run.
         path: PathBuf,

@@ -1,6 +1,6 @@
 //! Error against time: a point for every method and its knobs, and the Pareto front of them.
 
-use crate::{Row, table::geometric_mean};
+use crate::{Row, geometric_mean};
 use peelnet_render::Role;
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting. The ratio travels between machines.
@@ -101,7 +101,7 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::table::tests::row;
+    use crate::row::tests::row;
 
     fn rows(of: &[(&str, f64, f64)]) -> Vec<Row> {
         let mut rows = Vec::new();

@@ -1,7 +1,7 @@
 //! What target formats cost in accuracy: how far sums and products of blending are from the exact ones, measured on the adapter at
 //! hand, beside the bound that follows from the format. docs/numerics.md explains the formulas.
 
-use crate::{EvalError, Machine, table, write_atomically, write_json};
+use crate::EvalError;
 use peelnet_core::{fragment::Fragment, methods::over, random::Random};
 use peelnet_gpu::{
     Gpu, GpuError,
@@ -12,7 +12,6 @@ use peelnet_gpu::{
 use peelnet_render::{Image, MethodSpec, RenderError, Renderer};
 use peelnet_scene::{Camera, Material, Object, Scene};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// A sum or product of blending in one format.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,10 +61,6 @@ pub struct Added {
 /// Everything that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Numerics {
-    /// On what.
-    pub machine: Machine,
-    /// The command line.
-    pub command: String,
     /// Formats by themselves.
     pub blended: Vec<Blended>,
     /// Methods in 16 bits against 32.
@@ -125,10 +120,8 @@ fn sum_bound(format: TextureFormat, term: f64, n: f64) -> f64 {
 ///
 /// # Errors
 /// A GPU that fails.
-pub fn measure(gpu: &Gpu, command: String) -> Result<Numerics, EvalError> {
+pub fn measure(gpu: &Gpu) -> Result<Numerics, EvalError> {
     Ok(Numerics {
-        machine: Machine::of(gpu),
-        command,
         blended: blended(gpu)?,
         added: added(gpu)?,
     })
@@ -412,84 +405,4 @@ fn stacks(layers: u32) -> (Scene, Vec<[f64; 3]>) {
     let name = format!("{layers} layers");
     let scene = Scene::generated(&name, "the precision study", background, camera, objects);
     (scene, exact)
-}
-
-impl Numerics {
-    /// The formats' table: headings and lines.
-    pub fn blended_table(&self) -> (Vec<String>, Vec<Vec<String>>) {
-        let headings = [
-            "format", "blending", "source", "layers", "exact", "measured", "error", "bound",
-        ];
-        let line = |b: &Blended| {
-            vec![
-                b.format.clone(),
-                b.blending.clone(),
-                format!("{}", b.source),
-                b.layers.to_string(),
-                short(b.exact),
-                b.measured.map_or_else(|| "not finite".to_owned(), short),
-                format!("{:.1e}", b.error()),
-                format!("{:.1e}", b.bound),
-            ]
-        };
-        (
-            headings.map(str::to_owned).to_vec(),
-            self.blended.iter().map(line).collect(),
-        )
-    }
-
-    /// The methods' table: headings and lines.
-    pub fn added_table(&self) -> (Vec<String>, Vec<Vec<String>>) {
-        let headings = [
-            "method",
-            "layers",
-            "16 bits add, typically",
-            "at worst",
-            "bound",
-            "own error at worst",
-        ];
-        let line = |a: &Added| {
-            vec![
-                a.method.clone(),
-                a.layers.to_string(),
-                format!("{:.1e}", a.typical),
-                format!("{:.1e}", a.worst),
-                a.bound
-                    .map_or_else(|| "–".to_owned(), |b| format!("{b:.1e}")),
-                format!("{:.1e}", a.own_error),
-            ]
-        };
-        (
-            headings.map(str::to_owned).to_vec(),
-            self.added.iter().map(line).collect(),
-        )
-    }
-
-    /// Both tables, for docs/numerics.md.
-    pub fn markdown(&self) -> String {
-        let [a, b] = [self.blended_table(), self.added_table()];
-        format!(
-            "{}\n{}\n{}\n",
-            table::markdown(&a.0, &a.1),
-            table::markdown(&b.0, &b.1),
-            self.machine.credit(&self.command)
-        )
-    }
-
-    /// Writes `numerics.json` and `numerics.md` into a folder.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        write_json(&folder.join("numerics.json"), self)?;
-        write_atomically(&folder.join("numerics.md"), self.markdown().as_bytes())
-    }
-}
-
-fn short(x: f64) -> String {
-    if x >= 100.0 {
-        format!("{x:.0}")
-    } else {
-        format!("{x:.4}")
-    }
 }

@@ -1,6 +1,6 @@
 //! Methods against one another: the errors of each as ratios to those of two references, over scenes and views.
 
-use crate::{Row, front::BASE, table::geometric_mean};
+use crate::{Row, front::BASE, geometric_mean};
 use peelnet_render::Role;
 use std::collections::BTreeMap;
 
@@ -88,47 +88,10 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
         .collect()
 }
 
-/// Headings of [`cells`].
-pub const HEADINGS: [&str; 9] = [
-    "method",
-    "MSE (linear)",
-    "/ wboit-eq9",
-    "/ mboit4",
-    "worst scene / mboit4",
-    "time / hardware blending",
-    "time / mboit4",
-    "time / wboit-eq9",
-    "bytes a pixel",
-];
-
-/// One line for each method.
-pub fn cells(ratios: &[Ratios]) -> Vec<Vec<String>> {
-    let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| format!("{x:.3}"));
-    ratios
-        .iter()
-        .map(|r| {
-            vec![
-                r.method.clone(),
-                r.mse_linear
-                    .map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}")),
-                number(r.to_weighted),
-                number(r.to_moments),
-                r.worst
-                    .as_ref()
-                    .map_or_else(|| "–".to_owned(), |(scene, x)| format!("{x:.2} ({scene})")),
-                number(r.time_to_base),
-                number(r.time_to_moments),
-                number(r.time_to_weighted),
-                format!("{:.0}", r.bytes_per_pixel),
-            ]
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::tests::row;
+    use crate::row::tests::row;
 
     /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.
     #[test]

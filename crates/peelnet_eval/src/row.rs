@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Errors are against the exact image of the same view, see [`crate::metrics`]. A value that was not measured is
 /// `null`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The method's name with its knobs.
     pub method: String,
@@ -73,4 +73,22 @@ pub struct Row {
     pub bytes_per_pixel: f64,
     /// The adapter that drew it.
     pub adapter: String,
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A row with little but an error.
+    pub(crate) fn row(scene: &str, view: u32, method: &str, mse255: f64) -> Row {
+        Row {
+            method: method.to_owned(),
+            scene: scene.to_owned(),
+            view,
+            mse_linear: mse255 / 65025.0,
+            mse255,
+            bytes_per_pixel: 10.0,
+            ..Row::default()
+        }
+    }
 }

@@ -3,14 +3,14 @@
 //! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
 //! changes at a time.
 
-use crate::{EvalError, Machine, lines, table, write_atomically, write_csv, write_json};
+use crate::EvalError;
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
-    path::Path,
+    fmt,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -30,6 +30,21 @@ pub enum Series {
     Pixels,
     /// Triangles, 16 … 2²⁰, with eight fragments a pixel at 256×192.
     Triangles,
+}
+
+impl Series {
+    /// Every series.
+    pub const ALL: [Self; 3] = [Self::Fragments, Self::Pixels, Self::Triangles];
+}
+
+impl fmt::Display for Series {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Fragments => "fragments",
+            Self::Pixels => "pixels",
+            Self::Triangles => "triangles",
+        })
+    }
 }
 
 /// One step of a series.
@@ -119,10 +134,6 @@ pub struct Exponent {
 /// A finished measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
-    /// What it was measured on.
-    pub machine: Machine,
-    /// The command line.
-    pub command: String,
     /// Fitted growth.
     pub exponents: Vec<Exponent>,
     /// Every step.
@@ -334,108 +345,12 @@ fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
 
 impl Scaling {
     /// With the exponents of the rows.
-    pub fn new(
-        machine: Machine,
-        command: String,
-        rows: Vec<Growth>,
-        left_out: Vec<LeftOut>,
-    ) -> Self {
+    pub fn new(rows: Vec<Growth>, left_out: Vec<LeftOut>) -> Self {
         Self {
-            machine,
-            command,
             exponents: exponents(&rows),
             rows,
             left_out,
         }
-    }
-
-    /// Headings and cells of the exponents.
-    pub fn table(&self) -> (Vec<String>, Vec<Vec<String>>) {
-        let headings = [
-            "method",
-            "time ~ fragments^",
-            "time ~ pixels^",
-            "time ~ triangles^",
-            "bytes ~ fragments^",
-            "bytes ~ pixels^",
-            "bytes ~ triangles^",
-        ];
-        let mut methods: Vec<&str> = Vec::new();
-        for e in &self.exponents {
-            if !methods.contains(&e.method.as_str()) {
-                methods.push(&e.method);
-            }
-        }
-        let all = [Series::Fragments, Series::Pixels, Series::Triangles];
-        let cells = methods
-            .into_iter()
-            .map(|method| {
-                let of = |series: Series, pick: &dyn Fn(&Exponent) -> Option<f64>| {
-                    self.exponents
-                        .iter()
-                        .find(|e| e.method == method && e.series == series)
-                        .and_then(pick)
-                        .map_or_else(|| "–".to_owned(), |x| format!("{x:.2}"))
-                };
-                std::iter::once(method.to_owned())
-                    .chain(all.map(|s| of(s, &|e| e.time)))
-                    .chain(all.map(|s| of(s, &|e| e.bytes)))
-                    .collect()
-            })
-            .collect();
-        (headings.map(str::to_owned).to_vec(), cells)
-    }
-
-    /// Writes `scaling.json`, `scaling.csv`, `scaling.md` and a chart of each series, `scaling-<series>.svg`.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        write_json(&folder.join("scaling.json"), self)?;
-        write_csv(&folder.join("scaling.csv"), &self.rows)?;
-        let (headings, cells) = self.table();
-        let series = |s: Series| format!("{s:?}").to_lowercase();
-        let left_out: String = self
-            .left_out
-            .iter()
-            .map(|l| {
-                format!(
-                    "- {} at {} {}: {}\n",
-                    l.method,
-                    l.value,
-                    series(l.series),
-                    l.why
-                )
-            })
-            .collect();
-        let text = format!(
-            "{}\nExponents fitted to the upper half of the steps. {}\n\nNot measured:\n\n{left_out}",
-            table::markdown(&headings, &cells),
-            self.machine.credit(&self.command),
-        );
-        write_atomically(&folder.join("scaling.md"), text.as_bytes())?;
-        for (series, name, unit) in [
-            (Series::Fragments, "fragments", "fragments a pixel"),
-            (Series::Pixels, "pixels", "pixels"),
-            (Series::Triangles, "triangles", "triangles"),
-        ] {
-            let svg = lines::chart(&self.lines(series), unit, "frame time, ms");
-            write_atomically(&folder.join(format!("scaling-{name}.svg")), svg.as_bytes())?;
-        }
-        Ok(())
-    }
-
-    /// Frame time of every method against a series.
-    fn lines(&self, series: Series) -> Vec<lines::Line> {
-        let mut all: Vec<lines::Line> = Vec::new();
-        for row in self.rows.iter().filter(|r| r.series == series) {
-            let point = (row.value as f64, row.time_ms);
-            match all.iter_mut().find(|(name, _)| *name == row.method) {
-                Some((_, points)) => points.push(point),
-                None => all.push((row.method.clone(), vec![point])),
-            }
-        }
-        all
     }
 }
 
@@ -475,7 +390,7 @@ mod tests {
     /// Every step is what its series says, in order of growth, and the walls have as many triangles.
     #[test]
     fn steps_grow() {
-        for series in [Series::Fragments, Series::Pixels, Series::Triangles] {
+        for series in Series::ALL {
             let own: Vec<Step> = steps().into_iter().filter(|s| s.series == series).collect();
             assert!(own.windows(2).all(|w| w[0].value() < w[1].value()));
             assert!(own.len() >= 5);
@@ -488,28 +403,5 @@ mod tests {
             let scene = stack(step.layers, step.cells);
             assert_eq!(scene.triangles() as u64, step.value());
         }
-    }
-
-    #[test]
-    fn files_are_written() {
-        let dir = tempfile::tempdir().unwrap();
-        let rows = vec![
-            row("a", Series::Fragments, 1, 1.0, 8.0),
-            row("a", Series::Fragments, 2, 2.0, 8.0),
-            row("b", Series::Pixels, 64, 2.0, 8.0),
-        ];
-        let machine = crate::report::machine_of_tests();
-        let scaling = Scaling::new(machine, "peelnet bench --scaling".into(), rows, Vec::new());
-        scaling.write(dir.path()).unwrap();
-        let text = std::fs::read_to_string(dir.path().join("scaling.md")).unwrap();
-        assert!(text.contains("| b |") && text.contains("–"), "{text}");
-        let csv = std::fs::read_to_string(dir.path().join("scaling.csv")).unwrap();
-        assert!(csv.contains("a,fragments,2,2.0,8.0"), "{csv}");
-        assert!(
-            std::fs::metadata(dir.path().join("scaling-pixels.svg"))
-                .unwrap()
-                .len()
-                > 1000
-        );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use plotters::prelude::*;
+use peelnet_chart::{Line, LineChart, Scale, Svg};
 
 use crate::error::TrainError;
 use crate::files;
@@ -35,13 +35,12 @@ impl CurveFormat {
 /// An unknown ending, or the file cannot be written.
 pub fn write_curve(path: &Path, history: &[EpochReport]) -> Result<(), TrainError> {
     let bytes = match CurveFormat::of(path)? {
-        CurveFormat::Csv => csv(history),
-        CurveFormat::Svg => svg(history),
-    }
-    .map_err(|error| TrainError::Io {
-        path: path.to_owned(),
-        error: std::io::Error::other(error),
-    })?;
+        CurveFormat::Csv => csv(history).map_err(|error| TrainError::Io {
+            path: path.to_owned(),
+            error: std::io::Error::other(error),
+        })?,
+        CurveFormat::Svg => curve_chart(history).on_white().into_bytes(),
+    };
     files::write(path, &bytes)
 }
 
@@ -69,67 +68,30 @@ fn csv(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
     Ok(table.into_inner()?)
 }
 
-fn svg(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
-    // A logarithmic axis has no zero: a loss of zero is drawn at the lower edge.
-    let positive = || {
-        history
-            .iter()
-            .flat_map(|row| [Some(row.train_loss), row.held_out_loss])
-            .flatten()
-            .filter(|loss| *loss > 0.0)
+/// Both losses over the epochs, on a logarithmic axis.
+pub fn curve_chart(history: &[EpochReport]) -> Svg {
+    let positive = history
+        .iter()
+        .flat_map(|row| [Some(row.train_loss), row.held_out_loss])
+        .flatten()
+        .filter(|loss| *loss > 0.0);
+    // A logarithmic axis has no zero: a loss of zero is drawn below all others.
+    let floor = positive.reduce(f64::min).map_or(1e-9, |low| low / 1.2);
+    let line = |name: &str, loss: fn(&EpochReport) -> Option<f64>| {
+        let points = history.iter();
+        let points = points.filter_map(|r| Some((r.epoch.into(), loss(r)?.max(floor))));
+        Line::new(name, points)
     };
-    let low = positive().fold(f64::INFINITY, f64::min);
-    let high = positive().fold(0.0, f64::max);
-    let (low, high) = if low.is_finite() {
-        (low / 1.2, high * 1.2)
-    } else {
-        (1e-9, 1.0)
-    };
-    let last = history.last().map_or(1, |row| row.epoch);
-    let mut text = String::new();
-    {
-        let area = SVGBackend::with_string(&mut text, (800, 480)).into_drawing_area();
-        area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&area)
-            .margin(16)
-            .x_label_area_size(40)
-            .y_label_area_size(72)
-            .caption("Loss", ("sans-serif", 20))
-            .build_cartesian_2d(1u32..last.max(2), (low..high).log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc("epoch")
-            .y_desc("mean loss")
-            .y_label_formatter(&|loss| format!("{loss:.1e}"))
-            .light_line_style(WHITE)
-            .draw()?;
-        let train = RGBColor(31, 119, 180);
-        let test = RGBColor(214, 39, 40);
-        let train_points = history.iter().map(|r| (r.epoch, r.train_loss.max(low)));
-        chart
-            .draw_series(LineSeries::new(train_points, train.stroke_width(2)))?
-            .label("training")
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], train.stroke_width(2)));
-        if history.iter().any(|r| r.held_out_loss.is_some()) {
-            let points = history
-                .iter()
-                .filter_map(|r| r.held_out_loss.map(|loss| (r.epoch, loss.max(low))));
-            chart
-                .draw_series(LineSeries::new(points, test.stroke_width(2)))?
-                .label("held out")
-                .legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + 20, y)], test.stroke_width(2))
-                });
-        }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.3))
-            .draw()?;
-        area.present()?;
+    LineChart {
+        lines: &[
+            line("training", |r| Some(r.train_loss)),
+            line("held out", |r| r.held_out_loss),
+        ],
+        x: "epoch",
+        y: "mean loss",
+        x_scale: Scale::Linear,
     }
-    Ok(text.into_bytes())
+    .svg()
 }
 
 #[cfg(test)]

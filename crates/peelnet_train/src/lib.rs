@@ -78,7 +78,7 @@ mod training_data;
 
 pub use checkpoint::folder as checkpoint_folder;
 pub use config::{Config, PixelLoss, Schedule};
-pub use curve::{CurveFormat, write_curve};
+pub use curve::{CurveFormat, curve_chart, write_curve};
 pub use data::held_out_errors;
 pub use device::Compute;
 pub use error::TrainError;

@@ -2,23 +2,21 @@
 
 use super::{Context, bench_effects, bench_training};
 use crate::cli::BenchArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, one_line};
 use crate::learned;
 use crate::parse::{MethodList, command_line};
-use crate::progress::Progress;
+use crate::progress::Bar;
 use peelnet_eval::{
     Machine, Partial,
-    compare::{EXACT, Event, Plan, compare},
+    bench::{self, Bench, bench_watched},
+    compare::Plan,
     front::BASE,
-    load,
-    ratios::{self, ratios},
-    report::Bench,
     scaling::{self, Scaling},
-    table::plain,
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, ModelError, Recipe};
 use peelnet_render::{LearnedWeight, MethodSpec};
+use peelnet_report::Results;
 use peelnet_scene::Scene;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -33,18 +31,16 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     if args.scaling {
         return scale(context, args);
     }
-    let bench = if args.redraw {
+    let results = if args.redraw {
         read(&args.out)?
     } else {
         let scenes = context.scenes(&args.scenes)?;
         measure(context, args, &scenes, Some(&args.out))?
     };
-    bench.write(&args.out)?;
-    let table = ratios(&bench.rows);
-    context.console.result(
-        || plain(&ratios::HEADINGS.map(str::to_owned), &ratios::cells(&table)),
-        || json!(bench),
-    )
+    results.write(&args.out)?;
+    context
+        .console
+        .result(|| results.table().plain(), || json!(results))
 }
 
 /// How time and memory grow.
@@ -65,7 +61,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         // Knobs change what a method costs, hardly how that grows.
         methods.dedup_by_key(|m| m.name());
     }
-    let bar = Progress::new(context.console, "scaling", 0);
+    let bar = Bar::new(context.console, "scaling", 0);
     let mut told = |done, total, method: &str| bar.set(done, total, method.to_owned());
     let (rows, left_out) = scaling::measure(
         &gpu,
@@ -76,12 +72,12 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         &mut told,
     )?;
     drop(bar);
-    let scaling = Scaling::new(Machine::of(&gpu), command_line(), rows, left_out);
-    scaling.write(&args.out)?;
-    let (headings, cells) = scaling.table();
+    let scaling = Scaling::new(rows, left_out);
+    let results = Results::new(Machine::of(&gpu), command_line(), scaling);
+    results.write(&args.out)?;
     context
         .console
-        .result(|| plain(&headings, &cells), || json!(scaling))
+        .result(|| results.table().plain(), || json!(results))
 }
 
 /// Compares as the arguments say; pictures and what an interrupted run leaves go to `out`.
@@ -93,7 +89,7 @@ pub(super) fn measure(
     args: &BenchArgs,
     scenes: &[Scene],
     out: Option<&Path>,
-) -> Result<Bench, Failure> {
+) -> Result<Results<Bench>, Failure> {
     let gpu = context.gpu()?;
     let Chosen {
         mut methods,
@@ -122,48 +118,30 @@ pub(super) fn measure(
         frames: args.frames,
         images: images.as_deref(),
     };
-    let load_before = load();
     let settings = settings(&gpu, args, &plan, scenes);
-    let mut partial = match out {
+    let partial = match out {
         Some(folder) if args.resume => Partial::resume(folder, settings)?,
         _ => Partial::new(out, settings),
     };
-    let left: usize = scenes
-        .iter()
-        .map(|s| plan.views_of(s).saturating_sub(partial.done(&s.name).len()))
-        .sum();
-    // The exact method judges whether it is asked for or not.
-    let judge = usize::from(!methods.iter().any(|m| m.to_string() == EXACT));
-    let frames = (left * (methods.len() + judge) * (1 + args.frames as usize)) as u64;
-    let bar = Progress::new(context.console, "bench", frames);
-    let mut drawn = 0;
-    for scene in scenes {
-        let done = partial.done(&scene.name);
-        compare(&gpu, scene, &plan, &done, context.stop, &mut |event| {
-            match event {
-                Event::Drawn(method) => {
-                    drawn += 1;
-                    bar.set(drawn, frames, format!("{} with {method}", scene.name));
-                }
-                Event::LeftOut(method, why) => context
-                    .console
-                    .warn(format!("{method} is left out of {}: {why}", scene.name)),
-                Event::View(rows) => partial.push(rows)?,
-            }
-            Ok(())
-        })?;
-    }
+    let bar = Bar::new(context.console, "bench", 0);
+    let mut show = |event: bench::Progress<'_>| match event {
+        bench::Progress::Drawn {
+            done,
+            total,
+            scene,
+            method,
+        } => bar.set(done, total, format!("{scene} with {method}")),
+        bench::Progress::LeftOut { scene, method, why } => context
+            .console
+            .warn(format!("{method} is left out of {scene}: {why}")),
+    };
+    let measured = bench_watched(&gpu, scenes, &plan, partial, context.stop, &mut show)?;
     drop(bar);
     context.tell_of_memory(&gpu);
-    Ok(Bench {
-        machine: Machine::of(&gpu),
-        command: command_line(),
-        load: [load_before, load()],
-        rows: partial.finish(),
-    })
+    Ok(Results::new(Machine::of(&gpu), command_line(), measured))
 }
 
-/// What must be the same for an interrupted run to be gone on with.
+/// What must be the same for an interrupted run to be resumed.
 fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> serde_json::Value {
     let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
     json!({
@@ -257,18 +235,16 @@ pub(super) fn chosen(
 ///
 /// # Errors
 /// If there is none.
-pub(super) fn read(path: &Path) -> Result<Bench, Failure> {
+pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
     let file = if path.is_dir() {
         path.join("results.json")
     } else {
         path.to_owned()
     };
-    let failed = |why: String| {
+    Results::read(&file).map_err(|e| {
         Failure::Failed(format!(
-            "{}: {why}; make it with: peelnet bench SCENE --out DIR",
-            file.display()
+            "{}; make it with: peelnet bench SCENE --out DIR",
+            one_line(&e)
         ))
-    };
-    let bytes = std::fs::read(&file).map_err(|e| failed(format!("cannot be read: {e}")))?;
-    serde_json::from_slice(&bytes).map_err(|e| failed(format!("is no result of a bench: {e}")))
+    })
 }

@@ -4,11 +4,12 @@ use super::Context;
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::parse::{MethodList, command_line};
-use crate::progress::Progress;
+use crate::progress::Bar;
 use peelnet_eval::{
+    Machine,
     effects::{self, Settings},
-    table::plain,
 };
+use peelnet_report::Results;
 use peelnet_scene::suite;
 use serde_json::json;
 
@@ -31,29 +32,21 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         frames: args.frames.max(1),
     };
     let gpu = context.gpu()?;
-    let bar = Progress::new(context.console, "effects", 0);
+    let bar = Bar::new(context.console, "effects", 0);
     let mut done = 0;
-    let found = effects::measure(
-        &gpu,
-        &scenes,
-        &settings,
-        command_line(),
-        &args.out,
-        context.stop,
-        |what| {
-            done += 1;
-            bar.set(done, 0, what.to_owned());
-        },
-    )?;
+    let found = effects::measure(&gpu, &scenes, &settings, &args.out, context.stop, |what| {
+        done += 1;
+        bar.set(done, 0, what.to_owned());
+    })?;
     drop(bar);
-    found.write(&args.out)?;
+    let results = Results::new(Machine::of(&gpu), command_line(), found);
+    results.write(&args.out)?;
     context.console.result(
         || {
-            let tables = [found.table(), found.layer_table(), found.fill_table()];
-            let shown = tables.iter().filter(|(_, cells)| !cells.is_empty());
-            let shown: Vec<String> = shown.map(|(h, c)| plain(h, c)).collect();
-            shown.join("\n")
+            let tables = results.tables();
+            let tables: Vec<String> = tables.map(|(_, table)| table.plain()).collect();
+            tables.join("\n")
         },
-        || json!(found),
+        || json!(results),
     )
 }

@@ -5,17 +5,18 @@ use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::learned;
 use crate::parse::command_line;
-use crate::progress::Progress;
+use crate::progress::Bar;
 use peelnet_dataset::Dataset;
 use peelnet_eval::{
-    Machine,
-    compare::{Event, Plan, compare},
+    Machine, Partial,
+    bench::bench_watched,
+    compare::Plan,
     learning::{Learning, Lesson, Varied},
     ratios::{MOMENTS, ratios},
-    table::plain,
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
+use peelnet_report::Results;
 use peelnet_scene::Scene;
 use peelnet_train::{Config, RunOptions, TrainingData, train};
 use serde_json::json;
@@ -58,7 +59,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         };
         plans.push((Varied::Epochs, config, 1.0));
     }
-    let bar = Progress::new(context.console, "training", plans.len() as u64);
+    let bar = Bar::new(context.console, "training", plans.len() as u64);
     let folder = args.out.join("networks");
     let mut rows: Vec<Lesson> = Vec::new();
     let total = plans.len() as u64;
@@ -84,16 +85,14 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     }
     drop(bar);
     let learning = Learning {
-        machine: Machine::of(&gpu),
-        command: command_line(),
         recipe: RECIPE.name().to_owned(),
         rows,
     };
-    learning.write(&args.out)?;
-    let (headings, cells) = learning.table();
+    let results = Results::new(Machine::of(&gpu), command_line(), learning);
+    results.write(&args.out)?;
     context
         .console
-        .result(|| plain(&headings, &cells), || json!(learning))
+        .result(|| results.table().plain(), || json!(results))
 }
 
 /// A network's error on the scenes: geometric mean, and over that of the moments.
@@ -106,25 +105,15 @@ fn judge(
 ) -> Result<(f64, f64), Failure> {
     let name = model.meta.recipe.method_name();
     let learned = [learned::text_of(gpu, &model)?];
+    let methods = [MOMENTS.parse()?, name.parse()?];
     let plan = Plan {
-        size: args.size.0,
-        methods: &[MOMENTS.parse()?, name.parse()?],
         learned: &learned,
-        models: &[],
-        lenient: false,
         views: args.views.limit(),
         frames: 0,
-        images: None,
+        ..Plan::new(args.size.0, &methods)
     };
-    let mut rows = Vec::new();
-    for scene in scenes {
-        compare(gpu, scene, &plan, &[], context.stop, &mut |event| {
-            if let Event::View(of_view) = event {
-                rows.extend(of_view);
-            }
-            Ok(())
-        })?;
-    }
+    let partial = Partial::new(None, serde_json::Value::Null);
+    let rows = bench_watched(gpu, scenes, &plan, partial, context.stop, &mut |_| {})?.rows;
     let found = ratios(&rows).into_iter().find(|r| r.method == name);
     found
         .and_then(|r| Some((r.mse_linear?, r.to_moments?)))

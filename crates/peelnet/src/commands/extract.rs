@@ -4,7 +4,7 @@ use super::Context;
 use crate::cli::ExtractArgs;
 use crate::failure::Failure;
 use crate::parse::{ViewCount, command_line};
-use crate::progress::{Progress, short, thousands};
+use crate::progress::{Bar, thousands};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{
     ExtractOptions, ExtractReport, PeelError, Views, extract,
@@ -77,18 +77,22 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
 
 /// Makes lists up with a progress bar.
 fn make_up(context: &Context<'_>, options: &SyntheticOptions) -> Result<ExtractReport, Failure> {
-    let bar = Progress::new(context.console, "synthetic", 1);
+    let bar = Bar::new(context.console, "synthetic", 1);
     let report = synthetic(options, context.stop, &mut |p| show(&bar, p))?;
     drop(bar);
     Ok(report)
 }
 
-fn show(bar: &Progress, p: &peelnet_peel::Progress) {
+fn show(bar: &Bar, p: &peelnet_peel::Progress) {
     let rate = p.rows as f64 / p.seconds.max(1e-3);
     bar.set(
         p.items_done.into(),
         p.items.into(),
-        format!("{} rows, {} rows/s", short(p.rows as f64), short(rate)),
+        format!(
+            "{} rows, {} rows/s",
+            thousands(p.rows),
+            thousands(rate as u64)
+        ),
     );
 }
 
@@ -106,7 +110,7 @@ pub(super) fn peel(
         options.size[1],
         gpu.info.name
     ));
-    let bar = Progress::new(context.console, "extract", 1);
+    let bar = Bar::new(context.console, "extract", 1);
     let report = extract(gpu, scenes, options, context.stop, &mut |p| show(&bar, p));
     drop(bar);
     let report = report.map_err(|error| match error {
@@ -138,7 +142,7 @@ pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
         thousands(report.manifest.rows),
         thousands(report.manifest.pixels),
         report.manifest.parts.len(),
-        short(report.manifest.rows as f64 / seconds.max(1e-6)),
+        thousands((report.manifest.rows as f64 / seconds.max(1e-6)) as u64),
         report.gpu_micros / 1e6,
         thousands(report.coplanar),
     )

@@ -13,7 +13,7 @@ use serde_json::json;
 pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Failure> {
     let scenes = context.scenes(std::slice::from_ref(&args.scene))?;
     let scene = &scenes[0];
-    let measured = match &args.results {
+    let results = match &args.results {
         Some(path) => bench::read(path)?,
         None => {
             let args = BenchArgs {
@@ -34,7 +34,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             bench::measure(context, &args, &scenes, None)?
         }
     };
-    let own = points(&measured.rows, Some(&scene.name), Mean::Geometric);
+    let own = points(&results.measured.rows, Some(&scene.name), Mean::Geometric);
     let (from, points) = if own.is_empty() {
         let message = format!(
             "scene '{}' is not among the results: judged by the geometric means over all scenes of them",
@@ -43,7 +43,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         context.console.warn(message);
         (
             "all scenes of the results",
-            points(&measured.rows, None, Mean::Geometric),
+            points(&results.measured.rows, None, Mean::Geometric),
         )
     } else {
         ("this scene", own)
@@ -74,7 +74,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             if let Some(next) = chosen.runner_up {
                 text.push_str(&format!("runner-up\n  {}\n", line(next)));
             }
-            text.push_str(&format!("measured on {} with {from}\n", measured.machine.adapter));
+            text.push_str(&format!("measured on {} with {from}\n", results.machine.adapter));
             text
         },
         || {
@@ -86,7 +86,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 "best": point(chosen.best),
                 "runner_up": chosen.runner_up.map(point),
                 "why": chosen.why,
-                "adapter": measured.machine.adapter,
+                "adapter": results.machine.adapter,
             })
         },
     )

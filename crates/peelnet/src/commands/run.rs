@@ -4,19 +4,21 @@ use super::{Context, extract, train};
 use crate::cli::RunArgs;
 use crate::failure::Failure;
 use crate::parse::{Size, command_line};
-use crate::progress::{Progress, thousands};
+use crate::progress::Bar;
 use crate::summary_text::summary_text;
+use indicatif::HumanCount;
+use peelnet_chart::Svg;
 use peelnet_dataset::{Dataset, Format, Summary};
-use peelnet_eval::compare::{EXACT, Event, Plan, compare};
-use peelnet_eval::report::Attachments;
-use peelnet_eval::table::{Table, plain};
-use peelnet_eval::{Machine, Record, Row, Stage, write_atomically};
+use peelnet_eval::bench::{self, bench_watched};
+use peelnet_eval::compare::{EXACT, Plan};
+use peelnet_eval::{Machine, Partial, Row};
 use peelnet_gpu::Gpu;
-use peelnet_model::Recipe;
+use peelnet_model::{Model, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views};
 use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
+use peelnet_report::{Attachments, Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
-use peelnet_train::{Config, RunOptions};
+use peelnet_train::{Config, Outcome, RunOptions, curve_chart};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -84,126 +86,228 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
         ));
     }
     let gpu = context.gpu()?;
-    let mut clock = Clock {
+    let clock = Clock {
         context,
         start: Instant::now(),
         stages: Vec::new(),
     };
-
-    // Count, so that about as many rows are sampled as were asked for.
-    let fragments = count(&gpu, &scenes, sizes.frame)?;
-    if fragments == 0 {
-        return Err(Failure::Failed(
-            "the scenes have no transparent fragment in view 0, so there is nothing to learn from; check cameras and alphas"
-                .to_owned(),
-        ));
-    }
-    let share = (sizes.rows as f64 / fragments as f64).min(1.0);
-    clock.done(
-        "count",
-        format!(
-            "about {} fragments in the training scenes at {}",
-            thousands(fragments),
-            sizes.frame
-        ),
-    )?;
-
-    let folder = args.out.join("dataset");
-    let report = extract::peel(
+    let mut run = Run {
         context,
-        &gpu,
-        &scenes,
-        &ExtractOptions {
-            out: folder.clone(),
-            size: sizes.frame.0,
-            views: Views::All,
-            format: Format::Parquet,
-            peel: Peel::SBuffer,
-            max_passes: None,
-            pixels: share,
-            augment: 0,
-            seed: args.seed,
-            shard: None,
-            command: command_line(),
-            budget: None,
-        },
-    )?;
-    clock.done("extract", extract::text(&folder, &report))?;
-
-    let dataset = Dataset::open(&folder)?;
-    let summary = Summary::of(&dataset)?;
-    let summary_text = summary_text(&summary);
-    let summary_json = format!("{:#}\n", json!(summary));
-    write_atomically(
-        &args.out.join("dataset-summary.json"),
-        summary_json.as_bytes(),
-    )?;
-    write_atomically(
-        &args.out.join("dataset-summary.txt"),
-        summary_text.as_bytes(),
-    )?;
-    if !summary.passes() {
-        return Err(Failure::Failed(format!(
-            "{}: rows of the dataset disagree with one another, see dataset-summary.txt",
-            folder.display()
-        )));
-    }
-    clock.done("summary", format!("{} checks hold", summary.checks.len()))?;
-
-    let model_path = args.out.join("model.safetensors");
-    let mut options = RunOptions::new(&model_path, context.stop);
-    let svg_path = args.out.join("loss.svg");
-    options.loss_curve = vec![args.out.join("loss.csv"), svg_path.clone()];
-    let outcome = train::fit(
-        context,
-        &sizes.config,
-        std::slice::from_ref(&dataset),
-        &options,
-    )?;
-    clock.done(
-        "train",
-        train::text(&model_path, &outcome).replace('\n', "; "),
-    )?;
-
-    let wgsl_path = args.out.join("model.wgsl");
-    let verification = peelnet_export::export(
-        &gpu,
-        &outcome.model,
-        &wgsl_path,
-        &peelnet_export::Options::default(),
-    )?;
-    // The comparison draws with the very text that was written.
-    let learned = LearnedWeight {
-        recipe: outcome.model.meta.recipe,
-        wgsl: std::fs::read_to_string(&wgsl_path)
-            .map_err(|e| Failure::Failed(format!("{}: {e}", wgsl_path.display())))?,
+        args,
+        sizes,
+        scenes,
+        gpu,
+        clock,
     };
-    clock.done("export", format!("{}: {verification}", wgsl_path.display()))?;
-
+    let share = run.count()?;
+    let (dataset, summary) = run.extract(share)?;
+    let (outcome, loss) = run.train(&dataset)?;
+    let learned = run.export(&outcome.model)?;
     let images = args.out.join("images");
-    let rows = compare_all(context, &gpu, &scenes, sizes.frame, learned, &images)?;
-    clock.done(
-        "compare",
-        format!("{} frames at {}", thousands(rows.len() as u64), sizes.frame),
-    )?;
-
-    let mut record = Record::new(Machine::of(&gpu), command_line(), rows);
-    record.stages = clock.stages;
-    record.settings = settings(args, &sizes, &scenes, share, &outcome.model);
-    let svg = std::fs::read_to_string(&svg_path).ok();
-    record.write(
+    let rows = run.compare(learned, &images)?;
+    let mut results = Results::of_rows(Machine::of(&run.gpu), command_line(), rows);
+    results.measured.settings = run.settings(share, &outcome.model);
+    results.measured.stages = run.clock.stages;
+    results.write(
         &args.out,
         &Attachments {
             images: Some(&images),
-            loss_svg: svg.as_deref(),
-            dataset_summary: Some(&summary_text),
+            loss: Some(&loss),
+            dataset_summary: Some(&summary),
         },
     )?;
     context.console.message(format!(
         "the report is {}",
         args.out.join("report.html").display()
     ));
-    context.console.result(|| text(&record), || json!(record))
+    context.console.result(|| text(&results), || json!(results))
+}
+
+/// A run in progress: a method for each stage.
+struct Run<'a> {
+    context: &'a Context<'a>,
+    args: &'a RunArgs,
+    sizes: Sizes,
+    scenes: Vec<Scene>,
+    gpu: Gpu,
+    clock: Clock<'a>,
+}
+
+impl Run<'_> {
+    /// Counts, and returns the share of the pixels that has about as many rows as were asked for.
+    fn count(&mut self) -> Result<f64, Failure> {
+        let frame = self.sizes.frame;
+        let fragments = count(&self.gpu, &self.scenes, frame)?;
+        if fragments == 0 {
+            return Err(Failure::Failed(
+                "the scenes have no transparent fragment in view 0, so there is nothing to learn from; check cameras and alphas"
+                    .to_owned(),
+            ));
+        }
+        let note = format!(
+            "about {} fragments in the training scenes at {frame}",
+            HumanCount(fragments)
+        );
+        self.clock.done("count", note)?;
+        Ok((self.sizes.rows as f64 / fragments as f64).min(1.0))
+    }
+
+    /// Peels, and writes the dataset with its summary.
+    fn extract(&mut self, share: f64) -> Result<(Dataset, String), Failure> {
+        let out = &self.args.out;
+        let folder = out.join("dataset");
+        let report = extract::peel(
+            self.context,
+            &self.gpu,
+            &self.scenes,
+            &ExtractOptions {
+                out: folder.clone(),
+                size: self.sizes.frame.0,
+                views: Views::All,
+                format: Format::Parquet,
+                peel: Peel::SBuffer,
+                max_passes: None,
+                pixels: share,
+                augment: 0,
+                seed: self.args.seed,
+                shard: None,
+                command: command_line(),
+                budget: None,
+            },
+        )?;
+        self.clock
+            .done("extract", extract::text(&folder, &report))?;
+        let dataset = Dataset::open(&folder)?;
+        let summary = Summary::of(&dataset)?;
+        let text = summary_text(&summary);
+        let json = format!("{:#}\n", json!(summary));
+        write_file(&out.join("dataset-summary.json"), json)?;
+        write_file(&out.join("dataset-summary.txt"), &text)?;
+        if !summary.passes() {
+            return Err(Failure::Failed(format!(
+                "{}: rows of the dataset disagree with one another, see dataset-summary.txt",
+                folder.display()
+            )));
+        }
+        self.clock
+            .done("summary", format!("{} checks hold", summary.checks.len()))?;
+        Ok((dataset, text))
+    }
+
+    /// Trains, and writes the model and the loss curve.
+    fn train(&mut self, dataset: &Dataset) -> Result<(Outcome, Svg), Failure> {
+        let out = &self.args.out;
+        let model = out.join("model.safetensors");
+        let mut options = RunOptions::new(&model, self.context.stop);
+        options.loss_curve = vec![out.join("loss.csv"), out.join("loss.svg")];
+        let datasets = std::slice::from_ref(dataset);
+        let outcome = train::fit(self.context, &self.sizes.config, datasets, &options)?;
+        let note = train::text(&model, &outcome).replace('\n', "; ");
+        self.clock.done("train", note)?;
+        let loss = curve_chart(&outcome.history);
+        Ok((outcome, loss))
+    }
+
+    /// Exports the model as shader text, which the comparison draws with.
+    fn export(&mut self, model: &Model) -> Result<LearnedWeight, Failure> {
+        let path = self.args.out.join("model.wgsl");
+        let options = peelnet_export::Options::default();
+        let verification = peelnet_export::export(&self.gpu, model, &path, &options)?;
+        let note = format!("{}: {verification}", path.display());
+        self.clock.done("export", note)?;
+        Ok(LearnedWeight {
+            recipe: model.meta.recipe,
+            wgsl: std::fs::read_to_string(&path)
+                .map_err(|e| Failure::Failed(format!("{}: {e}", path.display())))?,
+        })
+    }
+
+    /// Every method that there is, and the learned one, on every view of every scene.
+    fn compare(&mut self, learned: LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
+        let mut methods = MethodSpec::all();
+        methods.push(learned.recipe.method_name().parse()?);
+        let learned = [learned];
+        let frame = self.sizes.frame;
+        let plan = Plan {
+            learned: &learned,
+            lenient: true,
+            frames: 0,
+            images: Some(images),
+            ..Plan::new(frame.0, &methods)
+        };
+        let console = self.context.console;
+        let views: usize = self.scenes.iter().map(|s| s.views.len()).sum();
+        console.message(format!(
+            "comparing {} methods on {views} views of {} scenes",
+            methods.len(),
+            self.scenes.len()
+        ));
+        let bar = Bar::new(console, "compare", 0);
+        let mut show = |event: bench::Progress<'_>| match event {
+            bench::Progress::Drawn {
+                done,
+                total,
+                scene,
+                method,
+            } => bar.set(done, total, format!("{scene} with {method}")),
+            bench::Progress::LeftOut { scene, method, why } => {
+                console.warn(format!("{method} is left out of {scene}: {why}"));
+            }
+        };
+        let partial = Partial::new(None, serde_json::Value::Null);
+        let stop = self.context.stop;
+        let bench = bench_watched(&self.gpu, &self.scenes, &plan, partial, stop, &mut show)?;
+        drop(bar);
+        let frames = HumanCount(bench.rows.len() as u64);
+        self.clock
+            .done("compare", format!("{frames} frames at {frame}"))?;
+        Ok(bench.rows)
+    }
+
+    /// What the report says about the run beside the machine.
+    fn settings(&self, share: f64, model: &Model) -> Vec<(String, String)> {
+        let names = |held_out: bool| {
+            let scenes = self.scenes.iter().filter(|s| s.held_out == held_out);
+            let names: Vec<&str> = scenes.map(|s| s.name.as_str()).collect();
+            if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            }
+        };
+        let sizes = if self.args.full { "full" } else { "quick" };
+        let c = &self.sizes.config;
+        let training = format!(
+            "recipe {}, {}, {} epochs, batch {}, rate {}, {:.0} % of the rows held out, seed {}",
+            c.recipe,
+            model.mlp.topology(),
+            c.epochs,
+            c.batch,
+            c.learning_rate,
+            c.held_out * 100.0,
+            c.seed
+        );
+        let losses = &model.meta.losses;
+        let losses: Vec<String> = [
+            ("training", losses.train),
+            ("validation", losses.validation),
+            ("test", losses.test),
+        ]
+        .into_iter()
+        .filter_map(|(name, loss)| loss.map(|l| format!("{name} {l:.6}")))
+        .collect();
+        [
+            ("sizes", sizes.to_owned()),
+            ("frame", self.sizes.frame.to_string()),
+            ("scenes trained on", names(false)),
+            ("scenes held out", names(true)),
+            ("share of pixels sampled", format!("{share:.4}")),
+            ("training", training),
+            ("loss", losses.join(", ")),
+        ]
+        .map(|(k, v)| (k.to_owned(), v))
+        .to_vec()
+    }
 }
 
 /// The scenes to work on: those named, or the shipped family.
@@ -231,119 +335,12 @@ fn count(gpu: &Gpu, scenes: &[Scene], frame: Size) -> Result<u64, Failure> {
     Ok(fragments)
 }
 
-/// Every method that there is, and the learned one, on every view of every scene.
-fn compare_all(
-    context: &Context<'_>,
-    gpu: &Gpu,
-    scenes: &[Scene],
-    frame: Size,
-    learned: LearnedWeight,
-    images: &Path,
-) -> Result<Vec<Row>, Failure> {
-    let mut methods = MethodSpec::all();
-    methods.push(learned.recipe.method_name().parse()?);
-    let learned = [learned];
-    let plan = Plan {
-        size: frame.0,
-        methods: &methods,
-        learned: &learned,
-        models: &[],
-        lenient: true,
-        views: None,
-        frames: 0,
-        images: Some(images),
-    };
-    let views: usize = scenes.iter().map(|s| s.views.len()).sum();
-    let frames = (views * methods.len()) as u64;
-    context.console.message(format!(
-        "comparing {} methods on {views} views of {} scenes",
-        methods.len(),
-        scenes.len()
-    ));
-    let bar = Progress::new(context.console, "compare", frames);
-    let mut done = 0;
-    let mut rows = Vec::new();
-    for scene in scenes {
-        compare(gpu, scene, &plan, &[], context.stop, &mut |event| {
-            match event {
-                Event::Drawn(method) => {
-                    done += 1;
-                    bar.set(done, frames, format!("{} with {method}", scene.name));
-                }
-                Event::LeftOut(method, why) => context
-                    .console
-                    .warn(format!("{method} is left out of {}: {why}", scene.name)),
-                Event::View(of_view) => rows.extend(of_view),
-            }
-            Ok(())
-        })?;
-    }
-    Ok(rows)
-}
-
-/// What the report says about the run beside the machine.
-fn settings(
-    args: &RunArgs,
-    sizes: &Sizes,
-    scenes: &[Scene],
-    share: f64,
-    model: &peelnet_model::Model,
-) -> Vec<(String, String)> {
-    let names = |held_out: bool| -> String {
-        let names: Vec<&str> = scenes
-            .iter()
-            .filter(|s| s.held_out == held_out)
-            .map(|s| s.name.as_str())
-            .collect();
-        if names.is_empty() {
-            "none".to_owned()
-        } else {
-            names.join(", ")
-        }
-    };
-    let c = &sizes.config;
-    [
-        ("sizes", if args.full { "full" } else { "quick" }.to_owned()),
-        ("frame", sizes.frame.to_string()),
-        ("scenes trained on", names(false)),
-        ("scenes held out", names(true)),
-        ("share of pixels sampled", format!("{share:.4}")),
-        (
-            "training",
-            format!(
-                "recipe {}, {}, {} epochs, batch {}, rate {}, {:.0} % of the rows held out, seed {}",
-                c.recipe,
-                model.mlp.topology(),
-                c.epochs,
-                c.batch,
-                c.learning_rate,
-                c.held_out * 100.0,
-                c.seed
-            ),
-        ),
-        (
-            "loss",
-            [
-                ("training", model.meta.losses.train),
-                ("validation", model.meta.losses.validation),
-                ("test", model.meta.losses.test),
-            ]
-            .into_iter()
-            .filter_map(|(name, loss)| loss.map(|l| format!("{name} {l:.6}")))
-            .collect::<Vec<_>>()
-            .join(", "),
-        ),
-    ]
-    .map(|(k, v)| (k.to_owned(), v))
-    .to_vec()
-}
-
 /// The table and the findings.
-fn text(record: &Record) -> String {
-    let table = Table::of(&record.rows);
-    let findings: String = record.findings.iter().map(|f| format!("- {f}\n")).collect();
+fn text(results: &Results<ThesisRun>) -> String {
+    let findings = results.measured.findings.iter();
+    let findings: String = findings.map(|f| format!("- {f}\n")).collect();
     format!(
         "{}\nmean squared error, 0–255 scale, against the exact image\n\n{findings}",
-        plain(&table.headings(), &table.cells())
+        results.table().plain()
     )
 }

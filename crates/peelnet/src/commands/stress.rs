@@ -4,13 +4,13 @@ use super::{Context, bench::chosen};
 use crate::cli::StressArgs;
 use crate::failure::Failure;
 use crate::parse::{MethodList, command_line};
-use crate::progress::Progress;
+use crate::progress::Bar;
 use peelnet_eval::{
     EvalError, Machine, numerics,
     stress::{CASES, Case, Outcome, Stressed, Subject, stress},
-    table::plain,
 };
 use peelnet_render::MethodSpec;
+use peelnet_report::Results;
 use serde_json::json;
 use std::sync::atomic::Ordering;
 
@@ -45,7 +45,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         })
         .collect();
     let steps = (cases.len() * subjects.len()) as u64;
-    let bar = Progress::new(context.console, "stress", steps);
+    let bar = Bar::new(context.console, "stress", steps);
     let mut rows = Vec::new();
     let images = args.out.as_ref().map(|out| out.join("images"));
     for (case, k) in cases.iter().zip(0..) {
@@ -72,18 +72,14 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         )?);
     }
     drop(bar);
-    let stressed = Stressed {
-        machine: Machine::of(&gpu),
-        command: command_line(),
-        rows,
-    };
+    let results = Results::new(Machine::of(&gpu), command_line(), Stressed { rows });
     if let Some(out) = &args.out {
-        stressed.write(out)?;
+        results.write(out)?;
     }
     context
         .console
-        .result(|| text(&stressed), || json!(stressed))?;
-    let failures = stressed.of(Outcome::Fail).count();
+        .result(|| text(&results), || json!(results))?;
+    let failures = results.measured.of(Outcome::Fail).count();
     if failures > 0 {
         let see = match &args.out {
             Some(out) => format!("pictures of them are in {}", out.join("images").display()),
@@ -99,19 +95,18 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
 /// What target formats cost in accuracy.
 fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
     let gpu = context.gpu()?;
-    let numerics = numerics::measure(&gpu, command_line())?;
+    let numerics = numerics::measure(&gpu)?;
+    let results = Results::new(Machine::of(&gpu), command_line(), numerics);
     if let Some(out) = &args.out {
-        numerics.write(out)?;
+        results.write(out)?;
     }
     let text = || {
-        let tables = [numerics.blended_table(), numerics.added_table()];
-        tables
-            .map(|(headings, cells)| plain(&headings, &cells))
-            .join("\n")
+        let tables = [results.blended_table(), results.added_table()];
+        tables.map(|table| table.plain()).join("\n")
     };
-    context.console.result(text, || json!(numerics))?;
+    context.console.result(text, || json!(results))?;
     let beyond = |b: &&numerics::Blended| b.error() > b.bound;
-    match numerics.blended.iter().find(beyond) {
+    match results.measured.blended.iter().find(beyond) {
         None => Ok(()),
         Some(b) => Err(Failure::Failed(format!(
             "{} layers of {} in {} are off by {:e}, beyond the bound {:e}",
@@ -124,38 +119,33 @@ fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
     }
 }
 
-/// The matrix, the flaws' reasons, and what fails.
-fn text(stressed: &Stressed) -> String {
+/// The matrix, the flaws with their reasons, and the failures.
+fn text(results: &Results<Stressed>) -> String {
     let mut text = String::new();
-    let (mut headings, cells) = stressed.matrix();
+    let mut matrix = results.matrix();
     // Letters, so that the table fits a terminal.
-    for (heading, letter) in headings.iter_mut().skip(1).zip('a'..) {
+    for (heading, letter) in matrix.headings.iter_mut().skip(1).zip('a'..) {
         text.push_str(&format!("{letter} {heading}\n"));
         *heading = letter.to_string();
     }
     text.push('\n');
-    text.push_str(&plain(&headings, &cells));
+    text.push_str(&matrix.plain());
     text.push_str("\n· all properties hold   d declared flaws   F failures\n");
-    for (title, (headings, cells)) in [
-        ("Declared flaws", stressed.flaws()),
-        ("Failures", stressed.failures()),
-    ] {
-        if cells.is_empty() {
-            continue;
-        }
-        text.push_str(&format!("\n{title}\n"));
-        if title == "Failures" {
-            text.push_str(&plain(&headings, &cells));
-        } else {
-            for c in &cells {
-                text.push_str(&format!(
-                    "- {} ({}): {}\n    in {}\n",
-                    c[0], c[3], c[1], c[2]
-                ));
-            }
-        }
+    let flaws = results.flaws().rows;
+    if !flaws.is_empty() {
+        text.push_str("\nDeclared flaws\n");
     }
-    text.push_str(&format!("\n{}\n", stressed.summary()));
+    for c in flaws {
+        text.push_str(&format!(
+            "- {} ({}): {}\n    in {}\n",
+            c[0], c[3], c[1], c[2]
+        ));
+    }
+    let failures = results.failures();
+    if !failures.rows.is_empty() {
+        text.push_str(&format!("\nFailures\n{}", failures.plain()));
+    }
+    text.push_str(&format!("\n{}\n", results.measured.summary()));
     text
 }
 

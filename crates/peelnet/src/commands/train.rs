@@ -3,7 +3,7 @@
 use super::Context;
 use crate::cli::TrainArgs;
 use crate::failure::{Failure, one_line};
-use crate::progress::{Progress, short, thousands};
+use crate::progress::{Bar, thousands};
 use peelnet_dataset::Dataset;
 use peelnet_train::{
     Config, CurveFormat, End, Outcome, RunOptions, TrainError, TrainingData, held_out_errors, train,
@@ -86,7 +86,7 @@ pub(super) fn fit(
         data.source,
         config.epochs
     ));
-    let bar = Progress::new(context.console, "train", config.epochs.into());
+    let bar = Bar::new(context.console, "train", config.epochs.into());
     let outcome = train(config, &data, options, |e| {
         let held_out = e
             .held_out_loss
@@ -97,7 +97,7 @@ pub(super) fn fit(
             format!(
                 "loss {:.6}{held_out}, {} rows/s",
                 e.train_loss,
-                short(e.rows_per_s)
+                thousands(e.rows_per_s as u64)
             ),
         );
     });
@@ -156,7 +156,7 @@ pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
         loss("validation", meta.losses.validation),
         loss("test", meta.losses.test),
         seconds(outcome),
-        short(rows_per_s(outcome)),
+        thousands(rows_per_s(outcome) as u64),
     );
     for (scene, error) in &meta.held_out {
         t.push_str(&format!(

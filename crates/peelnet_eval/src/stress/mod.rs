@@ -12,7 +12,6 @@
 mod catalogue;
 mod network;
 mod properties;
-mod result;
 mod subject;
 mod trial;
 
@@ -20,7 +19,6 @@ pub use catalogue::{CASES, Case, Examine, Work};
 pub use network::Network;
 pub use peelnet_render::{Flaw, Property};
 pub use properties::Finding;
-pub use result::Stressed;
 pub use subject::Subject;
 pub use trial::{Kind, Stack, Trial, Truth};
 
@@ -63,6 +61,27 @@ pub struct Row {
     pub place: String,
     /// Of a declared flaw: its reason. Of one that stopped failing: that it did.
     pub reason: Option<String>,
+}
+
+/// All rows of a run over the hard cases.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stressed {
+    /// One row per method, case and property.
+    pub rows: Vec<Row>,
+}
+
+impl Stressed {
+    /// Rows of one outcome.
+    pub fn of(&self, result: Outcome) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |r| r.result == result)
+    }
+
+    /// How many rows there are of each outcome.
+    pub fn summary(&self) -> String {
+        let [pass, declared, fail] =
+            [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(|o| self.of(o).count());
+        format!("{pass} properties hold, {declared} declared flaws, {fail} failures")
+    }
 }
 
 /// Orders of drawing beside the scene's own.

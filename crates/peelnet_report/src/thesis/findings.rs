@@ -3,14 +3,18 @@
 //! The promise is that the network's weight errs less than weighted blending with the thesis's analytic weight. The
 //! sentences state counts and ratios in both directions alike.
 
-use crate::{Row, table::Table, table::geometric_mean, thesis};
+use peelnet_eval::{
+    Row,
+    by_scene::{ByScene, SceneErrors},
+    geometric_mean, thesis,
+};
 
 /// One finding after the other, each a sentence or two.
 pub fn findings(rows: &[Row]) -> Vec<String> {
-    let table = Table::of(rows);
+    let table = ByScene::of(rows);
     let mut out = Vec::new();
     let (in_table, beyond): (Vec<_>, Vec<_>) = table
-        .lines
+        .scenes
         .iter()
         .filter(|l| l.ratio(thesis::DEEP, thesis::WEIGHTED).is_some())
         .partition(|l| thesis::line(&l.scene).is_some());
@@ -21,7 +25,7 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
                 .to_owned(),
         ];
     }
-    let ratios = |lines: &[&crate::table::Line], reference: &str| -> Vec<(String, f64)> {
+    let ratios = |lines: &[&SceneErrors], reference: &str| -> Vec<(String, f64)> {
         lines
             .iter()
             .filter_map(|l| Some((l.scene.clone(), l.ratio(thesis::DEEP, reference)?)))
@@ -52,7 +56,7 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
             list(&r),
         ));
     }
-    let all: Vec<&crate::table::Line> = in_table.into_iter().chain(beyond).collect();
+    let all: Vec<&SceneErrors> = in_table.into_iter().chain(beyond).collect();
     if let Some(best) = &table.best_published {
         let r = ratios(&all, best);
         if let Some(mean) = geometric_mean(r.iter().map(|x| x.1)) {
@@ -122,14 +126,14 @@ fn artefacts(rows: &[Row]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::tests::row;
+    use crate::testing::row;
 
     fn text(deep: [f64; 2]) -> String {
         findings(&[
-            row("sixteen-025", 0, "wboit-papakostas", 10.0),
-            row("sixteen-025", 0, "deep-thesis", deep[0]),
-            row("sixteen-085", 0, "wboit-papakostas", 10.0),
-            row("sixteen-085", 0, "deep-thesis", deep[1]),
+            row("sixteen-025", "wboit-papakostas", 10.0),
+            row("sixteen-025", "deep-thesis", deep[0]),
+            row("sixteen-085", "wboit-papakostas", 10.0),
+            row("sixteen-085", "deep-thesis", deep[1]),
         ])
         .join("\n")
     }
@@ -146,7 +150,7 @@ mod tests {
 
     #[test]
     fn without_the_methods_nothing_is_claimed() {
-        let texts = findings(&[row("a", 0, "blended", 1.0)]);
+        let texts = findings(&[row("a", "blended", 1.0)]);
         assert_eq!(texts.len(), 1);
         assert!(texts[0].contains("nothing can be said"));
     }

@@ -1,0 +1,85 @@
+//! Charts as SVG text: [`LineChart`] and [`BubbleChart`], drawn by plotters.
+//!
+//! Whatever names and titles hold, they are escaped: an [`Svg`] may stand inside a page.
+//!
+//! ```
+//! use peelnet_chart::{Line, LineChart, Scale};
+//!
+//! let line = Line::new("error <of> a method", [(1.0, 0.5), (2.0, 0.25)]);
+//! let svg = LineChart { lines: &[line], x: "passes", y: "error", x_scale: Scale::Linear }.svg();
+//! assert!(svg.as_str().contains("error &lt;of&gt; a method"));
+//! ```
+
+mod bubbles;
+mod lines;
+
+pub use bubbles::{Bubble, BubbleChart};
+pub use lines::{Line, LineChart, Scale};
+
+use maud::{Markup, html};
+
+/// Width and height of every chart, pixels.
+const SIZE: (u32, u32) = (960, 600);
+
+/// Height of a name in a chart, pixels.
+const NAME_HEIGHT: f64 = 12.0;
+
+/// What can go wrong inside plotters.
+type DrawError = Box<dyn std::error::Error>;
+
+/// A picture as SVG text, without XML prolog and with a transparent background.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Svg(String);
+
+impl Svg {
+    /// What plotters drew, with elements of our own at its end.
+    fn new(drawn: Result<(String, Markup), DrawError>) -> Self {
+        let (mut text, overlay) =
+            drawn.unwrap_or_else(|e| unreachable!("drawing into a string cannot fail: {e}"));
+        let end = text.rfind("</svg>").unwrap_or(text.len());
+        text.insert_str(end, &overlay.0);
+        Self(text)
+    }
+
+    /// The text, for use inside a page.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// The text with white paper under it, for a file of its own.
+    pub fn on_white(&self) -> String {
+        let paper = ">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n<";
+        self.0.replacen(">\n<", paper, 1)
+    }
+}
+
+/// Left, top, right and bottom of a name.
+#[derive(Clone, Copy, Debug)]
+struct Area([f64; 4]);
+
+impl Area {
+    /// A name of 11 pixels whose left end is at the middle of a point.
+    fn of(name: &str, left: f64, middle: f64) -> Self {
+        let half = NAME_HEIGHT / 2.0;
+        Self([left, middle - half, left + width(name), middle + half])
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        let (a, b) = (self.0, other.0);
+        a[0] <= b[2] && b[0] <= a[2] && a[1] < b[3] && b[1] < a[3]
+    }
+}
+
+/// About how wide a name is: sans-serif letters are 0.56 as wide as high.
+fn width(name: &str) -> f64 {
+    name.chars().count() as f64 * 11.0 * 0.56
+}
+
+/// A name in the chart.
+fn name(text: &str, area: Area, color: Option<&str>, bold: bool) -> Markup {
+    html! {
+        text class="name" x=(format!("{:.0}", area.0[0])) y=(format!("{:.0}", area.0[3] - 2.0)) font-family="sans-serif" font-size="11"
+            fill=[color] font-weight=[bold.then_some("bold")] { (text) }
+        "\n"
+    }
+}

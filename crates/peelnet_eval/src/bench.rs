@@ -1,0 +1,121 @@
+//! Methods on scenes: what `peelnet bench` measures, as plain functions.
+
+use crate::{
+    EvalError, Partial, Row,
+    compare::{EXACT, Event, Plan, compare},
+    load,
+};
+use peelnet_gpu::Gpu;
+use peelnet_scene::Scene;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::AtomicBool;
+
+/// A comparison of methods.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bench {
+    /// Mean load of the machine before and after, see [`load`].
+    #[serde(default)]
+    pub load: [Option<f64>; 2],
+    /// One row per method, scene and view.
+    pub rows: Vec<Row>,
+}
+
+/// What a watched comparison reports.
+#[derive(Debug)]
+pub enum Progress<'a> {
+    /// A frame was drawn.
+    Drawn {
+        /// Frames so far.
+        done: u64,
+        /// Frames in all, at most.
+        total: u64,
+        /// The scene's name.
+        scene: &'a str,
+        /// The method's name.
+        method: &'a str,
+    },
+    /// A method needs more than the adapter allows and is left out of a scene from here on.
+    LeftOut {
+        /// The scene's name.
+        scene: &'a str,
+        /// The method's name.
+        method: &'a str,
+        /// What it lacks.
+        why: String,
+    },
+}
+
+/// Compares methods on every view of the scenes and returns the rows.
+///
+/// ```no_run
+/// use peelnet_eval::{bench::bench, compare::Plan};
+/// use peelnet_gpu::{AdapterRequest, Gpu};
+/// use peelnet_scene::Scene;
+///
+/// let gpu = Gpu::new(&AdapterRequest::Auto)?;
+/// let scene = Scene::load("data/scenes/cups.toml".as_ref())?;
+/// let methods = ["mboit4".parse()?, "wboit-eq9".parse()?];
+/// for row in bench(&gpu, &[scene], &Plan::new([512, 384], &methods))? {
+///     println!("{} on {}: {:.2e} in {:?} ms", row.method, row.scene, row.mse_linear, row.time_ms);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If a method cannot draw, or a picture cannot be written.
+pub fn bench(gpu: &Gpu, scenes: &[Scene], plan: &Plan<'_>) -> Result<Vec<Row>, EvalError> {
+    let partial = Partial::new(None, serde_json::Value::Null);
+    let stop = AtomicBool::new(false);
+    Ok(bench_watched(gpu, scenes, plan, partial, &stop, &mut |_| {})?.rows)
+}
+
+/// As [`bench`], but continues what `partial` holds, adds each finished view to it, reports progress, and can be stopped.
+///
+/// # Errors
+/// As [`bench`]; [`EvalError::Interrupted`] once `stop` is set.
+pub fn bench_watched(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    plan: &Plan<'_>,
+    mut partial: Partial,
+    stop: &AtomicBool,
+    report: &mut dyn FnMut(Progress<'_>),
+) -> Result<Bench, EvalError> {
+    let load_before = load();
+    let views: usize = scenes
+        .iter()
+        .map(|s| plan.views_of(s).saturating_sub(partial.done(&s.name).len()))
+        .sum();
+    // The exact method is drawn whether it is in the plan or not.
+    let exact = usize::from(!plan.methods.iter().any(|m| m.to_string() == EXACT));
+    let total = (views * (plan.methods.len() + exact) * (1 + plan.frames as usize)) as u64;
+    let mut done = 0;
+    for scene in scenes {
+        let finished = partial.done(&scene.name);
+        let name = &scene.name;
+        compare(gpu, scene, plan, &finished, stop, &mut |event| {
+            match event {
+                Event::Drawn(method) => {
+                    done += 1;
+                    report(Progress::Drawn {
+                        done,
+                        total,
+                        scene: name,
+                        method,
+                    });
+                }
+                Event::LeftOut(method, why) => report(Progress::LeftOut {
+                    scene: name,
+                    method,
+                    why,
+                }),
+                Event::View(rows) => partial.push(rows)?,
+            }
+            Ok(())
+        })?;
+    }
+    Ok(Bench {
+        load: [load_before, load()],
+        rows: partial.finish(),
+    })
+}

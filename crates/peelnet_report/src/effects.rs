@@ -1,0 +1,275 @@
+//! The files of `peelnet bench --effects`: what effects cost, what they look like, and what shading one layer saves.
+
+use crate::{
+    ReportError, Results, Table,
+    files::write_file,
+    page,
+    picture::{data_uri, figure, read},
+};
+use maud::{Markup, html};
+use peelnet_chart::{Line, LineChart, Scale, Svg};
+use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, picture_of};
+use std::path::Path;
+
+/// Width of the pictures, pixels.
+const PICTURE_WIDTH: u32 = 320;
+
+/// Title and note of each table.
+const EFFECTS: (&str, &str) = (
+    "What each effect costs",
+    "Time of a frame of the scene as it is, over that of the same scene without the effect. Both are drawn in turn in one run.",
+);
+const LAYERS: (&str, &str) = (
+    "One layer shaded, or all",
+    "The view of layers with physically based shading of the highlighted layer alone, against shading all layers.",
+);
+const FILLS: (&str, &str) = (
+    "Triangles and the part of the frame filled",
+    "The view of layers with one layer shaded: times relative to the fewest triangles at half of the frame; then times relative to \
+     shading all layers.",
+);
+
+impl Results<Effects> {
+    /// Costs of the effects.
+    pub fn effects_table(&self) -> Table {
+        let line = |c: &Cost| {
+            let bytes = if c.bytes_with == c.bytes_without {
+                format!("{:.0}", c.bytes_with)
+            } else {
+                format!("{:.0}, without {:.0}", c.bytes_with, c.bytes_without)
+            };
+            vec![
+                c.scene.clone(),
+                c.effect.clone(),
+                format!("{:.2}", c.ms_with),
+                format!("{:.2}", c.ms_without),
+                format!("{:.2}", c.ratio),
+                bytes,
+            ]
+        };
+        let headings = [
+            "scene",
+            "effect",
+            "with, ms",
+            "without, ms",
+            "time with / without",
+            "bytes a pixel",
+        ];
+        Table::new(headings, self.measured.costs.iter().map(line))
+    }
+
+    /// Shading one layer against all.
+    pub fn layer_table(&self) -> Table {
+        let line = |l: &LayerCost| {
+            vec![
+                l.scene.clone(),
+                l.layers.to_string(),
+                format!("{:.2}", l.ms_one),
+                format!("{:.2}", l.ms_all),
+                format!("{:.2}", l.ratio),
+            ]
+        };
+        let headings = [
+            "scene",
+            "layers",
+            "one shaded, ms",
+            "all shaded, ms",
+            "one / all",
+        ];
+        Table::new(headings, self.measured.layers.iter().map(line))
+    }
+
+    /// Triangles against the part of the frame filled: times relative to the scene's first cell.
+    pub fn fill_table(&self) -> Table {
+        let mut headings = vec!["scene".to_owned(), "triangles".to_owned()];
+        headings.extend(FILLED.map(|part| format!("{:.0} % filled", part * 100.0)));
+        headings.extend(FILLED.map(|part| format!("{:.0} %, one / all", part * 100.0)));
+        let fills = &self.measured.fills;
+        let line = |row: &[Fill]| {
+            let of_scene = |f: &&Fill| f.scene == row[0].scene;
+            let first = fills.iter().find(of_scene).map_or(1.0, |f| f.ms_one);
+            let mut cells = vec![row[0].scene.clone(), row[0].triangles.to_string()];
+            cells.extend(row.iter().map(|f| format!("{:.2}", f.ms_one / first)));
+            cells.extend(row.iter().map(|f| format!("{:.2}", f.ms_one / f.ms_all)));
+            cells
+        };
+        Table::new(headings, fills.chunks(FILLED.len()).map(line))
+    }
+
+    /// All tables that have rows, with title and note.
+    pub fn tables(&self) -> impl Iterator<Item = ((&'static str, &'static str), Table)> {
+        [
+            (EFFECTS, self.effects_table()),
+            (LAYERS, self.layer_table()),
+            (FILLS, self.fill_table()),
+        ]
+        .into_iter()
+        .filter(|(_, table)| !table.rows.is_empty())
+    }
+
+    /// Frame time against the number of layers.
+    fn layer_chart(&self) -> Svg {
+        let line = |name: &str, ms: fn(&LayerCost) -> f64| {
+            let layers = self.measured.layers.iter();
+            Line::new(name, layers.map(|l| (f64::from(l.layers), ms(l))))
+        };
+        let lines = [
+            line("all layers shaded", |l| l.ms_all),
+            line("one layer shaded", |l| l.ms_one),
+        ];
+        LineChart {
+            lines: &lines,
+            x: "layers",
+            y: "frame time, ms",
+            x_scale: Scale::Logarithmic,
+        }
+        .svg()
+    }
+
+    /// Writes `effects.json`, `effects.md`, `effects-layers.svg` and `report.html` into a folder; pictures are taken from `images/` in
+    /// it.
+    ///
+    /// # Errors
+    /// If a file cannot be written, or a picture not be read.
+    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+        self.write_json(&folder.join("effects.json"))?;
+        write_file(&folder.join("effects.md"), self.markdown())?;
+        if !self.measured.layers.is_empty() {
+            let svg = self.layer_chart().on_white();
+            write_file(&folder.join("effects-layers.svg"), svg)?;
+        }
+        write_file(&folder.join("report.html"), self.page(folder)?)
+    }
+
+    /// Method, size and frames.
+    fn settings(&self) -> String {
+        let m = &self.measured;
+        let [width, height] = m.size;
+        format!(
+            "{width}x{height}, medians of {} frames drawn in turn",
+            m.frames
+        )
+    }
+
+    fn markdown(&self) -> String {
+        let tables = self.tables().map(|((title, note), table)| {
+            format!("## {title}\n\n{note}\n\n{}\n", table.markdown())
+        });
+        format!(
+            "{}`{}`, {}. {}\n",
+            tables.collect::<String>(),
+            self.measured.method,
+            self.settings(),
+            self.credit()
+        )
+    }
+
+    fn page(&self, folder: &Path) -> Result<String, ReportError> {
+        let pairs = self.measured.costs.iter();
+        let pairs = pairs.map(|c| pair(c, folder));
+        let pairs = pairs.collect::<Result<Vec<Markup>, _>>()?;
+        let body = html! {
+            p { (self.measured.method) " at " (self.settings()) "." }
+            @for ((title, note), table) in self.tables() {
+                h2 { (title) }
+                p.note { (note) }
+                (table.html("", |_| false))
+                @if title == LAYERS.0 { (page::chart("curve", &self.layer_chart())) }
+            }
+            h2 { "With and without" }
+            @for pair in pairs { (pair) }
+        };
+        Ok(page::page(self, "what effects cost", body, &[], None))
+    }
+}
+
+/// The pictures of a scene with and without an effect.
+fn pair(cost: &Cost, folder: &Path) -> Result<Markup, ReportError> {
+    let mut figures = Vec::new();
+    for on in [true, false] {
+        let path = picture_of(folder, &cost.scene, &cost.effect, on);
+        if let Some(picture) = read(&path)? {
+            let uri = data_uri(&path, &picture, PICTURE_WIDTH)?;
+            let caption = format!("{} {}", if on { "with" } else { "without" }, cost.effect);
+            let description = format!("{} {caption}", cost.scene);
+            figures.push(figure(&uri, &description, &caption));
+        }
+    }
+    Ok(html! {
+        @if !figures.is_empty() {
+            h3 { (cost.scene) ": " (cost.effect) ", " (format!("{:.2}", cost.ratio)) " times the time" }
+            div.gallery { @for figure in figures { (figure) } }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use crate::testing::machine;
+
+    fn layer(layers: u32, ms_one: f64, ms_all: f64) -> LayerCost {
+        LayerCost {
+            scene: "vase".into(),
+            layers,
+            ms_one,
+            ms_all,
+            ratio: ms_one / ms_all,
+        }
+    }
+
+    /// Ratios are those of the times, and the table of triangles counts from its first cell.
+    #[test]
+    fn tables_are_ratios() {
+        let fill = |triangles, filled, ms_one, ms_all| Fill {
+            scene: "vase".into(),
+            triangles,
+            filled,
+            ms_one,
+            ms_all,
+        };
+        let effects = Effects {
+            method: "wboit-eq9".into(),
+            size: [4, 3],
+            frames: 1,
+            costs: vec![Cost {
+                scene: "vase".into(),
+                effect: "pbr".into(),
+                ms_with: 3.0,
+                ms_without: 2.0,
+                ratio: 1.5,
+                passes_with: 2,
+                passes_without: 2,
+                bytes_with: 10.0,
+                bytes_without: 8.0,
+            }],
+            layers: vec![layer(3, 2.0, 4.0), layer(6, 3.0, 9.0)],
+            fills: vec![
+                fill(100, 0.5, 2.0, 4.0),
+                fill(100, 0.75, 3.0, 4.0),
+                fill(100, 1.0, 4.0, 4.0),
+            ],
+        };
+        let results = Results::new(machine(), "peelnet bench --effects", effects);
+        assert_eq!(
+            results.effects_table().rows[0][4..],
+            ["1.50", "10, without 8"]
+        );
+        assert_eq!(results.layer_table().rows[1][4], "0.33");
+        assert_eq!(
+            results.fill_table().rows[0][2..],
+            ["1.00", "1.50", "2.00", "0.50", "0.75", "1.00"]
+        );
+        let folder = tempfile::tempdir().unwrap();
+        results.write(folder.path()).unwrap();
+        let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+        assert!(
+            page.contains("0.33") && page.contains("one layer shaded"),
+            "{page}"
+        );
+        assert!(folder.path().join("effects-layers.svg").exists());
+        let read: Results<Effects> = Results::read(&folder.path().join("effects.json")).unwrap();
+        assert_eq!(read, results);
+    }
+}

@@ -1,0 +1,31 @@
+//! Pages, charts and tables of what `peelnet_eval` measures.
+//!
+//! ```text
+//! measured rows ─► Results { machine, command, measured } ─► JSON, CSV, Markdown, SVG and a page
+//! ```
+//!
+//! [`Results`] is the one envelope of every kind of measurement. Each kind has a module with its tables, its charts and
+//! `Results<Kind>::write`, which writes a folder of files. Pages are one HTML file each, which needs neither network nor any other
+//! file. They are built with maud, which escapes all text; charts come from `peelnet_chart`, which escapes as well.
+
+mod bench;
+mod effects;
+mod error;
+mod files;
+mod numerics;
+mod page;
+mod picture;
+mod results;
+mod scaling;
+mod stress;
+mod table;
+#[cfg(test)]
+mod testing;
+mod thesis;
+mod training;
+
+pub use error::ReportError;
+pub use files::write_file;
+pub use results::Results;
+pub use table::Table;
+pub use thesis::{Attachments, Stage, ThesisRun, findings::findings};

@@ -1,0 +1,58 @@
+//! Pictures inside a page.
+
+use crate::ReportError;
+use base64::{Engine as _, engine::general_purpose::STANDARD};
+use image::{DynamicImage, ImageFormat, imageops::FilterType};
+use maud::{Markup, html};
+use std::{io::Cursor, path::Path};
+
+/// A picture file; `None` where it does not exist.
+pub(crate) fn read(path: &Path) -> Result<Option<DynamicImage>, ReportError> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    let picture = image::open(path).map_err(failed(path, "read"))?;
+    Ok(Some(picture))
+}
+
+/// A picture as `data:` URI, shrunk to at most `width` pixels; `path` is where it came from, for errors.
+pub(crate) fn data_uri(
+    path: &Path,
+    picture: &DynamicImage,
+    width: u32,
+) -> Result<String, ReportError> {
+    let shrunk;
+    let picture = if picture.width() > width {
+        shrunk = picture.resize(width, u32::MAX, FilterType::Triangle);
+        &shrunk
+    } else {
+        picture
+    };
+    let mut png = Cursor::new(Vec::new());
+    let written = picture.to_rgb8().write_to(&mut png, ImageFormat::Png);
+    written.map_err(failed(path, "shrink"))?;
+    Ok(format!(
+        "data:image/png;base64,{}",
+        STANDARD.encode(png.get_ref())
+    ))
+}
+
+/// A picture with its caption below.
+pub(crate) fn figure(uri: &str, description: &str, caption: &str) -> Markup {
+    html! {
+        figure {
+            img loading="lazy" src=(uri) alt=(description);
+            figcaption { (caption) }
+        }
+        "\n"
+    }
+}
+
+fn failed(path: &Path, action: &'static str) -> impl FnOnce(image::ImageError) -> ReportError {
+    let path = path.to_owned();
+    move |source| ReportError::Picture {
+        path,
+        action,
+        source,
+    }
+}

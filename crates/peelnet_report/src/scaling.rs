@@ -1,0 +1,134 @@
+//! The files of `peelnet bench --scaling`: how time and memory grow.
+
+use crate::{
+    ReportError, Results, Table,
+    files::{write_csv, write_file},
+    table::number,
+};
+use peelnet_chart::{Line, LineChart, Scale, Svg};
+use peelnet_eval::scaling::{Exponent, Scaling, Series};
+use std::path::Path;
+
+impl Results<Scaling> {
+    /// The exponents.
+    pub fn table(&self) -> Table {
+        let exponents = &self.measured.exponents;
+        let headings = [
+            "method",
+            "time ~ fragments^",
+            "time ~ pixels^",
+            "time ~ triangles^",
+            "bytes ~ fragments^",
+            "bytes ~ pixels^",
+            "bytes ~ triangles^",
+        ];
+        let mut methods: Vec<&str> = Vec::new();
+        for e in exponents {
+            if !methods.contains(&e.method.as_str()) {
+                methods.push(&e.method);
+            }
+        }
+        let line = |method: &str| {
+            let of = |series: Series, pick: fn(&Exponent) -> Option<f64>| {
+                let mut own = exponents.iter();
+                let own = own.find(|e| e.method == method && e.series == series);
+                number(own.and_then(pick), 2)
+            };
+            let times = Series::ALL.map(|s| of(s, |e| e.time));
+            let bytes = Series::ALL.map(|s| of(s, |e| e.bytes));
+            let name = [method.to_owned()];
+            name.into_iter().chain(times).chain(bytes).collect()
+        };
+        Table::new(headings, methods.into_iter().map(line))
+    }
+
+    /// Writes `scaling.json`, `scaling.csv`, `scaling.md` and a chart of each series, `scaling-<series>.svg`.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+        self.write_json(&folder.join("scaling.json"))?;
+        write_csv(&folder.join("scaling.csv"), &self.measured.rows)?;
+        let left_out = self.measured.left_out.iter();
+        let left_out: String = left_out
+            .map(|l| format!("- {} at {} {}: {}\n", l.method, l.value, l.series, l.why))
+            .collect();
+        let text = format!(
+            "{}\nExponents fitted to the upper half of the steps. {}\n\nNot measured:\n\n{left_out}",
+            self.table().markdown(),
+            self.credit(),
+        );
+        write_file(&folder.join("scaling.md"), text)?;
+        for series in Series::ALL {
+            let file = folder.join(format!("scaling-{series}.svg"));
+            write_file(&file, self.chart(series).on_white())?;
+        }
+        Ok(())
+    }
+
+    /// Frame time of every method against a series.
+    fn chart(&self, series: Series) -> Svg {
+        let mut lines: Vec<Line> = Vec::new();
+        for row in self.measured.rows.iter().filter(|r| r.series == series) {
+            let point = (row.value as f64, row.time_ms);
+            match lines.iter_mut().find(|l| l.name == row.method) {
+                Some(line) => line.points.push(point),
+                None => lines.push(Line::new(&row.method, [point])),
+            }
+        }
+        LineChart {
+            lines: &lines,
+            x: match series {
+                Series::Fragments => "fragments per pixel",
+                Series::Pixels => "pixels",
+                Series::Triangles => "triangles",
+            },
+            y: "frame time, ms",
+            x_scale: Scale::Logarithmic,
+        }
+        .svg()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use crate::testing::machine;
+    use peelnet_eval::scaling::Growth;
+
+    fn row(method: &str, series: Series, value: u64, time_ms: f64) -> Growth {
+        Growth {
+            method: method.to_owned(),
+            series,
+            value,
+            time_ms,
+            bytes_per_pixel: 8.0,
+        }
+    }
+
+    #[test]
+    fn files_are_written() {
+        let dir = tempfile::tempdir().unwrap();
+        let rows = vec![
+            row("a", Series::Fragments, 1, 1.0),
+            row("a", Series::Fragments, 2, 2.0),
+            row("b", Series::Pixels, 64, 2.0),
+        ];
+        let scaling = Scaling::new(rows, Vec::new());
+        let results = Results::new(machine(), "peelnet bench --scaling", scaling);
+        results.write(dir.path()).unwrap();
+        let text = std::fs::read_to_string(dir.path().join("scaling.md")).unwrap();
+        assert!(text.contains("| b |") && text.contains("–"), "{text}");
+        let csv = std::fs::read_to_string(dir.path().join("scaling.csv")).unwrap();
+        assert!(csv.contains("a,fragments,2,2.0,8.0"), "{csv}");
+        assert!(
+            std::fs::metadata(dir.path().join("scaling-pixels.svg"))
+                .unwrap()
+                .len()
+                > 1000
+        );
+        let json = dir.path().join("scaling.json");
+        assert_eq!(Results::<Scaling>::read(&json).unwrap(), results);
+    }
+}

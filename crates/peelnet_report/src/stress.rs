@@ -1,0 +1,198 @@
+//! The files of `peelnet stress`: what holds, what is known not to, and what fails.
+
+use crate::{
+    ReportError, Results, Table,
+    files::{write_csv, write_file},
+    page,
+};
+use maud::html;
+use peelnet_eval::stress::{CASES, Outcome, Property, Row, Stressed};
+use std::{collections::BTreeMap, path::Path};
+
+impl Results<Stressed> {
+    /// A row for each method: passes, declared flaws (`d` and their number) and failures (`F`) in each case.
+    pub fn matrix(&self) -> Table {
+        let rows = &self.measured.rows;
+        let mut methods: Vec<&str> = Vec::new();
+        for row in rows {
+            if !methods.contains(&row.method.as_str()) {
+                methods.push(&row.method);
+            }
+        }
+        let ids = CASES.iter().map(|c| c.id);
+        let ids: Vec<&str> = ids
+            .filter(|id| rows.iter().any(|r| r.case == *id))
+            .collect();
+        let cell = |method: &str, case: &str| {
+            let count = |result| {
+                let of = self.measured.of(result);
+                of.filter(|r| r.method == method && r.case == case).count()
+            };
+            let [pass, declared, fail] =
+                [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(count);
+            match (pass, declared, fail) {
+                (0, 0, 0) => String::new(),
+                (_, 0, 0) => "·".to_owned(),
+                (_, n, 0) => format!("d{n}"),
+                (_, _, n) => format!("F{n}"),
+            }
+        };
+        let line = |method: &&str| {
+            let cells = ids.iter().map(|case| cell(method, case));
+            std::iter::once((*method).to_owned()).chain(cells).collect()
+        };
+        let headings = std::iter::once(&"method").chain(&ids);
+        Table::new(headings.copied(), methods.iter().map(line))
+    }
+
+    /// The failures: method, case, property, value, limit, and where.
+    pub fn failures(&self) -> Table {
+        let line = |r: &Row| {
+            let value = r.value;
+            let place = format!("{} {}", r.place, r.reason.as_deref().unwrap_or_default());
+            vec![
+                r.method.clone(),
+                r.case.clone(),
+                r.property.to_string(),
+                value.map_or_else(|| "not finite".to_owned(), |x| format!("{x:.3e}")),
+                format!("{:.3e}", r.limit),
+                place.trim().to_owned(),
+            ]
+        };
+        let headings = ["method", "case", "property", "value", "limit", "where"];
+        Table::new(headings, self.measured.of(Outcome::Fail).map(line))
+    }
+
+    /// The declared flaws, those of one reason together: property, methods, cases, worst value as a multiple of its limit.
+    pub fn flaws(&self) -> Table {
+        let mut groups: BTreeMap<(Property, &str), Vec<&Row>> = BTreeMap::new();
+        for row in self.measured.of(Outcome::Declared) {
+            let reason = row.reason.as_deref().unwrap_or_default();
+            groups.entry((row.property, reason)).or_default().push(row);
+        }
+        let names = |rows: &[&Row], of: fn(&Row) -> &str| {
+            let mut all: Vec<&str> = Vec::new();
+            for row in rows {
+                if !all.contains(&of(row)) {
+                    all.push(of(row));
+                }
+            }
+            all.join(", ")
+        };
+        let lines = groups.iter().map(|((property, reason), rows)| {
+            let excess = rows
+                .iter()
+                .map(|r| r.value.unwrap_or(f64::INFINITY) / r.limit);
+            vec![
+                property.to_string(),
+                names(rows, |r| &r.method),
+                names(rows, |r| &r.case),
+                (*reason).to_owned(),
+                format!("{:.1}", excess.fold(0.0, f64::max)),
+            ]
+        });
+        let headings = ["property", "methods", "cases", "why", "worst / limit"];
+        Table::new(headings, lines)
+    }
+
+    /// Failures and declared flaws, those that there are, with a title.
+    fn exceptions(&self) -> impl Iterator<Item = (&'static str, Table)> {
+        let all = [
+            ("Failures", self.failures()),
+            ("Declared flaws", self.flaws()),
+        ];
+        all.into_iter().filter(|(_, table)| !table.rows.is_empty())
+    }
+
+    /// `stress.md`.
+    pub fn markdown(&self) -> String {
+        let matrix = [("Methods and cases", self.matrix())].into_iter();
+        let matrix = matrix.filter(|(_, table)| !table.rows.is_empty());
+        let sections = matrix.chain(self.exceptions());
+        let sections: String = sections
+            .map(|(title, table)| format!("\n## {title}\n\n{}", table.markdown()))
+            .collect();
+        format!(
+            "# Hard cases\n\n{}. In the table · is a case whose properties hold, d a number of declared flaws, F of failures.\n{sections}\n{}\n",
+            self.measured.summary(),
+            self.credit(),
+        )
+    }
+
+    /// Writes `stress.json`, `stress.csv`, `stress.md` and `stress.html` into a folder.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+        self.write_json(&folder.join("stress.json"))?;
+        write_csv(&folder.join("stress.csv"), &self.measured.rows)?;
+        write_file(&folder.join("stress.md"), self.markdown())?;
+        write_file(&folder.join("stress.html"), self.page())
+    }
+
+    fn page(&self) -> String {
+        let matrix = self.matrix();
+        let fails = |k: usize| matrix.rows[k].iter().any(|c| c.starts_with('F'));
+        let cases = CASES
+            .iter()
+            .map(|c| [c.id, c.what, c.breaks].map(str::to_owned).to_vec());
+        let cases = Table::new(["case", "what", "known to break"], cases);
+        let body = html! {
+            p { (self.measured.summary()) "." }
+            p.note {
+                "· all properties of the case hold; d: number of declared flaws; F: number of failures. Methods with a failure are orange."
+            }
+            (matrix.html("matrix", fails))
+            @for (title, table) in self.exceptions() {
+                h2 { (title) }
+                (table.html("text", |_| false))
+            }
+            h2 { "The cases" }
+            (cases.html("text", |_| false))
+        };
+        page::page(self, "hard cases", body, &[], None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use crate::testing::machine;
+
+    /// What a row says of a method stands in all files; text is escaped in the page.
+    #[test]
+    fn outcomes_are_counted_and_grouped() {
+        let row = |method: &str, case: &str, result| Row {
+            method: method.to_owned(),
+            case: case.to_owned(),
+            property: Property::Hull,
+            result,
+            value: Some(2.0),
+            limit: 1.0,
+            place: "pixel <3>".to_owned(),
+            reason: (result == Outcome::Declared).then(|| "rounds".to_owned()),
+        };
+        let rows = vec![
+            row("a", "deep", Outcome::Declared),
+            row("a", "far", Outcome::Pass),
+            row("b", "deep", Outcome::Declared),
+            row("b", "far", Outcome::Fail),
+        ];
+        let results = Results::new(machine(), "peelnet stress", Stressed { rows });
+        let matrix = results.matrix();
+        assert_eq!(matrix.headings, ["method", "deep", "far"]);
+        assert_eq!(matrix.rows, [["a", "d1", "·"], ["b", "d1", "F1"]]);
+        assert_eq!(
+            results.flaws().rows,
+            [["hull", "a, b", "deep", "rounds", "2.0"]]
+        );
+        let dir = tempfile::tempdir().unwrap();
+        results.write(dir.path()).unwrap();
+        let page = std::fs::read_to_string(dir.path().join("stress.html")).unwrap();
+        assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));
+        assert!(page.contains("1 properties hold, 2 declared flaws, 1 failures"));
+        let json = dir.path().join("stress.json");
+        assert_eq!(Results::<Stressed>::read(&json).unwrap(), results);
+    }
+}

@@ -1,0 +1,110 @@
+//! Tables as Markdown, as plain text and as HTML.
+
+use maud::{Markup, html};
+
+/// Headings, and rows of as many cells.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Table {
+    /// One for each column.
+    pub headings: Vec<String>,
+    /// The cells of each row.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table.
+    pub fn new<H: Into<String>>(
+        headings: impl IntoIterator<Item = H>,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        Self {
+            headings: headings.into_iter().map(Into::into).collect(),
+            rows: rows.into_iter().collect(),
+        }
+    }
+
+    /// As Markdown: the first column to the left, the others to the right.
+    pub fn markdown(&self) -> String {
+        let line = |cells: &[String]| {
+            let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
+            format!("| {} |\n", cells.join(" | "))
+        };
+        let right = "---:|".repeat(self.headings.len().saturating_sub(1));
+        let rows: String = self.rows.iter().map(|r| line(r)).collect();
+        format!("{}|---|{right}\n{rows}", line(&self.headings))
+    }
+
+    /// As plain text with aligned columns, for a terminal.
+    pub fn plain(&self) -> String {
+        let lines = || std::iter::once(&self.headings).chain(&self.rows);
+        let width = |k: usize| {
+            let cells = lines().filter_map(|line| line.get(k));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.headings.len()).map(width).collect();
+        let mut text = String::new();
+        for line in lines() {
+            let cells = line.iter().zip(&widths).enumerate();
+            let cells = cells.map(|(k, (cell, w))| match k {
+                0 => format!("{cell:<w$}"),
+                _ => format!("  {cell:>w$}"),
+            });
+            text.push_str(cells.collect::<String>().trim_end());
+            text.push('\n');
+        }
+        text
+    }
+
+    /// As HTML; rows for which `marked` holds have the class `front`.
+    pub(crate) fn html(&self, class: &str, marked: impl Fn(usize) -> bool) -> Markup {
+        html! {
+            div.scroll {
+                table class=[(!class.is_empty()).then_some(class)] {
+                    thead { tr { @for heading in &self.headings { th { (heading) } } } }
+                    tbody {
+                        @for (k, row) in self.rows.iter().enumerate() {
+                            tr class=[marked(k).then_some("front")] { @for cell in row { td { (cell) } } }
+                            "\n"
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A number with some digits, or a dash.
+pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        Table::new(["name", "ms"], [vec!["<a|b>".to_owned(), "1".to_owned()]])
+    }
+
+    #[test]
+    fn markdown_has_one_bar_more_than_columns() {
+        assert_eq!(
+            table().markdown(),
+            "| name | ms |\n|---|---:|\n| <a\\|b> | 1 |\n"
+        );
+    }
+
+    #[test]
+    fn plain_text_is_aligned() {
+        assert_eq!(table().plain(), "name   ms\n<a|b>   1\n");
+    }
+
+    #[test]
+    fn html_is_escaped() {
+        let html = table().html("text", |k| k == 0).0;
+        assert!(
+            html.contains("<tr class=\"front\"><td>&lt;a|b&gt;</td>"),
+            "{html}"
+        );
+    }
+}

@@ -1,0 +1,40 @@
+//! A machine and rows for tests.
+
+use peelnet_eval::{Machine, Row, metrics};
+
+pub(crate) fn machine() -> Machine {
+    Machine {
+        os: "linux".into(),
+        arch: "x86_64".into(),
+        cpu: "a <fast> one".into(),
+        cores: 2,
+        memory: 8 << 30,
+        adapter: "test".into(),
+        adapter_kind: "software".into(),
+        backend: "vulkan".into(),
+        driver: String::new(),
+        peelnet: "0".into(),
+        build: "debug".into(),
+    }
+}
+
+/// A row with little but an error.
+pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
+    Row {
+        method: method.to_owned(),
+        scene: scene.to_owned(),
+        width: 4,
+        height: 4,
+        fragments: Some(8),
+        max_layers: Some(2),
+        mse_linear: mse255 / 65025.0,
+        mse255,
+        mse255_covered: Some(mse255),
+        psnr: metrics::psnr(mse255),
+        covered_pixels: 4,
+        passes: 1,
+        bytes_per_pixel: 10.0,
+        adapter: "test".to_owned(),
+        ..Row::default()
+    }
+}

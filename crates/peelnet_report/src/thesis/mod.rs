@@ -1,0 +1,98 @@
+//! The files of `peelnet run`: the thesis's table of our scenes, what it says of the thesis's promise, and a page.
+
+pub(crate) mod findings;
+mod page;
+mod table;
+
+use crate::{ReportError, Results, Table, files::write_file};
+use findings::findings;
+use peelnet_chart::Svg;
+use peelnet_eval::{Machine, Row, by_scene::ByScene};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A step of a run and how long it took.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// `extract`, `train`, `export`, `compare`, …
+    pub name: String,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// What it did, in figures.
+    pub note: String,
+}
+
+/// A network trained as the thesis does, and its comparison with all methods.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ThesisRun {
+    /// The steps, in order.
+    pub stages: Vec<Stage>,
+    /// Settings that matter, as name and value.
+    pub settings: Vec<(String, String)>,
+    /// What the rows say, computed from them.
+    pub findings: Vec<String>,
+    /// All rows.
+    pub rows: Vec<Row>,
+}
+
+/// What the page shows beside the results.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Attachments<'a> {
+    /// The folder with `<scene>-<method>.png`.
+    pub images: Option<&'a Path>,
+    /// The loss curve.
+    pub loss: Option<&'a Svg>,
+    /// The dataset's summary as plain text.
+    pub dataset_summary: Option<&'a str>,
+}
+
+impl Results<ThesisRun> {
+    /// The results of these rows, with their findings, and without stages and settings.
+    pub fn of_rows(machine: Machine, command: impl Into<String>, rows: Vec<Row>) -> Self {
+        let run = ThesisRun {
+            stages: Vec::new(),
+            settings: Vec::new(),
+            findings: findings(&rows),
+            rows,
+        };
+        Self::new(machine, command, run)
+    }
+
+    /// Weighted and learned weighted blending on every scene, beside the thesis's figures.
+    pub fn table(&self) -> Table {
+        table::like_the_thesis(&ByScene::of(&self.measured.rows))
+    }
+
+    /// Writes `results.json`, `table.md` and `report.html` into a folder.
+    ///
+    /// # Errors
+    /// If a file cannot be written or a picture cannot be read.
+    pub fn write(&self, folder: &Path, attachments: &Attachments<'_>) -> Result<(), ReportError> {
+        self.write_json(&folder.join("results.json"))?;
+        write_file(&folder.join("table.md"), self.markdown())?;
+        let page = page::page(self, attachments)?;
+        write_file(&folder.join("report.html"), page)
+    }
+
+    /// `table.md`: the table like the thesis's, the findings, and all methods.
+    pub fn markdown(&self) -> String {
+        let errors = ByScene::of(&self.measured.rows);
+        let findings = self.measured.findings.iter();
+        let findings: String = findings.map(|f| format!("- {f}\n")).collect();
+        format!(
+            "# Weighted and learned weighted blending against the exact image\n\n{EXPLANATION}\n\n{}\n## Findings\n\n{findings}\n\
+             ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
+             Measured on {} ({}) with `{}`.\n",
+            table::like_the_thesis(&errors).markdown(),
+            table::all_methods(&errors).markdown(),
+            self.machine.adapter,
+            self.machine.cpu,
+            self.command,
+        )
+    }
+}
+
+/// What the figures of the table are.
+const EXPLANATION: &str = "Mean squared error against the exact image (`abuffer`), sRGB-encoded, 0–255 scale, not \
+quantised, whole frame, mean over the views. The thesis's meshes and camera are unknown: its absolute figures do not \
+compare with these, the ratios do. At α = 0.85 and with random alphas it reports artifacts and no figures.";

@@ -1,0 +1,103 @@
+//! The tables of a run.
+
+use crate::{Table, table::number};
+use peelnet_eval::{
+    by_scene::{ByScene, SceneErrors},
+    ratios, thesis,
+};
+
+/// Like the thesis's table 4.1: weighted blending and learned weighted blending on every scene.
+pub(super) fn like_the_thesis(errors: &ByScene) -> Table {
+    let best = errors.best_published.as_deref();
+    let best_heading = best.map_or_else(
+        || "best published".to_owned(),
+        |b| format!("best published: {b}"),
+    );
+    let best = best.unwrap_or_default();
+    let headings = [
+        "scene",
+        thesis::WEIGHTED,
+        ratios::WEIGHTED,
+        &best_heading,
+        thesis::DEEP,
+        "deep / thesis's weight",
+        "deep / best published",
+        "thesis: weighted → deep",
+        "thesis: ratio",
+    ];
+    let line = |scene: &SceneErrors| {
+        let error = |m: &str| number(scene.mse255.get(m).copied(), 2);
+        let measured = thesis::line(&scene.scene);
+        vec![
+            scene.scene.clone(),
+            error(thesis::WEIGHTED),
+            error(ratios::WEIGHTED),
+            error(best),
+            error(thesis::DEEP),
+            number(scene.ratio(thesis::DEEP, thesis::WEIGHTED), 2),
+            number(scene.ratio(thesis::DEEP, best), 2),
+            measured.map_or_else(
+                || "not measured".to_owned(),
+                |m| format!("{:.2} → {:.2}", m.weighted, m.deep),
+            ),
+            number(measured.map(thesis::Measured::ratio), 2),
+        ]
+    };
+    Table::new(headings, errors.scenes.iter().map(line))
+}
+
+/// Every method (a row each) on every scene (a column each), `mse255`.
+pub(super) fn all_methods(errors: &ByScene) -> Table {
+    let scenes = errors.scenes.iter().map(|s| s.scene.as_str());
+    let headings = std::iter::once("method").chain(scenes);
+    let line = |method: &String| {
+        let cells = errors
+            .scenes
+            .iter()
+            .map(|s| match s.mse255.get(method).copied() {
+                None => "–".to_owned(),
+                Some(0.0) => "0".to_owned(),
+                Some(v) if v < 0.005 => format!("{v:.1e}"),
+                Some(v) => format!("{v:.2}"),
+            });
+        std::iter::once(method.clone()).chain(cells).collect()
+    };
+    Table::new(headings, errors.methods.iter().map(line))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::row;
+
+    #[test]
+    fn the_thesis_stands_beside_our_figures() {
+        let table = like_the_thesis(&ByScene::of(&[
+            row("sixteen-050", "wboit-papakostas", 20.0),
+            row("sixteen-050", "wboit-eq9", 5.0),
+            row("sixteen-050", "deep-thesis", 10.0),
+        ]));
+        assert_eq!(
+            table.rows[0],
+            [
+                "sixteen-050",
+                "20.00",
+                "5.00",
+                "5.00",
+                "10.00",
+                "0.50",
+                "2.00",
+                "16.35 → 10.50",
+                "0.64"
+            ]
+        );
+        assert_eq!(table.rows[0].len(), table.headings.len());
+    }
+
+    #[test]
+    fn missing_methods_are_dashes() {
+        let table = like_the_thesis(&ByScene::of(&[row("cups", "blended", 1.0)]));
+        assert_eq!(table.rows[0][1..4], ["–", "–", "–"]);
+        assert_eq!(table.rows[0][7], "not measured");
+    }
+}
