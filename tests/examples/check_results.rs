@@ -127,9 +127,9 @@ fn effects(machine: &Path, root: &Path) -> Result<Vec<String>, ReportError> {
 fn numerics(machine: &Path) -> Result<Vec<String>, ReportError> {
     let run = Results::<Numerics>::read(&machine.join("numerics/numerics.json"))?;
     let there = |name: &str| run.measured.added.iter().any(|a| a.method == name);
-    let entries = peelnet_render::METHODS.iter();
-    let entries = entries.filter(|e| !e.learned && e.knobs().any(|(knob, _)| knob == "targets"));
-    let names = entries.map(|e| e.representative());
+    let methods = peelnet_render::METHODS.iter();
+    let methods = methods.filter(|m| !m.learned && m.has_targets());
+    let names = methods.map(|m| MethodSpec::representative(m).to_string());
     Ok(names.filter(|name| !there(name)).collect())
 }
 

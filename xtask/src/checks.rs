@@ -54,6 +54,18 @@ pub fn test() -> Result<(), String> {
     result
 }
 
+/// Whether the committed results are complete, and the documents show what they hold.
+pub fn results() -> Result<(), String> {
+    let package = ["--quiet", "--package", "peelnet_tests"];
+    let check = ["--example", "check_results"];
+    let documents = ["--test", "documents"];
+    run(cargo().arg("run").args(package).args(check), "results")?;
+    run(
+        cargo().arg("test").args(package).args(documents),
+        "documents",
+    )
+}
+
 /// Licences, sources and versions; advisories where their database can be reached.
 pub fn deny() -> Result<(), String> {
     ensure_subcommand("deny")?;

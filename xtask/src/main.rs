@@ -20,6 +20,7 @@ cargo xtask <command>
   train-models    make the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   test            formatting, clippy, all tests, documentation
   ci              test, and cargo-deny: licences, advisories, sources, versions
+  results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
   wasm            check the crates that run in a browser for wasm32
   docs            build the book in docs/ with mdBook, into target/book
   search          a million random fragment lists for every property (minutes)
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         (Some("train-models"), []) => product::train_models(),
         (Some("test"), []) => checks::test(),
         (Some("ci"), []) => checks::test().and_then(|()| checks::deny()),
+        (Some("results"), ["--check"]) => checks::results(),
         (Some("wasm"), []) => checks::wasm(),
         (Some("docs"), []) => checks::docs(),
         (Some("search"), []) => checks::search(),

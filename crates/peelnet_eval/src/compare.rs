@@ -1,10 +1,12 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
-use crate::transmittance::Sample;
+use crate::transmittance::{Sample, Stacks};
 use crate::{EvalError, Row, metrics, perceptual::Displayed};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
-use peelnet_render::{Frame, Image, LearnedWeight, MethodSpec, RenderError, Renderer, Role};
+use peelnet_render::{
+    Frame, Image, LearnedWeight, MethodSpec, Prepared, RenderError, Renderer, Role,
+};
 use peelnet_scene::Scene;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -96,7 +98,6 @@ pub fn compare(
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
 ) -> Result<(), EvalError> {
-    let failed = |method: &str| EvalError::render(&scene.name, method);
     let left: Vec<usize> = (0..plan.views_of(scene))
         .filter(|&view| !done.contains(&(view as u32)))
         .collect();
@@ -106,64 +107,121 @@ pub fn compare(
     if let Some(folder) = plan.images {
         std::fs::create_dir_all(folder).map_err(EvalError::io(folder, "create the folder"))?;
     }
-    let renderer = Renderer::new(gpu, scene).map_err(failed("upload"))?;
-    let exact_method: MethodSpec = EXACT.parse().map_err(failed(EXACT))?;
-    let others = plan.methods.iter().filter(|m| m.to_string() != EXACT);
-    let (mut methods, mut judged) = (Vec::new(), Vec::new());
-    // The exact method comes first, so its image is there for all others.
-    for method in std::iter::once(&exact_method).chain(others) {
-        let name = method.to_string();
-        let learned = plan
-            .learned
-            .iter()
-            .find(|l| l.recipe.method_name() == method.name());
-        let prepared = match renderer.prepare(method, plan.size, learned) {
-            Err(e) if plan.lenient && is_too_large(&e) && !methods.is_empty() => {
-                tell(Event::LeftOut(&name, e.to_string()))?;
-                continue;
-            }
-            prepared => prepared.map_err(failed(&name))?,
-        };
-        let model = plan
-            .models
-            .iter()
-            .find(|m| m.meta.recipe.method_name() == method.name());
-        methods.push((name, prepared));
-        judged.push((method, model));
-    }
+    let renderer = Renderer::new(gpu, scene).map_err(EvalError::render(&scene.name, "upload"))?;
+    let stage = Stage {
+        gpu,
+        scene,
+        plan,
+        renderer,
+        stop,
+    };
+    let mut entries = stage.prepare(tell)?;
     let mut sample = Sample::new(gpu, scene, plan.size)?;
     for view in left {
-        let camera = &scene.views[view];
         let stacks = sample.peel(view)?;
-        let mut exact: Option<(Image, Displayed)> = None;
-        let mut rows: Vec<Row> = Vec::new();
-        // One that is left out takes its place in both lists with it.
-        while let Some((name, prepared)) = methods.get_mut(rows.len()) {
-            let (method, model) = judged[rows.len()];
-            if stop.load(Ordering::Relaxed) {
-                return Err(EvalError::Interrupted);
-            }
-            let frame = match renderer.draw(prepared, camera) {
-                Err(e) if plan.lenient && is_too_large(&e) && !rows.is_empty() => {
-                    tell(Event::LeftOut(name, e.to_string()))?;
-                    methods.remove(rows.len());
-                    judged.remove(rows.len());
+        let mut rows = stage.draw(view, &mut entries, &stacks, tell)?;
+        stage.time(view, &mut entries, &mut rows, tell)?;
+        tell(Event::View(rows))?;
+    }
+    Ok(())
+}
+
+/// A method ready to draw.
+struct Entry<'a> {
+    name: String,
+    method: MethodSpec,
+    model: Option<&'a Model>,
+    prepared: Prepared,
+}
+
+/// A scene that methods are compared on.
+struct Stage<'a> {
+    gpu: &'a Gpu,
+    scene: &'a Scene,
+    plan: &'a Plan<'a>,
+    renderer: Renderer<'a>,
+    stop: &'a AtomicBool,
+}
+
+impl<'a> Stage<'a> {
+    fn failed(&self, method: &str) -> impl FnOnce(RenderError) -> EvalError + use<> {
+        EvalError::render(&self.scene.name, method)
+    }
+
+    fn check_stop(&self) -> Result<(), EvalError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(EvalError::Interrupted);
+        }
+        Ok(())
+    }
+
+    /// The exact method first, so that its image is there for all others.
+    fn prepare(
+        &self,
+        tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+    ) -> Result<Vec<Entry<'a>>, EvalError> {
+        let plan = self.plan;
+        let exact: MethodSpec = EXACT.parse().map_err(self.failed(EXACT))?;
+        let others = plan.methods.iter().filter(|m| m.to_string() != EXACT);
+        let mut entries = Vec::new();
+        for method in std::iter::once(&exact).chain(others) {
+            let name = method.to_string();
+            let learned = plan
+                .learned
+                .iter()
+                .find(|l| l.recipe.method_name() == method.name());
+            let prepared = match self.renderer.prepare(method, plan.size, learned) {
+                Err(e) if plan.lenient && is_too_large(&e) && !entries.is_empty() => {
+                    tell(Event::LeftOut(&name, e.to_string()))?;
                     continue;
                 }
-                frame => frame.map_err(failed(name))?,
+                prepared => prepared.map_err(self.failed(&name))?,
             };
-            if let (0, Some(folder)) = (view, plan.images) {
-                let path = folder.join(image_name(&scene.name, name));
-                frame.image.save(&path).map_err(failed(name))?;
+            let mut models = plan.models.iter();
+            entries.push(Entry {
+                name,
+                method: method.clone(),
+                model: models.find(|m| m.meta.recipe.method_name() == method.name()),
+                prepared,
+            });
+        }
+        Ok(entries)
+    }
+
+    /// Draws a view with every method and compares it with the exact image: a row each. Methods that turn out too large are removed.
+    fn draw(
+        &self,
+        view: usize,
+        entries: &mut Vec<Entry<'a>>,
+        stacks: &Stacks,
+        tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+    ) -> Result<Vec<Row>, EvalError> {
+        let camera = &self.scene.views[view];
+        let mut exact: Option<(Image, Displayed)> = None;
+        let mut rows: Vec<Row> = Vec::new();
+        while let Some(entry) = entries.get_mut(rows.len()) {
+            self.check_stop()?;
+            let name = &entry.name;
+            let frame = match self.renderer.draw(&mut entry.prepared, camera) {
+                Err(e) if self.plan.lenient && is_too_large(&e) && !rows.is_empty() => {
+                    tell(Event::LeftOut(name, e.to_string()))?;
+                    entries.remove(rows.len());
+                    continue;
+                }
+                frame => frame.map_err(self.failed(name))?,
+            };
+            if let (0, Some(folder)) = (view, self.plan.images) {
+                let path = folder.join(image_name(&self.scene.name, name));
+                frame.image.save(&path).map_err(self.failed(name))?;
             }
             let shown = Displayed::new(&frame.image);
             let (against, displayed) = exact
                 .as_ref()
                 .map_or((&frame.image, &shown), |(image, shown)| (image, shown));
             let differences = metrics::differences(&against.pixels, &frame.image.pixels)?;
-            let mut row = row(gpu, scene, name, view, &frame, differences);
+            let mut row = row(self.gpu, self.scene, name, view, &frame, differences);
             row.ssim = shown.ssim(displayed);
-            row.transmittance_error = stacks.error(method, model);
+            row.transmittance_error = stacks.error(&entry.method, entry.model);
             row.flip = Some(shown.flip(displayed));
             // Only the exact method knows the fragments of a view for certain.
             if let Some(first) = rows.first() {
@@ -175,15 +233,26 @@ pub fn compare(
             }
             tell(Event::Drawn(name))?;
         }
-        // The compared frame was the warm-up. In turn, so that whatever else the machine does hits all methods alike.
-        let mut frames: Vec<Vec<Timed>> = vec![Vec::new(); methods.len()];
-        for _ in 0..plan.frames {
-            for ((name, prepared), frames) in methods.iter_mut().zip(&mut frames) {
-                if stop.load(Ordering::Relaxed) {
-                    return Err(EvalError::Interrupted);
-                }
-                frames.push(renderer.time(prepared, camera).map_err(failed(name))?);
-                tell(Event::Drawn(name))?;
+        Ok(rows)
+    }
+
+    /// Times the view, all methods in turn, so that whatever else the machine does affects all of them alike. The compared frame was the
+    /// warm-up.
+    fn time(
+        &self,
+        view: usize,
+        entries: &mut [Entry<'_>],
+        rows: &mut [Row],
+        tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+    ) -> Result<(), EvalError> {
+        let camera = &self.scene.views[view];
+        let mut frames: Vec<Vec<Timed>> = vec![Vec::new(); entries.len()];
+        for _ in 0..self.plan.frames {
+            for (entry, frames) in entries.iter_mut().zip(&mut frames) {
+                self.check_stop()?;
+                let timed = self.renderer.time(&mut entry.prepared, camera);
+                frames.push(timed.map_err(self.failed(&entry.name))?);
+                tell(Event::Drawn(&entry.name))?;
             }
         }
         for (row, frames) in rows.iter_mut().zip(&frames) {
@@ -191,9 +260,8 @@ pub fn compare(
                 put_times(row, frames);
             }
         }
-        tell(Event::View(rows))?;
+        Ok(())
     }
-    Ok(())
 }
 
 /// Whether it is memory that a frame lacks: another adapter, or a smaller frame, has it.

@@ -218,51 +218,7 @@ fn blend(
             Bind::Write(&answer),
         ],
     );
-    let module = gpu.shader("numerics", SHADER);
-    let component = wgpu::BlendComponent {
-        src_factor: if product {
-            BlendFactor::Zero
-        } else {
-            BlendFactor::One
-        },
-        dst_factor: if product {
-            BlendFactor::OneMinusSrc
-        } else {
-            BlendFactor::One
-        },
-        operation: BlendOperation::Add,
-    };
-    let blend = wgpu::BlendState {
-        color: component,
-        alpha: component,
-    };
-    let pipeline = gpu
-        .device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("numerics"),
-            layout: Some(&gpu.layout(&[Some(&drawn.layout)])),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex_main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment_main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format,
-                    blend: Some(blend),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+    let pipeline = pipeline(gpu, format, product, &drawn.layout);
     let reader = gpu.compute("read", SHADER, &[&read.layout]);
     let mut recorder = Recorder::new(gpu, false);
     {
@@ -297,6 +253,59 @@ fn blend(
     recorder.finish().map_err(failed)?;
     let found: Vec<f32> = gpu.read(&answer, 0..4).map_err(failed)?;
     Ok(found[0])
+}
+
+/// A pipeline that blends fragments over the whole target.
+fn pipeline(
+    gpu: &Gpu,
+    format: TextureFormat,
+    product: bool,
+    drawn: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    let module = gpu.shader("numerics", SHADER);
+    let component = wgpu::BlendComponent {
+        src_factor: if product {
+            BlendFactor::Zero
+        } else {
+            BlendFactor::One
+        },
+        dst_factor: if product {
+            BlendFactor::OneMinusSrc
+        } else {
+            BlendFactor::One
+        },
+        operation: BlendOperation::Add,
+    };
+    let blend = wgpu::BlendState {
+        color: component,
+        alpha: component,
+    };
+    gpu.device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("numerics"),
+            layout: Some(&gpu.layout(&[Some(drawn)])),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: Some(blend),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
 }
 
 /// Methods without a network whose targets may have either precision, on stacks of these many layers.
