@@ -17,8 +17,23 @@ use std::{
     },
 };
 
-/// A method whose frame takes longer is not drawn in the larger steps of that series.
-pub const PATIENCE_MS: f64 = 3000.0;
+/// How growth is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Timed frames of each step; one more warms up.
+    pub frames: u32,
+    /// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
+    pub patience_ms: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            frames: 5,
+            patience_ms: 3000.0,
+        }
+    }
+}
 
 /// What grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -142,7 +157,7 @@ pub struct Scaling {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Measures all steps; `told` hears of each frame: frames so far, frames in all at most, and the method.
+/// Measures all steps. `told` is called for each frame with the frames so far, all frames at most, and the method.
 ///
 /// # Errors
 /// If a method cannot draw; [`EvalError::Interrupted`] once `stop` is set.
@@ -150,10 +165,14 @@ pub fn measure(
     gpu: &Gpu,
     methods: &[MethodSpec],
     learned: &[LearnedWeight],
-    frames: u32,
+    settings: Settings,
     stop: &AtomicBool,
     told: &mut dyn FnMut(u64, u64, &str),
 ) -> Result<(Vec<Growth>, Vec<LeftOut>), EvalError> {
+    let Settings {
+        frames,
+        patience_ms,
+    } = settings;
     let (mut rows, mut left_out): (Vec<Growth>, Vec<LeftOut>) = (Vec::new(), Vec::new());
     let steps = steps();
     let total = (steps.len() * methods.len() * (frames as usize + 1)) as u64;
@@ -168,7 +187,7 @@ pub fn measure(
             let name = method.to_string();
             let slow = rows
                 .iter()
-                .any(|r| r.method == name && r.series == step.series && r.time_ms > PATIENCE_MS);
+                .any(|r| r.method == name && r.series == step.series && r.time_ms > patience_ms);
             let mut leave_out = |why: String| {
                 left_out.push(LeftOut {
                     method: name.clone(),
@@ -181,7 +200,7 @@ pub fn measure(
                 done += u64::from(frames) + 1;
                 leave_out(format!(
                     "a frame took longer than {} s before",
-                    PATIENCE_MS / 1e3
+                    patience_ms / 1e3
                 ));
                 continue;
             }

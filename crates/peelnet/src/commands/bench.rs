@@ -62,15 +62,13 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         methods.dedup_by_key(|m| m.name());
     }
     let bar = Bar::new(context.console, "scaling", 0);
+    let settings = scaling::Settings {
+        frames: args.frames,
+        ..Default::default()
+    };
     let mut told = |done, total, method: &str| bar.set(done, total, method.to_owned());
-    let (rows, left_out) = scaling::measure(
-        &gpu,
-        &methods,
-        &learned,
-        args.frames,
-        context.stop,
-        &mut told,
-    )?;
+    let (rows, left_out) =
+        scaling::measure(&gpu, &methods, &learned, settings, context.stop, &mut told)?;
     drop(bar);
     let scaling = Scaling::new(rows, left_out);
     let results = Results::new(Machine::of(&gpu), command_line(), scaling);
