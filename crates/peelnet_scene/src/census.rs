@@ -1,16 +1,22 @@
-//! The census: which effects a scene calls for, and what asks for each. A renderer builds what the census names and nothing else.
+//! The census: which effects a scene needs, and which objects need them. A renderer is specialised by it: unused effects cost nothing.
 
 #[cfg(doc)]
-use crate::Maps;
-use crate::{Lighting, Material, Object, Scene, Source};
+use crate::texture::Maps;
+use crate::{
+    material::{Lighting, Material},
+    scene::{Light, Object, Scene, Source},
+};
 use serde::Serialize;
 use std::fmt;
 
-/// What a material calls for of the pipeline that draws it: each that a scene holds has a pipeline of its own in every pass, and
-/// no shader asks a material what it is.
+#[cfg(test)]
+mod tests;
+
+/// Pipeline specialisation key of a material. Each distinct key of a scene gets its own pipeline in every pass; no shader branches on
+/// materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
-    /// How it answers to light; unlit where there is none.
+    /// How it is lit; unlit in a scene without lights.
     pub lighting: Lighting,
     /// Whether it emits.
     pub emissive: bool,
@@ -18,31 +24,31 @@ pub struct Variant {
     pub cutout: bool,
     /// Whether back faces are left out.
     pub culled: bool,
-    /// Which of [`Maps::all`] are read.
+    /// Which textures of [`Maps::all`] are read.
     pub maps: [bool; 5],
-    /// Whether opacity is read from the colour map, which other passes than those of colour need then.
+    /// Whether opacity is read from the colour map. Passes without colour need the map too then.
     pub clear_map: bool,
-    /// Whether corners have colours of their own.
+    /// Whether there are vertex colours.
     pub vertex_colors: bool,
-    /// Whether a light that it is lit by has no position.
+    /// Whether it is lit by a directional light.
     pub sun: bool,
-    /// Whether light passes through what it covers.
+    /// Whether light is transmitted, see [`Material::transmission`].
     pub transmissive: bool,
 }
 
-/// What of a scene decides its materials' variants.
+/// The properties of a scene that its materials' variants depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Whether there is any light.
     pub lit: bool,
-    /// Whether any light has no position.
+    /// Whether any light is directional.
     pub sun: bool,
 }
 
 impl Setting {
-    /// A scene's.
+    /// The setting of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let is_sun = |l: &crate::Light| matches!(l.source, Source::Toward(_));
+        let is_sun = |l: &Light| matches!(l.source, Source::Toward(_));
         Self {
             lit: !scene.lights.is_empty(),
             sun: scene.lights.iter().any(is_sun),
@@ -51,7 +57,7 @@ impl Setting {
 }
 
 impl Variant {
-    /// A material's on an object.
+    /// The variant of a material on an object.
     pub fn of(material: &Material, object: &Object, setting: Setting) -> Self {
         let lighting = if setting.lit {
             material.lighting
@@ -80,7 +86,7 @@ impl Variant {
         }
     }
 
-    /// Whether any image is read.
+    /// Whether any texture is read.
     pub fn is_mapped(self) -> bool {
         self.maps.contains(&true)
     }
@@ -125,12 +131,12 @@ const MAP_FEATURES: [&str; 5] = [
     "emissive_map",
 ];
 
-/// Something that a renderer does only where a scene calls for it.
+/// Something that a renderer does only where a scene needs it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Opaque surfaces.
     Opaque,
-    /// Surfaces that show one side only.
+    /// Surfaces whose back faces are culled.
     Culling,
     /// Blinn–Phong.
     Lighting,
@@ -138,25 +144,25 @@ pub enum Effect {
     Pbr,
     /// Holes where opacity is low.
     Cutout,
-    /// Light that comes from a surface itself.
+    /// Emissive surfaces.
     Emission,
-    /// Images of base colour and opacity.
+    /// Textures of base colour and opacity.
     ColorMap,
-    /// Images of normals.
+    /// Textures of normals.
     NormalMap,
-    /// Images of metal and roughness.
+    /// Textures of metallic and roughness.
     MetallicRoughnessMap,
-    /// Images of the share of ambient light.
+    /// Textures of ambient occlusion.
     OcclusionMap,
-    /// Images of emission.
+    /// Textures of emission.
     EmissiveMap,
-    /// Colours of corners.
+    /// Vertex colours.
     VertexColors,
-    /// Lights without a position.
+    /// Directional lights.
     Sun,
-    /// Light that passes through surfaces and takes their colour.
+    /// Coloured transmission through surfaces.
     Transmission,
-    /// Grey alone: one channel less.
+    /// A scene whose colours are all grey.
     Monochrome,
     /// Transparency at a lower resolution.
     LowResolution,
@@ -227,12 +233,12 @@ impl Effect {
             Self::Pbr => "normals and positions, a binding of lights, Cook–Torrance in the shader",
             Self::Cutout => "a comparison and a discard in the pipelines of these materials",
             Self::Emission => "an addition in the pipelines of these materials",
-            Self::ColorMap => "an image with its fetch, places on it, a sampler",
-            Self::NormalMap => "an image with its fetch, tangents, places on it, a sampler",
+            Self::ColorMap => "a texture with its fetch, UVs, a sampler",
+            Self::NormalMap => "a texture with its fetch, tangents, UVs, a sampler",
             Self::MetallicRoughnessMap | Self::OcclusionMap | Self::EmissiveMap => {
-                "an image with its fetch, places on it, a sampler"
+                "a texture with its fetch, UVs, a sampler"
             }
-            Self::VertexColors => "16 bytes a corner and a product",
+            Self::VertexColors => "16 bytes a vertex and a product",
             Self::Sun => "a choice between position and direction for each light",
             Self::Transmission => {
                 "three channels of transmittance instead of one where it is not grey"
@@ -244,7 +250,7 @@ impl Effect {
         }
     }
 
-    fn is_called_by(self, material: &Material, variant: Variant) -> bool {
+    fn is_needed_by(self, material: &Material, variant: Variant) -> bool {
         match self {
             Self::Opaque => material.is_opaque(),
             Self::Culling => variant.culled,
@@ -271,25 +277,25 @@ impl fmt::Display for Effect {
     }
 }
 
-/// Whether an effect is on, and who asked.
+/// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Called {
     /// The effect's name.
     pub name: &'static str,
-    /// Whether anything asks for it.
+    /// Whether anything needs it.
     pub on: bool,
-    /// What asks: names of objects, or a key of the scene.
+    /// What needs it: names of objects, or a key of the scene.
     pub why: Vec<String>,
     /// What it adds to a frame.
     pub adds: &'static str,
 }
 
-/// What a scene calls for.
+/// The effects that a scene needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Census {
     /// Every effect there is.
     pub effects: Vec<Called>,
-    /// The variants of its materials: as many pipelines are in a pass over the surfaces, opaque and transparent ones apart, at most.
+    /// The variants of its materials: the most pipelines that a pass over opaque or over transparent surfaces has.
     pub variants: Vec<Variant>,
 }
 
@@ -300,7 +306,7 @@ impl Census {
         let mut variants: Vec<Variant> = Vec::new();
         let materials = scene.objects.iter().flat_map(|object| {
             let materials = object.mesh.parts.iter().zip(&object.materials);
-            // A part without triangles calls for nothing.
+            // A part without triangles needs nothing.
             let drawn = materials.filter(|(part, _)| !part.triangles.is_empty());
             drawn.map(move |(_, material)| (object, material))
         });
@@ -312,7 +318,7 @@ impl Census {
             }
             for (effect, why) in Effect::ALL.iter().zip(&mut why) {
                 let is_new = || !why.contains(&object.name);
-                if effect.is_called_by(material, variant) && is_new() {
+                if effect.is_needed_by(material, variant) && is_new() {
                     why.push(object.name.clone());
                 }
             }
@@ -350,8 +356,8 @@ impl Census {
     }
 }
 
-/// What concerns no pipeline of a frame: layers are told apart where one of them is highlighted, states of a timeline are loaded one at
-/// a time, and which statistics are gathered is up to the method.
+/// Effects that no pipeline of a frame depends on: layers matter only where one of them is highlighted, states of a timeline are loaded
+/// one at a time, and the method decides which statistics are gathered.
 fn beyond_pixels(scene: &Scene) -> [Called; 3] {
     let layered = scene.objects.iter().filter(|o| o.layer.is_some());
     let several = scene.layers().len() > 1;
@@ -384,7 +390,7 @@ fn beyond_pixels(scene: &Scene) -> [Called; 3] {
 }
 
 impl Scene {
-    /// Whether every colour is grey: of materials that are drawn, images, corners, lights and the background.
+    /// Whether every colour is grey: of materials, textures, vertices, lights and the background.
     pub fn is_grey(&self) -> bool {
         let grey = |[r, g, b]: [f32; 3]| r == g && g == b;
         let material = |m: &Material| {
@@ -392,16 +398,16 @@ impl Scene {
             let maps = [&m.maps.color, &m.maps.emissive];
             colors.into_iter().all(grey) && maps.into_iter().flatten().all(|map| map.is_grey())
         };
-        let corners = |o: &Object| o.mesh.colors.iter().all(|&[r, g, b, _]| grey([r, g, b]));
+        let vertices = |o: &Object| o.mesh.colors.iter().all(|&[r, g, b, _]| grey([r, g, b]));
         grey(self.background)
             && self.lights.iter().all(|l| grey(l.color))
             && self
                 .objects
                 .iter()
-                .all(|o| o.materials.iter().all(material) && corners(o))
+                .all(|o| o.materials.iter().all(material) && vertices(o))
     }
 
-    /// Whether light that passes through a surface takes a colour; where all of it is grey one channel tells how much passes.
+    /// Whether transmitted light is coloured. Where all of it is grey, one channel holds the transmittance.
     pub fn is_tinted(&self) -> bool {
         let mut materials = self.objects.iter().flat_map(|o| &o.materials);
         materials.any(|m| {
@@ -411,7 +417,7 @@ impl Scene {
         })
     }
 
-    /// The scene as it would be if nothing called for an effect: what opaque objects leave is empty, what was lit is unlit.
+    /// The scene without an effect: opaque objects are removed, lit surfaces unlit, and so on.
     pub fn without(&self, effect: Effect) -> Self {
         let mut scene = self.clone();
         if effect == Effect::LowResolution {
@@ -449,132 +455,10 @@ impl Scene {
                 .lights
                 .retain(|l| matches!(l.source, Source::Point(_)));
         }
-        // The least that is not grey.
+        // The nearest colour that is not grey.
         if effect == Effect::Monochrome && scene.is_grey() {
             scene.background[2] = scene.background[2].next_up();
         }
         scene
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Camera, Light, Object, Texture};
-    use glam::Vec3;
-
-    fn scene(material: Material) -> Scene {
-        let triangle = [[Vec3::ZERO, Vec3::X, Vec3::Y]];
-        let camera = Camera {
-            position: Vec3::Z,
-            target: Vec3::ZERO,
-            up: Vec3::Y,
-            fov_y_degrees: 45.0,
-            near: 0.1,
-            far: 10.0,
-        };
-        let object = Object::of_triangles("thing", &triangle, material);
-        Scene::generated("one", "a test", [0.0; 3], camera, vec![object])
-    }
-
-    /// Each effect is called for by just what names it, and is gone without it.
-    #[test]
-    fn each_effect_has_its_cause() {
-        let plain = Material::unlit([0.5, 0.4, 0.5], 0.5);
-        assert!(
-            Effect::ALL
-                .iter()
-                .all(|e| !Census::of(&scene(plain.clone())).has(*e))
-        );
-        let light = Light {
-            source: Source::Point(Vec3::ONE),
-            color: [1.0; 3],
-            intensity: 1.0,
-        };
-        let image = || {
-            Some(std::sync::Arc::new(Texture::of("red", [1, 1], |_, _| {
-                [255, 0, 0, 255]
-            })))
-        };
-        for effect in Effect::ALL {
-            let mut material = plain.clone();
-            let mut lights = Vec::new();
-            let mut scale = 1.0;
-            let maps = &mut material.maps;
-            // What it cannot be without.
-            let mut with: Vec<&str> = Vec::new();
-            match effect {
-                Effect::Opaque => (material.alpha, material.blend) = (1.0, false),
-                Effect::Culling => material.double_sided = false,
-                Effect::Lighting => material.lighting = Lighting::Phong,
-                Effect::Pbr => material.lighting = Lighting::Pbr,
-                Effect::Cutout => {
-                    (material.alpha_cutoff, material.blend) = (Some(0.4), false);
-                    // A surface with holes is drawn with the opaque ones.
-                    with.push("opaque");
-                }
-                Effect::Emission => material.emission = [0.0, 0.1, 0.0],
-                Effect::ColorMap => maps.color = image(),
-                Effect::NormalMap | Effect::OcclusionMap => {
-                    with.push("lighting");
-                    material.lighting = Lighting::Phong;
-                    match effect {
-                        Effect::NormalMap => maps.normal = image(),
-                        _ => maps.occlusion = image(),
-                    }
-                }
-                Effect::MetallicRoughnessMap => {
-                    with.push("pbr");
-                    maps.metallic_roughness = image();
-                    material.lighting = Lighting::Pbr;
-                }
-                Effect::EmissiveMap => {
-                    with.push("emission");
-                    maps.emissive = image();
-                    material.emission = [0.0, 0.1, 0.0];
-                }
-                Effect::VertexColors => {}
-                Effect::Sun => {
-                    with.push("lighting");
-                    material.lighting = Lighting::Phong;
-                }
-                Effect::Transmission => material.transmission = [0.0, 0.5, 0.0],
-                Effect::Monochrome => material.color = [0.25; 3],
-                Effect::LowResolution => scale = 0.5,
-            }
-            if material.lighting != Lighting::Unlit {
-                // Without a light there is nothing to compute.
-                assert!(!Census::of(&scene(material.clone())).has(effect));
-                lights.push(light);
-            }
-            let mut scene = scene(material);
-            if effect == Effect::VertexColors {
-                let mut mesh = (*scene.objects[0].mesh).clone();
-                mesh.colors = vec![[1.0, 0.0, 0.0, 1.0]; 3];
-                scene.objects[0].mesh = mesh.into();
-            }
-            if effect == Effect::Sun {
-                scene.lights.push(Light {
-                    source: Source::Toward(Vec3::Y),
-                    ..light
-                });
-            }
-            scene.lights.extend(lights);
-            scene.transparency_scale = scale;
-            let on = |s: &Scene| -> Vec<&str> {
-                let census = Census::of(s);
-                let on = census.effects.into_iter().filter(|e| e.on);
-                on.map(|e| e.name).collect()
-            };
-            with.push(effect.name());
-            let mut found = on(&scene);
-            found.sort_unstable();
-            with.sort_unstable();
-            assert_eq!(found, with, "{effect}");
-            assert!(
-                !on(&scene.without(effect)).contains(&effect.name()),
-                "{effect}"
-            );
-        }
     }
 }

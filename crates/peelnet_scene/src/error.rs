@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-/// Why a scene could not be had. Every message names the file, the place and the mend.
+/// Why a scene cannot be loaded. Every message names the file, the place in it, and a fix.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be read.
@@ -11,7 +11,7 @@ pub enum SceneError {
         /// The reason.
         source: std::io::Error,
     },
-    /// A scene file that is not what a scene file must be.
+    /// A scene file that is not TOML, or has an unknown key or a value of the wrong type.
     #[error("{path}:{line}: {message}")]
     Syntax {
         /// The scene file.

@@ -1,8 +1,23 @@
-//! What is drawn: scenes, read from TOML files or made by code.
+//! Scenes: read from TOML, glTF and OBJ files, or built in code.
 //!
-//! [`Scene::load`] reads a strict scene file ([`mod@file`]): cameras, lights, and objects that are OBJ meshes ([`obj`]),
-//! generated shapes ([`shapes`]) or many of either scattered from a seed ([`scatter`]). Everything a scene is made of
-//! is resolved and checked here, so that a renderer meets no missing normal, no index out of range and no NaN.
+//! [`Scene::load`] reads a scene file ([`mod@file`]): cameras, lights, and objects, which are meshes of OBJ and glTF files ([`obj`],
+//! [`mod@gltf`]), generated shapes ([`shapes`]), or many of either scattered from a seed ([`scatter`]). [`Scene::from_bytes`] reads the same
+//! through a function, so that an archive, a web page or a test can be the file system. Everything is resolved and checked
+//! here: a renderer meets no missing normal, no index out of range and no NaN.
+//!
+//! All types are `Clone` and `Send`. A renderer, or a program that moves things, addresses `scene.objects[i]`: its
+//! `world_from_object`, its `materials` (one for each part of its mesh), and `scene.lights`. Meshes and textures are shared by `Arc`, so
+//! clones of a scene are cheap.
+//!
+//! ```
+//! use peelnet_scene::{Scene, suite};
+//!
+//! let mut scene: Scene = suite::load("cups")?;
+//! scene.objects[0].world_from_object *= glam::Mat4::from_rotation_y(0.5);
+//! scene.objects[0].materials[0].alpha = 0.25;
+//! # Ok::<(), peelnet_scene::SceneError>(())
+//! ```
+//!
 //! [`Scene::varied`] draws variations for training; [`suite`] finds the scenes that ship.
 
 mod camera;

@@ -1,7 +1,7 @@
-use crate::Maps;
+use crate::texture::Maps;
 use serde::Deserialize;
 
-/// How a material answers to light.
+/// How a surface is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Lighting {
@@ -13,7 +13,7 @@ pub enum Lighting {
     Pbr,
 }
 
-/// A surface's looks.
+/// A surface's appearance. Any value may be changed between frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name, from the mesh file where there is one.
@@ -22,7 +22,7 @@ pub struct Material {
     pub color: [f32; 3],
     /// Opacity, 0 … 1.
     pub alpha: f32,
-    /// Answer to light.
+    /// How it is lit.
     pub lighting: Lighting,
     /// Strength of the highlight.
     pub specular: f32,
@@ -36,7 +36,7 @@ pub struct Material {
     pub emission: [f32; 3],
     /// Light that passes through what its opacity covers, linear RGB, 0 … 1: stained glass. None where it is black.
     pub transmission: [f32; 3],
-    /// Images on it.
+    /// Textures.
     pub maps: Maps,
     /// Cut-out: an opacity below this is a hole; one above it is opaque, unless it blends.
     pub alpha_cutoff: Option<f32>,
@@ -47,7 +47,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// What a mesh without material gets: opaque light grey.
+    /// The material of a mesh without one: opaque light grey.
     pub fn default_with(lighting: Lighting) -> Self {
         Self {
             name: "default".into(),
@@ -87,7 +87,7 @@ impl Material {
         }
     }
 
-    /// The same with every number a share of the way to another's; images stay.
+    /// The same material with every number moved a share of the way to another's; textures stay.
     pub fn towards(&self, other: &Self, share: f32) -> Self {
         let mix = |a: f32, b: f32| a + share * (b - a);
         let each = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|k| mix(a[k], b[k]));

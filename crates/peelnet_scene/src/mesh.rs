@@ -1,20 +1,20 @@
-use crate::{Maps, Material};
+use crate::{material::Material, texture::Maps};
 use glam::{Vec2, Vec3};
 use std::{collections::HashMap, ops::Range};
 
-/// Triangles with a normal at every corner.
+/// Triangles with a normal at every vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Corner positions, object space.
+    /// Vertex positions, object space.
     pub positions: Vec<Vec3>,
     /// Unit normals, one for each position.
     pub normals: Vec<Vec3>,
     /// Linear RGB and alpha that multiply the material's, one for each position; empty where there are none.
     pub colors: Vec<[f32; 4]>,
-    /// Places on images, for each triangle those of its corners (a seam splits them, not the surface): u to the right, v down, 0 … 1 over
-    /// the image. Empty where there are none.
+    /// UVs, stored per triangle corner, so that a UV seam does not split smooth normals: u to the right, v down, 0 … 1 over the texture.
+    /// Empty where there are none.
     pub uvs: Vec<[Vec2; 3]>,
-    /// Indices of three corners, counter-clockwise seen from outside.
+    /// Indices of three vertices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Runs of triangles that share a material; together they cover all triangles in order.
     pub parts: Vec<Part>,
@@ -27,7 +27,7 @@ pub struct Part {
     pub name: String,
     /// Indices into [`Mesh::triangles`].
     pub triangles: Range<usize>,
-    /// The material that the mesh itself asks for.
+    /// The material of the mesh file. Objects have their own, see [`crate::Object::materials`].
     pub material: Material,
 }
 
@@ -54,7 +54,7 @@ impl Mesh {
         }
     }
 
-    /// A mesh of nothing, to be filled part by part.
+    /// A mesh without triangles, to be filled part by part.
     pub(crate) const fn empty() -> Self {
         Self {
             positions: Vec::new(),
@@ -66,9 +66,9 @@ impl Mesh {
         }
     }
 
-    /// Appends a part: its corners, and triangles whose indices count from its first corner. Its maps are dropped where it has no places
-    /// on them; tells so.
-    pub(crate) fn push(&mut self, corners: PartGeometry, mut part: Part) -> Option<String> {
+    /// Appends a part; indices of its triangles count from its own first vertex. Where it has maps and no UVs, its maps are dropped, with a
+    /// warning.
+    pub(crate) fn push(&mut self, geometry: PartGeometry, mut part: Part) -> Option<String> {
         let (base, first) = (self.positions.len(), self.triangles.len());
         let PartGeometry {
             positions,
@@ -76,7 +76,7 @@ impl Mesh {
             colors,
             uvs,
             triangles,
-        } = corners;
+        } = geometry;
         if let Some(colors) = colors {
             self.colors.resize(base, [1.0; 4]);
             self.colors.extend(colors);
@@ -89,7 +89,7 @@ impl Mesh {
         } else if part.material.maps.all().iter().any(Option::is_some) {
             part.material.maps = Maps::NONE;
             lost = Some(format!(
-                "'{}' has images and no texture coordinates: plain values are drawn",
+                "'{}' has textures and no texture coordinates: plain values are drawn",
                 part.name
             ));
         }
@@ -110,7 +110,7 @@ impl Mesh {
     }
 
     /// Tangents of a run of triangles, for normal maps: direction of u, and 1 or −1 where v runs against or along normal × tangent,
-    /// by MikkTSpace (Mikkelsen 2008), which bakers of normal maps use. `None` without places on images.
+    /// by MikkTSpace (Mikkelsen 2008), which bakers of normal maps use. `None` without UVs.
     pub fn tangents(&self, triangles: Range<usize>) -> Option<Vec<[[f32; 4]; 3]>> {
         if self.uvs.is_empty() {
             return None;
@@ -120,12 +120,12 @@ impl Mesh {
             first: triangles.start,
             found: vec![[[1.0, 0.0, 0.0, 1.0]; 3]; triangles.len()],
         };
-        // It refuses meshes without triangles only.
+        // It fails on meshes without triangles only.
         let _ = bevy_mikktspace::generate_tangents(&mut geometry);
         Some(geometry.found)
     }
 
-    /// The same with colours of corners that go with their height, from the lowest to the highest.
+    /// The same mesh with vertex colours by height, from the lowest vertex to the highest.
     pub(crate) fn colored_by_height(&self, [low, high]: [[f32; 4]; 2]) -> Self {
         let (bottom, top) = self.bounds().unwrap_or_default();
         let of = |p: &Vec3| {
@@ -138,8 +138,7 @@ impl Mesh {
         }
     }
 
-    /// The same surface with every triangle cut into four at the middles of its edges. Normals between corners are interpolated, so that
-    /// it is shaded as before.
+    /// The same surface with every triangle cut into four at the middles of its edges. Normals are interpolated, so shading stays as it was.
     pub fn subdivided(&self) -> Self {
         let mut mesh = self.clone();
         mesh.triangles = Vec::with_capacity(4 * self.triangles.len());
@@ -180,19 +179,19 @@ impl Mesh {
         mesh
     }
 
-    /// The box around all corners that triangles use; `None` without any.
+    /// The box around all vertices that triangles use; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut corners = self
+        let mut vertices = self
             .triangles
             .iter()
             .flatten()
             .map(|&i| self.positions[i as usize]);
-        let first = corners.next()?;
-        Some(corners.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
+        let first = vertices.next()?;
+        Some(vertices.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
     }
 }
 
-/// What a part adds to a mesh.
+/// The vertices and triangles of a part.
 pub(crate) struct PartGeometry {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
@@ -203,7 +202,7 @@ pub(crate) struct PartGeometry {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What MikkTSpace reads and writes.
+/// A run of triangles as MikkTSpace reads it, and the tangents that it writes.
 struct Tangents<'a> {
     mesh: &'a Mesh,
     first: usize,
@@ -230,7 +229,7 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        // The second tangent points up the image, against v.
+        // The second tangent points up the texture, against v.
         let uv = self.mesh.uvs[self.first + face][corner];
         [uv.x, 1.0 - uv.y]
     }
@@ -247,7 +246,7 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
     }
 }
 
-/// Smooth normals: the sum of the adjacent triangles' area vectors, so that large triangles count more. A corner whose
+/// Smooth normals: the sum of the adjacent triangles' area vectors, so that large triangles count more. A vertex whose
 /// triangles have no area gets +z, never NaN.
 pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
@@ -265,7 +264,7 @@ pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
 mod tests {
     use super::*;
 
-    /// Cut triangles cover the same area, keep parts, places and orientation, and share their middles.
+    /// Cut triangles cover the same area, keep parts, UVs and orientation, and share their middles.
     #[test]
     fn a_cut_surface_is_the_same() {
         let material = Material::unlit([1.0; 3], 0.5);
@@ -297,12 +296,12 @@ mod tests {
         }
     }
 
-    /// On a rectangle the tangent runs to the right of the image and normal × tangent, times the sign, up it; mirrored, the sign turns.
+    /// On a rectangle the tangent points to the right of the texture and normal × tangent, times the sign, up; mirrored, the sign turns.
     #[test]
     fn tangents_of_a_rectangle() {
         for mirrored in [false, true] {
             let u = |x: f32| if mirrored { 1.0 - x } else { x };
-            let corners = PartGeometry {
+            let geometry = PartGeometry {
                 positions: vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y],
                 normals: vec![Vec3::Z; 4],
                 colors: None,
@@ -320,8 +319,8 @@ mod tests {
                 triangles: 0..0,
                 material: Material::unlit([1.0; 3], 0.5),
             };
-            assert_eq!(mesh.push(corners, part), None);
-            let tangents = mesh.tangents(0..2).expect("has places");
+            assert_eq!(mesh.push(geometry, part), None);
+            let tangents = mesh.tangents(0..2).expect("has UVs");
             for [x, y, z, sign] in tangents.into_iter().flatten() {
                 let tangent = Vec3::new(x, y, z);
                 let right = if mirrored { -Vec3::X } else { Vec3::X };

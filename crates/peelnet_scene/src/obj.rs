@@ -5,12 +5,12 @@
 //! ([`crate::polygons`]), and the line of an error (`fault`).
 
 mod fault;
-mod images;
 mod library;
 mod repair;
 #[cfg(test)]
 mod tests;
 mod text;
+mod textures;
 
 use crate::{
     error::SceneError,
@@ -20,13 +20,13 @@ use crate::{
     polygons::Triangulator,
 };
 use glam::{DVec3, Vec2, Vec3};
-use images::Images;
 use std::{
     cell::RefCell,
     collections::HashMap,
     io,
     path::{Path, PathBuf},
 };
+use textures::Textures;
 
 /// A mesh file's contents.
 #[derive(Clone, Debug)]
@@ -129,13 +129,15 @@ pub(crate) fn load(
             )
         }));
     }
-    let mut images = Images::default();
+    let mut textures = Textures::default();
     let materials: Vec<Material> = materials
         .iter()
         .zip(&libraries.owners)
-        .map(|(m, owner)| images.put_on(libraries.files, owner, m, library::material(m, lighting)))
+        .map(|(m, owner)| {
+            textures.put_on(libraries.files, owner, m, library::material(m, lighting))
+        })
         .collect();
-    warnings.append(&mut images.warnings);
+    warnings.append(&mut textures.warnings);
     let material = |model: &tobj::Model| {
         let id = model.mesh.material_id;
         id.and_then(|i| materials.get(i).cloned())

@@ -1,4 +1,4 @@
-//! Maps made by code: a field over the image, 0 … 1, that repeats without a seam, read as colours, heights or values.
+//! Generated textures: a field of 0 … 1 that repeats without a seam, read as colours, heights or values.
 
 use crate::texture::{Texture, normals_of};
 use glam::{IVec2, Vec2};
@@ -11,11 +11,11 @@ use serde::Deserialize;
 pub enum Field {
     /// Squares of 0 and 1.
     Checker,
-    /// Smooth noise, five octaves of it.
+    /// Smooth noise of five octaves.
     Noise,
-    /// 1 along the borders of irregular cells, as cracks of a glaze run.
+    /// 1 along the borders of irregular cells, like cracks in a glaze.
     Cracks,
-    /// 1 in some bands around the image, with waves on their edges: painted decoration.
+    /// 1 in some bands across the texture, with waves on their edges: painted decoration.
     Bands,
 }
 
@@ -25,7 +25,7 @@ pub enum Field {
 pub struct Pattern {
     /// The field.
     pub pattern: Field,
-    /// Cells across and down the image.
+    /// Cells across and down the texture.
     #[serde(default = "eight")]
     pub cells: u32,
     /// Another seed, another pattern.
@@ -137,7 +137,7 @@ impl Pattern {
             .collect()
     }
 
-    /// A number of 0 … 1 that belongs to a corner of the grid.
+    /// A random number of 0 … 1 for each node of the grid. By a hash, not by a generator: a node's number must not depend on the order.
     fn random(&self, at: IVec2, period: u32, channel: u32) -> f32 {
         let at = at.rem_euclid(IVec2::splat(period as i32));
         pixel_hash(self.seed, channel, at.x as u32, at.y as u32) as f32 / u32::MAX as f32
@@ -145,11 +145,11 @@ impl Pattern {
 
     /// Value noise that repeats after `period` cells.
     fn noise(&self, place: Vec2, period: u32, channel: u32) -> f32 {
-        let corner = place.floor();
-        let t = place - corner;
+        let node = place.floor();
+        let t = place - node;
         let t = t * t * (3.0 - 2.0 * t);
-        let corner = corner.as_ivec2();
-        let value = |x, y| self.random(corner + IVec2::new(x, y), period, channel);
+        let node = node.as_ivec2();
+        let value = |x, y| self.random(node + IVec2::new(x, y), period, channel);
         let across = |y| value(0, y) + t.x * (value(1, y) - value(0, y));
         across(0) + t.y * (across(1) - across(0))
     }

@@ -19,7 +19,7 @@
 //!
 //! Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
 
-use crate::file::MeshRef;
+use crate::file::references::MeshRef;
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::random::Random;
 use serde::Deserialize;
@@ -61,6 +61,12 @@ pub struct Scatter {
     /// Layer of all objects.
     pub layer: Option<u32>,
 }
+
+/// Most objects of a scatter, so that a small file cannot ask for endless memory.
+const MAX_COUNT: usize = 1_000_000;
+
+/// Most cells along an axis: the cells of two axes can be counted in 32 bits.
+const MAX_CELLS: usize = 65_535;
 
 const fn one() -> NumberOrRange {
     NumberOrRange::Number(1.0)
@@ -162,10 +168,18 @@ impl Scatter {
         if !finite(&self.min) || !finite(&self.max) || (0..3).any(|k| self.min[k] > self.max[k]) {
             return Err(("min", "min must be finite and nowhere above max".into()));
         }
-        if self.grid.is_some_and(|g| g.contains(&0)) {
+        if self.count > MAX_COUNT {
+            return Err((
+                "count",
+                format!("{} must be at most {MAX_COUNT}", self.count),
+            ));
+        }
+        if let Some(grid) = self.grid
+            && grid.iter().any(|n| !(1..=MAX_CELLS).contains(n))
+        {
             return Err((
                 "grid",
-                "a grid needs at least one cell along each axis".into(),
+                format!("a grid needs 1 … {MAX_CELLS} cells along each axis"),
             ));
         }
         if !(0.0..=1.0).contains(&self.jitter) {
@@ -193,7 +207,7 @@ impl Scatter {
         Ok(())
     }
 
-    /// The meshes to take in turn.
+    /// The meshes that are taken in turn.
     pub(crate) fn mesh_list(&self) -> &[MeshRef] {
         match (&self.meshes, &self.mesh) {
             (Some(list), _) => list,
@@ -221,7 +235,7 @@ impl Scatter {
                 });
                 let position = min + place * (max - min);
                 let scale = self.scale.draw(&mut random);
-                // Drawn for every object, so that another rotation leaves the rest of the scene as it is.
+                // Drawn whether it is used or not, so that the rest of the scene does not depend on `rotate`.
                 let turn = random_rotation(&mut random);
                 let rotation = match &self.rotate {
                     Rotate::Word(RotateWord::Random) => turn,

@@ -1,4 +1,9 @@
-use crate::{Camera, Lighting, Material, Mesh, Part, SceneError};
+use crate::{
+    camera::Camera,
+    error::SceneError,
+    material::{Lighting, Material},
+    mesh::{Mesh, Part},
+};
 use glam::{Mat4, Vec3};
 use std::{path::PathBuf, sync::Arc};
 
@@ -22,7 +27,7 @@ pub struct Light {
     pub intensity: f32,
 }
 
-/// A mesh in its place.
+/// A mesh in its place. Change `world_from_object` to move it, and `materials` to change its appearance; the mesh may be shared.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Name, for messages.
@@ -38,20 +43,20 @@ pub struct Object {
 }
 
 impl Object {
-    /// Triangles in world space, each with its own corners and normal.
-    pub fn of_triangles(name: &str, corners: &[[Vec3; 3]], material: Material) -> Self {
+    /// An object of triangles in world space, each with its own vertices and normal.
+    pub fn of_triangles(name: &str, triangles: &[[Vec3; 3]], material: Material) -> Self {
         let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).normalize_or(Vec3::Z);
         let mesh = Mesh {
-            positions: corners.iter().flatten().copied().collect(),
-            normals: corners.iter().flat_map(|t| [normal(t); 3]).collect(),
+            positions: triangles.iter().flatten().copied().collect(),
+            normals: triangles.iter().flat_map(|t| [normal(t); 3]).collect(),
             colors: Vec::new(),
             uvs: Vec::new(),
-            triangles: (0..corners.len() as u32)
+            triangles: (0..triangles.len() as u32)
                 .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
                 .collect(),
             parts: vec![Part {
                 name: name.to_owned(),
-                triangles: 0..corners.len(),
+                triangles: 0..triangles.len(),
                 material: material.clone(),
             }],
         };
@@ -65,10 +70,10 @@ impl Object {
     }
 }
 
-/// Everything that is drawn.
+/// Everything that is drawn: objects, lights, views and the background. All fields may be changed between frames.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Name; rows and reports are told apart by it.
+    /// Name; rows and reports are identified by it.
     pub name: String,
     /// The scene file.
     pub source: PathBuf,
@@ -76,7 +81,7 @@ pub struct Scene {
     pub hash: String,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
-    /// Of the resolution that transparency is drawn at, above 0 and at most 1; exact methods keep the full one.
+    /// Resolution of transparency as a share of the image's, above 0 and at most 1; exact methods keep the full one.
     pub transparency_scale: f32,
     /// Views, at least one.
     pub views: Vec<Camera>,
@@ -84,17 +89,17 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Objects, in the order that decides ties of depth.
     pub objects: Vec<Object>,
-    /// Whether it must never be trained on.
+    /// Whether it is kept out of all training.
     pub held_out: bool,
-    /// What was noticed and mended while loading.
+    /// What was repaired or left out while loading.
     pub warnings: Vec<String>,
-    /// States of an ageing scene in order of time; empty where it does not age.
+    /// States of the timeline in order of time; empty where there is none.
     pub timeline: Vec<State>,
     /// The time of the timeline that is shown.
     pub time: f32,
 }
 
-/// A state of an ageing scene.
+/// A state of a timeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// When, in whatever unit the scene counts.
@@ -104,7 +109,7 @@ pub struct State {
 }
 
 impl Scene {
-    /// A scene that code makes, without lights; `maker` stands in messages where a file's name would.
+    /// A scene built in code, without lights. Messages name `maker` instead of a file.
     pub fn generated(
         name: &str,
         maker: &str,
@@ -149,15 +154,15 @@ impl Scene {
         scene
     }
 
-    /// Numbers of its layers, from outside to inside, each once.
+    /// Numbers of its layers, outermost first, each once.
     pub fn layers(&self) -> Vec<u32> {
         let all = self.objects.iter().filter_map(|o| o.layer);
         let all: std::collections::BTreeSet<u32> = all.collect();
         all.into_iter().collect()
     }
 
-    /// The scene as the view of layers draws it: every surface of a layer is a fragment, the highlighted layer's shaded as its material
-    /// says, the others' by their base colour alone, or (`shade_all`, what it would cost) as theirs say.
+    /// The scene as the view of layers draws it: every surface of a layer is a fragment. The highlighted layer is shaded by its material; the
+    /// others show their base colour alone or, with `shade_all` (to measure what that costs), are shaded too.
     ///
     /// # Errors
     /// A layer that no object has, or a transparent object without a layer.
@@ -171,7 +176,7 @@ impl Scene {
         if !layers.contains(&highlight) {
             let message = match layers.as_slice() {
                 [] => "no object has one: add layer = N to objects, 0 outermost".to_owned(),
-                all => format!("{highlight} is none of those there are: {all:?}"),
+                all => format!("{highlight} is none of the layers {all:?}"),
             };
             return Err(value("layer", message));
         }

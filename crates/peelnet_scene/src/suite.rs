@@ -1,6 +1,6 @@
 //! The scenes that ship. They are embedded, so an installed program needs no folder beside it.
 
-use crate::{Scene, SceneError};
+use crate::{error::SceneError, scene::Scene};
 use std::{io, path::Path};
 
 pub use peelnet_data::{EFFECTS, SCENES, SceneFile, find};

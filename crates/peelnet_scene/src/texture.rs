@@ -1,12 +1,12 @@
-//! Images on surfaces: read from PNG and JPEG files, or made by code ([`crate::pattern`]).
+//! Textures: read from PNG and JPEG files, or generated ([`crate::pattern`]).
 
 use serde::Deserialize;
 use std::sync::Arc;
 
-/// An image of 8 bits a channel.
+/// A texture of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
-    /// Where it comes from, for messages.
+    /// Its file or pattern, for messages.
     pub name: String,
     /// Width and height in texels.
     pub size: [u32; 2],
@@ -23,20 +23,20 @@ impl std::fmt::Debug for Texture {
     }
 }
 
-/// What lies beyond an image's edge.
+/// What a texture shows beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Wrap {
-    /// The image again.
+    /// The texture again.
     #[default]
     Repeat,
-    /// The image mirrored.
+    /// The texture mirrored.
     Mirror,
-    /// Its edge.
+    /// The texels of its edge.
     Clamp,
 }
 
-/// The images on a surface, named as in glTF 2.0; each multiplies the material's value.
+/// The textures of a material, named as in glTF 2.0; each multiplies the material's value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maps {
     /// Base colour in sRGB, and opacity.
@@ -49,13 +49,13 @@ pub struct Maps {
     pub occlusion: Option<Arc<Texture>>,
     /// Emission in sRGB.
     pub emissive: Option<Arc<Texture>>,
-    /// How much of the normal map's slopes counts.
+    /// Scale of the normal map's slopes.
     pub normal_scale: f32,
-    /// How much of the occlusion counts.
+    /// Strength of the occlusion map, 0 … 1.
     pub occlusion_strength: f32,
     /// Beyond the edges, across and down.
     pub wrap: [Wrap; 2],
-    /// Whether texels are seen as squares from near.
+    /// Whether a magnified texture shows its texels as squares.
     pub nearest: bool,
 }
 
@@ -91,11 +91,11 @@ impl Default for Maps {
     }
 }
 
-/// Longest side of an image that is read: what WebGPU guarantees.
+/// Longest side of a texture that is read: WebGPU guarantees no longer one.
 const LONGEST: u32 = 8192;
 
 impl Texture {
-    /// An image of `size[0] * size[1]` texels.
+    /// A texture of `size[0] * size[1]` texels.
     fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
         Self {
             name: name.to_owned(),
@@ -109,7 +109,7 @@ impl Texture {
     /// Reads a PNG or JPEG image from memory.
     ///
     /// # Errors
-    /// What is wrong, and the mend.
+    /// What is wrong, and a fix.
     pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, String> {
         let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
             .with_guessed_format()
@@ -122,14 +122,14 @@ impl Texture {
         (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
         reader.limits(limits);
         let image = reader.decode().map_err(|e| {
-            format!("is no image that can be drawn: {e}; save it again, at most {LONGEST} texels wide and high")
+            format!("cannot be decoded: {e}; save it again, at most {LONGEST} texels wide and high")
         })?;
         let image = image.to_rgba8();
         let size = [image.width(), image.height()];
         Ok(Self::new(name, size, image.pixels().map(|p| p.0).collect()))
     }
 
-    /// An image that a function of row-major texel places makes.
+    /// A texture from a function of column and row.
     pub fn of(name: &str, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
         let [width, height] = size;
         let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -146,7 +146,7 @@ impl Texture {
         self.grey
     }
 
-    /// The same image at another size.
+    /// The same texture at another size.
     pub fn resized(&self, size: [u32; 2]) -> Self {
         if size == self.size {
             return self.clone();
@@ -161,7 +161,7 @@ impl Texture {
         Self::new(&self.name, size, image.pixels().map(|p| p.0).collect())
     }
 
-    /// One image of two: texel by texel, at the larger size of each side.
+    /// Two textures joined texel by texel, at the larger size of each side.
     pub fn joined(a: &Self, b: &Self, texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4]) -> Self {
         let size = [a.size[0].max(b.size[0]), a.size[1].max(b.size[1])];
         let [left, right] = [a.resized(size), b.resized(size)];
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_image_is_told() {
+    fn files_that_are_no_images_are_errors() {
         let e = Texture::decode("x", b"RIFF....WEBP").expect_err("no PNG");
         assert!(e.contains("PNG"), "{e}");
         let e = Texture::decode("x", b"\x89PNG\r\n\x1a\n\0\0").expect_err("cut off");

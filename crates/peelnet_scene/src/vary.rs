@@ -1,10 +1,10 @@
-//! Variations of a scene, for training: other colours, opacities, cameras and scales of the same geometry.
+//! Variations of a scene, for training: the same geometry with other colours, opacities, cameras and scales.
 
-use crate::{Material, Scene};
+use crate::{material::Material, scene::Scene};
 use glam::{Quat, Vec3};
 use peelnet_core::random::Random;
 
-/// How a copy's opacities are drawn. What networks find hardest is among them: extremes in one pixel, near-opaque and
+/// How a copy's opacities are drawn. The hardest cases for networks are among them: extremes in one pixel, near-opaque and
 /// very faint layers.
 #[derive(Clone, Copy, Debug)]
 enum Alphas {

@@ -25,10 +25,10 @@ fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
     file
 }
 
-/// Four corners of a square in the plane z = 0, and the indices of two triangles.
+/// Four vertices of a square in the plane z = 0, and the indices of two triangles.
 fn square() -> Vec<u8> {
-    let corners: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let mut bytes: Vec<u8> = corners
+    let vertices: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut bytes: Vec<u8> = vertices
         .iter()
         .flatten()
         .flat_map(|x| x.to_le_bytes())
@@ -155,10 +155,9 @@ fn a_file_without_a_camera_is_framed() {
     }
 }
 
-/// An image in a buffer, one beside the file and one in a data URI; places that a transform moves, a sampler, colours of corners, and
-/// light that passes through.
+/// An image in a buffer, one beside the file and one in a data URI; a texture transform, a sampler, vertex colours, and transmission.
 #[test]
-fn images_corner_colours_and_transmission() {
+fn images_vertex_colours_and_transmission() {
     let image = |texel: [u8; 4]| {
         let mut bytes = std::io::Cursor::new(Vec::new());
         let image = image::RgbaImage::from_pixel(2, 1, image::Rgba(texel));
@@ -215,7 +214,7 @@ fn images_corner_colours_and_transmission() {
     assert_eq!(glass.maps.wrap, [Wrap::Clamp, Wrap::Mirror]);
     assert!(glass.maps.nearest && glass.maps.normal_scale == 0.5);
     assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha());
-    // Opaque by the file's word, whatever its image holds.
+    // Opaque by its alpha mode, whatever its image holds.
     assert!(!sign.maps.color.as_ref().unwrap().has_alpha());
     // Three quarters pass, one quarter is scattered.
     assert_eq!((lamp.transmission, lamp.color), ([0.75; 3], [0.25; 3]));
@@ -225,9 +224,9 @@ fn images_corner_colours_and_transmission() {
     assert_eq!(mesh.colors[0], [1.0, 0.5, 0.25, 1.0]);
 }
 
-/// What is asked for and not drawn is told.
+/// What a file uses and is not drawn is reported.
 #[test]
-fn what_is_not_drawn_is_told() {
+fn what_is_not_drawn_is_reported() {
     let mut document = document();
     document["images"] = json!([{"uri": "a.png"}]);
     document["textures"] = json!([{"source": 0}]);
@@ -253,7 +252,7 @@ fn what_is_not_drawn_is_told() {
     }
 }
 
-/// Every bad file is one error with its place and a mend.
+/// Every bad file gives one error with its place and a fix.
 #[test]
 fn bad_files() {
     let good = square();
@@ -335,7 +334,7 @@ fn bad_files() {
     }
 }
 
-/// A name that is no text hides nothing from the check of references: the parser passes over it. Found by fuzzing.
+/// A name that is not UTF-8 hides nothing from the check of references, although the crate skips it. Found by fuzzing.
 #[test]
 fn bytes_that_are_no_text_are_refused() {
     let mut broken = document();

@@ -1,50 +1,33 @@
-//! `[[timeline]]`: the states of an ageing scene, and what they make of its objects at one time.
+//! `[[timeline]]`: the states of a scene that changes over time, and its objects at one time.
 
-use super::{Loader, MeshRef, RawObject, RawScene, looks::RawMaterial};
-use crate::{Material, SceneError};
-use serde::Deserialize;
+use super::{
+    loader::Loader,
+    raw::{RawMaterial, RawObject, RawScene},
+    references::MeshRef,
+};
+use crate::{error::SceneError, material::Material};
 use std::collections::HashMap;
-
-/// A state of an ageing scene: what changes from its time on.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawState {
-    pub time: f32,
-    #[serde(default)]
-    pub label: String,
-    #[serde(default)]
-    pub object: Vec<RawChange>,
-}
-
-/// What becomes of an object.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawChange {
-    pub name: String,
-    pub mesh: Option<MeshRef>,
-    #[serde(default)]
-    pub material: RawMaterial,
-}
 
 pub(super) const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";
 
-/// What a timeline makes of objects at one time.
-pub(super) struct Age {
+/// The objects of a scene at one time of its timeline.
+pub(super) struct Snapshot {
     pub time: f32,
-    /// By name of the object: how it is, and how it will be at the next state's time.
+    /// By name of the object: the changes that are in force, and those that are at the next state's time.
     pub changes: HashMap<String, [Changed; 2]>,
-    /// How far it is to the next state, 0 … 1.
+    /// How far the time is on its way to the next state, 0 … 1.
     pub share: f32,
 }
 
-/// An object as the states so far have left it.
+/// All changes of an object up to a state.
 #[derive(Clone, Default)]
 pub(super) struct Changed {
     pub mesh: Option<MeshRef>,
     pub material: RawMaterial,
 }
 
-impl Age {
+impl Snapshot {
+    /// Checks all states, and takes the snapshot at a time, the first state's if there is none.
     pub fn of(
         loader: &mut Loader<'_>,
         raw: &RawScene,
@@ -61,28 +44,7 @@ impl Age {
                 Some(_) => Err(loader.value("timeline", NO_TIMELINE)),
             };
         };
-        for (i, state) in states.iter().enumerate() {
-            let field = format!("timeline {}", i + 1);
-            let later = i == 0 || states[i - 1].time < state.time;
-            if !(state.time.is_finite() && later) {
-                return Err(loader.value(
-                    &format!("{field}.time"),
-                    "must be finite and later than the state before it",
-                ));
-            }
-            for change in &state.object {
-                let of_name = |o: &&RawObject| o.name.as_ref() == Some(&change.name);
-                let Some(object) = raw.object.iter().find(of_name) else {
-                    let message = format!("no [[object]] is named '{}'", change.name);
-                    return Err(loader.value(&format!("{field}.object.name"), message));
-                };
-                // All states are checked, whichever is shown.
-                let any = Material::default_with(loader.lighting);
-                let place = format!("{field}, {}", change.name);
-                let looks = change.material.after(&object.material);
-                loader.material(&any, &looks, false, &place)?;
-            }
-        }
+        check(loader, raw)?;
         let time = time.unwrap_or(first.time);
         if !(first.time..=last.time).contains(&time) {
             return Err(loader.value(
@@ -114,4 +76,30 @@ impl Age {
             share,
         })
     }
+}
+
+/// Checks all states, whichever is shown.
+fn check(loader: &mut Loader<'_>, raw: &RawScene) -> Result<(), SceneError> {
+    let states = &raw.timeline;
+    for (i, state) in states.iter().enumerate() {
+        let field = format!("timeline {}", i + 1);
+        let is_later = i == 0 || states[i - 1].time < state.time;
+        if !(state.time.is_finite() && is_later) {
+            return Err(loader.value(
+                &format!("{field}.time"),
+                "must be finite and later than the state before it",
+            ));
+        }
+        for change in &state.object {
+            let has_name = |o: &&RawObject| o.name.as_ref() == Some(&change.name);
+            let Some(object) = raw.object.iter().find(has_name) else {
+                let message = format!("no [[object]] is named '{}'", change.name);
+                return Err(loader.value(&format!("{field}.object.name"), message));
+            };
+            let any = Material::default_with(loader.lighting);
+            let material = change.material.after(&object.material);
+            loader.material(&any, &material, false, &format!("{field}, {}", change.name))?;
+        }
+    }
+    Ok(())
 }

@@ -129,7 +129,7 @@ pub(super) fn not_drawn(materials: &[tobj::Material]) -> BTreeSet<&str> {
         let others = m.unknown_param.keys().map(String::as_str);
         found.extend(others.filter(|key| {
             let is_texture = key.starts_with("map_") || matches!(*key, "disp" | "decal" | "refl");
-            is_texture && super::images::drawn_as(key).is_none()
+            is_texture && super::textures::drawn_as(key).is_none()
         }));
     }
     found

@@ -100,7 +100,7 @@ fn seams_do_not_split_normals() {
     assert_eq!(at_origin[0], at_origin[1]);
 }
 
-/// Images of all kinds, options, an opacity of its own, heights as normals, colours of corners, Latin-1; what is not drawn is told.
+/// Textures of all kinds, options, opacity in a file of its own, heights as normals, vertex colours, Latin-1; what is not drawn is reported.
 #[test]
 fn images_of_materials() {
     let picture = |texels: [[u8; 4]; 2]| {
@@ -136,14 +136,14 @@ fn images_of_materials() {
         mesh.colors[..3],
         [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]]
     );
-    let told = loaded.warnings.join("\n");
+    let warnings = loaded.warnings.join("\n");
     for word in ["option -s of map_Bump", "map_Ks", "Latin-1"] {
-        assert!(told.contains(word), "{word}: {told}");
+        assert!(warnings.contains(word), "{word}: {warnings}");
     }
     assert_eq!(
         (loaded.warnings.len(), loaded.files.len()),
         (3, 4),
-        "{told}"
+        "{warnings}"
     );
 }
 
@@ -171,7 +171,7 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
     }
 }
 
-/// Each bad file gives one error that names the file, the line and the mend.
+/// Each bad file gives one error that names the file, the line and a fix.
 #[test]
 fn bad_files() {
     let cases: [(&str, Vec<u8>, &str); 11] = [
@@ -232,7 +232,7 @@ fn bad_files() {
         assert!(e.contains(expected), "{name}: {e}");
         assert!(
             e.contains("repair") || e.contains('?'),
-            "{name} names no mend: {e}"
+            "{name} names no fix: {e}"
         );
     }
     assert!(matches!(

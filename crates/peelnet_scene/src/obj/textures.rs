@@ -65,12 +65,12 @@ struct Statement {
 
 /// The textures of all materials, each file read once.
 #[derive(Default)]
-pub(super) struct Images {
+pub(super) struct Textures {
     read: HashMap<PathBuf, Option<Arc<Texture>>>,
     pub warnings: Vec<String>,
 }
 
-impl Images {
+impl Textures {
     /// Reads a statement's arguments; `None`, with a warning, where it names no file.
     fn statement(&mut self, library: &Path, key: &str, text: &str) -> Option<Statement> {
         let words: Vec<&str> = text.split_whitespace().collect();

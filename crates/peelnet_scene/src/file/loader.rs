@@ -1,0 +1,137 @@
+//! What all parts of a scene file share while it is loaded.
+
+use super::references::MeshRef;
+use crate::{
+    error::SceneError,
+    files::{FileKind, Files},
+    gltf,
+    material::{Lighting, Material},
+    mesh::Mesh,
+    obj,
+    shapes::Shape,
+    texture::Texture,
+};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+/// Loads each mesh and texture of a scene file once.
+pub(super) struct Loader<'a> {
+    /// The scene file.
+    pub path: &'a Path,
+    /// How materials are lit that do not say it.
+    pub lighting: Lighting,
+    pub files: Files<'a>,
+    pub warnings: Vec<String>,
+    meshes: HashMap<PathBuf, Arc<Mesh>>,
+    /// Generated meshes, by shape and whether they have UVs.
+    shapes: Vec<(Shape, bool, Arc<Mesh>)>,
+    textures: HashMap<PathBuf, Arc<Texture>>,
+}
+
+impl<'a> Loader<'a> {
+    pub fn new(path: &'a Path, lighting: Lighting, files: Files<'a>) -> Self {
+        Self {
+            path,
+            lighting,
+            files,
+            warnings: Vec::new(),
+            meshes: HashMap::new(),
+            shapes: Vec::new(),
+            textures: HashMap::new(),
+        }
+    }
+
+    /// The error for a value of a field.
+    pub fn value(&self, field: &str, message: impl Into<String>) -> SceneError {
+        SceneError::Value {
+            path: self.path.to_owned(),
+            field: field.to_owned(),
+            message: message.into(),
+        }
+    }
+
+    /// The path of a file that the scene file names.
+    fn beside(&self, name: &Path) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new(".")).join(name)
+    }
+
+    /// A mesh, read or generated once. A generated one has UVs only where `has_uvs` asks for them.
+    pub fn mesh(
+        &mut self,
+        mesh: &MeshRef,
+        has_uvs: bool,
+        field: &str,
+    ) -> Result<Arc<Mesh>, SceneError> {
+        match mesh {
+            MeshRef::Shape(shape) => {
+                let mut known = self.shapes.iter();
+                if let Some((_, _, mesh)) = known.find(|(s, u, _)| s == shape && *u == has_uvs) {
+                    return Ok(Arc::clone(mesh));
+                }
+                let built = shape
+                    .build(&Material::default_with(self.lighting), has_uvs)
+                    .map_err(|e| self.value(field, e))?;
+                let built = Arc::new(built);
+                self.shapes
+                    .push((shape.clone(), has_uvs, Arc::clone(&built)));
+                Ok(built)
+            }
+            MeshRef::File(name) => {
+                let file = self.beside(name);
+                if let Some(mesh) = self.meshes.get(&file) {
+                    return Ok(Arc::clone(mesh));
+                }
+                let mesh = Arc::new(self.mesh_file(&file, field)?);
+                self.meshes.insert(file, Arc::clone(&mesh));
+                Ok(mesh)
+            }
+        }
+    }
+
+    fn mesh_file(&mut self, file: &Path, field: &str) -> Result<Mesh, SceneError> {
+        let ending = file.extension().and_then(|e| e.to_str());
+        let (mesh, warnings) = match ending.unwrap_or_default().to_lowercase().as_str() {
+            "obj" => {
+                let loaded = obj::load(file, self.lighting, &mut self.files)?;
+                (loaded.mesh, loaded.warnings)
+            }
+            "gltf" | "glb" => {
+                // The scene file's lights and cameras replace those of the mesh.
+                let loaded = gltf::load(file, &mut self.files)?;
+                (loaded.mesh, loaded.warnings)
+            }
+            _ => {
+                return Err(self.value(
+                    field,
+                    format!(
+                        "{} is neither .obj, .gltf nor .glb; export the mesh as one of them",
+                        file.display()
+                    ),
+                ));
+            }
+        };
+        self.warnings.extend(warnings);
+        Ok(mesh)
+    }
+
+    /// A texture of a file, read once.
+    pub fn texture(&mut self, name: &Path) -> Result<Arc<Texture>, SceneError> {
+        let file = self.beside(name);
+        if let Some(known) = self.textures.get(&file) {
+            return Ok(Arc::clone(known));
+        }
+        let bytes = self.files.read(&file, FileKind::Image)?;
+        let texture = Texture::decode(&file.display().to_string(), &bytes);
+        let texture = Arc::new(texture.map_err(|message| SceneError::Mesh {
+            path: file.clone(),
+            line: None,
+            message,
+        })?);
+        self.files.record(&file, &bytes);
+        self.textures.insert(file, Arc::clone(&texture));
+        Ok(texture)
+    }
+}

@@ -1,0 +1,130 @@
+//! `[[object]]` and `[[scatter]]`.
+
+use super::{loader::Loader, raw::RawObject, timeline::Snapshot};
+use crate::{
+    error::SceneError,
+    material::Material,
+    mesh::Mesh,
+    scatter::{Scatter, fixed_axes},
+    scene::Object,
+};
+use glam::{Mat4, Vec3};
+use std::sync::Arc;
+
+/// Loads and places an object as it is at the time that is shown.
+pub(super) fn place(
+    loader: &mut Loader<'_>,
+    raw: &RawObject,
+    index: usize,
+    snapshot: &Snapshot,
+) -> Result<Object, SceneError> {
+    let field = format!("object {}", index + 1);
+    let name = raw.name.as_deref().unwrap_or_default();
+    let [now, next] = snapshot.changes.get(name).cloned().unwrap_or_default();
+    let material = now.material.after(&raw.material);
+    let has_maps = material.has_maps();
+    let mesh = now.mesh.as_ref().unwrap_or(&raw.mesh);
+    let mesh = loader.mesh(mesh, has_maps, &format!("{field}.mesh"))?;
+    if has_maps && mesh.uvs.is_empty() {
+        let message = "has no texture coordinates for its material's maps; export it with them";
+        return Err(loader.value(&format!("{field}.mesh"), message));
+    }
+    let mesh = match raw.vertex_colors {
+        None => mesh,
+        Some(ends) if ends.iter().flatten().all(|x| (0.0..=1.0).contains(x)) => {
+            Arc::new(mesh.colored_by_height(ends))
+        }
+        Some(_) => {
+            return Err(loader.value(
+                &format!("{field}.vertex_colors"),
+                "must be two of [red, green, blue, alpha], each 0 … 1",
+            ));
+        }
+    };
+    let world_from_object = transform(raw, &mesh)
+        .map_err(|(key, message)| loader.value(&format!("{field}{key}"), message))?;
+    let mut materials = Vec::with_capacity(mesh.parts.len());
+    for part in &mesh.parts {
+        let mut shown = loader.material(&part.material, &material, true, &field)?;
+        if snapshot.share > 0.0 {
+            let next = next.material.after(&raw.material);
+            let next = loader.material(&part.material, &next, false, &field)?;
+            shown = shown.towards(&next, snapshot.share);
+        }
+        materials.push(shown);
+    }
+    Ok(Object {
+        name: raw.name.clone().unwrap_or(field),
+        mesh,
+        world_from_object,
+        layer: raw.layer,
+        materials,
+    })
+}
+
+/// An object's transform; in an error, the key behind the object's field, and what is wrong.
+fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, (&'static str, &'static str)> {
+    let is_finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
+    if !(raw.scale.is_finite() && raw.scale != 0.0) {
+        return Err((".scale", "must be finite and not 0"));
+    }
+    if !is_finite(&raw.rotate) || !is_finite(&raw.translate) {
+        return Err(("", "rotate and translate must be finite"));
+    }
+    let mut world_from_object = Mat4::from_translation(raw.translate.into())
+        * Mat4::from_quat(fixed_axes(raw.rotate))
+        * Mat4::from_scale(Vec3::splat(raw.scale));
+    if let Some(fit) = raw.fit {
+        if !(fit.is_finite() && fit > 0.0) {
+            return Err((".fit", "must be a positive length"));
+        }
+        if let Some((lo, hi)) = mesh.bounds() {
+            let longest = (hi - lo).max_element();
+            if longest > 0.0 {
+                world_from_object = world_from_object
+                    * Mat4::from_scale(Vec3::splat(fit / longest))
+                    * Mat4::from_translation(-(lo + hi) / 2.0);
+            }
+        }
+    }
+    Ok(world_from_object)
+}
+
+/// The objects of a scatter, seen from `eye`.
+pub(super) fn scatter(
+    loader: &mut Loader<'_>,
+    scatter: &Scatter,
+    index: usize,
+    eye: Vec3,
+) -> Result<Vec<Object>, SceneError> {
+    let field = format!("scatter {}", index + 1);
+    scatter
+        .check()
+        .map_err(|(key, message)| loader.value(&format!("{field}.{key}"), message))?;
+    let lighting =
+        loader.lighting_word(scatter.lighting.as_deref(), &format!("{field}.lighting"))?;
+    let mut meshes = Vec::new();
+    for mesh in scatter.mesh_list() {
+        meshes.push(loader.mesh(mesh, false, &format!("{field}.mesh"))?);
+    }
+    let placed = scatter.place(eye).into_iter().enumerate();
+    let objects = placed.map(|(i, placed)| {
+        let mesh = Arc::clone(&meshes[placed.mesh]);
+        let materials = mesh.parts.iter().map(|p| Material {
+            color: placed.color.unwrap_or(p.material.color),
+            alpha: placed.alpha.unwrap_or(p.material.alpha),
+            lighting: lighting.unwrap_or(p.material.lighting),
+            // An opacity of 1 drawn from a range blends like the others.
+            blend: placed.alpha.is_some(),
+            ..p.material.clone()
+        });
+        Object {
+            name: format!("{field}, {}", i + 1),
+            materials: materials.collect(),
+            mesh,
+            world_from_object: placed.world_from_object,
+            layer: scatter.layer,
+        }
+    });
+    Ok(objects.collect())
+}

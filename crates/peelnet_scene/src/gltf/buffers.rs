@@ -1,0 +1,69 @@
+//! Buffers and URIs.
+
+use crate::{
+    error::SceneError,
+    files::{FileKind, Files},
+};
+use std::path::{Path, PathBuf};
+
+/// The file that a URI names. The `gltf` crate reads from the file system only, so it is not asked.
+fn uri_path(uri: &str, folder: &Path) -> Result<PathBuf, String> {
+    let absolute = uri
+        .strip_prefix("file://")
+        .or_else(|| uri.strip_prefix("file:"));
+    if let Some(path) = absolute {
+        return Ok(path.into());
+    }
+    if uri.contains(':') {
+        return Err(format!("'{uri}' has a scheme that is not read"));
+    }
+    let name = urlencoding::decode(uri);
+    let name = name.map_err(|_| format!("'{uri}' is no name of a file; rename the file"))?;
+    Ok(folder.join(&*name))
+}
+
+/// The bytes that a URI names or holds.
+pub(super) fn read_uri(
+    uri: &str,
+    folder: &Path,
+    kind: FileKind,
+    files: &mut Files<'_>,
+) -> Result<Vec<u8>, String> {
+    if uri.starts_with("data:") {
+        let data = gltf::buffer::Data::from_source(gltf::buffer::Source::Uri(uri), None);
+        return data.map(|data| data.0).map_err(|e| e.to_string());
+    }
+    let path = uri_path(uri, folder)?;
+    let bytes = files.read(&path, kind).map_err(|e| match e {
+        SceneError::Read { source, .. } => source.to_string(),
+        e => e.to_string(),
+    })?;
+    files.record(&path, &bytes);
+    Ok(bytes)
+}
+
+/// The buffers of a document; `blob` is the binary chunk of a GLB file.
+pub(super) fn read_buffers(
+    document: &gltf::Document,
+    folder: &Path,
+    mut blob: Option<Vec<u8>>,
+    files: &mut Files<'_>,
+) -> Result<Vec<Vec<u8>>, String> {
+    let mut buffers = Vec::new();
+    for buffer in document.buffers() {
+        let bytes = match buffer.source() {
+            gltf::buffer::Source::Bin => blob.take().ok_or("there is no binary chunk")?,
+            gltf::buffer::Source::Uri(uri) => read_uri(uri, folder, FileKind::Mesh, files)?,
+        };
+        if bytes.len() < buffer.length() {
+            return Err(format!(
+                "buffer {} has {} bytes instead of {}",
+                buffer.index(),
+                bytes.len(),
+                buffer.length()
+            ));
+        }
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}

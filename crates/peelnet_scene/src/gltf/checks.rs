@@ -1,0 +1,126 @@
+//! Checks of what the `gltf` crate takes for granted: it panics on a reference to nothing, and on an accessor of another type than its
+//! use needs.
+
+use super::{KNOWN, MAX_TRIANGLES};
+use crate::files::MAX_FILE_BYTES;
+use gltf::{
+    Semantic,
+    accessor::{DataType, Dimensions},
+};
+use serde_json::Value;
+
+/// Checks that every index into a list of the file is within that list.
+pub(super) fn check_references(bytes: &[u8]) -> Result<(), String> {
+    // The first chunk of a GLB file is the JSON.
+    let text = match bytes.strip_prefix(b"glTF") {
+        None => bytes,
+        Some(rest) => {
+            let length = rest.get(8..12).and_then(|b| b.try_into().ok());
+            let length = length.map_or(0, u32::from_le_bytes) as usize;
+            rest.get(16..16usize.saturating_add(length))
+                .unwrap_or_default()
+        }
+    };
+    // The crate skips unknown names without checking that they are text.
+    let document = serde_json::from_slice::<Value>(text)
+        .map_err(|e| format!("is no glTF 2.0 file: {e}; export it again"))?;
+    // The crate would look for elements that such an extension leaves out.
+    let required = document["extensionsRequired"].as_array();
+    let unknown = required.into_iter().flatten().filter_map(Value::as_str);
+    if let Some(name) = unknown.into_iter().find(|name| !KNOWN.contains(name)) {
+        return Err(format!(
+            "needs the extension {name}, which is not read; export it without"
+        ));
+    }
+    check_value(&document, &document, "", "")
+}
+
+/// The list that a field's number points into.
+fn list_of(field: &str, parent: &str) -> Option<&'static str> {
+    Some(match field {
+        "mesh" => "meshes",
+        "camera" => "cameras",
+        "skin" => "skins",
+        "bufferView" => "bufferViews",
+        "buffer" => "buffers",
+        "material" => "materials",
+        "source" => "images",
+        "scene" => "scenes",
+        "node" | "children" | "joints" | "skeleton" => "nodes",
+        "nodes" if parent == "scenes" => "nodes",
+        "indices" | "input" | "output" | "inverseBindMatrices" => "accessors",
+        "index" => "textures",
+        "sampler" if parent == "textures" => "samplers",
+        _ if matches!(parent, "attributes" | "targets") => "accessors",
+        _ => return None,
+    })
+}
+
+/// Checks a value in `field` of an element of `parent`; the elements of a list are in the list's field.
+fn check_value(document: &Value, value: &Value, field: &str, parent: &str) -> Result<(), String> {
+    match value {
+        Value::Object(fields) => {
+            for (name, inner) in fields.iter().filter(|(name, _)| *name != "extras") {
+                check_value(document, inner, name, field)?;
+            }
+            Ok(())
+        }
+        Value::Array(all) => all
+            .iter()
+            .try_for_each(|inner| check_value(document, inner, field, parent)),
+        Value::Number(number) => {
+            let Some(list) = list_of(field, parent) else {
+                return Ok(());
+            };
+            let length = document[list].as_array().map_or(0, Vec::len) as u64;
+            if number.as_u64().is_some_and(|n| n < length) {
+                return Ok(());
+            }
+            Err(format!(
+                "'{field}' is {number}, but there are {length} {list}; export the file again"
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether an accessor has the type that its meaning needs, or that of indices, and can be addressed.
+pub(super) fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Semantic>) -> bool {
+    use DataType as T;
+    use Dimensions as D;
+    let kind = (accessor.dimensions(), accessor.data_type());
+    let fits = match semantic {
+        None => matches!(kind, (D::Scalar, T::U8 | T::U16 | T::U32)),
+        Some(Semantic::Positions | Semantic::Normals) => kind == (D::Vec3, T::F32),
+        Some(Semantic::TexCoords(_)) => matches!(kind, (D::Vec2, T::F32 | T::U8 | T::U16)),
+        Some(Semantic::Colors(0)) => {
+            matches!(kind, (D::Vec3 | D::Vec4, T::F32 | T::U8 | T::U16))
+        }
+        // Nobody reads it.
+        Some(_) => return true,
+    };
+    let (count, size) = (accessor.count(), accessor.size());
+    let is_dense_readable = accessor
+        .view()
+        .is_none_or(|view| is_addressable(&view, accessor.offset(), size, count));
+    let is_sparse_readable = accessor.sparse().is_none_or(|sparse| {
+        let (indices, values) = (sparse.indices(), sparse.values());
+        let n = sparse.count();
+        let index_size = indices.index_type().size();
+        (1..=count).contains(&n)
+            && is_addressable(&indices.view(), indices.offset(), index_size, n)
+            && is_addressable(&values.view(), values.offset(), size, n)
+    });
+    fits && is_dense_readable && is_sparse_readable && (1..=3 * MAX_TRIANGLES).contains(&count)
+}
+
+/// Whether `count` elements do not overlap, can be in a file, and the crate's sums of offsets and lengths fit a `usize`, on 32-bit
+/// systems too.
+fn is_addressable(view: &gltf::buffer::View<'_>, offset: usize, size: usize, count: usize) -> bool {
+    let stride = view.stride().unwrap_or(size);
+    let all = [view.offset(), view.length(), offset].map(|n| n as u64);
+    let elements = (stride as u64).saturating_mul(count as u64);
+    let bytes = all.into_iter().fold(elements, u64::saturating_add);
+    // Each of the four is at most the size of a file.
+    stride >= size && bytes <= (4 * MAX_FILE_BYTES).min(isize::MAX as u64)
+}

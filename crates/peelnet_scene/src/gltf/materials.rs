@@ -1,0 +1,219 @@
+//! Materials, their textures, and where these lie.
+
+use super::{
+    buffers::read_uri,
+    nodes::{Reader, finite},
+};
+use crate::{
+    files::FileKind,
+    material::{Lighting, Material},
+    texture::{Maps, Texture, Wrap},
+};
+use glam::{Mat2, Vec2};
+use gltf::{
+    material::AlphaMode,
+    texture::{MagFilter, WrappingMode},
+};
+use std::{path::Path, sync::Arc};
+
+/// Where a texture lies: the set of UVs, and their transform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placement {
+    pub set: u32,
+    pub transform: (Mat2, Vec2),
+}
+
+impl Placement {
+    const PLAIN: Self = Self {
+        set: 0,
+        transform: (Mat2::IDENTITY, Vec2::ZERO),
+    };
+
+    /// KHR_texture_transform: scaled, turned, moved.
+    fn of(info: &gltf::texture::Info<'_>) -> Self {
+        let Some(t) = info.texture_transform() else {
+            return Self {
+                set: info.tex_coord(),
+                ..Self::PLAIN
+            };
+        };
+        let (sin, cos) = t.rotation().sin_cos();
+        let [x, y] = t.scale();
+        let turned = Mat2::from_cols(Vec2::new(cos, -sin) * x, Vec2::new(sin, cos) * y);
+        Self {
+            set: t.tex_coord().unwrap_or(info.tex_coord()),
+            transform: (turned, t.offset().into()),
+        }
+    }
+}
+
+/// A material's textures in the order of [`Maps::all`], and where they lie.
+fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Placement)>; 5] {
+    let pbr = m.pbr_metallic_roughness();
+    let infos = [
+        pbr.base_color_texture(),
+        pbr.metallic_roughness_texture(),
+        m.emissive_texture(),
+    ];
+    // The crate does not return the transforms of normal and occlusion maps: they are taken to be the first of the others'.
+    let shared = infos.iter().flatten().map(Placement::of).next();
+    let transform = shared.unwrap_or(Placement::PLAIN).transform;
+    let shared = |set: u32| Placement { set, transform };
+    let [color, metallic_roughness, emissive] =
+        infos.map(|info| info.map(|t| (t.texture(), Placement::of(&t))));
+    let normal = m.normal_texture();
+    let occlusion = m.occlusion_texture();
+    [
+        color,
+        normal.map(|t| (t.texture(), shared(t.tex_coord()))),
+        metallic_roughness,
+        occlusion.map(|t| (t.texture(), shared(t.tex_coord()))),
+        emissive,
+    ]
+}
+
+impl Reader<'_, '_> {
+    /// A texture, read once; `None`, with a warning, where it cannot be drawn. An `opaque` one drops the opacity in its file.
+    fn image(&mut self, image: &gltf::Image<'_>, opaque: bool) -> Option<Arc<Texture>> {
+        let key = (image.index(), opaque);
+        if let Some(known) = self.images.get(&key) {
+            return known.clone();
+        }
+        if opaque {
+            let whole = self.image(image, false);
+            let found = whole.map(|whole| {
+                if !whole.has_alpha() {
+                    return whole;
+                }
+                let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
+                Arc::new(Texture::joined(&whole, &whole, opaque))
+            });
+            self.images.insert(key, found.clone());
+            return found;
+        }
+        let name = image
+            .name()
+            .map_or_else(|| format!("image {}", image.index()), str::to_owned);
+        let decoded = match image.source() {
+            gltf::image::Source::View { view, .. } => {
+                let bytes = self.buffers.get(view.buffer().index());
+                let end = view.offset().saturating_add(view.length());
+                bytes
+                    .and_then(|b| b.get(view.offset()..end))
+                    .ok_or_else(|| "lies beyond its buffer".to_owned())
+                    .and_then(|bytes| Texture::decode(&name, bytes))
+            }
+            gltf::image::Source::Uri { uri, .. } => {
+                let folder = self.path.parent().unwrap_or(Path::new("."));
+                read_uri(uri, folder, FileKind::Image, self.files)
+                    .map_err(|e| format!("cannot be read: {e}"))
+                    .and_then(|bytes| Texture::decode(&name, &bytes))
+            }
+        };
+        let found = match decoded {
+            Ok(texture) => Some(Arc::new(texture)),
+            Err(why) => {
+                self.missing.insert(format!("{name}, which {why}"));
+                None
+            }
+        };
+        self.images.insert(key, found.clone());
+        found
+    }
+
+    /// A material's maps, and where they lie.
+    fn maps(&mut self, m: &gltf::Material<'_>) -> (Maps, Placement) {
+        let textures = placed_textures(m);
+        let mut placements = textures.iter().flatten().map(|(_, placement)| *placement);
+        let placement = placements.next().unwrap_or(Placement::PLAIN);
+        let samplers = textures.iter().flatten().map(|(t, _)| {
+            let sampler = t.sampler();
+            (sampler.wrap_s(), sampler.wrap_t(), sampler.mag_filter())
+        });
+        let samplers: Vec<_> = samplers.collect();
+        if samplers.windows(2).any(|w| w[0] != w[1]) {
+            self.missing
+                .insert("a map with its own sampler (the first map's is used)".into());
+        }
+        // The first is the base colour, whose file may hold an opacity.
+        let mut opaque = m.alpha_mode() == AlphaMode::Opaque;
+        let [color, normal, metallic_roughness, occlusion, emissive] = textures.map(|texture| {
+            let opaque = std::mem::take(&mut opaque);
+            let (texture, own) = texture?;
+            if own.transform != placement.transform {
+                self.missing.insert(
+                    "a map with its own texture transform (the first map's is used)".into(),
+                );
+            }
+            if own.set != placement.set {
+                self.missing
+                    .insert("a map on other texture coordinates than the first map's".into());
+                return None;
+            }
+            self.image(&texture.source(), opaque)
+        });
+        let repeat = (WrappingMode::Repeat, WrappingMode::Repeat, None);
+        let (wrap_s, wrap_t, filter) = samplers.first().copied().unwrap_or(repeat);
+        let wrap = |mode| match mode {
+            WrappingMode::Repeat => Wrap::Repeat,
+            WrappingMode::MirroredRepeat => Wrap::Mirror,
+            WrappingMode::ClampToEdge => Wrap::Clamp,
+        };
+        let normal_scale = m.normal_texture().map_or(1.0, |n| n.scale());
+        let occlusion_strength = m.occlusion_texture().map_or(1.0, |o| o.strength());
+        let maps = Maps {
+            color,
+            normal,
+            metallic_roughness,
+            occlusion,
+            emissive,
+            normal_scale: finite(normal_scale, -100.0, 100.0),
+            occlusion_strength: finite(occlusion_strength, 0.0, 1.0),
+            wrap: [wrap(wrap_s), wrap(wrap_t)],
+            nearest: filter == Some(MagFilter::Nearest),
+        };
+        (maps, placement)
+    }
+
+    /// A material, and where its maps lie.
+    pub fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placement) {
+        let (maps, placement) = self.maps(m);
+        let pbr = m.pbr_metallic_roughness();
+        let [r, g, b, a] = pbr.base_color_factor();
+        let base = [r, g, b].map(|c| finite(c, 0.0, 1.0));
+        let lighting = if m.unlit() {
+            Lighting::Unlit
+        } else {
+            Lighting::Pbr
+        };
+        let strength = m.emissive_strength().unwrap_or(1.0);
+        // What passes is not scattered: glTF's mix of both, as opacity and colour (McGuire and Mara 2016).
+        let passing = m.transmission().map_or(0.0, |t| {
+            if t.transmission_texture().is_some() {
+                self.missing
+                    .insert("transmission maps (the factor alone is drawn)".into());
+            }
+            finite(t.transmission_factor(), 0.0, 1.0)
+        });
+        let (alpha, blend, alpha_cutoff) = match m.alpha_mode() {
+            AlphaMode::Opaque => (1.0, false, None),
+            AlphaMode::Mask => (a, false, Some(m.alpha_cutoff().unwrap_or(0.5))),
+            AlphaMode::Blend => (a, true, None),
+        };
+        let material = Material {
+            name: m.name().unwrap_or("unnamed").to_owned(),
+            color: base.map(|c| c * (1.0 - passing)),
+            transmission: base.map(|c| c * passing),
+            alpha: finite(alpha, 0.0, 1.0),
+            metallic: finite(pbr.metallic_factor(), 0.0, 1.0),
+            roughness: finite(pbr.roughness_factor(), 0.0, 1.0),
+            emission: m.emissive_factor().map(|c| finite(c * strength, 0.0, 1e6)),
+            maps,
+            alpha_cutoff: alpha_cutoff.map(|c| finite(c, 0.0, 1.0)),
+            double_sided: m.double_sided(),
+            blend,
+            ..Material::default_with(lighting)
+        };
+        (material, placement)
+    }
+}
