@@ -11,5 +11,5 @@ fn absorbance(alpha: f32) -> f32 {
 // Linear depth to -1 .. 1 by its logarithm over the depth range of the frame's transparent objects. The logarithm of a
 // ratio: the difference of two would depend on the scene's unit by their rounding.
 fn warped_depth(depth_linear: f32) -> f32 {
-    return clamp(log(depth_linear * camera.depth_scale.y) * camera.depth_scale.z - 1.0, -1.0, 1.0);
+    return clamp(log(depth_linear * camera.warp_inverse_near) * camera.warp_scale - 1.0, -1.0, 1.0);
 }

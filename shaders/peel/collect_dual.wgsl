@@ -31,8 +31,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if nearest > farthest {
         return;
     }
-    let begin = offsets[index] - tile.base + peel_step.pass_index;
-    let end = offsets[index + 1u] - tile.base - peel_step.pass_index;
+    let begin = offsets[index] - offsets[tile.begin] + peel_step.pass_index;
+    let end = offsets[index + 1u] - offsets[tile.begin] - peel_step.pass_index;
     depths[begin] = nearest;
     colors[begin] = textureLoad(front, pixel, 0);
     if farthest > nearest {

@@ -16,8 +16,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if index >= tile.end {
         return;
     }
-    let slot = offsets[index] - tile.base + peel_step.pass_index;
-    if slot >= offsets[index + 1u] - tile.base {
+    let slot = offsets[index] - offsets[tile.begin] + peel_step.pass_index;
+    if slot >= offsets[index + 1u] - offsets[tile.begin] {
         return;
     }
     let pixel = vec2u(index % peel_step.width, index / peel_step.width);

@@ -11,5 +11,5 @@ fn fragment_main(surface: Surface) {
         discard;
     }
     let pixel = vec2u(surface.position.xy);
-    atomicAdd(&counts[pixel.y * camera.frame.x + pixel.x], 1u);
+    atomicAdd(&counts[pixel.y * camera.frame_size.x + pixel.x], 1u);
 }

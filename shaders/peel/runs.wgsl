@@ -21,11 +21,12 @@ fn run_of(id: vec3u) -> Run {
     if index >= tile.end {
         return Run(false, 0u, 0u, vec2u(0u));
     }
-    let width = textureDimensions(background).x;
+    let width = textureDimensions(image).x;
+    let base = offsets[tile.begin];
     return Run(
         true,
-        offsets[index] - tile.base,
-        offsets[index + 1u] - tile.base,
+        min(offsets[index] - base, tile.capacity),
+        min(offsets[index + 1u] - base, tile.capacity),
         vec2u(index % width, index / width),
     );
 }

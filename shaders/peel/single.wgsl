@@ -34,6 +34,6 @@ fn fragment_main(surface: Surface) -> Peeled {
     return Peeled(
         shade(surface),
         vec2u(depth, surface.triangle + 1u),
-        surface.depth_linear * camera.depth_scale.x,
+        surface.depth_linear * camera.unit_from_depth,
     );
 }

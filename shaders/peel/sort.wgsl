@@ -34,8 +34,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if pixel >= tile.end {
         return;
     }
-    let begin = offsets[pixel] - tile.base;
-    let end = offsets[pixel + 1u] - tile.base;
+    let base = offsets[tile.begin];
+    let begin = min(offsets[pixel] - base, tile.capacity);
+    let end = min(offsets[pixel + 1u] - base, tile.capacity);
     var gap = next_gap(max(end - begin, 1u));
     // A short run is nearly free by insertion alone.
     if end - begin <= 24u {

@@ -23,12 +23,16 @@ fn fragment_main(surface: Surface) {
         discard;
     }
     let pixel = vec2u(surface.position.xy);
-    let index = pixel.y * camera.frame.x + pixel.x;
+    let index = pixel.y * camera.frame_size.x + pixel.x;
     if index < tile.begin || index >= tile.end {
         discard;
     }
     // Counting down to zero gives every fragment of the pixel another slot and needs no second counter.
-    let slot = offsets[index] - tile.base + atomicSub(&counts[index], 1u) - 1u;
+    let slot = offsets[index] - offsets[tile.begin] + atomicSub(&counts[index], 1u) - 1u;
+    // Storage made for another frame may be too small: the counts tell, and the next frame has room.
+    if slot >= tile.capacity {
+        discard;
+    }
     depths[slot] = surface.depth_linear;
     triangles[slot] = surface.triangle;
     @if(!tinted) colors[slot] = shade(surface);

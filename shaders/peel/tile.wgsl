@@ -3,8 +3,8 @@ struct Tile {
     // First pixel and one past the last.
     begin: u32,
     end: u32,
-    // Offset of the first pixel's first fragment: subtracted from every offset.
-    base: u32,
+    // Fragments that storage holds.
+    capacity: u32,
     // Groups along x of a dispatch over the tile's pixels.
     groups: u32,
 }

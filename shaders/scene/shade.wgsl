@@ -9,23 +9,33 @@ import package::scene::camera::camera;
 @if(emissive_map) import package::scene::maps::emission_at;
 import package::scene::surface::Surface;
 
+// Twin of peelnet_raster's `MaterialData`.
 struct Material {
     // Linear RGB and alpha.
     color: vec4f,
-    // Blinn-Phong: x: specular strength, y: shininess exponent. Physically based: x: metallic, y: roughness. z: alpha cut-off. w: layer.
-    look: vec4f,
-    // Radiance emitted beyond what the opacity covers, linear RGB. w: how much of the normal map's slopes counts.
-    emission: vec4f,
-    // Share of the light behind that passes through what the opacity covers, linear RGB. w: how much of the occlusion counts.
-    transmission: vec4f,
+    // Blinn-Phong: strength of the highlight and its exponent. Physically based: metallic and roughness.
+    specular_or_metallic: f32,
+    shininess_or_roughness: f32,
+    alpha_cutoff: f32,
+    layer: f32,
+    // Radiance emitted beyond what the opacity covers, linear RGB.
+    emission: vec3f,
+    // Share of the normal map's slopes.
+    normal_scale: f32,
+    // Share of the light behind that passes through what the opacity covers, linear RGB.
+    transmission: vec3f,
+    // Share of the occlusion map.
+    occlusion_strength: f32,
 }
 
+// Twin of peelnet_raster's `LightData`.
 @if(lit)
 struct Light {
-    // A point, w = 1; or the direction that light comes from, w = 0.
-    position: vec4f,
+    // A point; or, where `is_point` is 0, the direction that light comes from.
+    position: vec3f,
+    is_point: f32,
     // Linear RGB times intensity.
-    color: vec4f,
+    color: vec3f,
 }
 
 @group(0) @binding(1) var<storage, read> materials: array<Material>;
@@ -56,7 +66,7 @@ fn base_of(surface: Surface, material: Material) -> Base {
     @if(emission) color.a = max(color.a, EMISSIVE_ALPHA);
     var covering = vec3f(color.a);
     @if(transmission) {
-        var passing = material.transmission.rgb;
+        var passing = material.transmission;
         @if(vertex_colors) passing *= surface.color.rgb;
         @if(color_map) passing *= color_at(surface.uv).rgb;
         // It reflects, and covers nothing: the same.
@@ -126,12 +136,12 @@ fn radiance(surface: Surface) -> vec4f {
 
 // Radiance of a surface as if it were opaque, and its layer, for the view of layers.
 fn layered(surface: Surface) -> vec4f {
-    return vec4f(opaque(surface), materials[surface.material].look.w);
+    return vec4f(opaque(surface), materials[surface.material].layer);
 }
 
 @if(emission)
 fn emitted(surface: Surface, material: Material) -> vec3f {
-    var emission = material.emission.rgb;
+    var emission = material.emission;
     @if(emissive_map) emission *= emission_at(surface.uv);
     return emission;
 }
@@ -145,7 +155,7 @@ fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
 @if(lit)
 fn ambient_share(surface: Surface, material: Material) -> f32 {
     @if(occlusion_map) {
-        return 1.0 + material.transmission.w * (occlusion_at(surface.uv) - 1.0);
+        return 1.0 + material.occlusion_strength * (occlusion_at(surface.uv) - 1.0);
     }
     @else {
         return 1.0;
@@ -159,7 +169,7 @@ fn facing_normal(surface: Surface, material: Material, view: vec3f) -> vec3f {
     var normal = select(view, surface.normal * inverseSqrt(max(length_squared, 1e-20)), length_squared > 1e-20);
     let outside = dot(normal, view) >= 0.0;
     @if(normal_map) {
-        let lean = normal_at(surface.uv) * vec3f(material.emission.ww, 1.0);
+        let lean = normal_at(surface.uv) * vec3f(material.normal_scale, material.normal_scale, 1.0);
         let along = surface.tangent.xyz - normal * dot(normal, surface.tangent.xyz);
         let tangent = along * inverseSqrt(max(dot(along, along), 1e-20));
         let second = cross(normal, tangent) * surface.tangent.w;
@@ -173,25 +183,25 @@ fn facing_normal(surface: Surface, material: Material, view: vec3f) -> vec3f {
 @if(lit)
 fn to_light(surface: Surface, light: Light) -> vec3f {
     @if(sun) {
-        return light.position.xyz - light.position.w * surface.world;
+        return light.position - light.is_point * surface.world;
     }
     @else {
-        return light.position.xyz - surface.world;
+        return light.position - surface.world;
     }
 }
 
 // Blinn-Phong (Blinn 1977) with two-sided normals.
 @if(phong)
 fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
-    let view = normalize(camera.eye.xyz - surface.world);
+    let view = normalize(camera.eye - surface.world);
     let normal = facing_normal(surface, material, view);
     var radiance = AMBIENT * ambient_share(surface, material) * albedo;
-    for (var i = 0u; i < camera.frame.z; i++) {
+    for (var i = 0u; i < camera.light_count; i++) {
         let toward = normalize(to_light(surface, lights[i]));
         let diffuse = max(dot(normal, toward), 0.0);
         let halfway = normalize(toward + view);
-        let highlight = select(0.0, pow(max(dot(normal, halfway), 0.0), material.look.y), diffuse > 0.0);
-        radiance += lights[i].color.rgb * (albedo * diffuse + material.look.x * highlight);
+        let highlight = select(0.0, pow(max(dot(normal, halfway), 0.0), material.shininess_or_roughness), diffuse > 0.0);
+        radiance += lights[i].color * (albedo * diffuse + material.specular_or_metallic * highlight);
     }
     return radiance;
 }
@@ -206,9 +216,9 @@ fn grazing(cosine: f32) -> f32 {
 // k = (roughness + 1)^2 / 8 for point lights (Karis 2013), inverse-square falloff.
 @if(pbr)
 fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
-    let view = normalize(camera.eye.xyz - surface.world);
+    let view = normalize(camera.eye - surface.world);
     let normal = facing_normal(surface, material, view);
-    var factors = material.look.yx;
+    var factors = vec2f(material.shininess_or_roughness, material.specular_or_metallic);
     @if(metallic_roughness_map) factors *= roughness_metallic_at(surface.uv);
     let metallic = factors.y;
     // Below that the highlight of a point light is smaller than any pixel, and its peak overflows.
@@ -218,7 +228,7 @@ fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
     let k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
     let n_v = max(dot(normal, view), 1e-4);
     var radiance = AMBIENT * ambient_share(surface, material) * albedo;
-    for (var i = 0u; i < camera.frame.z; i++) {
+    for (var i = 0u; i < camera.light_count; i++) {
         let apart = to_light(surface, lights[i]);
         let distance_squared = max(dot(apart, apart), 1e-8);
         let toward = apart * inverseSqrt(distance_squared);
@@ -234,9 +244,9 @@ fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
         // What a dielectric scatters inside went in at the light's angle and comes out at the eye's.
         let inside = (1.0 - DIELECTRIC) * (1.0 - DIELECTRIC) * (1.0 - grazing(n_l)) * (1.0 - grazing(n_v));
         let diffuse = inside * (1.0 - metallic) * albedo / PI;
-        var arriving = lights[i].color.rgb / distance_squared;
+        var arriving = lights[i].color / distance_squared;
         // The sun is as bright here as there.
-        @if(sun) arriving = select(lights[i].color.rgb, arriving, lights[i].position.w > 0.0);
+        @if(sun) arriving = select(lights[i].color, arriving, lights[i].is_point > 0.0);
         // n_l n_v of the shadowing term and of the denominator cancel.
         radiance += (diffuse + distribution * shadowing * 0.25 * fresnel) * arriving * n_l;
     }
@@ -247,5 +257,5 @@ fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
 @if(cutout)
 fn is_hole(surface: Surface) -> bool {
     let material = materials[surface.material];
-    return base_of(surface, material).coverage < material.look.z;
+    return base_of(surface, material).coverage < material.alpha_cutoff;
 }

@@ -5,7 +5,9 @@ import package::scene::camera::camera;
 import package::helpers::hash::pixel_hash;
 import package::scene::surface::Surface;
 
-@if(opaque) @group(0) @binding(3) var opaque_depth: texture_depth_2d;
+@if(opaque && !multisampled) @group(0) @binding(3) var opaque_depth: texture_depth_2d;
+// Of several samples the first one counts.
+@if(opaque && multisampled) @group(0) @binding(3) var opaque_depth: texture_depth_multisampled_2d;
 
 // False in holes, behind opaque geometry, and outside of the pixel sample where one is taken.
 //
@@ -15,7 +17,7 @@ fn visible(surface: Surface) -> bool {
     @if(mapped) remember_footprint(surface.uv);
     let pixel = vec2u(surface.position.xy);
     @if(sampled) {
-        if pixel_hash(camera.frame.w, camera.sample.x, pixel.x, pixel.y) > camera.sample.y {
+        if pixel_hash(camera.sample_seed, camera.sample_view, pixel.x, pixel.y) > camera.sample_threshold {
             return false;
         }
     }

@@ -12,8 +12,8 @@ use peelnet_scene::{Camera, Material, Object, Scene};
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
 pub fn gpu() -> Gpu {
-    Gpu::new(&AdapterRequest::Software)
-        .or_else(|_| Gpu::new(&AdapterRequest::Auto))
+    Gpu::open(&AdapterRequest::Software)
+        .or_else(|_| Gpu::open(&AdapterRequest::Auto))
         .unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -9,7 +9,7 @@ use peelnet_core::{
 };
 use peelnet_model::Model;
 use peelnet_render::{
-    Frame, METHODS, MethodSpec, Renderer,
+    Frame, METHODS, MethodOptions, MethodSpec, Renderer,
     methods::{Pixel, Precision},
 };
 use peelnet_tests::{gpu, network_of, walls};
@@ -140,8 +140,10 @@ fn every_method_agrees_with_its_twin() {
         for (method, network) in METHODS.iter().zip(&networks) {
             for spec in specs().iter().filter(|s| s.name() == method.name) {
                 let learned = network.as_ref().map(|(text, _)| text);
-                let mut prepared = renderer.prepare(spec, SIZE, learned).unwrap();
-                let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+                let mut prepared = renderer
+                    .method(spec, MethodOptions::sized(SIZE).with(learned))
+                    .unwrap();
+                let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
                 compare(
                     spec,
                     network.as_ref().map(|(_, model)| model),
@@ -239,8 +241,10 @@ fn coplanar_walls() {
         ("hybrid-5", 0),
     ] {
         let spec: MethodSpec = name.parse().unwrap();
-        let mut prepared = renderer.prepare(&spec, [4, 4], None).unwrap();
-        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        let mut prepared = renderer
+            .method(&spec, MethodOptions::sized([4, 4]))
+            .unwrap();
+        let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
         if let Some(fragments) = frame.stats.fragments {
             assert_eq!(fragments, 48, "{name}");
         }
@@ -264,8 +268,10 @@ fn a_capped_peel_counts_what_it_left_out() {
     let renderer = Renderer::new(&gpu, &scene).unwrap();
     for (name, left) in [("depth-peel:passes=4", 5), ("dual-peel:passes=3", 3)] {
         let spec: MethodSpec = name.parse().unwrap();
-        let mut prepared = renderer.prepare(&spec, [2, 2], None).unwrap();
-        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        let mut prepared = renderer
+            .method(&spec, MethodOptions::sized([2, 2]))
+            .unwrap();
+        let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
         assert_eq!(frame.stats.lost, left * 4, "{name}");
     }
 }
@@ -292,9 +298,11 @@ fn bounded_storage_loses_nothing() {
         ("hybrid-64", [2, 2]),
     ] {
         let spec: MethodSpec = name.parse().unwrap();
-        let mut prepared = renderer.prepare(&spec, [5, 4], None).unwrap();
+        let mut prepared = renderer
+            .method(&spec, MethodOptions::sized([5, 4]))
+            .unwrap();
         for passes in passes {
-            let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+            let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
             assert_eq!(frame.stats.geometry_passes, passes, "{name}");
             for p in &frame.image.pixels {
                 for k in 0..3 {
@@ -318,12 +326,12 @@ fn painters_have_their_known_flaw() {
     let back = Fragment::new(3.0, 0.5, [0.0, 0.0, 1.0]);
     let scene = walls(&[front, back], [0.0; 3]);
     let renderer = Renderer::new(&gpu, &scene).unwrap();
-    let draw = |renderer: &Renderer<'_>, scene: &peelnet_scene::Scene, name: &str| {
+    let draw = |renderer: &Renderer, scene: &peelnet_scene::Scene, name: &str| {
         let mut prepared = renderer
-            .prepare(&name.parse().unwrap(), [4, 4], None)
+            .method(&name.parse().unwrap(), MethodOptions::sized([4, 4]))
             .unwrap();
         renderer
-            .draw(&mut prepared, &scene.views[0])
+            .image(&mut prepared, &scene.views[0])
             .unwrap()
             .image
             .pixels
@@ -379,8 +387,10 @@ fn opaque_walls_hide() {
     let renderer = Renderer::new(&gpu, &scene).unwrap();
     let want = over::composite(&front, [0.1, 0.6, 0.3]);
     for spec in MethodSpec::all() {
-        let mut prepared = renderer.prepare(&spec, [3, 3], None).unwrap();
-        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        let mut prepared = renderer
+            .method(&spec, MethodOptions::sized([3, 3]))
+            .unwrap();
+        let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
         for k in 0..3 {
             let got = frame.image.pixels[4][k];
             assert!(

@@ -11,7 +11,7 @@ use peelnet_core::{
     srgb,
 };
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, LayerView, MethodSpec, Renderer, methods::Precision};
+use peelnet_render::{Image, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision};
 use peelnet_scene::{Census, Effect, Light, Lighting, Maps, Material, Scene, Source, Texture};
 use peelnet_tests::{gpu, scene, wall};
 use std::sync::Arc;
@@ -19,9 +19,12 @@ use std::sync::Arc;
 fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
     let mut prepared = renderer
-        .prepare(&method.parse().unwrap(), size, None)
+        .method(&method.parse().unwrap(), MethodOptions::sized(size))
         .unwrap();
-    renderer.draw(&mut prepared, &scene.views[0]).unwrap().image
+    renderer
+        .image(&mut prepared, &scene.views[0])
+        .unwrap()
+        .image
 }
 
 /// An image of one colour.
@@ -109,20 +112,22 @@ fn what_is_not_called_for_is_not_there() {
     let gpu = gpu();
     let plain = Renderer::new(&gpu, &scene_with(None)).unwrap();
     assert_eq!(plain.bindings(), ["camera", "materials"]);
-    assert_eq!(plain.corner_attributes(), ["position", "material"]);
+    assert_eq!(plain.vertex_attributes(), ["position", "material"]);
     let bytes = |s: &Scene| {
         let renderer = Renderer::new(&gpu, s).unwrap();
         let blended = "blended".parse().unwrap();
-        let mut prepared = renderer.prepare(&blended, [8, 6], None).unwrap();
-        let frame = renderer.draw(&mut prepared, &s.views[0]).unwrap();
+        let mut prepared = renderer
+            .method(&blended, MethodOptions::sized([8, 6]))
+            .unwrap();
+        let frame = renderer.image(&mut prepared, &s.views[0]).unwrap();
         frame.stats.bytes_per_pixel
     };
     let passes = |s: &Scene| {
         let renderer = Renderer::new(&gpu, s).unwrap();
         let mut prepared = renderer
-            .prepare(&"blended".parse().unwrap(), [8, 6], None)
+            .method(&"blended".parse().unwrap(), MethodOptions::sized([8, 6]))
             .unwrap();
-        let (times, _) = renderer.time(&mut prepared, &s.views[0]).unwrap();
+        let (times, _) = renderer.profile(&mut prepared, &s.views[0]).unwrap();
         times.len()
     };
     let fewest = passes(&scene_with(None));
@@ -131,7 +136,7 @@ fn what_is_not_called_for_is_not_there() {
         let census = Census::of(&with);
         assert!(census.has(effect), "{effect}");
         let renderer = Renderer::new(&gpu, &with).unwrap();
-        let (bindings, attributes) = (renderer.bindings(), renderer.corner_attributes());
+        let (bindings, attributes) = (renderer.bindings(), renderer.vertex_attributes());
         let lit = matches!(
             effect,
             Effect::Lighting
@@ -145,7 +150,7 @@ fn what_is_not_called_for_is_not_there() {
         assert_eq!(attributes.contains(&"normal"), lit, "{effect}");
         let mapped = Effect::MAPS.contains(&effect);
         assert_eq!(bindings.contains(&"sampler"), mapped, "{effect}");
-        assert_eq!(attributes.contains(&"places on images"), mapped, "{effect}");
+        assert_eq!(attributes.contains(&"uv"), mapped, "{effect}");
         for map in Effect::MAPS {
             assert_eq!(bindings.contains(&map.name()), map == effect, "{effect}");
         }
@@ -169,7 +174,7 @@ fn what_is_not_called_for_is_not_there() {
         let words: &[&str] = match effect {
             Effect::Lighting => &["lights", "halfway", "world"],
             Effect::Pbr => &["lights", "fresnel", "world"],
-            Effect::Emission => &["emission.rgb"],
+            Effect::Emission => &["material.emission"],
             Effect::Cutout => &["is_hole"],
             Effect::ColorMap => &["color_map", "textureSampleGrad"],
             Effect::NormalMap => &["normal_map", "tangent"],
@@ -177,8 +182,8 @@ fn what_is_not_called_for_is_not_there() {
             Effect::OcclusionMap => &["occlusion_map"],
             Effect::EmissiveMap => &["emissive_map"],
             Effect::VertexColors => &["surface.color"],
-            Effect::Sun => &["position.w"],
-            Effect::Transmission => &["transmission.rgb"],
+            Effect::Sun => &["is_point > 0.0"],
+            Effect::Transmission => &["material.transmission"],
             _ => &[],
         };
         let text_of = |scene: &Scene| -> String {
@@ -521,7 +526,7 @@ fn stained_glass_tints_what_is_behind_it() {
             } else {
                 let renderer = Renderer::new(&gpu, &one).unwrap();
                 let e = renderer
-                    .prepare(&spec, [4, 3], None)
+                    .method(&spec, MethodOptions::sized([4, 3]))
                     .unwrap_err()
                     .to_string();
                 assert!(
@@ -580,8 +585,11 @@ fn a_layer_is_highlighted() {
             highlight,
             increasing,
         };
-        let mut prepared = renderer.prepare_layers(view, [4, 3]).unwrap();
-        let image = renderer.draw(&mut prepared, &scene.views[0]).unwrap().image;
+        let mut prepared = renderer.layers(view, [4, 3]).unwrap();
+        let image = renderer
+            .image(&mut prepared, &scene.views[0])
+            .unwrap()
+            .image;
         image.pixels[5]
     };
     let mix = |parts: &[(usize, f32)]| {
@@ -631,8 +639,11 @@ fn a_layer_is_highlighted() {
         highlight: 1,
         increasing: false,
     };
-    let mut prepared = renderer.prepare_layers(view, [4, 3]).unwrap();
-    let image = renderer.draw(&mut prepared, &holed.views[0]).unwrap().image;
+    let mut prepared = renderer.layers(view, [4, 3]).unwrap();
+    let image = renderer
+        .image(&mut prepared, &holed.views[0])
+        .unwrap()
+        .image;
     let found = image.pixels[5];
     for k in 0..3 {
         assert!((found[k] - colors[1][k]).abs() < 1e-6, "{found:?}");

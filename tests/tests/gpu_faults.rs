@@ -5,7 +5,7 @@
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::GpuError;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::{MethodSpec, RenderError, Renderer, scene::PixelSample};
+use peelnet_render::{MethodOptions, MethodSpec, PixelSample, RenderError, Renderer};
 use peelnet_tests::{gpu, walls};
 
 fn stack() -> Vec<Fragment> {
@@ -23,8 +23,10 @@ fn full_memory_makes_smaller_tiles() {
     let method: MethodSpec = "abuffer".parse().unwrap();
     let draw = |gpu: &peelnet_gpu::Gpu| {
         let renderer = Renderer::new(gpu, &scene).unwrap();
-        let mut prepared = renderer.prepare(&method, size, None).unwrap();
-        renderer.draw(&mut prepared, &scene.views[0]).unwrap()
+        let mut prepared = renderer
+            .method(&method, MethodOptions::sized(size))
+            .unwrap();
+        renderer.image(&mut prepared, &scene.views[0]).unwrap()
     };
     let whole = draw(&gpu);
     assert!(whole.stats.tiles == 1 && !gpu.memory_was_full());
@@ -58,7 +60,9 @@ fn what_cannot_be_made_smaller_is_an_error() {
     let method: MethodSpec = "abuffer".parse().unwrap();
     gpu.pretend_memory(10_000);
     let renderer = Renderer::new(&gpu, &scene).unwrap();
-    let error = renderer.prepare(&method, [64, 48], None).unwrap_err();
+    let error = renderer
+        .method(&method, MethodOptions::sized([64, 48]))
+        .unwrap_err();
     let text = error.to_string();
     assert!(
         matches!(error, RenderError::Gpu(GpuError::OutOfMemory { .. })),
@@ -71,8 +75,10 @@ fn what_cannot_be_made_smaller_is_an_error() {
     // Fragments of one pixel of colour take 320 bytes.
     gpu.pretend_memory(300);
     let renderer = Renderer::new(&gpu, &scene).unwrap();
-    let mut prepared = renderer.prepare(&method, [4, 3], None).unwrap();
-    let error = renderer.draw(&mut prepared, &scene.views[0]).unwrap_err();
+    let mut prepared = renderer
+        .method(&method, MethodOptions::sized([4, 3]))
+        .unwrap();
+    let error = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
     assert!(error.to_string().contains("20"), "{error}");
 }
 
@@ -92,10 +98,12 @@ fn a_lost_device_is_one_clear_error() {
         let gpu = gpu();
         let method: MethodSpec = name.parse().unwrap();
         let renderer = Renderer::new(&gpu, &scene).unwrap();
-        let mut prepared = renderer.prepare(&method, [16, 12], None).unwrap();
-        renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        let mut prepared = renderer
+            .method(&method, MethodOptions::sized([16, 12]))
+            .unwrap();
+        renderer.image(&mut prepared, &scene.views[0]).unwrap();
         gpu.device.destroy();
-        let error = renderer.draw(&mut prepared, &scene.views[0]).unwrap_err();
+        let error = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
         assert!(
             matches!(error, RenderError::Gpu(GpuError::Lost(_))),
             "{name}: {error}"

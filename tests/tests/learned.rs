@@ -13,9 +13,9 @@ use peelnet_core::{
     random::Random,
     statistics::{FAR_END, NEAR_END},
 };
-use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
+use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
-use peelnet_render::{Image, LearnedWeight, MethodSpec, Renderer};
+use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Material, Scene, Texture, suite};
 use peelnet_tests::{gpu, shipped, walls};
 
@@ -39,16 +39,27 @@ fn specs(recipe: Recipe) -> [MethodSpec; 2] {
 
 fn draw(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, model: &Model, size: [u32; 2]) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
-    let mut prepared = renderer.prepare(spec, size, Some(&learned(model))).unwrap();
-    renderer.draw(&mut prepared, &scene.views[0]).unwrap().image
+    let mut prepared = renderer
+        .method(spec, MethodOptions::sized(size).with(Some(&learned(model))))
+        .unwrap();
+    renderer
+        .image(&mut prepared, &scene.views[0])
+        .unwrap()
+        .image
 }
 
 fn draw_exact(gpu: &Gpu, scene: &Scene) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
     let mut prepared = renderer
-        .prepare(&"abuffer".parse().unwrap(), [256, 192], None)
+        .method(
+            &"abuffer".parse().unwrap(),
+            MethodOptions::sized([256, 192]),
+        )
         .unwrap();
-    renderer.draw(&mut prepared, &scene.views[0]).unwrap().image
+    renderer
+        .image(&mut prepared, &scene.views[0])
+        .unwrap()
+        .image
 }
 
 /// Relative rounding of a half float.
@@ -217,15 +228,12 @@ fn on_the_gpu(gpu: &Gpu, model: &Model, pixels: &[Points], half: bool) -> Vec<Ve
         wgpu::ShaderStages::COMPUTE,
         &[Bind::Read(&input), Bind::Write(&output)],
     );
-    let pipeline = gpu.compute("driver", &wgsl, &[&bound.layout]);
-    let mut recorder = Recorder::new(gpu, false);
-    {
-        let mut pass = recorder.compute("driver");
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bound.group, &[]);
-        pass.dispatch_workgroups((fragments.len() as u32).div_ceil(64), 1, 1);
-    }
-    recorder.finish().unwrap();
+    gpu.dispatch(
+        "driver",
+        &wgsl,
+        &bound,
+        (fragments.len() as u32).div_ceil(64),
+    );
     let rows: Vec<[f32; 16]> = gpu.read(&output, 0..bytes).unwrap();
     let mut rows = rows.into_iter().map(|a| Answer {
         moments: [a[0], a[1], a[2], a[3], a[4]],

@@ -5,16 +5,16 @@
 use glam::Vec3;
 use peelnet_core::fragment::worked_example;
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, MethodSpec, Renderer};
+use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Material, Object, Scene};
 use peelnet_tests::{gpu, scene, wall, walls};
 
 fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
     let renderer = Renderer::new(gpu, scene).unwrap();
     let spec = method.parse().unwrap();
-    let mut prepared = renderer.prepare(&spec, size, None).unwrap();
+    let mut prepared = renderer.method(&spec, MethodOptions::sized(size)).unwrap();
     let camera = scene.views[0];
-    renderer.draw(&mut prepared, &camera).unwrap().image
+    renderer.image(&mut prepared, &camera).unwrap().image
 }
 
 fn furthest(a: &Image, b: &Image) -> f32 {

@@ -6,7 +6,7 @@ use glam::Vec3;
 use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::scene::PixelSample;
+use peelnet_render::PixelSample;
 use peelnet_scene::{Light, Lighting, Material, Object, Scene, Source, Texture};
 use peelnet_tests::{clip_triangles, gpu, scene, wall};
 use std::sync::Arc;

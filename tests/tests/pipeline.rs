@@ -12,7 +12,7 @@ use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
 use peelnet_gpu::Gpu;
 use peelnet_model::{FORMAT_VERSION, Input, Losses, Metadata, Model, Output, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views, extract};
-use peelnet_render::{LearnedWeight, Renderer};
+use peelnet_render::{LearnedWeight, MethodOptions, Renderer};
 use peelnet_scene::{Material, Object, Scene};
 use peelnet_tests::{gpu, scene, walls};
 use std::{path::Path, sync::atomic::AtomicBool};
@@ -314,9 +314,15 @@ fn the_exported_network_draws_what_the_model_says() {
     for fragments in cases {
         let scene = walls(&fragments, c0);
         let renderer = Renderer::new(&gpu, &scene).unwrap();
-        assert!(renderer.prepare(&spec, [2, 2], None).is_err());
-        let mut prepared = renderer.prepare(&spec, [2, 2], Some(&learned)).unwrap();
-        let frame = renderer.draw(&mut prepared, &scene.views[0]).unwrap();
+        assert!(
+            renderer
+                .method(&spec, MethodOptions::sized([2, 2]))
+                .is_err()
+        );
+        let mut prepared = renderer
+            .method(&spec, MethodOptions::sized([2, 2]).with(Some(&learned)))
+            .unwrap();
+        let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
         let want = deep::composite(&fragments, c0, |f| {
             model.forward_raw(&deep::thesis_inputs(f, &fragments))[0]
         });

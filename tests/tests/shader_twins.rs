@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use peelnet_core::{guards, hash, weights::Weight};
-use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
+use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_tests::gpu;
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input.
@@ -30,15 +30,7 @@ fn evaluate(gpu: &Gpu, imports: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f
         wgpu::ShaderStages::COMPUTE,
         &[Bind::Read(&input), Bind::Write(&output)],
     );
-    let pipeline = gpu.compute("driver", &wgsl, &[&bound.layout]);
-    let mut recorder = Recorder::new(gpu, false);
-    {
-        let mut pass = recorder.compute("driver");
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bound.group, &[]);
-        pass.dispatch_workgroups((inputs.len() as u32).div_ceil(64), 1, 1);
-    }
-    recorder.finish().unwrap();
+    gpu.dispatch("driver", &wgsl, &bound, (inputs.len() as u32).div_ceil(64));
     gpu.read(&output, 0..bytes).unwrap()
 }
 

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --example render_gltf -- SCENE.gltf IMAGE.png METHOD`; by default three panes of glass, exactly.
 
-use peelnet::{AdapterRequest, Gpu, MethodSpec, Renderer, Scene};
+use peelnet::{AdapterRequest, Gpu, MethodOptions, MethodSpec, Renderer, Scene};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -16,10 +16,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     for warning in &scene.warnings {
         eprintln!("warning: {warning}");
     }
-    let gpu = Gpu::new(&AdapterRequest::Auto)?;
+    let gpu = Gpu::open(&AdapterRequest::Auto)?;
     let renderer = Renderer::new(&gpu, &scene)?;
-    let mut prepared = renderer.prepare(&method, [640, 480], None)?;
-    let frame = renderer.draw(&mut prepared, &scene.views[0])?;
+    let mut prepared = renderer.method(&method, MethodOptions::sized([640, 480]))?;
+    let frame = renderer.image(&mut prepared, &scene.views[0])?;
     frame.image.save(image.as_ref())?;
     println!(
         "{image}: {method}, up to {:?} layers",

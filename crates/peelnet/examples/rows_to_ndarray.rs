@@ -14,7 +14,7 @@ use std::{error::Error, sync::atomic::AtomicBool};
 fn main() -> Result<(), Box<dyn Error>> {
     let scene = std::env::args().nth(1).unwrap_or_else(|| "cups".into());
     let scene = suite::open(scene.as_ref(), None)?;
-    let gpu = Gpu::new(&AdapterRequest::Auto)?;
+    let gpu = Gpu::open(&AdapterRequest::Auto)?;
 
     let folder = tempfile::tempdir()?;
     let options = ExtractOptions {

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .nth(1)
         .unwrap_or_else(|| "out/example".into());
     let folder = PathBuf::from(folder);
-    let gpu = Gpu::new(&AdapterRequest::Auto)?;
+    let gpu = Gpu::open(&AdapterRequest::Auto)?;
     // Set it from elsewhere to stop early: no half file is left behind.
     let stop = AtomicBool::new(false);
 

@@ -35,11 +35,28 @@
 //! use peelnet::{AdapterRequest, Gpu, dataset::Dataset, extract, scene::suite};
 //! use std::sync::atomic::AtomicBool;
 //!
-//! let gpu = Gpu::new(&AdapterRequest::Auto)?;
+//! let gpu = Gpu::open(&AdapterRequest::Auto)?;
 //! let options = extract::ExtractOptions::new("rows");
 //! let stop = AtomicBool::new(false);
 //! extract::extract(&gpu, &[suite::load("cups")?], &options, &stop, &mut |_| ())?;
 //! println!("{} rows", Dataset::open("rows")?.rows());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A frame onto a texture of one's own, encoded and not yet submitted:
+//!
+//! ```no_run
+//! use peelnet::{AdapterRequest, Gpu, MethodOptions, Renderer, Target, scene::suite};
+//! # fn view() -> peelnet::gpu::wgpu::TextureView { unimplemented!() }
+//!
+//! let gpu = Gpu::open(&AdapterRequest::Auto)?; // or Gpu::from_parts, with a device of one's own
+//! let scene = suite::load("cups")?;
+//! let renderer = Renderer::new(&gpu, &scene)?;
+//! let mut method = renderer.method(&"mboit4".parse()?, MethodOptions::default())?;
+//! let mut encoder = gpu.encoder();
+//! let view = view();
+//! renderer.draw(&mut encoder, &mut method, &scene.views[0], &Target::over(&view))?;
+//! gpu.queue.submit([encoder.finish()]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -56,7 +73,7 @@ pub use peelnet_gpu::{AdapterRequest, Gpu};
 #[doc(inline)]
 pub use peelnet_model::{Model, Recipe};
 #[doc(inline)]
-pub use peelnet_render::{MethodSpec, Renderer};
+pub use peelnet_render::{FrameStatus, LearnedWeight, MethodOptions, MethodSpec, Renderer, Target};
 #[doc(inline)]
 pub use peelnet_scene::{Camera, Scene};
 

@@ -55,6 +55,38 @@ fn a_gltf_file_is_drawn() {
     assert!(colors.len() > 10, "{}", colors.len());
 }
 
+/// The network's picture in a texture of the program's own is the one that `Renderer::image` gives, within a step of 8 bits and the
+/// rounding of the blend.
+#[test]
+fn a_network_draws_into_a_texture_of_ones_own() {
+    use peelnet::{AdapterRequest, Gpu, LearnedWeight, MethodOptions, Recipe, Renderer};
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("cups.png");
+    example("own_texture", &[&out]);
+    let drawn = image::open(&out).unwrap().into_rgb8();
+    let gpu = Gpu::open(&AdapterRequest::Auto).unwrap();
+    let scene = peelnet::scene::suite::load("cups-held").unwrap();
+    let model = peelnet::Model::shipped(Recipe::Medium).unwrap();
+    let learned = LearnedWeight {
+        recipe: Recipe::Medium,
+        wgsl: peelnet::export::wgsl(&model, &Default::default()).unwrap(),
+    };
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let options = MethodOptions::sized([640, 480]).with(Some(&learned));
+    let mut method = renderer
+        .method(&"deep-medium".parse().unwrap(), options)
+        .unwrap();
+    let frame = renderer.image(&mut method, &scene.views[0]).unwrap();
+    let expected = frame.image.to_srgb8();
+    assert_eq!(drawn.as_raw().len(), expected.len());
+    let apart = drawn
+        .as_raw()
+        .iter()
+        .zip(&expected)
+        .map(|(a, b)| a.abs_diff(*b));
+    assert!(apart.max().unwrap() <= 2);
+}
+
 #[test]
 fn rows_become_arrays() {
     let said = example("rows_to_ndarray", &[]);

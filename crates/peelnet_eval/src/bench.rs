@@ -52,7 +52,7 @@ pub enum Progress<'a> {
 /// use peelnet_gpu::{AdapterRequest, Gpu};
 /// use peelnet_scene::Scene;
 ///
-/// let gpu = Gpu::new(&AdapterRequest::Auto)?;
+/// let gpu = Gpu::open(&AdapterRequest::Auto)?;
 /// let scene = Scene::load("data/scenes/cups.toml".as_ref())?;
 /// let methods = ["mboit4".parse()?, "wboit-eq9".parse()?];
 /// for row in bench(&gpu, &[scene], &Plan::new([512, 384], &methods))? {

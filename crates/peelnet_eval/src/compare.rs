@@ -5,7 +5,7 @@ use crate::{EvalError, Row, metrics, perceptual::Displayed};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
-    Frame, Image, LearnedWeight, MethodSpec, Prepared, RenderError, Renderer, Role,
+    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Role,
 };
 use peelnet_scene::Scene;
 use std::path::Path;
@@ -139,7 +139,7 @@ struct Stage<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,
     plan: &'a Plan<'a>,
-    renderer: Renderer<'a>,
+    renderer: Renderer,
     stop: &'a AtomicBool,
 }
 
@@ -170,7 +170,10 @@ impl<'a> Stage<'a> {
                 .learned
                 .iter()
                 .find(|l| l.recipe.method_name() == method.name());
-            let prepared = match self.renderer.prepare(method, plan.size, learned) {
+            let prepared = match self
+                .renderer
+                .method(method, MethodOptions::sized(plan.size).with(learned))
+            {
                 Err(e) if plan.lenient && is_too_large(&e) && !entries.is_empty() => {
                     tell(Event::LeftOut(&name, e.to_string()))?;
                     continue;
@@ -202,7 +205,7 @@ impl<'a> Stage<'a> {
         while let Some(entry) = entries.get_mut(rows.len()) {
             self.check_stop()?;
             let name = &entry.name;
-            let frame = match self.renderer.draw(&mut entry.prepared, camera) {
+            let frame = match self.renderer.image(&mut entry.prepared, camera) {
                 Err(e) if self.plan.lenient && is_too_large(&e) && !rows.is_empty() => {
                     tell(Event::LeftOut(name, e.to_string()))?;
                     entries.remove(rows.len());
@@ -250,7 +253,7 @@ impl<'a> Stage<'a> {
         for _ in 0..self.plan.frames {
             for (entry, frames) in entries.iter_mut().zip(&mut frames) {
                 self.check_stop()?;
-                let timed = self.renderer.time(&mut entry.prepared, camera);
+                let timed = self.renderer.profile(&mut entry.prepared, camera);
                 frames.push(timed.map_err(self.failed(&entry.name))?);
                 tell(Event::Drawn(&entry.name))?;
             }

@@ -4,7 +4,9 @@
 use crate::{EvalError, compare};
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, LayerView, MethodSpec, Prepared, RenderError, Renderer};
+use peelnet_render::{
+    Image, LayerView, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
+};
 use peelnet_scene::{Camera, Census, Effect, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
@@ -124,10 +126,10 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
     let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
     for (k, renderer) in renderers.iter().enumerate() {
         let mut prepared = renderer
-            .prepare(&settings.method, settings.size, None)
+            .method(&settings.method, MethodOptions::sized(settings.size))
             .map_err(failed())?;
         let drawn = renderer
-            .draw(&mut prepared, &scene.views[0])
+            .image(&mut prepared, &scene.views[0])
             .map_err(failed())?;
         bytes[k] = drawn.stats.bytes_per_pixel;
         passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
@@ -157,14 +159,14 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
 
 /// Median times of two frames that are drawn in turn, so that both meet the same machine; the first of each warms up.
 fn in_turn(
-    mut frames: [(&Renderer<'_>, &mut Prepared); 2],
+    mut frames: [(&Renderer, &mut Prepared); 2],
     camera: &Camera,
     count: u32,
 ) -> Result<[f64; 2], RenderError> {
     let mut times = [Vec::new(), Vec::new()];
     for i in 0..=count {
         for ((renderer, prepared), times) in frames.iter_mut().zip(&mut times) {
-            let (passes, wall) = renderer.time(prepared, camera)?;
+            let (passes, wall) = renderer.profile(prepared, camera)?;
             if i > 0 {
                 times.push(compare::milliseconds(&passes).unwrap_or(wall / 1e3));
             }
@@ -199,8 +201,8 @@ fn layer_times(
             Renderer::new(gpu, &scenes[1])?,
         ];
         let [mut a, mut b] = [
-            one.prepare_layers(view, settings.size)?,
-            all.prepare_layers(view, settings.size)?,
+            one.layers(view, settings.size)?,
+            all.layers(view, settings.size)?,
         ];
         in_turn([(&one, &mut a), (&all, &mut b)], camera, settings.frames)
     };
@@ -241,13 +243,13 @@ fn filling(
     let failed = || EvalError::render(&scene.name, "layers");
     let renderer = Renderer::new(gpu, &scene).map_err(failed())?;
     let small = size.map(|n| (n / 4).max(1));
-    let mut prepared = renderer.prepare_layers(view, small).map_err(failed())?;
+    let mut prepared = renderer.layers(view, small).map_err(failed())?;
     let mut part = |angle: f32| -> Result<f64, EvalError> {
         let camera = Camera {
             fov_y_degrees: angle,
             ..scene.views[0]
         };
-        let frame = renderer.draw(&mut prepared, &camera).map_err(failed())?;
+        let frame = renderer.image(&mut prepared, &camera).map_err(failed())?;
         let image: Image = frame.image;
         let covered = image.pixels.iter().filter(|p| p[3] > 0.0).count();
         Ok(covered as f64 / image.pixels.len() as f64)
@@ -367,8 +369,9 @@ pub fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> std::pa
 fn picture(gpu: &Gpu, scene: &Scene, settings: &Settings, file: &Path) -> Result<(), EvalError> {
     let draw = || {
         let renderer = Renderer::new(gpu, scene)?;
-        let mut prepared = renderer.prepare(&settings.method, settings.size, None)?;
-        let image = renderer.draw(&mut prepared, &scene.views[0])?.image;
+        let mut prepared =
+            renderer.method(&settings.method, MethodOptions::sized(settings.size))?;
+        let image = renderer.image(&mut prepared, &scene.views[0])?.image;
         image.save(file)
     };
     draw().map_err(EvalError::render(&scene.name, &settings.method.to_string()))

@@ -9,7 +9,7 @@ use peelnet_gpu::{
     record::Recorder,
     wgpu::{self, BlendFactor, BlendOperation, TextureFormat},
 };
-use peelnet_render::{Image, MethodSpec, RenderError, Renderer};
+use peelnet_render::{Image, MethodOptions, MethodSpec, RenderError, Renderer};
 use peelnet_scene::{Camera, Material, Object, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -203,7 +203,7 @@ fn blend(
     let failed = |e: GpuError| EvalError::render("numerics", name(format))(RenderError::Gpu(e));
     let none = wgpu::TextureUsages::empty();
     let view = gpu
-        .texture("target", format, [1, 1], none)
+        .texture("target", format, [1, 1], 1, none)
         .map_err(failed)?;
     let answer = gpu.storage("answer", 4).map_err(failed)?;
     let uniform = gpu.upload("source", &[[source; 4]], wgpu::BufferUsages::UNIFORM);
@@ -219,8 +219,9 @@ fn blend(
         ],
     );
     let pipeline = pipeline(gpu, format, product, &drawn.layout);
-    let reader = gpu.compute("read", SHADER, &[&read.layout]);
-    let mut recorder = Recorder::new(gpu, false);
+    let reader = gpu.compute("read", SHADER, &read);
+    let mut encoder = gpu.encoder();
+    let mut recorder = Recorder::new(gpu, &mut encoder, None);
     {
         let start = f64::from(u8::from(product));
         let color = wgpu::Color {
@@ -250,7 +251,7 @@ fn blend(
         pass.set_bind_group(0, &read.group, &[]);
         pass.dispatch_workgroups(1, 1, 1);
     }
-    recorder.finish().map_err(failed)?;
+    gpu.queue.submit([encoder.finish()]);
     let found: Vec<f32> = gpu.read(&answer, 0..4).map_err(failed)?;
     Ok(found[0])
 }
@@ -332,9 +333,9 @@ fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
             let draw = |targets: &str| -> Result<Image, EvalError> {
                 let spec = spec.with("targets", targets).map_err(failed(&method))?;
                 let name = spec.to_string();
-                let prepared = renderer.prepare(&spec, STACKS, None);
+                let prepared = renderer.method(&spec, MethodOptions::sized(STACKS));
                 let mut prepared = prepared.map_err(failed(&name))?;
-                let frame = renderer.draw(&mut prepared, &scene.views[0]);
+                let frame = renderer.image(&mut prepared, &scene.views[0]);
                 Ok(frame.map_err(failed(&name))?.image)
             };
             let [half, full] = [draw("f16")?, draw("f32")?];

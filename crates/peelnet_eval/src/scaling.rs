@@ -6,7 +6,7 @@
 use crate::EvalError;
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
-use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
+use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
@@ -209,9 +209,9 @@ pub fn measure(
                 .find(|l| l.recipe.method_name() == method.name());
             // The first frame warms up, and tells the bytes.
             let first = renderer
-                .prepare(method, step.size, weight)
+                .method(method, MethodOptions::sized(step.size).with(weight))
                 .and_then(|mut prepared| {
-                    let frame = renderer.draw(&mut prepared, camera)?;
+                    let frame = renderer.image(&mut prepared, camera)?;
                     Ok((prepared, frame.stats.bytes_per_pixel))
                 });
             done += 1;
@@ -231,7 +231,7 @@ pub fn measure(
                 if stop.load(Ordering::Relaxed) {
                     return Err(EvalError::Interrupted);
                 }
-                let (passes, wall) = renderer.time(prepared, camera).map_err(failed(name))?;
+                let (passes, wall) = renderer.profile(prepared, camera).map_err(failed(name))?;
                 times.push(crate::compare::milliseconds(&passes).unwrap_or(wall / 1e3));
                 done += 1;
                 told(done, total, name);

@@ -8,7 +8,7 @@ use peelnet_core::{absorbance::DepthWarp, hash::sample_threshold};
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::{MethodSpec, scene::PixelSample};
+use peelnet_render::{MethodSpec, PixelSample};
 use peelnet_scene::Scene;
 
 /// The share of pixels that is sampled.
@@ -26,7 +26,7 @@ pub struct Stacks {
 #[derive(Debug)]
 pub struct Sample<'a> {
     scene: &'a Scene,
-    harvester: Harvester<'a>,
+    harvester: Harvester,
 }
 
 impl<'a> Sample<'a> {

@@ -5,7 +5,7 @@ use crate::{
     wgsl::{function_name, self_test_inputs},
 };
 use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, random::Random, tolerance::EXPORT_F32};
-use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
+use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
 use std::fmt;
@@ -190,15 +190,12 @@ pub fn evaluate(
         wgpu::ShaderStages::COMPUTE,
         &[Bind::Read(&inputs), Bind::Write(&answers)],
     );
-    let pipeline = gpu.compute("verification", &linked, &[&bound.layout]);
-    let mut recorder = Recorder::new(gpu, false);
-    {
-        let mut pass = recorder.compute("verification");
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bound.group, &[]);
-        pass.dispatch_workgroups((samples.len() as u32).div_ceil(64), 1, 1);
-    }
-    recorder.finish()?;
+    gpu.dispatch(
+        "verification",
+        &linked,
+        &bound,
+        (samples.len() as u32).div_ceil(64),
+    );
     Ok(gpu.read(&answers, 0..bytes)?)
 }
 
@@ -289,7 +286,7 @@ mod tests {
     }
 
     fn gpu() -> Gpu {
-        Gpu::new(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"))
+        Gpu::open(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"))
     }
 
     #[test]

@@ -115,15 +115,22 @@ const fn rank(kind: wgpu::DeviceType) -> u8 {
     }
 }
 
+/// Flags of all optional features.
+pub(crate) fn optional_flags() -> wgpu::Features {
+    OPTIONAL_FEATURES
+        .iter()
+        .fold(wgpu::Features::empty(), |all, f| all | f.flag())
+}
+
 /// All adapters, best first.
-pub(crate) fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
+pub(crate) async fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         // wgpu validates by itself; the distribution's Vulkan layers are often too old for its SPIR-V.
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let mut adapters = instance.enumerate_adapters(wgpu::Backends::PRIMARY).await;
     adapters.sort_by_key(|a| rank(a.get_info().device_type));
     (instance, adapters)
 }
@@ -162,8 +169,14 @@ pub(crate) fn pick(
 }
 
 /// What `peelnet doctor` prints. Empty where no driver is installed.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn report() -> Vec<AdapterReport> {
-    let (_instance, adapters) = enumerate();
+    pollster::block_on(report_async())
+}
+
+/// The same without waiting.
+pub async fn report_async() -> Vec<AdapterReport> {
+    let (_instance, adapters) = enumerate().await;
     adapters
         .iter()
         .enumerate()

@@ -17,13 +17,15 @@ pub enum Bind<'a> {
     Uint(&'a wgpu::TextureView),
     /// A depth texture read by `textureLoad`.
     Depth(&'a wgpu::TextureView),
+    /// The same of several samples a pixel.
+    DepthMultisampled(&'a wgpu::TextureView),
     /// A write-only storage texture of format RGBA32F.
     Store(&'a wgpu::TextureView),
     /// A colour texture read through a sampler.
     Image(&'a wgpu::TextureView),
-    /// What it is read through.
+    /// A sampler.
     Sampler(&'a wgpu::Sampler),
-    /// Nothing: a binding number that this shader does without.
+    /// Nothing: this shader has no such binding.
     None,
 }
 
@@ -34,6 +36,8 @@ pub struct Bound {
     pub layout: wgpu::BindGroupLayout,
     /// For passes.
     pub group: wgpu::BindGroup,
+    /// The layout as text: equal for groups that fit the same pipelines.
+    pub signature: String,
 }
 
 impl Gpu {
@@ -73,7 +77,11 @@ impl Gpu {
             layout: &layout,
             entries: &group_entries,
         });
-        Bound { layout, group }
+        Bound {
+            signature: format!("{layout_entries:?}"),
+            layout,
+            group,
+        }
     }
 }
 
@@ -99,6 +107,11 @@ impl Bind<'_> {
             Self::Sampler(_) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
             Self::Uint(_) => texture(wgpu::TextureSampleType::Uint),
             Self::Depth(_) => texture(wgpu::TextureSampleType::Depth),
+            Self::DepthMultisampled(_) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: true,
+            },
             Self::Store(_) => wgpu::BindingType::StorageTexture {
                 access: wgpu::StorageTextureAccess::WriteOnly,
                 format: wgpu::TextureFormat::Rgba32Float,
@@ -113,9 +126,12 @@ impl Bind<'_> {
             Self::None => return None,
             Self::Uniform(b) | Self::Read(b) | Self::Write(b) => b.as_entire_binding(),
             Self::Sampler(s) => wgpu::BindingResource::Sampler(s),
-            Self::Texture(v) | Self::Image(v) | Self::Uint(v) | Self::Depth(v) | Self::Store(v) => {
-                wgpu::BindingResource::TextureView(v)
-            }
+            Self::Texture(v)
+            | Self::Image(v)
+            | Self::Uint(v)
+            | Self::Depth(v)
+            | Self::DepthMultisampled(v)
+            | Self::Store(v) => wgpu::BindingResource::TextureView(v),
         };
         Some(resource)
     }

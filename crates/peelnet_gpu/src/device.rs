@@ -1,85 +1,130 @@
 use crate::{
-    AdapterRequest, GpuError,
+    AdapterRequest, GpuError, OptionalFeature,
     adapter::{self, OPTIONAL_FEATURES},
+    pipelines::PipelineCache,
 };
 use std::sync::{
     Arc, Mutex,
     atomic::{AtomicBool, Ordering},
 };
 
-/// An open device. Cheap to share by reference; one per test or command.
-#[derive(Debug)]
+/// An open device with its queue. A handle: clones share the device, the errors it reported and the pipelines compiled so far.
+#[derive(Clone, Debug)]
 pub struct Gpu {
+    /// The instance that the adapter came from; an application makes its surfaces with it.
+    pub instance: wgpu::Instance,
+    /// The adapter.
+    pub adapter: wgpu::Adapter,
     /// The device.
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// Who made it.
+    /// What the adapter says of itself.
     pub info: wgpu::AdapterInfo,
-    /// The limits the device was opened with: the adapter's own.
+    /// The limits that the device was opened with.
     pub limits: wgpu::Limits,
-    /// What [`Gpu::pretend_memory`] was told.
+    /// The limit that [`Gpu::pretend_memory`] set.
     largest_allocation: u64,
-    /// Whether an allocation did not fit the GPU's memory.
-    memory_was_full: AtomicBool,
-    first_error: Arc<Mutex<Option<String>>>,
-    lost: Arc<Mutex<Option<String>>>,
+    shared: Arc<Shared>,
 }
 
-fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+/// What all clones of a [`Gpu`] share.
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    /// Whether an allocation did not fit the GPU's memory.
+    memory_was_full: AtomicBool,
+    first_error: Mutex<Option<String>>,
+    lost: Mutex<Option<String>>,
+    pub(crate) pipelines: PipelineCache,
+}
+
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 impl Gpu {
-    /// Opens the adapter that `request` names, with every optional feature it has.
+    /// Opens the adapter that `request` names, with every optional feature that it has.
     ///
     /// # Errors
-    /// No driver, no such adapter, or a driver that gives no device.
-    pub fn new(request: &AdapterRequest) -> Result<Self, GpuError> {
-        let (_instance, adapters) = adapter::enumerate();
+    /// No driver, no such adapter, or a driver that opens no device.
+    pub async fn open_async(request: &AdapterRequest) -> Result<Self, GpuError> {
+        let (instance, adapters) = adapter::enumerate().await;
         let adapter = adapter::pick(adapters, request)?;
-        let info = adapter.get_info();
-        let features = OPTIONAL_FEATURES
-            .iter()
-            .fold(wgpu::Features::empty(), |all, f| all | f.flag())
-            & adapter.features();
-        let limits = adapter.limits();
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("peelnet"),
-            required_features: features,
-            required_limits: limits.clone(),
-            ..Default::default()
-        }))
-        .map_err(|source| GpuError::Device {
-            adapter: info.name.clone(),
-            source,
-        })?;
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                label: Some("peelnet"),
+                required_features: adapter::optional_flags() & adapter.features(),
+                required_limits: adapter.limits(),
+                ..Default::default()
+            })
+            .await
+            .map_err(|source| GpuError::Device {
+                adapter: adapter.get_info().name,
+                source,
+            })?;
+        let gpu = Self::from_parts(instance, adapter, device, queue);
         // wgpu's default is to panic. The first error is kept instead and becomes the error of the next read-back.
-        let first_error = Arc::new(Mutex::new(None));
-        let sink = Arc::clone(&first_error);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            locked(&sink).get_or_insert(error.to_string());
-        }));
-        let lost = Arc::new(Mutex::new(None));
-        let sink = Arc::clone(&lost);
-        device.set_device_lost_callback(move |reason, text| {
-            locked(&sink).get_or_insert(format!("{reason:?}: {text}"));
+        let shared = Arc::clone(&gpu.shared);
+        gpu.device
+            .on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+                locked(&shared.first_error).get_or_insert(error.to_string());
+            }));
+        let shared = Arc::clone(&gpu.shared);
+        gpu.device.set_device_lost_callback(move |reason, text| {
+            locked(&shared.lost).get_or_insert(format!("{reason:?}: {text}"));
         });
-        Ok(Self {
-            device,
-            queue,
-            info,
-            limits,
-            largest_allocation: u64::MAX,
-            memory_was_full: AtomicBool::new(false),
-            first_error,
-            lost,
-        })
+        Ok(gpu)
     }
 
-    /// Whether an optional feature is there.
+    /// The same as [`Gpu::open_async`], waiting for the driver. Not in a browser, where nothing may wait.
+    ///
+    /// # Errors
+    /// See [`Gpu::open_async`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn open(request: &AdapterRequest) -> Result<Self, GpuError> {
+        pollster::block_on(Self::open_async(request))
+    }
+
+    /// An application's own device. Its error and device-lost handlers stay the application's: errors of ours arrive there.
+    /// [`Gpu::missing`] lists the optional features that the device was opened without, and what that costs.
+    pub fn from_parts(
+        instance: wgpu::Instance,
+        adapter: wgpu::Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+    ) -> Self {
+        Self {
+            info: adapter.get_info(),
+            limits: device.limits(),
+            instance,
+            adapter,
+            device,
+            queue,
+            largest_allocation: u64::MAX,
+            shared: Arc::default(),
+        }
+    }
+
+    /// The optional features that the device was opened without, each with what that costs.
+    pub fn missing(&self) -> Vec<OptionalFeature> {
+        let all = OPTIONAL_FEATURES.iter().copied();
+        all.filter(|f| !self.has(f.flag())).collect()
+    }
+
+    /// Pipelines compiled so far.
+    pub(crate) fn pipelines(&self) -> &PipelineCache {
+        &self.shared.pipelines
+    }
+
+    /// A command encoder.
+    pub fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// Whether the device was opened with an optional feature.
     pub fn has(&self, feature: wgpu::Features) -> bool {
         self.device.features().contains(feature)
     }
@@ -87,13 +132,13 @@ impl Gpu {
     /// Fails with a clear message where an optional feature is missing.
     ///
     /// # Errors
-    /// [`GpuError::MissingFeature`], with `mend` as the way out.
+    /// [`GpuError::MissingFeature`], with `hint` as the way out.
     pub fn need(
         &self,
         feature: wgpu::Features,
         name: &'static str,
         what: &str,
-        mend: &'static str,
+        hint: &'static str,
     ) -> Result<(), GpuError> {
         if self.has(feature) {
             return Ok(());
@@ -102,18 +147,19 @@ impl Gpu {
             what: what.to_owned(),
             feature: name,
             adapter: self.info.name.clone(),
-            mend,
+            hint,
         })
     }
 
-    /// From now on allocations of more bytes fail as they do on a GPU whose memory is full: for tests of what then happens.
+    /// From now on allocations of more bytes fail as they do on a GPU whose memory is full, in this handle and clones made from it:
+    /// for tests of what then happens.
     pub fn pretend_memory(&mut self, largest_allocation: u64) {
         self.largest_allocation = largest_allocation;
     }
 
-    /// Whether an allocation did not fit the GPU's memory so far, though what it was for may have gone on with less.
+    /// Whether an allocation did not fit the GPU's memory so far, even if its user went on with less.
     pub fn memory_was_full(&self) -> bool {
-        self.memory_was_full.load(Ordering::Relaxed)
+        self.shared.memory_was_full.load(Ordering::Relaxed)
     }
 
     /// The error that wgpu reported since the last call, if any.
@@ -121,10 +167,10 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Lost`] once the device is lost, else [`GpuError::Validation`] with wgpu's text.
     pub fn check(&self) -> Result<(), GpuError> {
-        if let Some(reason) = locked(&self.lost).as_ref() {
+        if let Some(reason) = locked(&self.shared.lost).as_ref() {
             return Err(GpuError::Lost(reason.clone()));
         }
-        let error = locked(&self.first_error).take();
+        let error = locked(&self.shared.first_error).take();
         error.map_or(Ok(()), |text| Err(GpuError::Validation(text)))
     }
 
@@ -136,7 +182,7 @@ impl Gpu {
         make: impl FnOnce() -> T,
     ) -> Result<T, GpuError> {
         let full = || {
-            self.memory_was_full.store(true, Ordering::Relaxed);
+            self.shared.memory_was_full.store(true, Ordering::Relaxed);
             GpuError::OutOfMemory {
                 what: label.to_owned(),
                 needed: bytes,
@@ -146,11 +192,17 @@ impl Gpu {
         if bytes > self.largest_allocation {
             return Err(full());
         }
-        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let made = make();
-        match pollster::block_on(scope.pop()) {
-            None => Ok(made),
-            Some(_) => Err(full()),
+        // A browser reports a full memory later, through the device's error handler: nothing may wait for it there.
+        #[cfg(target_arch = "wasm32")]
+        return Ok(make());
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+            let made = make();
+            match pollster::block_on(scope.pop()) {
+                None => Ok(made),
+                Some(_) => Err(full()),
+            }
         }
     }
 
@@ -171,7 +223,7 @@ impl Gpu {
                 needed: size,
                 limit,
                 adapter: self.info.name.clone(),
-                mend: "draw a smaller frame or use an adapter with larger storage bindings",
+                hint: "draw a smaller frame or use an adapter with larger storage bindings",
             });
         }
         self.allocate(label, size, || {
@@ -206,7 +258,7 @@ impl Gpu {
         buffer
     }
 
-    /// A 2-D texture that can be drawn to, read by shaders and copied from.
+    /// A 2-D texture of `samples` samples a pixel that can be drawn to and read by shaders and, of one sample, copied from.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] beyond the adapter's largest side, [`GpuError::OutOfMemory`] where memory is full.
@@ -215,6 +267,7 @@ impl Gpu {
         label: &str,
         format: wgpu::TextureFormat,
         [width, height]: [u32; 2],
+        samples: u32,
         extra: wgpu::TextureUsages,
     ) -> Result<wgpu::TextureView, GpuError> {
         let side = width.max(height);
@@ -225,12 +278,18 @@ impl Gpu {
                 needed: u64::from(side),
                 limit: u64::from(limit),
                 adapter: self.info.name.clone(),
-                mend: "draw a smaller frame",
+                hint: "draw a smaller frame",
             });
         }
         let bytes = u64::from(width)
             * u64::from(height)
+            * u64::from(samples)
             * u64::from(format.block_copy_size(None).unwrap_or(4));
+        let copied = if samples == 1 {
+            wgpu::TextureUsages::COPY_SRC
+        } else {
+            wgpu::TextureUsages::empty()
+        };
         let texture = self.allocate(label, bytes, || {
             self.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -240,12 +299,12 @@ impl Gpu {
                     depth_or_array_layers: 1,
                 },
                 mip_level_count: 1,
-                sample_count: 1,
+                sample_count: samples,
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC
+                    | copied
                     | extra,
                 view_formats: &[],
             })
@@ -271,7 +330,7 @@ impl Gpu {
                 needed: width.max(height).into(),
                 limit: limit.into(),
                 adapter: self.info.name.clone(),
-                mend: "make it smaller",
+                hint: "make it smaller",
             });
         }
         let format = if srgb {
@@ -321,25 +380,6 @@ impl Gpu {
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
                 source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-            })
-    }
-
-    /// A compute pipeline with one entry point, `main`.
-    pub fn compute(
-        &self,
-        label: &str,
-        wgsl: &str,
-        layouts: &[&wgpu::BindGroupLayout],
-    ) -> wgpu::ComputePipeline {
-        let module = self.shader(label, wgsl);
-        self.device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(label),
-                layout: Some(&self.layout(&layouts.iter().map(|l| Some(*l)).collect::<Vec<_>>())),
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
             })
     }
 

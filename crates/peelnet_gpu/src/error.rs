@@ -8,9 +8,7 @@ pub enum GpuError {
     )]
     NoAdapter,
     /// The adapter that was asked for is not there.
-    #[error(
-        "no adapter matches '{wanted}'; there are: {available}. Choose one with --adapter, or leave the flag out"
-    )]
+    #[error("no adapter matches '{wanted}'; there are: {available}")]
     NoSuchAdapter {
         /// What was asked for.
         wanted: String,
@@ -26,7 +24,7 @@ pub enum GpuError {
         source: wgpu::RequestDeviceError,
     },
     /// Something needs an optional feature that the adapter lacks.
-    #[error("{what} needs {feature}, which adapter '{adapter}' does not have; {mend}")]
+    #[error("{what} needs {feature}, which adapter '{adapter}' does not have; {hint}")]
     MissingFeature {
         /// Who needs it.
         what: String,
@@ -35,10 +33,10 @@ pub enum GpuError {
         /// Adapter name.
         adapter: String,
         /// What to do instead.
-        mend: &'static str,
+        hint: &'static str,
     },
     /// A buffer or texture beyond the adapter's limits.
-    #[error("{what} needs {needed} bytes but adapter '{adapter}' allows {limit}; {mend}")]
+    #[error("{what} needs {needed} bytes but adapter '{adapter}' allows {limit}; {hint}")]
     TooLarge {
         /// What was to be made.
         what: String,
@@ -49,11 +47,11 @@ pub enum GpuError {
         /// Adapter name.
         adapter: String,
         /// What to do instead.
-        mend: &'static str,
+        hint: &'static str,
     },
     /// The GPU's memory is full.
     #[error(
-        "{what}: adapter '{adapter}' has no {needed} bytes of memory left; close other programs, draw a smaller frame, or use --adapter software"
+        "{what}: adapter '{adapter}' has no {needed} bytes of memory left; close other programs, draw a smaller frame, or use a software adapter"
     )]
     OutOfMemory {
         /// What was to be made.
@@ -64,7 +62,7 @@ pub enum GpuError {
         adapter: String,
     },
     /// The device stopped answering.
-    #[error("the GPU device was lost or did not answer: {0}; run again, or use --adapter software")]
+    #[error("the GPU device was lost or did not answer: {0}; run again, or use a software adapter")]
     Lost(String),
     /// wgpu refused a command: a bug in this project, never the user's fault.
     #[error("the GPU refused a command (this is a bug in peelnet): {0}")]

@@ -9,11 +9,12 @@ pub mod adapter;
 pub mod bind;
 mod device;
 mod error;
+mod pipelines;
 pub mod readback;
 pub mod record;
 mod scope;
 
-pub use adapter::AdapterRequest;
+pub use adapter::{AdapterRequest, OptionalFeature};
 pub use device::Gpu;
 pub use error::GpuError;
 pub use scope::AdapterScope;

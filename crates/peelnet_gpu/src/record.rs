@@ -1,6 +1,7 @@
 //! Records passes and measures each with a timestamp at both of its ends.
 
-use crate::{Gpu, GpuError};
+use crate::{Gpu, GpuError, readback::Download};
+use std::time::Duration;
 
 /// Passes that one frame may measure; the ones beyond run unmeasured and are counted.
 const MAX_TIMED: u32 = 1024;
@@ -14,21 +15,19 @@ pub struct PassTime {
     pub micros: f64,
 }
 
-/// Records the passes of one frame, over as many submissions as it takes.
+/// Measures the passes of one frame.
 #[derive(Debug)]
-pub struct Recorder<'g> {
-    gpu: &'g Gpu,
-    encoder: wgpu::CommandEncoder,
-    timer: Option<wgpu::QuerySet>,
+pub struct Timer {
+    /// `None` on adapters without timestamps: passes are counted and not measured.
+    queries: Option<wgpu::QuerySet>,
     labels: Vec<String>,
     cpu: Vec<PassTime>,
-    passes: u32,
 }
 
-impl<'g> Recorder<'g> {
-    /// A recorder; with `timed` it measures where the adapter has timestamps.
-    pub fn new(gpu: &'g Gpu, timed: bool) -> Self {
-        let timer = (timed && gpu.has(wgpu::Features::TIMESTAMP_QUERY)).then(|| {
+impl Timer {
+    /// A timer for one frame.
+    pub fn new(gpu: &Gpu) -> Self {
+        let queries = gpu.has(wgpu::Features::TIMESTAMP_QUERY).then(|| {
             gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("pass times"),
                 ty: wgpu::QueryType::Timestamp,
@@ -36,25 +35,99 @@ impl<'g> Recorder<'g> {
             })
         });
         Self {
-            gpu,
-            encoder: gpu
-                .device
-                .create_command_encoder(&wgpu::CommandEncoderDescriptor::default()),
-            timer,
+            queries,
             labels: Vec::new(),
             cpu: Vec::new(),
+        }
+    }
+
+    /// Records the copy of all timestamps, behind the frame's last pass.
+    pub fn finish(self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Times {
+        let count = self.labels.len() as u32 * 2;
+        let download = self.queries.filter(|_| count > 0).map(|queries| {
+            let bytes = u64::from(count) * 8;
+            let resolved = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pass times"),
+                size: bytes,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            encoder.resolve_query_set(&queries, 0..count, &resolved, 0);
+            Download::record(gpu, encoder, &resolved, 0..bytes)
+        });
+        Times {
+            download,
+            labels: self.labels,
+            cpu: self.cpu,
+            period: f64::from(gpu.queue.get_timestamp_period()),
+        }
+    }
+}
+
+/// The times of a frame that was recorded, on their way from the GPU.
+#[derive(Debug)]
+pub struct Times {
+    download: Option<Download>,
+    labels: Vec<String>,
+    cpu: Vec<PassTime>,
+    period: f64,
+}
+
+impl Times {
+    /// The time of work on the CPU and of every measured pass in order (none without timestamps), once the frame was submitted.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub async fn read(self) -> Result<Vec<PassTime>, GpuError> {
+        let Some(download) = self.download else {
+            return Ok(Vec::new());
+        };
+        (&download).await;
+        let ticks: Vec<u64> = download.take()?;
+        let passes = self
+            .labels
+            .into_iter()
+            .zip(ticks.chunks_exact(2))
+            .map(|(label, t)| PassTime {
+                label,
+                micros: t[1].saturating_sub(t[0]) as f64 * self.period / 1e3,
+            });
+        Ok(self.cpu.into_iter().chain(passes).collect())
+    }
+}
+
+/// Records the passes of a frame into a caller's encoder.
+#[derive(Debug)]
+pub struct Recorder<'e> {
+    gpu: &'e Gpu,
+    encoder: &'e mut wgpu::CommandEncoder,
+    timer: Option<&'e mut Timer>,
+    passes: u32,
+}
+
+impl<'e> Recorder<'e> {
+    /// Records into `encoder`; with a timer, each pass is measured.
+    pub const fn new(
+        gpu: &'e Gpu,
+        encoder: &'e mut wgpu::CommandEncoder,
+        timer: Option<&'e mut Timer>,
+    ) -> Self {
+        Self {
+            gpu,
+            encoder,
+            timer,
             passes: 0,
         }
     }
 
     /// The device this records for.
-    pub const fn gpu(&self) -> &'g Gpu {
+    pub const fn gpu(&self) -> &'e Gpu {
         self.gpu
     }
 
     /// The encoder, for copies and clears between passes.
     pub const fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
-        &mut self.encoder
+        self.encoder
     }
 
     /// Number of passes so far.
@@ -62,21 +135,47 @@ impl<'g> Recorder<'g> {
         self.passes
     }
 
-    /// Adds work of the CPU that the frame waits for to the times of its passes.
-    pub fn on_the_cpu(&mut self, label: &str, time: std::time::Duration) {
-        self.cpu.push(PassTime {
-            label: format!("{label} (CPU)"),
-            micros: time.as_secs_f64() * 1e6,
+    /// Writes to a buffer in the order of the recorded commands: what was recorded before sees the old bytes. (A queue's writes all
+    /// come before the commands of a submission.) The length must be a multiple of 4.
+    pub fn write<T: bytemuck::NoUninit>(&mut self, buffer: &wgpu::Buffer, data: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let size = bytes.len() as u64;
+        if size == 0 {
+            return;
+        }
+        let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("write"),
+            size,
+            usage: wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: true,
         });
+        if let Ok(mut view) = staging.get_mapped_range_mut(..) {
+            view.copy_from_slice(bytes);
+        }
+        staging.unmap();
+        self.encoder
+            .copy_buffer_to_buffer(&staging, 0, buffer, 0, size);
     }
 
-    fn next_query(&mut self, label: &str) -> Option<u32> {
+    /// Adds work of the CPU that the frame waits for to the times of its passes.
+    pub fn on_the_cpu(&mut self, label: &str, time: Duration) {
+        if let Some(timer) = &mut self.timer {
+            timer.cpu.push(PassTime {
+                label: format!("{label} (CPU)"),
+                micros: time.as_secs_f64() * 1e6,
+            });
+        }
+    }
+
+    fn next_query(&mut self, label: &str) -> Option<(wgpu::QuerySet, u32)> {
         self.passes += 1;
-        if self.timer.is_none() || self.labels.len() as u32 >= MAX_TIMED {
+        let timer = self.timer.as_mut()?;
+        let queries = timer.queries.clone()?;
+        if timer.labels.len() as u32 >= MAX_TIMED {
             return None;
         }
-        self.labels.push(label.to_owned());
-        Some((self.labels.len() as u32 - 1) * 2)
+        timer.labels.push(label.to_owned());
+        Some((queries, (timer.labels.len() as u32 - 1) * 2))
     }
 
     /// Begins a render pass.
@@ -91,10 +190,10 @@ impl<'g> Recorder<'g> {
             label: Some(label),
             color_attachments: colors,
             depth_stencil_attachment: depth,
-            timestamp_writes: self.timer.as_ref().zip(query).map(|(query_set, q)| {
+            timestamp_writes: query.as_ref().map(|(query_set, q)| {
                 wgpu::RenderPassTimestampWrites {
                     query_set,
-                    beginning_of_pass_write_index: Some(q),
+                    beginning_of_pass_write_index: Some(*q),
                     end_of_pass_write_index: Some(q + 1),
                 }
             }),
@@ -109,58 +208,19 @@ impl<'g> Recorder<'g> {
         self.encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some(label),
-                timestamp_writes: self.timer.as_ref().zip(query).map(|(query_set, q)| {
+                timestamp_writes: query.as_ref().map(|(query_set, q)| {
                     wgpu::ComputePassTimestampWrites {
                         query_set,
-                        beginning_of_pass_write_index: Some(q),
+                        beginning_of_pass_write_index: Some(*q),
                         end_of_pass_write_index: Some(q + 1),
                     }
                 }),
             })
     }
 
-    /// Submits what is recorded and goes on recording.
+    /// Submits what is recorded and goes on with a new encoder in its place: only for encoders of one's own.
     pub fn submit(&mut self) {
-        let next = self
-            .gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let done = std::mem::replace(&mut self.encoder, next);
+        let done = std::mem::replace(self.encoder, self.gpu.encoder());
         self.gpu.queue.submit([done.finish()]);
-    }
-
-    /// Submits the rest, waits, and returns the time of work on the CPU and of every measured pass in order (none without
-    /// timestamps).
-    ///
-    /// # Errors
-    /// A lost device, or a validation error.
-    pub fn finish(mut self) -> Result<Vec<PassTime>, GpuError> {
-        let count = self.labels.len() as u32 * 2;
-        let Some(timer) = self.timer.take().filter(|_| count > 0) else {
-            self.submit();
-            self.gpu.wait()?;
-            return Ok(Vec::new());
-        };
-        let bytes = u64::from(count) * 8;
-        let resolved = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("pass times"),
-            size: bytes,
-            usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
-        self.encoder
-            .resolve_query_set(&timer, 0..count, &resolved, 0);
-        self.submit();
-        let ticks: Vec<u64> = self.gpu.read(&resolved, 0..bytes)?;
-        let period = f64::from(self.gpu.queue.get_timestamp_period());
-        let passes = self
-            .labels
-            .into_iter()
-            .zip(ticks.chunks_exact(2))
-            .map(|(label, t)| PassTime {
-                label,
-                micros: t[1].saturating_sub(t[0]) as f64 * period / 1e3,
-            });
-        Ok(self.cpu.into_iter().chain(passes).collect())
     }
 }

@@ -10,14 +10,14 @@ use peelnet_peel::{
     harvest::Harvester,
     rows::{RawTile, ViewConstants, append_rows},
 };
-use peelnet_render::{Renderer, scene::PixelSample};
+use peelnet_render::{MethodOptions, PixelSample, Renderer};
 use peelnet_scene::suite;
 use std::{hint::black_box, time::Duration};
 
 const SIZE: [u32; 2] = [1024, 768];
 
 fn benches(c: &mut Criterion) {
-    let gpu = Gpu::new(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"));
+    let gpu = Gpu::open(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"));
     let scene = suite::load("sixteen-050").unwrap_or_else(|e| panic!("{e}"));
     let camera = scene.views[0];
     println!("adapter {}, {}×{}", gpu.info.name, SIZE[0], SIZE[1]);
@@ -48,7 +48,7 @@ fn benches(c: &mut Criterion) {
     let renderer = Renderer::new(&gpu, &scene).unwrap_or_else(|e| panic!("{e}"));
     let spec = "abuffer".parse().unwrap_or_else(|e| panic!("{e}"));
     let mut prepared = renderer
-        .prepare(&spec, SIZE, None)
+        .method(&spec, MethodOptions::sized(SIZE))
         .unwrap_or_else(|e| panic!("{e}"));
     let fragments: usize = tiles.iter().map(|t| t.depths.len()).sum();
     let mut group = c.benchmark_group("kernels");
@@ -61,7 +61,7 @@ fn benches(c: &mut Criterion) {
             let micros: f64 = (0..n)
                 .flat_map(|_| {
                     let (times, _) = renderer
-                        .time(&mut prepared, &camera)
+                        .profile(&mut prepared, &camera)
                         .unwrap_or_else(|e| panic!("{e}"));
                     times
                 })

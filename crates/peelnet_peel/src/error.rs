@@ -1,9 +1,14 @@
 /// What can go wrong while peeling.
 #[derive(Debug, thiserror::Error)]
 pub enum PeelError {
-    /// Drawing.
+    /// A scene, a frame, or the fragments of one.
     #[error(transparent)]
-    Render(#[from] peelnet_render::RenderError),
+    Raster(#[from] peelnet_raster::RasterError),
+    /// Coloured transmission: rows hold one transmittance.
+    #[error(
+        "a dataset keeps one transmittance a fragment, and this scene's transmission is coloured: make transmission_color grey"
+    )]
+    Tinted,
     /// The GPU.
     #[error(transparent)]
     Gpu(#[from] peelnet_gpu::GpuError),
@@ -20,6 +25,6 @@ pub enum PeelError {
 
 impl From<peelnet_shaders::ShaderError> for PeelError {
     fn from(e: peelnet_shaders::ShaderError) -> Self {
-        Self::Render(e.into())
+        Self::Raster(e.into())
     }
 }

@@ -11,7 +11,7 @@ use peelnet_dataset::{
     SceneEntry, Shard,
 };
 use peelnet_gpu::Gpu;
-use peelnet_render::scene::PixelSample;
+use peelnet_raster::PixelSample;
 use peelnet_scene::{Camera, Census, Scene};
 use std::{
     path::PathBuf,
@@ -227,7 +227,7 @@ fn peel(
         ..Default::default()
     };
     progress(&state);
-    let mut current: Option<((u32, u32), Scene, Harvester<'_>)> = None;
+    let mut current: Option<((u32, u32), Scene, Harvester)> = None;
     for item in mine {
         let key = (item.scene, item.copy);
         if current.as_ref().is_none_or(|(k, ..)| *k != key) {

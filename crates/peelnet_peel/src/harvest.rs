@@ -6,17 +6,15 @@ use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
-    record::Recorder,
+    record::{Recorder, Timer},
     wgpu,
 };
-use peelnet_render::{
-    RenderError,
-    passes::{
-        dual::DualPeel,
-        sbuffer::{SBuffer, Tile},
-        single::SinglePeel,
-    },
-    scene::{FrameTargets, GeometryPipelines, PixelSample, SceneBuffers},
+use peelnet_raster::{
+    FrameTargets, GeometryPipelines, PixelSample, SceneBuffers,
+    dual::DualPeel,
+    frame::Output,
+    sbuffer::{SBuffer, Tile},
+    single::SinglePeel,
 };
 use peelnet_scene::{Camera, Scene};
 use std::{fmt, str::FromStr};
@@ -81,8 +79,8 @@ struct Collector {
 
 /// A scene made ready for peeling at one frame size.
 #[derive(Debug)]
-pub struct Harvester<'g> {
-    gpu: &'g Gpu,
+pub struct Harvester {
+    gpu: Gpu,
     scene: SceneBuffers,
     frame: FrameTargets,
     opaque: Option<GeometryPipelines>,
@@ -105,13 +103,13 @@ pub struct Harvest {
     pub gpu_micros: f64,
 }
 
-impl<'g> Harvester<'g> {
+impl Harvester {
     /// Uploads a scene. `sampled` if views will be given a real [`PixelSample`]; `budget` bounds a tile's fragments.
     ///
     /// # Errors
     /// A scene or frame beyond the adapter's limits, or a feature it lacks.
     pub fn new(
-        gpu: &'g Gpu,
+        gpu: &Gpu,
         scene: &Scene,
         size: [u32; 2],
         peel: Peel,
@@ -125,9 +123,9 @@ impl<'g> Harvester<'g> {
         };
         let scene = SceneBuffers::new(gpu, scene)?;
         if scene.tinted {
-            return Err(RenderError::OneTransmittance("a dataset".into()).into());
+            return Err(PeelError::Tinted);
         }
-        let frame = scene.targets(gpu, size)?;
+        let frame = scene.targets(gpu, size, Output::Image, None)?;
         let peeler = match peel {
             Peel::SBuffer => Peeler::SBuffer,
             Peel::Dual => Peeler::Dual(DualPeel::new(gpu, &scene, &frame, features)?),
@@ -138,7 +136,7 @@ impl<'g> Harvester<'g> {
             sbuffer: SBuffer::new(gpu, &scene, &frame, budget, features)?,
             step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
             collector: None,
-            gpu,
+            gpu: gpu.clone(),
             scene,
             frame,
             peeler,
@@ -163,18 +161,21 @@ impl<'g> Harvester<'g> {
         mut next: impl FnMut() -> RawTile,
         mut ready: impl FnMut(RawTile) -> Result<(), PeelError>,
     ) -> Result<Harvest, PeelError> {
-        let gpu = self.gpu;
-        self.scene.set_view(gpu, camera, &self.frame, sample);
-        let mut recorder = Recorder::new(gpu, true);
+        // A handle, so that storage can be planned while it records.
+        let gpu = &self.gpu.clone();
+        let (mut encoder, mut timer) = (gpu.encoder(), Timer::new(gpu));
+        let mut recorder = Recorder::new(gpu, &mut encoder, Some(&mut timer));
         self.scene
-            .draw_background(&mut recorder, &self.frame, self.opaque.as_ref());
+            .set_view(&mut recorder, camera, &self.frame, sample);
+        self.scene
+            .draw_background(&mut recorder, &self.frame, self.opaque.as_ref(), None, true);
         let found = self
             .sbuffer
             .count
             .run(&mut recorder, &self.scene, &self.frame)?;
-        let (tiles, grown) = self
-            .sbuffer
-            .plan(gpu, &self.scene, &self.frame, found.total)?;
+        let (tiles, grown) =
+            self.sbuffer
+                .plan_counted(gpu, &self.scene, &self.frame, found.total)?;
         if grown {
             self.collector = self.collector()?;
         }
@@ -195,7 +196,9 @@ impl<'g> Harvester<'g> {
                 ready(raw)?;
             }
         }
-        let times = recorder.finish()?;
+        let times = timer.finish(gpu, &mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let times = gpu.block_on(times.read())?;
         Ok(Harvest {
             fragments: found.total,
             max_layers: found.most,
@@ -209,8 +212,7 @@ impl<'g> Harvester<'g> {
         let (Some(collector), Some(storage)) = (&self.collector, self.sbuffer.storage()) else {
             return;
         };
-        let queue = &self.gpu.queue;
-        queue.write_buffer(self.sbuffer.tile_buffer(), 0, bytemuck::bytes_of(tile));
+        recorder.write(self.sbuffer.tile_buffer(), &[*tile]);
         // A depth of 0 marks a slot that no pass fills.
         recorder.encoder().clear_buffer(&storage.depths, 0, None);
         let passes = match &self.peeler {
@@ -237,7 +239,7 @@ impl<'g> Harvester<'g> {
                 width: self.frame.size[0],
                 pad: [0; 2],
             };
-            queue.write_buffer(&self.step, 0, bytemuck::bytes_of(&step));
+            recorder.write(&self.step, &[step]);
             {
                 let mut pass = recorder.compute("collect");
                 pass.set_pipeline(&collector.pipeline);
@@ -245,8 +247,6 @@ impl<'g> Harvester<'g> {
                 let [x, y] = tile.dispatch();
                 pass.dispatch_workgroups(x, y, 1);
             }
-            // The step's uniform is written at submission: one submission a pass.
-            recorder.submit();
         }
     }
 
@@ -290,19 +290,20 @@ impl<'g> Harvester<'g> {
         };
         let wgsl = peelnet_shaders::link(shader, &[], &[])?;
         Ok(Some(Collector {
-            pipeline: self.gpu.compute(shader, &wgsl, &[&groups[0].layout]),
+            pipeline: self.gpu.compute(shader, &wgsl, &groups[0]),
             groups,
         }))
     }
 
     /// Reads a tile's runs back.
     fn read(&self, tile: &Tile, raw: &mut RawTile) -> Result<(), PeelError> {
-        let gpu = self.gpu;
+        let gpu = &self.gpu;
         raw.first_pixel = tile.begin;
         let pixels = u64::from(tile.begin) * 4..u64::from(tile.end) * 4 + 4;
         gpu.read_into(&self.sbuffer.count.offsets, pixels, &mut raw.offsets)?;
+        let base = raw.offsets.first().copied().unwrap_or(0);
         for offset in &mut raw.offsets {
-            *offset -= tile.base;
+            *offset -= base;
         }
         let fragments = u64::from(raw.offsets.last().copied().unwrap_or(0));
         if let Some(storage) = self.sbuffer.storage() {

@@ -4,8 +4,13 @@
 //! `cargo bench -p peelnet_render --bench plain`; frames in turn, the median of their ratios is what counts.
 
 use bytemuck::{Pod, Zeroable};
-use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, record::Recorder, wgpu};
-use peelnet_render::Renderer;
+use peelnet_gpu::{
+    AdapterRequest, Gpu,
+    bind::Bind,
+    record::{Recorder, Timer},
+    wgpu,
+};
+use peelnet_render::{MethodOptions, Renderer};
 use peelnet_scene::{Camera, Effect, Scene, suite};
 
 const SIZE: [u32; 2] = [512, 384];
@@ -136,7 +141,7 @@ impl<'g> Plain<'g> {
             }
         }
         let texture = |label, format| {
-            gpu.texture(label, format, SIZE, wgpu::TextureUsages::empty())
+            gpu.texture(label, format, SIZE, 1, wgpu::TextureUsages::empty())
                 .unwrap_or_else(|e| panic!("{e}"))
         };
         use wgpu::{BlendFactor as F, TextureFormat as T};
@@ -227,7 +232,8 @@ impl<'g> Plain<'g> {
                 },
             })
         }
-        let mut recorder = Recorder::new(self.gpu, true);
+        let (mut encoder, mut timer) = (self.gpu.encoder(), Timer::new(self.gpu));
+        let mut recorder = Recorder::new(self.gpu, &mut encoder, Some(&mut timer));
         let [r, g, b] = self.clear;
         let background = [clear(&self.background, [r, g, b, 1.0])];
         drop(recorder.render("background", &background, None));
@@ -248,7 +254,12 @@ impl<'g> Plain<'g> {
             pass.set_bind_group(0, &self.resolved.group, &[]);
             pass.draw(0..3, 0..1);
         }
-        let passes = recorder.finish().unwrap_or_else(|e| panic!("{e}"));
+        let times = timer.finish(self.gpu, &mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+        let passes = self
+            .gpu
+            .block_on(times.read())
+            .unwrap_or_else(|e| panic!("{e}"));
         let micros: f64 = passes.iter().map(|p| p.micros).sum();
         let clock = start.elapsed().as_secs_f64() * 1e6;
         (if micros > 0.0 { micros } else { clock }) / 1e3
@@ -256,7 +267,7 @@ impl<'g> Plain<'g> {
 }
 
 fn main() {
-    let gpu = Gpu::new(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"));
+    let gpu = Gpu::open(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"));
     println!(
         "adapter {}, {}x{}, wboit-eq9, medians of {FRAMES} frames in turn",
         gpu.info.name, SIZE[0], SIZE[1]
@@ -273,12 +284,12 @@ fn main() {
         assert_eq!(renderer.bindings(), ["camera", "materials"]);
         let method = "wboit-eq9".parse().unwrap_or_else(|e| panic!("{e}"));
         let mut prepared = renderer
-            .prepare(&method, SIZE, None)
+            .method(&method, MethodOptions::sized(SIZE))
             .unwrap_or_else(|e| panic!("{e}"));
         let mut times = [Vec::new(), Vec::new()];
         let mut ratios = Vec::new();
         let ours = |prepared: &mut _| {
-            let timed = renderer.time(prepared, &camera);
+            let timed = renderer.profile(prepared, &camera);
             let (passes, wall) = timed.unwrap_or_else(|e| panic!("{e}"));
             let micros: f64 = passes.iter().map(|p| p.micros).sum();
             (if micros > 0.0 { micros } else { wall }) / 1e3
@@ -303,7 +314,7 @@ fn main() {
             .read_rgba32f(&plain.image)
             .unwrap_or_else(|e| panic!("{e}"));
         let frame = renderer
-            .draw(&mut prepared, &camera)
+            .image(&mut prepared, &camera)
             .unwrap_or_else(|e| panic!("{e}"));
         let differs = |(a, b): (&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-3);
         let apart = image

@@ -1,3 +1,4 @@
+use peelnet_raster::RasterError;
 use std::path::PathBuf;
 
 /// What can go wrong while drawing.
@@ -9,10 +10,13 @@ pub enum RenderError {
     /// A shader did not link.
     #[error(transparent)]
     Shader(#[from] peelnet_shaders::ShaderError),
+    /// A frame, or the fragments of one.
+    #[error(transparent)]
+    Raster(RasterError),
     /// Not a method's name.
     #[error("there is no method '{name}'; there are: {known}")]
     UnknownMethod {
-        /// What was asked for.
+        /// The name asked for.
         name: String,
         /// The names there are.
         known: String,
@@ -26,39 +30,21 @@ pub enum RenderError {
         message: String,
     },
     /// A learned method without its network.
-    #[error("method {0} draws with a trained network: give its model file with --model")]
+    #[error("method {0} draws with a trained network, and none was given")]
     NeedsModel(String),
-    /// Light that takes a colour where it passes, and a method that keeps one transmittance for all colours.
+    /// Coloured transmission, and a method that keeps one transmittance for all channels.
     #[error(
         "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of {tinted}, \
          or make transmission_color grey",
         tinted = crate::methods::tinted()
     )]
     OneTransmittance(String),
-    /// A frame without pixels.
-    #[error("a frame of {width}×{height} pixels: both sides must be at least 1")]
-    EmptyFrame {
-        /// Width asked for.
-        width: u32,
-        /// Height asked for.
-        height: u32,
-    },
-    /// One pixel alone has more fragments than storage holds.
-    #[error(
-        "{fragments} fragments lie in one pixel but storage holds {capacity}; \
-         raise the budget, or use single peeling, which needs no storage per fragment"
-    )]
-    PixelOverBudget {
-        /// Fragments in the fullest pixel.
-        fragments: u64,
-        /// Fragments that storage holds.
-        capacity: u64,
-    },
-    /// More fragments than 32-bit offsets can count.
-    #[error(
-        "a frame holds {0} fragments or more, beyond what 32-bit offsets can count; draw it in smaller frames"
-    )]
-    TooManyFragments(u64),
+    /// A target that a frame cannot be drawn onto.
+    #[error("the target cannot be drawn onto: {0}")]
+    Target(String),
+    /// A frame whose counts changed every time it was drawn.
+    #[error("the frame was drawn {0} times and never had room for all of its fragments")]
+    NeverWhole(u32),
     /// An image file could not be written.
     #[error("cannot write image {path}: {message}")]
     Image {
@@ -67,4 +53,14 @@ pub enum RenderError {
         /// The reason.
         message: String,
     },
+}
+
+impl From<RasterError> for RenderError {
+    fn from(e: RasterError) -> Self {
+        match e {
+            RasterError::Gpu(e) => Self::Gpu(e),
+            RasterError::Shader(e) => Self::Shader(e),
+            e => Self::Raster(e),
+        }
+    }
 }

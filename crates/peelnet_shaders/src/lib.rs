@@ -5,6 +5,7 @@
 //! it is the only place that knows the linker (WESL). Text that is not in the repository — an exported network, a
 //! method's constants — joins as an extra module. [`validate`] runs naga over the result.
 
+pub use naga;
 pub use peelnet_wgsl::SOURCES;
 
 use std::{
@@ -126,7 +127,7 @@ fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
         .map_err(|_| ShaderError::Path(path.to_owned()))
 }
 
-/// Parses and validates WGSL with naga, with the portable capabilities and those given.
+/// Parses and validates WGSL with naga, with the portable capabilities and those given. Returns naga's module and what it knows of it.
 ///
 /// # Errors
 /// [`ShaderError::Invalid`] with the source lines naga points at.
@@ -134,16 +135,16 @@ pub fn validate(
     label: &str,
     wgsl: &str,
     capabilities: naga::valid::Capabilities,
-) -> Result<naga::Module, ShaderError> {
+) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
     let invalid = |message: String| ShaderError::Invalid {
         label: label.to_owned(),
         message,
     };
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| invalid(e.emit_to_string(wgsl)))?;
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|e| invalid(e.emit_to_string(wgsl)))?;
-    Ok(module)
+    Ok((module, info))
 }
 
 #[cfg(test)]

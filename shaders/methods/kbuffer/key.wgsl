@@ -5,7 +5,7 @@ import package::scene::surface::Surface;
 
 fn first_place(surface: Surface) -> u32 {
     let pixel = vec2u(surface.position.xy);
-    return (pixel.y * camera.frame.x + pixel.x) * K;
+    return (pixel.y * camera.frame_size.x + pixel.x) * K;
 }
 
 // Larger for smaller depths: positive floats order as their bits do. Never 0, which stands for no fragment.

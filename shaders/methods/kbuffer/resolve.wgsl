@@ -18,7 +18,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
-    let first = (pixel.y * textureDimensions(background).x + pixel.x) * K;
+    let first = (pixel.y * textureDimensions(sums).x + pixel.x) * K;
     var color = vec3f(0.0);
     var transmittance = 1.0;
     // Places of one depth, from `run` on, are composited by triangle: `last` is that of the one before.

@@ -34,5 +34,5 @@ fn fragment_main(surface: Surface) {
         colors[2u * node] = shade(surface);
         colors[2u * node + 1u] = vec4f(covering(surface), 0.0);
     }
-    next[node] = atomicExchange(&heads[pixel.y * camera.frame.x + pixel.x], node + 1u);
+    next[node] = atomicExchange(&heads[pixel.y * camera.frame_size.x + pixel.x], node + 1u);
 }

@@ -4,11 +4,17 @@
 @if(opaque) import package::scene::camera::Camera;
 import package::helpers::screen::screen_corner;
 
+// The full resolution in pixels.
+struct Extent {
+    size: vec2u,
+}
+
 @group(0) @binding(0) var low: texture_2d<f32>;
 @group(0) @binding(1) var background: texture_2d<f32>;
-@if(opaque) @group(0) @binding(2) var low_depth: texture_depth_2d;
-@if(opaque) @group(0) @binding(3) var full_depth: texture_depth_2d;
-@if(opaque) @group(0) @binding(4) var<uniform> camera: Camera;
+@group(0) @binding(2) var<uniform> full: Extent;
+@if(opaque) @group(0) @binding(3) var low_depth: texture_depth_2d;
+@if(opaque) @group(0) @binding(4) var full_depth: texture_depth_2d;
+@if(opaque) @group(0) @binding(5) var<uniform> camera: Camera;
 
 // Relative difference of depth that counts as the same surface. A sample on another surface, one depth further, keeps
 // EPSILON squared of its weight.
@@ -25,7 +31,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let size = vec2f(textureDimensions(low));
-    let at = position.xy * size / vec2f(textureDimensions(background)) - 0.5;
+    let at = position.xy * size / vec2f(full.size) - 0.5;
     let corner = floor(at);
     let part = at - corner;
     let pixel = vec2u(position.xy);
@@ -38,8 +44,8 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         var weight = near.x * near.y;
         @if(opaque) {
             // Inverse linear depths but for a common factor.
-            let ours = camera.depth_scale.w - textureLoad(full_depth, pixel, 0);
-            let theirs = camera.depth_scale.w - textureLoad(low_depth, sample, 0);
+            let ours = camera.window_depth_at_infinity - textureLoad(full_depth, pixel, 0);
+            let theirs = camera.window_depth_at_infinity - textureLoad(low_depth, sample, 0);
             let apart = (ours - theirs) / min(ours, theirs);
             weight = (weight + FLOOR) / (EPSILON * EPSILON + apart * apart);
         }

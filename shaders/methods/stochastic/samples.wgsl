@@ -22,5 +22,5 @@ fn covered(surface: Surface, alpha: f32) -> Covered {
 
 // Index of the t-th covered sample.
 fn sample(pixel: vec2u, c: Covered, t: u32) -> u32 {
-    return (pixel.y * camera.frame.x + pixel.x) * SAMPLES + ((c.offset + t * c.stride) & (SAMPLES - 1u));
+    return (pixel.y * camera.frame_size.x + pixel.x) * SAMPLES + ((c.offset + t * c.stride) & (SAMPLES - 1u));
 }

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {
     let adapters = report();
     // Opening the device is the only proof that the driver works.
-    let opened = Gpu::new(&context.global.adapter);
+    let opened = Gpu::open(&context.global.adapter);
     let used = opened.as_ref().ok().map(|gpu| gpu.info.name.clone());
     context.console.result(
         || text(&adapters, used.as_deref(), &context.global.adapter),

@@ -8,7 +8,7 @@ use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Summary};
 use peelnet_eval::effects::{self, Cost, Settings};
 use peelnet_model::Model;
-use peelnet_render::{FrameStats, MethodSpec, Renderer, scene::shader_bytes};
+use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
 use peelnet_scene::{Census, Effect, Scene, suite};
 use serde_json::json;
 use std::path::Path;
@@ -194,8 +194,8 @@ fn count(context: &Context<'_>, scene: &Scene) -> Result<FrameStats, Failure> {
         .ok_or_else(|| Failure::Failed("the scene has no view".to_owned()))?;
     let renderer = Renderer::new(&gpu, scene)?;
     let exact: MethodSpec = peelnet_eval::compare::EXACT.parse()?;
-    let mut prepared = renderer.prepare(&exact, COUNTED_AT, None)?;
-    Ok(renderer.draw(&mut prepared, camera)?.stats)
+    let mut prepared = renderer.method(&exact, MethodOptions::sized(COUNTED_AT))?;
+    Ok(renderer.image(&mut prepared, camera)?.stats)
 }
 
 fn scene_text(

@@ -39,7 +39,7 @@ pub struct Context<'a> {
 impl Context<'_> {
     /// Opens the adapter that the flags ask for.
     fn gpu(&self) -> Result<Gpu, Failure> {
-        Ok(Gpu::new(&self.global.adapter)?)
+        Ok(Gpu::open(&self.global.adapter)?)
     }
 
     /// Says that a command got through with less memory than it would have taken.

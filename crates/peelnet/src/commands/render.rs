@@ -5,7 +5,7 @@ use crate::cli::RenderArgs;
 use crate::failure::Failure;
 use crate::learned;
 use crate::progress::thousands;
-use peelnet_render::{Frame, LayerView, Renderer};
+use peelnet_render::{Frame, LayerView, MethodOptions, Renderer};
 use serde_json::json;
 use std::path::Path;
 
@@ -34,14 +34,17 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     let learned = learned::weight_of(&gpu, &args.method, args.model.as_deref())?;
     let renderer = Renderer::new(&gpu, &scene)?;
     let mut prepared = match layers {
-        Some(view) => renderer.prepare_layers(view, args.size.0)?,
-        None => renderer.prepare(&args.method, args.size.0, learned.as_ref())?,
+        Some(view) => renderer.layers(view, args.size.0)?,
+        None => renderer.method(
+            &args.method,
+            MethodOptions::sized(args.size.0).with(learned.as_ref()),
+        )?,
     };
     let method = layers.map_or_else(
         || args.method.to_string(),
         |view| format!("layer {}", view.highlight),
     );
-    let frame = renderer.draw(&mut prepared, camera)?;
+    let frame = renderer.image(&mut prepared, camera)?;
     context.check_interrupt()?;
     super::create_folder_of(&args.out)?;
     frame.image.save(&args.out)?;

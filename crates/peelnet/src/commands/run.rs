@@ -15,7 +15,7 @@ use peelnet_eval::{Machine, Partial, Row};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views};
-use peelnet_render::{LearnedWeight, MethodSpec, Renderer};
+use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_report::{Attachments, Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
 use peelnet_train::{Config, Outcome, RunOptions, curve_chart};
@@ -328,8 +328,8 @@ fn count(gpu: &Gpu, scenes: &[Scene], frame: Size) -> Result<u64, Failure> {
             continue;
         };
         let renderer = Renderer::new(gpu, scene)?;
-        let mut prepared = renderer.prepare(&exact, frame.0, None)?;
-        let stats = renderer.draw(&mut prepared, camera)?.stats;
+        let mut prepared = renderer.method(&exact, MethodOptions::sized(frame.0))?;
+        let stats = renderer.image(&mut prepared, camera)?.stats;
         fragments += stats.fragments.unwrap_or(0) * scene.views.len() as u64;
     }
     Ok(fragments)

@@ -17,7 +17,7 @@ mod trial;
 
 pub use catalogue::{CASES, Case, Examine, Work};
 pub use network::Network;
-pub use peelnet_render::{Flaw, Property};
+pub use peelnet_render::{Flaw, MethodOptions, Property};
 pub use properties::Finding;
 pub use subject::Subject;
 pub use trial::{Kind, Stack, Trial, Truth};
@@ -25,7 +25,7 @@ pub use trial::{Kind, Stack, Trial, Truth};
 use crate::{EvalError, compare::EXACT, compare::image_name, transmittance};
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
-use peelnet_render::{Image, Renderer, scene::Submission};
+use peelnet_render::{Image, Renderer, Submission};
 use peelnet_scene::Camera;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
@@ -234,7 +234,7 @@ pub type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
 
 /// The exact image of every view.
 fn exact_images(
-    renderer: &Renderer<'_>,
+    renderer: &Renderer,
     scene: &str,
     size: [u32; 2],
     views: &[Camera],
@@ -242,10 +242,12 @@ fn exact_images(
     let failed = || EvalError::render(scene, EXACT);
     // The name is in the list.
     let method = EXACT.parse().map_err(failed())?;
-    let mut prepared = renderer.prepare(&method, size, None).map_err(failed())?;
+    let mut prepared = renderer
+        .method(&method, MethodOptions::sized(size))
+        .map_err(failed())?;
     let mut draw = |camera| {
         renderer
-            .draw(&mut prepared, camera)
+            .image(&mut prepared, camera)
             .map(|frame| frame.image)
     };
     views
@@ -258,9 +260,9 @@ fn exact_images(
 struct Stage<'a> {
     trial: &'a Trial,
     truth: Truth,
-    renderer: Renderer<'a>,
+    renderer: Renderer,
     /// The scene at other scales, with the exact image; made when first asked for.
-    scaled: Vec<(Renderer<'a>, Camera, Image)>,
+    scaled: Vec<(Renderer, Camera, Image)>,
     gpu: &'a Gpu,
 }
 
@@ -294,16 +296,17 @@ impl<'a> Stage<'a> {
         let failed = || EvalError::render(&self.trial.scene.name, &method);
         let learned = subject.learned.as_ref().map(|(text, _)| text);
         let views = &self.trial.scene.views;
-        let prepared = self
-            .renderer
-            .prepare(&subject.method, self.trial.size, learned);
+        let prepared = self.renderer.method(
+            &subject.method,
+            MethodOptions::sized(self.trial.size).with(learned),
+        );
         let mut prepared = prepared.map_err(failed())?;
-        let drawn = self.renderer.draw(&mut prepared, &views[0]);
+        let drawn = self.renderer.image(&mut prepared, &views[0]);
         let first = drawn.map_err(failed())?.image;
         properties::judge(subject, case.id, self.trial, &self.truth, &first, note);
         let mut last = first.clone();
         for (k, camera) in views.iter().enumerate().skip(1) {
-            let next = self.renderer.draw(&mut prepared, camera);
+            let next = self.renderer.image(&mut prepared, camera);
             let next = next.map_err(failed())?.image;
             let exact = [&exact[k - 1], &exact[k]];
             properties::compare_frames([&last, &next], exact, note);
@@ -312,7 +315,7 @@ impl<'a> Stage<'a> {
         if !subject.method.is_scaled() {
             for order in ORDERS {
                 self.renderer.submit(order);
-                let other = self.renderer.draw(&mut prepared, &views[0]);
+                let other = self.renderer.image(&mut prepared, &views[0]);
                 let other = other.map_err(failed())?.image;
                 properties::compare_orders(subject, &self.truth, [&first, &other], note);
             }
@@ -321,9 +324,12 @@ impl<'a> Stage<'a> {
         if let Some((text, model)) = &subject.learned {
             self.scale()?;
             for (renderer, camera, exact_scaled) in &self.scaled {
-                let prepared = renderer.prepare(&subject.method, self.trial.size, Some(text));
+                let prepared = renderer.method(
+                    &subject.method,
+                    MethodOptions::sized(self.trial.size).with(Some(text)),
+                );
                 let mut prepared = prepared.map_err(failed())?;
-                let other = renderer.draw(&mut prepared, camera);
+                let other = renderer.image(&mut prepared, camera);
                 let other = other.map_err(failed())?.image;
                 let exact = [&exact[0], exact_scaled];
                 properties::compare_scales([&first, &other], exact, note);

@@ -10,7 +10,7 @@ use peelnet_core::{
 };
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::scene::PixelSample;
+use peelnet_render::PixelSample;
 use peelnet_scene::{Material, Object, Scene};
 
 /// Layers that cover some pixels of the frame whole.

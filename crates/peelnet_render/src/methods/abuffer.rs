@@ -1,17 +1,24 @@
 //! `abuffer`: every fragment stored, sorted and composited (S-buffer, Vasilakis & Fudos 2012).
+//!
+//! A frame's storage has the room that an earlier frame needed. Fragments beyond it are left out and counted, and the next frame has room.
 
-use super::{Build, Compositor, Count, DrawContext, FrameStats, Method, Parameter, Promises, Role};
-use crate::{
-    RenderError,
-    passes::sbuffer::{FragmentStorage, SBuffer, bytes_per_fragment},
-    scene::{FrameTargets, SceneBuffers},
+use super::{
+    Build, Compositor, Count, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
+    Role, present::Present,
 };
+use crate::RenderError;
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
     wgpu,
 };
+use peelnet_raster::{
+    FrameTargets, SceneBuffers,
+    count::CountPass,
+    sbuffer::{SBuffer, Tile, bytes_per_fragment},
+};
+use std::ops::Range;
 
 const BUDGET: Count = Count {
     name: "budget",
@@ -34,25 +41,33 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
+/// Fragments that the first frame has room for, a pixel, where nothing is known yet.
+pub(super) const FIRST_GUESS: u64 = 4;
+
 #[derive(Debug)]
 struct ABuffer {
     sbuffer: SBuffer,
-    composite: wgpu::ComputePipeline,
-    group: Option<Bound>,
+    wgsl: String,
+    composite: Option<(wgpu::ComputePipeline, Bound)>,
+    background: wgpu::TextureView,
+    present: Present,
     tinted: bool,
+    /// Of the last plan; empty before the first.
+    tiles: Vec<Tile>,
+    /// Offsets of the frame at the ends of its tiles, for frames of several.
+    ends: wgpu::Buffer,
+    /// Whether the tiles come from counts, not from a guess.
+    is_counted: bool,
+    /// Whether the next frame's offsets are needed to plan its tiles.
+    wants_offsets: bool,
+    version: u64,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let features: &[&str] = if b.scene.tinted { &["tinted"] } else { &[] };
     let wgsl = peelnet_shaders::link("methods::abuffer::composite", features, &[])?;
-    build_with(
-        b.gpu,
-        b.scene,
-        b.frame,
-        BUDGET.given(b.spec),
-        features,
-        &wgsl,
-    )
+    let budget = BUDGET.given(b.spec);
+    build_with(b.gpu, b.scene, b.frame, budget, features, wgsl)
 }
 
 /// Stores, sorts and hands every pixel's run to a compute shader; `features` are those of storing.
@@ -62,73 +77,166 @@ pub(super) fn build_with(
     frame: &FrameTargets,
     budget: Option<u64>,
     features: &[&str],
-    wgsl: &str,
+    wgsl: String,
 ) -> Result<Box<dyn Compositor>, RenderError> {
-    let sbuffer = SBuffer::new(gpu, scene, frame, budget, features)?;
-    // Storage is sized by the first frame; the layout does not depend on it, so any buffer stands in for it here.
-    let layout = group(gpu, &sbuffer, &sbuffer.count.counts, frame).layout;
     Ok(Box::new(ABuffer {
-        composite: gpu.compute("composite", wgsl, &[&layout]),
-        group: None,
-        sbuffer,
+        sbuffer: SBuffer::new(gpu, scene, frame, budget, features)?,
+        wgsl,
+        composite: None,
+        background: frame.background.clone(),
+        present: Present::new(gpu, frame)?,
         tinted: features.contains(&"tinted"),
+        tiles: Vec::new(),
+        ends: gpu.storage("tile ends", 4)?,
+        is_counted: false,
+        wants_offsets: false,
+        version: 0,
     }))
 }
 
-fn group(gpu: &Gpu, sbuffer: &SBuffer, colors: &wgpu::Buffer, frame: &FrameTargets) -> Bound {
-    gpu.bind(
-        "composite",
-        wgpu::ShaderStages::COMPUTE,
-        &[
-            Bind::Uniform(sbuffer.tile_buffer()),
-            Bind::Read(&sbuffer.count.offsets),
-            Bind::Read(colors),
-            Bind::Texture(&frame.background),
-            Bind::Store(&frame.image),
-        ],
-    )
+impl ABuffer {
+    /// Plans the tiles of a frame; without `offsets` it may find that it needs them.
+    fn plan(
+        &mut self,
+        gpu: &Gpu,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        total: u64,
+        offsets: Option<&[u32]>,
+    ) -> Result<bool, RenderError> {
+        let planned = self.sbuffer.plan(gpu, scene, frame, total, offsets)?;
+        let Some((tiles, is_new)) = planned else {
+            return Ok(false);
+        };
+        let ends = tiles.len() as u64 * 4;
+        if self.ends.size() < ends {
+            self.ends = gpu.storage("tile ends", ends)?;
+        }
+        if let (true, Some(storage)) = (is_new || self.composite.is_none(), self.sbuffer.storage())
+        {
+            let group = gpu.bind(
+                "composite",
+                wgpu::ShaderStages::COMPUTE,
+                &[
+                    Bind::Uniform(self.sbuffer.tile_buffer()),
+                    Bind::Read(&self.sbuffer.count.offsets),
+                    Bind::Read(&storage.colors),
+                    Bind::Texture(&self.background),
+                    Bind::Store(&self.present.image),
+                ],
+            );
+            let pipeline = gpu.compute("composite", &self.wgsl, &group);
+            self.composite = Some((pipeline, group));
+        }
+        self.tiles = tiles;
+        self.version += 1;
+        Ok(true)
+    }
+
+    /// Whether every tile had room for its fragments. `ends` are the offsets at the tiles' ends, where there are several.
+    fn had_room(&self, total: u64, ends: Option<&Vec<u32>>) -> bool {
+        let several = ends.filter(|_| self.tiles.len() > 1);
+        let last = [u32::try_from(total).unwrap_or(u32::MAX)];
+        let ends: &[u32] = several.map_or(&last, |ends| ends);
+        let mut begin = 0;
+        self.tiles.iter().zip(ends).all(|(tile, &end)| {
+            let load = end.wrapping_sub(begin);
+            begin = end;
+            load <= tile.capacity
+        })
+    }
 }
 
 impl Compositor for ABuffer {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
         let gpu = cx.recorder.gpu();
-        let found = self.sbuffer.count.run(cx.recorder, cx.scene, cx.frame)?;
-        let (tiles, grown) = self.sbuffer.plan(gpu, cx.scene, cx.frame, found.total)?;
-        if grown || self.group.is_none() {
-            let colors = self
-                .sbuffer
-                .storage()
-                .map_or(&self.sbuffer.count.counts, |s| &s.colors);
-            self.group = Some(group(gpu, &self.sbuffer, colors, cx.frame));
+        self.sbuffer.count.encode(cx.recorder, cx.scene, cx.frame);
+        if cx.only_count {
+            return Ok(FrameStats::default());
         }
-        for tile in &tiles {
+        if self.tiles.is_empty() {
+            let guess = u64::from(cx.frame.pixels()) * FIRST_GUESS;
+            let guess = guess.min(self.sbuffer.limit());
+            self.plan(gpu, cx.scene, cx.frame, guess, None)?;
+        }
+        for (number, tile) in (0..).zip(&self.tiles) {
             self.sbuffer
                 .store_and_sort(cx.recorder, cx.scene, cx.frame, tile);
-            let mut pass = cx.recorder.compute("composite");
-            pass.set_pipeline(&self.composite);
-            pass.set_bind_group(0, self.group.as_ref().map(|g| &g.group), &[]);
-            let [x, y] = tile.dispatch();
-            pass.dispatch_workgroups(x, y, 1);
-            drop(pass);
-            // The tile's uniform is written at submission: one submission a tile.
-            cx.recorder.submit();
+            if let Some((pipeline, group)) = &self.composite {
+                let mut pass = cx.recorder.compute("composite");
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &group.group, &[]);
+                let [x, y] = tile.dispatch();
+                pass.dispatch_workgroups(x, y, 1);
+            }
+            let offsets = &self.sbuffer.count.offsets;
+            let end = u64::from(tile.end) * 4;
+            cx.recorder
+                .encoder()
+                .copy_buffer_to_buffer(offsets, end, &self.ends, number * 4, 4);
         }
-        let pixels = f64::from(cx.frame.pixels());
+        self.present.draw(cx);
+        Ok(FrameStats {
+            tiles: self.tiles.len() as u32,
+            geometry_passes: 1 + self.tiles.len() as u32,
+            fullscreen_passes: 3 + 2 * self.tiles.len() as u32,
+            ..Default::default()
+        })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.is_counted
+    }
+
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+        let count = &self.sbuffer.count;
+        let tiles = self.tiles.len().max(1) as u64;
+        let mut all = vec![
+            (count.total.clone(), CountPass::TOTAL),
+            (self.ends.clone(), 0..tiles * 4),
+        ];
+        if self.wants_offsets {
+            all.push((count.offsets.clone(), 0..count.offsets.size()));
+        }
+        all
+    }
+
+    fn learn(
+        &mut self,
+        cx: &Learning<'_>,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        let found = CountPass::found(&words[0])?;
+        stats.fragments = Some(found.total);
+        stats.max_layers = Some(found.most);
         let bytes = bytes_per_fragment(self.tinted);
-        let stored = if tiles.len() > 1 {
-            FragmentStorage::limit(gpu, None, self.tinted).min(found.total)
+        let stored = if self.tiles.len() > 1 {
+            self.sbuffer.limit().min(found.total)
         } else {
             found.total
         };
-        Ok(FrameStats {
-            fragments: Some(found.total),
-            max_layers: Some(found.most),
-            lost: 0,
-            tiles: tiles.len() as u32,
-            geometry_passes: 1 + tiles.len() as u32,
-            fullscreen_passes: 3 + 2 * tiles.len() as u32,
-            // Count, offset and the unwritten attachment; then the fragments.
-            bytes_per_pixel: 9.0 + (stored * bytes) as f64 / pixels,
-        })
+        // Count, offset and the unwritten attachment; then the fragments.
+        stats.bytes_per_pixel = 9.0 + (stored * bytes) as f64 / f64::from(cx.frame.pixels());
+        let is_whole = !self.tiles.is_empty() && self.had_room(found.total, words.get(1));
+        let one_would_do = self.tiles.len() > 1 && found.total <= self.sbuffer.limit();
+        if is_whole && !one_would_do {
+            self.is_counted = true;
+            return Ok(Fit::Whole);
+        }
+        let limit = self.sbuffer.limit();
+        let room = if found.total <= limit {
+            cx.room(found.total).min(limit)
+        } else {
+            found.total
+        };
+        let offsets = words.get(2).map(Vec::as_slice);
+        self.is_counted = self.plan(cx.gpu, cx.scene, cx.frame, room, offsets)?;
+        self.wants_offsets = !self.is_counted;
+        Ok(if is_whole { Fit::Whole } else { Fit::TooSmall })
+    }
+
+    fn version(&self) -> u64 {
+        self.version
     }
 }

@@ -5,16 +5,17 @@
 //! All but the painter's methods give the same image whatever the order of drawing.
 
 use super::{Build, Compositor, DrawContext, FrameStats, Precision};
-use crate::{
-    RenderError,
-    passes::count::{unwritten, unwritten_attachment, unwritten_texture},
-    passes::fullscreen::FullscreenPass,
-    scene::{GeometryPass, GeometryPipelines, Order, Sorted, Surfaces, clear_color},
-};
+use crate::RenderError;
 use peelnet_core::guards::HALF_MAX;
 use peelnet_gpu::{
     bind::{Bind, Bound},
     wgpu,
+};
+use peelnet_raster::{
+    GeometryPass, GeometryPipelines, Order, Sorted, Surfaces,
+    count::{unwritten, unwritten_attachment, unwritten_texture},
+    frame::clear_color,
+    fullscreen::FullscreenPass,
 };
 
 /// How a target blends.
@@ -226,6 +227,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
             t.label,
             t.format(is_full(t)),
             b.frame.size,
+            1,
             wgpu::TextureUsages::empty(),
         )?;
         targets.push((view, t.blend));
@@ -273,9 +275,9 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
                 shader: gather.shader,
                 features: &features,
                 extra: gather.extra,
-                group: group.as_ref().map(|g| &g.layout),
+                group: group.as_ref(),
                 targets: &states,
-                depth: None,
+                ..GeometryPass::NONE
             },
         )?;
         passes.push(BuiltPass {
@@ -299,13 +301,13 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     if all_targets.iter().any(full_sums) {
         resolve_features.push("full_sums");
     }
-    let resolve = FullscreenPass::new(
+    let resolve = FullscreenPass::resolve(
         b.gpu,
         plan.resolve,
         &resolve_features,
         plan.resolve_extra,
         &entries,
-        &[Some(wgpu::TextureFormat::Rgba32Float.into())],
+        b.frame.output,
     )?;
     let blended: u32 = all_targets.iter().map(|t| t.bytes(is_full(t))).sum();
     let stored: u32 = plan.storage.iter().map(|s| s.bytes).sum();
@@ -325,7 +327,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
 impl Compositor for Commutative {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
         if let Some(sorted) = &mut self.sorted {
-            sorted.sort(cx);
+            sorted.sort(cx.recorder, cx.scene, cx.camera);
         }
         for buffer in &self.storage {
             cx.recorder.encoder().clear_buffer(buffer, 0, None);
@@ -353,8 +355,8 @@ impl Compositor for Commutative {
                     .draw(&mut pass, cx.frame, Surfaces::Transparent, &p.pipelines),
             }
         }
-        self.resolve
-            .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);
+        let output = cx.output();
+        self.resolve.draw(cx.recorder, &[output]);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: self.passes.len() as u32,

@@ -1,17 +1,18 @@
 //! `depth-peel`: front to back, one layer a pass (Everitt 2001), until a pass peels nothing.
 
-use super::{Build, Compositor, Count, DrawContext, FrameStats, Method, Parameter, Promises};
-use crate::{
-    Flaw, Property, RenderError,
-    passes::{
-        count::CountPass,
-        fullscreen::FullscreenPass,
-        single::{self, SinglePeel},
-    },
-    scene::clear_color,
+use super::{
+    Build, Compositor, Count, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
+    peeling::Passes,
 };
+use crate::{Flaw, Property, RenderError};
 use peelnet_core::methods::over;
 use peelnet_gpu::{bind::Bind, wgpu};
+use peelnet_raster::{
+    frame::clear_color,
+    fullscreen::FullscreenPass,
+    single::{self, SinglePeel},
+};
+use std::ops::Range;
 
 pub(super) const PASSES: Count = Count {
     name: "passes",
@@ -54,9 +55,7 @@ struct DepthPeel {
     /// By parity of the pass, without and with counting.
     under: [[FullscreenPass; 2]; 2],
     resolve: [FullscreenPass; 2],
-    found: wgpu::Buffer,
-    count: Option<CountPass>,
-    max_passes: u64,
+    passes: Passes,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
@@ -68,11 +67,12 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             "accumulated",
             format,
             frame.size,
+            1,
             wgpu::TextureUsages::empty(),
         )
     };
     let accumulated = [texture()?, texture()?];
-    let found = gpu.storage("found", 8)?;
+    let passes = Passes::new(gpu, 1, PASSES.given(b.spec))?;
     let target = [Some(format.into())];
     let under = |features: &[&str], from: usize| {
         FullscreenPass::new(
@@ -84,13 +84,13 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Bind::Texture(&accumulated[from]),
                 Bind::Texture(&peel.layer),
                 Bind::Uint(&peel.keys[1 - from]),
-                Bind::Write(&found),
+                Bind::Write(&passes.found),
             ],
             &target,
         )
     };
     let resolve = |from: usize| {
-        FullscreenPass::new(
+        FullscreenPass::resolve(
             gpu,
             "methods::depth_peel::resolve",
             &[],
@@ -99,7 +99,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Bind::Texture(&frame.background),
                 Bind::Texture(&accumulated[from]),
             ],
-            &target,
+            frame.output,
         )
     };
     Ok(Box::new(DepthPeel {
@@ -110,49 +110,61 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         resolve: [resolve(0)?, resolve(1)?],
         peel,
         accumulated,
-        found,
-        count: None,
-        max_passes: PASSES.given(b.spec).unwrap_or(u64::MAX),
+        passes,
     }))
 }
 
 impl Compositor for DepthPeel {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        let gpu = cx.recorder.gpu();
-        let total = super::dual_peel::count(&mut self.count, cx)?;
+        let passes = self.passes.begin(cx)?;
+        if cx.only_count {
+            return Ok(FrameStats::default());
+        }
         self.peel.init(cx.recorder);
         drop(cx.recorder.render(
             "clear",
             &[clear_color(&self.accumulated[0], [0.0, 0.0, 0.0, 1.0])],
             None,
         ));
-        let (mut passes, mut peeled) = (0u32, 0u64);
-        while u64::from(passes) < self.max_passes {
-            let from = (passes % 2) as usize;
-            cx.recorder.encoder().clear_buffer(&self.found, 0, None);
-            self.peel.peel(cx.recorder, cx.scene, cx.frame, passes);
+        for number in 0..passes {
+            let from = (number % 2) as usize;
+            self.passes.before(cx);
+            self.peel.peel(cx.recorder, cx.scene, cx.frame, number);
             self.under[usize::from(cx.counting)][from].draw(
                 cx.recorder,
                 &[clear_color(&self.accumulated[1 - from], [0.0; 4])],
             );
-            cx.recorder.submit();
-            passes += 1;
-            let found: Vec<u32> = gpu.read(&self.found, 0..8)?;
-            peeled += u64::from(found[1]);
-            if found[0] == 0 {
-                break;
-            }
+            self.passes.after(cx, number);
         }
-        self.resolve[(passes % 2) as usize]
-            .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);
+        let output = cx.output();
+        self.resolve[(passes % 2) as usize].draw(cx.recorder, &[output]);
         Ok(FrameStats {
-            fragments: total.map(|t| t.total),
-            max_layers: total.map(|t| t.most),
-            lost: total.map_or(0, |t| t.total - peeled),
             tiles: 1,
             geometry_passes: passes,
             fullscreen_passes: passes + 3,
             bytes_per_pixel: single::BYTES_PER_PIXEL + 2.0 * 16.0,
+            ..Default::default()
         })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.passes.is_known()
+    }
+
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+        self.passes.feedback()
+    }
+
+    fn learn(
+        &mut self,
+        cx: &Learning<'_>,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        self.passes.learn(cx, words, stats)
+    }
+
+    fn version(&self) -> u64 {
+        self.passes.version()
     }
 }

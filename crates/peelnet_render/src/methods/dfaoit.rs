@@ -7,18 +7,17 @@ use super::{
     depth_peel::COINCIDENT,
     weighted::SUMS,
 };
-use crate::{
-    RenderError,
-    passes::{
-        fullscreen::FullscreenPass,
-        single::{self, SinglePeel},
-    },
-    scene::{GeometryPass, GeometryPipelines, Surfaces, clear_color},
-};
+use crate::RenderError;
 use peelnet_core::methods::dfaoit;
 use peelnet_gpu::{
     bind::{Bind, Bound},
     wgpu,
+};
+use peelnet_raster::{
+    GeometryPass, GeometryPipelines, Surfaces,
+    frame::clear_color,
+    fullscreen::FullscreenPass,
+    single::{self, SinglePeel},
 };
 
 pub(super) const METHOD: Method = Method {
@@ -84,7 +83,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         },
     ];
     let texture =
-        |label, format| gpu.texture(label, format, frame.size, wgpu::TextureUsages::empty());
+        |label, format| gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty());
     let format = wgpu::TextureFormat::Rgba32Float;
     let front = [texture("front", format)?, texture("front", format)?];
     let sums = [
@@ -122,14 +121,13 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         &GeometryPass {
             label: "tail",
             shader: "methods::dfaoit::tail",
-            features: &[],
             extra: &extra,
-            group: Some(&second.layout),
+            group: Some(&second),
             targets: &targets.map(|t| Some(t.state(full))),
-            depth: None,
+            ..GeometryPass::NONE
         },
     )?;
-    let resolve = FullscreenPass::new(
+    let resolve = FullscreenPass::resolve(
         gpu,
         "methods::dfaoit::resolve",
         &[],
@@ -140,7 +138,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             Bind::Texture(&sums[0]),
             Bind::Texture(&sums[1]),
         ],
-        &image,
+        frame.output,
     )?;
     let bytes = targets
         .map(|t| f64::from(t.bytes(full)))
@@ -178,8 +176,8 @@ impl Compositor for Dfaoit {
             cx.scene
                 .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.tail);
         }
-        self.resolve
-            .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);
+        let output = cx.output();
+        self.resolve.draw(cx.recorder, &[output]);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: FRONT + 1,

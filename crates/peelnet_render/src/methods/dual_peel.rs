@@ -2,19 +2,18 @@
 //! (Bavoil & Myers 2008).
 
 use super::{
-    Build, Compositor, DrawContext, FrameStats, Method, Parameter, Promises, depth_peel::PASSES,
+    Build, Compositor, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
+    depth_peel::PASSES, peeling::Passes,
 };
-use crate::{
-    Flaw, Property, RenderError,
-    passes::{
-        count::{CountPass, FragmentCount},
-        dual::{self, DualPeel},
-        fullscreen::FullscreenPass,
-    },
-    scene::{attachment, clear_color},
-};
+use crate::{Flaw, Property, RenderError};
 use peelnet_core::methods::over;
 use peelnet_gpu::{bind::Bind, wgpu};
+use peelnet_raster::{
+    dual::{self, DualPeel},
+    frame::{attachment, clear_color},
+    fullscreen::FullscreenPass,
+};
+use std::ops::Range;
 
 const fn coplanar(property: Property) -> Flaw {
     let reason = "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)";
@@ -58,9 +57,7 @@ struct Dual {
     /// By parity of the pass, without and with counting.
     blend: [[FullscreenPass; 2]; 2],
     resolve: FullscreenPass,
-    found: wgpu::Buffer,
-    count: Option<CountPass>,
-    max_passes: u64,
+    passes: Passes,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
@@ -69,9 +66,9 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let peel = DualPeel::new(gpu, b.scene, frame, &[])?;
     let format = wgpu::TextureFormat::Rgba32Float;
     let texture =
-        |label: &str| gpu.texture(label, format, frame.size, wgpu::TextureUsages::empty());
+        |label: &str| gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty());
     let (fronts, backs) = (texture("fronts")?, texture("backs")?);
-    let found = gpu.storage("found", 8)?;
+    let passes = Passes::new(gpu, 2, PASSES.given(b.spec))?;
     let component = |src_factor, dst_factor| wgpu::BlendComponent {
         src_factor,
         dst_factor,
@@ -103,12 +100,12 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Bind::Texture(&peel.ranges[1 - from]),
                 Bind::Texture(&peel.front),
                 Bind::Texture(&peel.back),
-                Bind::Write(&found),
+                Bind::Write(&passes.found),
             ],
             &targets,
         )
     };
-    let resolve = FullscreenPass::new(
+    let resolve = FullscreenPass::resolve(
         gpu,
         "methods::dual_peel::resolve",
         &[],
@@ -118,7 +115,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             Bind::Texture(&fronts),
             Bind::Texture(&backs),
         ],
-        &[Some(format.into())],
+        frame.output,
     )?;
     Ok(Box::new(Dual {
         blend: [
@@ -129,31 +126,16 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         fronts,
         backs,
         resolve,
-        found,
-        count: None,
-        max_passes: PASSES.given(b.spec).unwrap_or(u64::MAX),
+        passes,
     }))
-}
-
-/// Counts the frame's fragments where statistics are asked for.
-pub(super) fn count(
-    pass: &mut Option<CountPass>,
-    cx: &mut DrawContext<'_, '_>,
-) -> Result<Option<FragmentCount>, RenderError> {
-    if !cx.counting {
-        return Ok(None);
-    }
-    let counter = match pass {
-        Some(counter) => counter,
-        None => pass.insert(CountPass::new(cx.recorder.gpu(), cx.scene, cx.frame, &[])?),
-    };
-    counter.run(cx.recorder, cx.scene, cx.frame).map(Some)
 }
 
 impl Compositor for Dual {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        let gpu = cx.recorder.gpu();
-        let total = count(&mut self.count, cx)?;
+        let passes = self.passes.begin(cx)?;
+        if cx.only_count {
+            return Ok(FrameStats::default());
+        }
         self.peel.init(cx.recorder, cx.scene, cx.frame);
         let start = [0.0, 0.0, 0.0, 1.0];
         drop(cx.recorder.render(
@@ -164,35 +146,47 @@ impl Compositor for Dual {
             ],
             None,
         ));
-        let (mut passes, mut peeled) = (0u32, 0u64);
-        while u64::from(passes) < self.max_passes {
-            cx.recorder.encoder().clear_buffer(&self.found, 0, None);
-            self.peel.peel(cx.recorder, cx.scene, cx.frame, passes);
-            self.blend[usize::from(cx.counting)][(passes % 2) as usize].draw(
+        for number in 0..passes {
+            self.passes.before(cx);
+            self.peel.peel(cx.recorder, cx.scene, cx.frame, number);
+            self.blend[usize::from(cx.counting)][(number % 2) as usize].draw(
                 cx.recorder,
                 &[
                     attachment(&self.fronts, wgpu::LoadOp::Load),
                     attachment(&self.backs, wgpu::LoadOp::Load),
                 ],
             );
-            cx.recorder.submit();
-            passes += 1;
-            let found: Vec<u32> = gpu.read(&self.found, 0..8)?;
-            peeled += u64::from(found[1]);
-            if found[0] == 0 {
-                break;
-            }
+            self.passes.after(cx, number);
         }
-        self.resolve
-            .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);
+        let output = cx.output();
+        self.resolve.draw(cx.recorder, &[output]);
         Ok(FrameStats {
-            fragments: total.map(|t| t.total),
-            max_layers: total.map(|t| t.most),
-            lost: total.map_or(0, |t| t.total - peeled),
             tiles: 1,
             geometry_passes: passes + 1,
             fullscreen_passes: passes + 2,
             bytes_per_pixel: dual::BYTES_PER_PIXEL + 2.0 * 16.0,
+            ..Default::default()
         })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.passes.is_known()
+    }
+
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+        self.passes.feedback()
+    }
+
+    fn learn(
+        &mut self,
+        cx: &Learning<'_>,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        self.passes.learn(cx, words, stats)
+    }
+
+    fn version(&self) -> u64 {
+        self.passes.version()
     }
 }

@@ -2,11 +2,9 @@
 //! sorted fragments of the S-buffer, and is no method of transparency.
 
 use super::{Compositor, abuffer};
-use crate::{
-    RenderError,
-    scene::{FrameTargets, SceneBuffers},
-};
+use crate::RenderError;
 use peelnet_gpu::Gpu;
+use peelnet_raster::{FrameTargets, SceneBuffers};
 
 /// The share of a pixel that the highlighted fragment takes where others lie in front of it.
 pub const HIGHLIGHT_SHARE: f32 = 0.5;
@@ -40,5 +38,5 @@ pub(crate) fn build(
         features,
         &[("parameters", &parameters)],
     )?;
-    abuffer::build_with(gpu, scene, frame, None, &["layered"], &wgsl)
+    abuffer::build_with(gpu, scene, frame, None, &["layered"], wgsl)
 }

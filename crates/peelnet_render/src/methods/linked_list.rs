@@ -1,22 +1,24 @@
 //! `linked-list`: every fragment in its pixel's linked list, in one geometry pass (Yang, Hensley, Grün & Thibieroz 2010).
 //!
-//! A pool that turns out too small is made larger and the pass drawn again: nothing is dropped.
+//! A pool that turns out too small is made larger for the next frame, which counts as too small until then: nothing is dropped silently.
 
-use super::{Build, Compositor, Count, DrawContext, FrameStats, Method, Parameter, Promises};
-use crate::{
-    RenderError,
-    passes::{
-        count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
-        sbuffer::{FragmentStorage, bytes_per_fragment},
-    },
-    scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
+use super::{
+    Build, Compositor, Count, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
+    abuffer::FIRST_GUESS, present::Present,
 };
+use crate::RenderError;
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
     wgpu,
 };
+use peelnet_raster::{
+    FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces,
+    count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
+    sbuffer::{FragmentStorage, bytes_per_fragment},
+};
+use std::ops::Range;
 
 const NODES: Count = Count {
     name: "nodes",
@@ -37,16 +39,23 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-/// Nodes that the first frame gets for each pixel.
-const FIRST_GUESS: u64 = 4;
-
 #[derive(Debug)]
 struct LinkedList {
+    shared: Shared,
+    attachment: wgpu::TextureView,
+    present: Present,
+    pool: Pool,
+    version: u64,
+}
+
+/// What every pool is bound with.
+#[derive(Debug)]
+struct Shared {
     heads: wgpu::Buffer,
     used: wgpu::Buffer,
     extent: wgpu::Buffer,
-    attachment: wgpu::TextureView,
-    pool: Pool,
+    background: wgpu::TextureView,
+    image: wgpu::TextureView,
 }
 
 #[derive(Debug)]
@@ -61,23 +70,27 @@ struct Pool {
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
     let pixels = frame.pixels();
-    let heads = gpu.storage("list heads", u64::from(pixels) * 4)?;
-    let used = gpu.storage("nodes used", 4)?;
     let [width, height] = frame.size;
-    let extent = gpu.upload(
-        "extent",
-        &[width, height, groups_2d(pixels)[0], 0],
-        wgpu::BufferUsages::UNIFORM,
-    );
+    let present = Present::of(b)?;
+    let shared = Shared {
+        heads: gpu.storage("list heads", u64::from(pixels) * 4)?,
+        used: gpu.storage("nodes used", 4)?,
+        extent: gpu.upload(
+            "extent",
+            &[width, height, groups_2d(pixels)[0], 0],
+            wgpu::BufferUsages::UNIFORM,
+        ),
+        background: frame.background.clone(),
+        image: present.image.clone(),
+    };
     let nodes = NODES.given(b.spec);
     let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);
-    let pool = Pool::new(gpu, b.scene, frame, [&heads, &used, &extent], first)?;
     Ok(Box::new(LinkedList {
         attachment: unwritten_texture(gpu, frame)?,
-        heads,
-        used,
-        extent,
-        pool,
+        pool: Pool::new(gpu, b.scene, frame, &shared, first)?,
+        shared,
+        present,
+        version: 0,
     }))
 }
 
@@ -86,7 +99,7 @@ impl Pool {
         gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
-        [heads, used, extent]: [&wgpu::Buffer; 3],
+        shared: &Shared,
         nodes: u64,
     ) -> Result<Self, RenderError> {
         let features: &[&str] = if scene.tinted { &["tinted"] } else { &[] };
@@ -96,8 +109,8 @@ impl Pool {
             "build",
             wgpu::ShaderStages::FRAGMENT,
             &[
-                Bind::Write(heads),
-                Bind::Write(used),
+                Bind::Write(&shared.heads),
+                Bind::Write(&shared.used),
                 Bind::Write(&next),
                 Bind::Write(&storage.depths),
                 Bind::Write(&storage.triangles),
@@ -112,24 +125,23 @@ impl Pool {
                 label: "build",
                 shader: "methods::linked_list::build",
                 features,
-                extra: &[],
-                group: Some(&build_group.layout),
+                group: Some(&build_group),
                 targets: &[unwritten()],
-                depth: None,
+                ..GeometryPass::NONE
             },
         )?;
         let composite_group = gpu.bind(
             "composite",
             wgpu::ShaderStages::COMPUTE,
             &[
-                Bind::Uniform(extent),
-                Bind::Read(heads),
+                Bind::Uniform(&shared.extent),
+                Bind::Read(&shared.heads),
                 Bind::Write(&next),
                 Bind::Read(&storage.depths),
                 Bind::Read(&storage.triangles),
                 Bind::Read(&storage.colors),
-                Bind::Texture(&frame.background),
-                Bind::Store(&frame.image),
+                Bind::Texture(&shared.background),
+                Bind::Store(&shared.image),
             ],
         );
         let wgsl = peelnet_shaders::link("methods::linked_list::composite", features, &[])?;
@@ -137,7 +149,7 @@ impl Pool {
             nodes,
             build,
             build_group,
-            composite: gpu.compute("composite", &wgsl, &[&composite_group.layout]),
+            composite: gpu.compute("composite", &wgsl, &composite_group),
             composite_group,
         })
     }
@@ -145,31 +157,17 @@ impl Pool {
 
 impl Compositor for LinkedList {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        let gpu = cx.recorder.gpu();
-        let mut geometry_passes = 0;
-        let total = loop {
-            cx.recorder.encoder().clear_buffer(&self.heads, 0, None);
-            cx.recorder.encoder().clear_buffer(&self.used, 0, None);
-            {
-                let attachment = [unwritten_attachment(&self.attachment)];
-                let mut pass = cx.recorder.render("build", &attachment, None);
-                pass.set_bind_group(1, &self.pool.build_group.group, &[]);
-                let build = &self.pool.build;
-                cx.scene
-                    .draw(&mut pass, cx.frame, Surfaces::Transparent, build);
-            }
-            cx.recorder.submit();
-            geometry_passes += 1;
-            let used: Vec<u32> = gpu.read(&self.used, 0..4)?;
-            let needed = u64::from(used[0]);
-            if needed <= self.pool.nodes {
-                break needed;
-            }
-            // A quarter more, so that a moving camera does not redo every frame.
-            let nodes = needed + needed / 4;
-            let shared = [&self.heads, &self.used, &self.extent];
-            self.pool = Pool::new(gpu, cx.scene, cx.frame, shared, nodes)?;
-        };
+        let encoder = cx.recorder.encoder();
+        encoder.clear_buffer(&self.shared.heads, 0, None);
+        encoder.clear_buffer(&self.shared.used, 0, None);
+        {
+            let attachment = [unwritten_attachment(&self.attachment)];
+            let mut pass = cx.recorder.render("build", &attachment, None);
+            pass.set_bind_group(1, &self.pool.build_group.group, &[]);
+            let build = &self.pool.build;
+            cx.scene
+                .draw(&mut pass, cx.frame, Surfaces::Transparent, build);
+        }
         {
             let mut pass = cx.recorder.compute("composite");
             pass.set_pipeline(&self.pool.composite);
@@ -177,17 +175,43 @@ impl Compositor for LinkedList {
             let [x, y] = groups_2d(cx.frame.pixels());
             pass.dispatch_workgroups(x, y, 1);
         }
+        self.present.draw(cx);
         let pixels = f64::from(cx.frame.pixels());
         // The fragment and a link.
         let node = bytes_per_fragment(cx.scene.tinted) + 4;
         Ok(FrameStats {
-            fragments: Some(total),
             tiles: 1,
-            geometry_passes,
+            geometry_passes: 1,
             fullscreen_passes: 1,
             // Heads and the unwritten attachment; then the pool.
             bytes_per_pixel: 5.0 + (self.pool.nodes * node) as f64 / pixels,
             ..Default::default()
         })
+    }
+
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+        vec![(self.shared.used.clone(), 0..4)]
+    }
+
+    fn learn(
+        &mut self,
+        cx: &Learning<'_>,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        let needed = u64::from(words[0][0]);
+        stats.fragments = Some(needed);
+        if needed <= self.pool.nodes {
+            return Ok(Fit::Whole);
+        }
+        // A quarter more, so that a moving camera does not grow it every frame.
+        let nodes = needed + needed / 4;
+        self.pool = Pool::new(cx.gpu, cx.scene, cx.frame, &self.shared, nodes)?;
+        self.version += 1;
+        Ok(Fit::TooSmall)
+    }
+
+    fn version(&self) -> u64 {
+        self.version
     }
 }

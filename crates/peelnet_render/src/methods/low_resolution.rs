@@ -1,15 +1,17 @@
 //! `scale=S`, a parameter of every method: transparency at S times the resolution, upsampled by depth.
 //!
-//! The method composites over black, at its own size and against its own opaque depth. What comes out is normalised,
+//! The method composites over black, at its own size and against its own opaque depth. The result is normalised,
 //! premultiplied colour with coverage, which may be interpolated; sums and moments may not.
 
-use super::{Build, Compositor, DrawContext, FrameStats};
-use crate::{
-    RenderError,
-    passes::fullscreen::FullscreenPass,
-    scene::{FrameTargets, GeometryPipelines, PixelSample, clear_color},
-};
+use super::{Build, Compositor, DrawContext, Fit, FrameStats, Learning};
+use crate::RenderError;
 use peelnet_gpu::{bind::Bind, wgpu};
+use peelnet_raster::{
+    FrameTargets, GeometryPipelines, OpaqueDepth, PixelSample,
+    frame::{Output, clear_color},
+    fullscreen::FullscreenPass,
+};
+use std::ops::Range;
 
 /// Colour over black, the black itself, and the opaque depth, at the lower resolution.
 const BYTES_PER_SAMPLE: f64 = 16.0 + 16.0 + 4.0;
@@ -23,36 +25,55 @@ struct LowResolution {
 }
 
 pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, RenderError> {
-    let size = b
-        .frame
+    let full = b.frame;
+    if full.depth.as_ref().is_some_and(|d| d.is_callers) {
+        return Err(RenderError::Target(format!(
+            "{} draws at a lower resolution, against opaque surfaces of the scene: leave the target's depth out",
+            b.spec
+        )));
+    }
+    if full.depth.as_ref().is_some_and(|d| d.samples() > 1) {
+        return Err(RenderError::Target(format!(
+            "{} upsamples by the depth of opaque surfaces, which has several samples a pixel here: use a target of one sample",
+            b.spec
+        )));
+    }
+    let size = full
         .size
         .map(|n| ((n as f32 * scale).round() as u32).max(1));
-    let frame = b.scene.targets_of(b.gpu, size, b.frame.aspect)?;
+    let frame = b
+        .scene
+        .targets_of(b.gpu, size, full.aspect, Output::Image, None)?;
     let opaque = b.scene.opaque_pipelines(b.gpu, &frame)?;
     let method = (b.spec.method().build)(&Build {
         frame: &frame,
         ..*b
     })?;
+    let image = frame.storage_image(b.gpu)?;
+    let [width, height] = full.size;
+    let extent = b.gpu.upload(
+        "full extent",
+        &[width, height, 0, 0],
+        wgpu::BufferUsages::UNIFORM,
+    );
     let mut entries = vec![
-        Bind::Texture(&frame.image),
-        Bind::Texture(&b.frame.background),
+        Bind::Texture(&image),
+        Bind::Texture(&full.background),
+        Bind::Uniform(&extent),
     ];
     let mut features: &[&str] = &[];
-    if let (Some(low), Some(full)) = (&frame.depth, &b.frame.depth) {
-        entries.extend([
-            Bind::Depth(low),
-            Bind::Depth(full),
-            Bind::Uniform(b.scene.camera_buffer()),
-        ]);
+    if let (Some(low), Some(full)) = (&frame.depth, &full.depth) {
+        entries.extend([low, full].map(OpaqueDepth::bind));
+        entries.push(Bind::Uniform(b.scene.camera_buffer()));
         features = &["opaque"];
     }
-    let upsample = FullscreenPass::new(
+    let upsample = FullscreenPass::resolve(
         b.gpu,
         "methods::low_resolution::upsample",
         features,
         &[],
         &entries,
-        &[Some(wgpu::TextureFormat::Rgba32Float.into())],
+        full.output,
     )?;
     Ok(Box::new(LowResolution {
         frame,
@@ -64,26 +85,51 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
 
 impl Compositor for LowResolution {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
+        let output = cx.output();
         let frame = &self.frame;
-        // The opaque image is already recorded, and reads nothing of the frame's size.
         cx.scene
-            .set_view(cx.recorder.gpu(), cx.camera, frame, PixelSample::ALL);
+            .set_view(cx.recorder, cx.camera, frame, PixelSample::ALL);
         cx.scene
-            .draw_background(cx.recorder, frame, self.opaque.as_ref());
+            .draw_background(cx.recorder, frame, self.opaque.as_ref(), None, true);
         let black = [clear_color(&frame.background, [0.0, 0.0, 0.0, 1.0])];
         drop(cx.recorder.render("black", &black, None));
         let stats = self.method.draw(&mut DrawContext {
             recorder: cx.recorder,
             frame,
+            target: None,
             ..*cx
         })?;
-        self.upsample
-            .draw(cx.recorder, &[clear_color(&cx.frame.image, [0.0; 4])]);
+        self.upsample.draw(cx.recorder, &[output]);
         let samples = f64::from(frame.pixels()) / f64::from(cx.frame.pixels());
         Ok(FrameStats {
             fullscreen_passes: stats.fullscreen_passes + 2,
             bytes_per_pixel: (stats.bytes_per_pixel + BYTES_PER_SAMPLE) * samples,
             ..stats
         })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.method.is_ready()
+    }
+
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+        self.method.feedback()
+    }
+
+    fn learn(
+        &mut self,
+        cx: &Learning<'_>,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        let cx = Learning {
+            frame: &self.frame,
+            ..*cx
+        };
+        self.method.learn(&cx, words, stats)
+    }
+
+    fn version(&self) -> u64 {
+        self.method.version()
     }
 }

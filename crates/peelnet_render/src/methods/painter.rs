@@ -5,8 +5,9 @@ use super::{
     Build, Compositor, Method, MethodSpec, Parameter, Promises, Role, TARGETS, Word,
     commutative::{self, Blend, Gather, Plan, Target},
 };
-use crate::{Flaw, Property, RenderError, scene::Order};
+use crate::{Flaw, Property, RenderError};
 use peelnet_core::{fragment::Fragment, methods::over};
+use peelnet_raster::Order;
 
 const SORT: Word = Word {
     name: "sort",

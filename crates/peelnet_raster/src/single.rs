@@ -2,11 +2,8 @@
 //! on coplanar fragments, see `peel/single.wgsl`.
 
 use crate::{
-    RenderError,
-    scene::{
-        FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces, attachment,
-        clear_color, depth_state,
-    },
+    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
+    frame::{attachment, clear_color, depth_state},
 };
 use peelnet_gpu::{
     Gpu,
@@ -40,9 +37,9 @@ impl SinglePeel {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
-    ) -> Result<Self, RenderError> {
+    ) -> Result<Self, RasterError> {
         let texture = |label: &str, format| {
-            gpu.texture(label, format, frame.size, wgpu::TextureUsages::empty())
+            gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty())
         };
         let (key_format, layer_format) = (
             wgpu::TextureFormat::Rg32Uint,
@@ -67,10 +64,14 @@ impl SinglePeel {
                 label: "peel",
                 shader: "peel::single",
                 features,
-                extra: &[],
-                group: Some(&groups[0].layout),
+                group: Some(&groups[0]),
                 targets: &[Some(layer_format.into()), Some(key_format.into())],
-                depth: Some(depth_state(true, wgpu::CompareFunction::Less)),
+                depth: Some(depth_state(
+                    wgpu::TextureFormat::Depth32Float,
+                    true,
+                    wgpu::CompareFunction::Less,
+                )),
+                ..GeometryPass::NONE
             },
         )?;
         Ok(Self {

@@ -5,8 +5,8 @@
 //! flaw, which callers count as fragments found less than there are.
 
 use crate::{
-    RenderError,
-    scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces, clear_color},
+    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
+    frame::clear_color,
 };
 use peelnet_gpu::{
     Gpu, GpuError,
@@ -45,26 +45,26 @@ impl DualPeel {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
-    ) -> Result<Self, RenderError> {
-        const MEND: &str = "use --peel sbuffer or single, or the methods abuffer or depth-peel";
+    ) -> Result<Self, RasterError> {
+        const HINT: &str = "use S-buffer or single peeling, or the methods abuffer or depth-peel";
         gpu.need(
             wgpu::Features::FLOAT32_BLENDABLE,
             "float32-blendable",
             "dual depth peeling",
-            MEND,
+            HINT,
         )?;
         const SAMPLE_BYTES: u32 = 8 + 16 + 16;
         if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
-            return Err(RenderError::Gpu(GpuError::TooLarge {
+            return Err(RasterError::Gpu(GpuError::TooLarge {
                 what: "dual depth peeling, for its colour targets (bytes a sample),".into(),
                 needed: u64::from(SAMPLE_BYTES),
                 limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
                 adapter: gpu.info.name.clone(),
-                mend: MEND,
+                hint: HINT,
             }));
         }
         let texture = |label: &str, format| {
-            gpu.texture(label, format, frame.size, wgpu::TextureUsages::empty())
+            gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty())
         };
         let (range_format, layer_format) = (
             wgpu::TextureFormat::Rg32Float,
@@ -105,10 +105,8 @@ impl DualPeel {
                 label: "dual init",
                 shader: "peel::dual_init",
                 features,
-                extra: &[],
-                group: None,
                 targets: &[max(range_format)],
-                depth: None,
+                ..GeometryPass::NONE
             },
         )?;
         let peel = scene.pipelines(
@@ -119,10 +117,9 @@ impl DualPeel {
                 label: "dual peel",
                 shader: "peel::dual",
                 features,
-                extra: &[],
-                group: Some(&groups[0].layout),
+                group: Some(&groups[0]),
                 targets: &[max(range_format), max(layer_format), max(layer_format)],
-                depth: None,
+                ..GeometryPass::NONE
             },
         )?;
         Ok(Self {

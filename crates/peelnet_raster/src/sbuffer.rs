@@ -4,9 +4,8 @@
 //! whose fragments fit. Nothing is dropped.
 
 use crate::{
-    RenderError,
-    passes::count::{CountPass, groups_2d, unwritten},
-    scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
+    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
+    count::{CountPass, groups_2d, unwritten},
 };
 use bytemuck::{Pod, Zeroable};
 use peelnet_gpu::{
@@ -34,18 +33,18 @@ pub struct Tile {
     pub begin: u32,
     /// One past the last pixel.
     pub end: u32,
-    /// Offset of the first pixel's first fragment in the whole frame.
-    pub base: u32,
+    /// Fragments that storage holds; those beyond are left out, and seen in the counts.
+    pub capacity: u32,
     groups: u32,
 }
 
 impl Tile {
-    /// A tile over the pixels `begin..end`, whose first fragment is the frame's fragment `base`.
-    pub fn new(begin: u32, end: u32, base: u32) -> Self {
+    /// A tile over the pixels `begin..end`, in storage of `capacity` fragments.
+    pub fn new(begin: u32, end: u32, capacity: u64) -> Self {
         Self {
             begin,
             end,
-            base,
+            capacity: u32::try_from(capacity).unwrap_or(u32::MAX),
             groups: groups_2d(end - begin)[0],
         }
     }
@@ -71,8 +70,8 @@ impl Tile {
 /// Tiles are whole rows where a row fits, else runs inside one row.
 ///
 /// # Errors
-/// [`RenderError::PixelOverBudget`] where a single pixel does not fit.
-pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, RenderError> {
+/// [`RasterError::PixelOverBudget`] where a single pixel does not fit.
+pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, RasterError> {
     let pixels = offsets.len() as u32 - 1;
     let load = |begin: u32, end: u32| u64::from(offsets[end as usize] - offsets[begin as usize]);
     let mut tiles = Vec::new();
@@ -92,12 +91,12 @@ pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, Re
             }
         }
         if end == begin {
-            return Err(RenderError::PixelOverBudget {
+            return Err(RasterError::PixelOverBudget {
                 fragments: load(begin, begin + 1),
                 capacity,
             });
         }
-        tiles.push(Tile::new(begin, end, offsets[begin as usize]));
+        tiles.push(Tile::new(begin, end, capacity));
         begin = end;
     }
     Ok(tiles)
@@ -116,11 +115,16 @@ pub struct FragmentStorage {
 }
 
 impl FragmentStorage {
-    /// Storage for `fragments` fragments, with two colours each where light is `tinted`.
+    /// Fragments that it holds.
+    pub const fn capacity(&self) -> u64 {
+        self.capacity
+    }
+
+    /// Storage for `fragments` fragments, with two colours each where transmission is coloured (`tinted`).
     ///
     /// # Errors
     /// More than a storage binding holds.
-    pub fn new(gpu: &Gpu, fragments: u64, tinted: bool) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, fragments: u64, tinted: bool) -> Result<Self, RasterError> {
         Ok(Self {
             depths: gpu.storage("fragment depths", fragments * 4)?,
             triangles: gpu.storage("fragment triangles", fragments * 4)?,
@@ -172,7 +176,7 @@ impl SBuffer {
         frame: &FrameTargets,
         budget: Option<u64>,
         features: &[&str],
-    ) -> Result<Self, RenderError> {
+    ) -> Result<Self, RasterError> {
         Ok(Self {
             count: CountPass::new(gpu, scene, frame, features)?,
             store: None,
@@ -180,6 +184,11 @@ impl SBuffer {
             features: features.iter().map(|&f| f.to_owned()).collect(),
             limit: FragmentStorage::limit(gpu, budget, features.contains(&"tinted")),
         })
+    }
+
+    /// Fragments that one tile may hold: what the adapter, the budget and memory allow.
+    pub const fn limit(&self) -> u64 {
+        self.limit
     }
 
     /// Uniform that holds the tile being worked on.
@@ -192,8 +201,9 @@ impl SBuffer {
         self.store.as_ref().map(|k| &k.storage)
     }
 
-    /// Decides the tiles of a counted frame and makes storage for the largest; tells whether storage was made anew. Where the GPU
-    /// has no memory for it, tiles get smaller until they fit.
+    /// Decides the tiles of a frame of `total` fragments and makes storage for the largest; returns whether storage was made anew, or
+    /// `None` where the frame needs several tiles and so the offsets of its pixels. Where the GPU has no memory for it, tiles get
+    /// smaller until they fit.
     ///
     /// # Errors
     /// A pixel that does not fit, or a lost device.
@@ -203,34 +213,61 @@ impl SBuffer {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         total: u64,
-    ) -> Result<(Vec<Tile>, bool), RenderError> {
+        offsets: Option<&[u32]>,
+    ) -> Result<Option<(Vec<Tile>, bool)>, RasterError> {
         let pixels = frame.pixels();
         loop {
-            let (tiles, largest) = if total <= self.limit {
-                (vec![Tile::new(0, pixels, 0)], total)
-            } else {
-                let offsets: Vec<u32> =
-                    gpu.read(&self.count.offsets, 0..u64::from(pixels) * 4 + 4)?;
-                let tiles = tiles(&offsets, frame.size[0], self.limit)?;
+            let (mut tiles, largest) = if total <= self.limit {
+                (vec![Tile::new(0, pixels, total)], total)
+            } else if let Some(offsets) = offsets {
+                let tiles = tiles(offsets, frame.size[0], self.limit)?;
                 (tiles, self.limit)
+            } else {
+                return Ok(None);
             };
-            if self.storage().is_some_and(|s| s.capacity >= largest) {
-                return Ok((tiles, false));
+            let known = self.storage().map(|s| s.capacity);
+            let capacity = known.filter(|&c| c >= largest);
+            for tile in &mut tiles {
+                *tile = Tile::new(tile.begin, tile.end, capacity.unwrap_or(largest));
+            }
+            if capacity.is_some() {
+                return Ok(Some((tiles, false)));
             }
             // The old storage goes first, so that both are never held at once.
             self.store = None;
             match self.kernels(gpu, scene, frame, largest) {
                 Ok(kernels) => {
                     self.store = Some(kernels);
-                    return Ok((tiles, true));
+                    return Ok(Some((tiles, true)));
                 }
                 // Smaller tiles, from now on, until a pixel does not fit.
-                Err(RenderError::Gpu(GpuError::OutOfMemory { .. })) if largest > 1 => {
+                Err(RasterError::Gpu(GpuError::OutOfMemory { .. })) if largest > 1 => {
                     self.limit = largest / 2;
                 }
                 Err(e) => return Err(e),
             }
         }
+    }
+
+    /// The same, reading offsets back where they are needed.
+    ///
+    /// # Errors
+    /// See [`Self::plan`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn plan_counted(
+        &mut self,
+        gpu: &Gpu,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        total: u64,
+    ) -> Result<(Vec<Tile>, bool), RasterError> {
+        if let Some(planned) = self.plan(gpu, scene, frame, total, None)? {
+            return Ok(planned);
+        }
+        let bytes = u64::from(frame.pixels()) * 4 + 4;
+        let offsets: Vec<u32> = gpu.read(&self.count.offsets, 0..bytes)?;
+        let planned = self.plan(gpu, scene, frame, total, Some(&offsets))?;
+        Ok(planned.unwrap_or_default())
     }
 
     fn kernels(
@@ -239,7 +276,7 @@ impl SBuffer {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         fragments: u64,
-    ) -> Result<Kernels, RenderError> {
+    ) -> Result<Kernels, RasterError> {
         let tinted = self.features.iter().any(|f| f == "tinted");
         let storage = FragmentStorage::new(gpu, fragments, tinted)?;
         let store_group = gpu.bind(
@@ -263,10 +300,9 @@ impl SBuffer {
                 label: "store",
                 shader: "peel::store",
                 features: &features,
-                extra: &[],
-                group: Some(&store_group.layout),
+                group: Some(&store_group),
                 targets: &[unwritten()],
-                depth: None,
+                ..GeometryPass::NONE
             },
         )?;
         let sort_group = gpu.bind(
@@ -283,7 +319,7 @@ impl SBuffer {
         let sort = gpu.compute(
             "peel::sort",
             &peelnet_shaders::link("peel::sort", if tinted { &["tinted"] } else { &[] }, &[])?,
-            &[&sort_group.layout],
+            &sort_group,
         );
         Ok(Kernels {
             storage,
@@ -294,7 +330,7 @@ impl SBuffer {
         })
     }
 
-    /// Stores and sorts one tile's fragments. [`Self::plan`] must have been called for this frame.
+    /// Stores and sorts one tile's fragments, in storage that [`Self::plan`] made.
     pub fn store_and_sort(
         &self,
         recorder: &mut Recorder<'_>,
@@ -305,10 +341,7 @@ impl SBuffer {
         let Some(kernels) = &self.store else {
             return;
         };
-        recorder
-            .gpu()
-            .queue
-            .write_buffer(&self.tile, 0, bytemuck::bytes_of(tile));
+        recorder.write(&self.tile, &[*tile]);
         {
             let mut pass = recorder.render("store", &[self.count.attachment()], None);
             let [x, y, w, h] = tile.scissor(frame.size[0]);
@@ -344,8 +377,9 @@ mod tests {
             let tiles = tiles(&offsets, 10, capacity).expect("fits");
             let mut next = 0;
             for t in &tiles {
-                assert_eq!((t.begin, t.base), (next, offsets[next as usize]));
-                assert!(u64::from(offsets[t.end as usize] - t.base) <= capacity);
+                assert_eq!((t.begin, u64::from(t.capacity)), (next, capacity));
+                let load = offsets[t.end as usize] - offsets[t.begin as usize];
+                assert!(u64::from(load) <= capacity);
                 // A tile is whole rows or lies inside one.
                 assert!((t.begin % 10 == 0 && t.end % 10 == 0) || t.begin / 10 == (t.end - 1) / 10);
                 next = t.end;
@@ -359,7 +393,7 @@ mod tests {
         let result = tiles(&offsets(&[1, 9, 1]), 3, 8);
         assert!(matches!(
             result,
-            Err(RenderError::PixelOverBudget {
+            Err(RasterError::PixelOverBudget {
                 fragments: 9,
                 capacity: 8
             })

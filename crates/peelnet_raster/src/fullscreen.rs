@@ -1,6 +1,6 @@
 //! A pass over every pixel, without geometry.
 
-use crate::RenderError;
+use crate::{RasterError, frame::Output};
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
@@ -28,12 +28,49 @@ impl FullscreenPass {
         extra: &[(&str, &str)],
         entries: &[Bind<'_>],
         targets: &[Option<wgpu::ColorTargetState>],
-    ) -> Result<Self, RenderError> {
+    ) -> Result<Self, RasterError> {
+        Self::with_samples(gpu, shader, features, extra, entries, targets, 1)
+    }
+
+    /// The same for the pass that writes finished pixels to where the frame's output goes.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn resolve(
+        gpu: &Gpu,
+        shader: &str,
+        features: &[&str],
+        extra: &[(&str, &str)],
+        entries: &[Bind<'_>],
+        output: Output,
+    ) -> Result<Self, RasterError> {
+        let targets = [Some(output.state())];
+        Self::with_samples(
+            gpu,
+            shader,
+            features,
+            extra,
+            entries,
+            &targets,
+            output.samples(),
+        )
+    }
+
+    fn with_samples(
+        gpu: &Gpu,
+        shader: &str,
+        features: &[&str],
+        extra: &[(&str, &str)],
+        entries: &[Bind<'_>],
+        targets: &[Option<wgpu::ColorTargetState>],
+        samples: u32,
+    ) -> Result<Self, RasterError> {
         let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
-        let module = gpu.shader(shader, &peelnet_shaders::link(shader, features, extra)?);
-        let pipeline = gpu
-            .device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        let wgsl = peelnet_shaders::link(shader, features, extra)?;
+        let key = format!("{targets:?} {samples}\n{}\n{wgsl}", group.signature);
+        let pipeline = gpu.render_pipeline(key, || {
+            let module = gpu.shader(shader, &wgsl);
+            let descriptor = wgpu::RenderPipelineDescriptor {
                 label: Some(shader),
                 layout: Some(&gpu.layout(&[Some(&group.layout)])),
                 vertex: wgpu::VertexState {
@@ -44,7 +81,10 @@ impl FullscreenPass {
                 },
                 primitive: wgpu::PrimitiveState::default(),
                 depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    ..Default::default()
+                },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some("fragment_main"),
@@ -53,7 +93,9 @@ impl FullscreenPass {
                 }),
                 multiview_mask: None,
                 cache: None,
-            });
+            };
+            gpu.device.create_render_pipeline(&descriptor)
+        });
         Ok(Self {
             label: shader.to_owned(),
             pipeline,

@@ -1,6 +1,6 @@
-//! Images on surfaces: levels of detail, textures, samplers and bindings.
+//! Textures on surfaces: mip levels, samplers and bindings.
 
-use crate::RenderError;
+use crate::RasterError;
 use peelnet_core::srgb;
 use peelnet_gpu::{
     Gpu,
@@ -10,7 +10,7 @@ use peelnet_gpu::{
 use peelnet_scene::{Maps, Texture, Wrap};
 use std::sync::{Arc, LazyLock};
 
-/// The images that a material binds, and which of them a variant reads.
+/// The textures that a material binds, and which of them a variant reads.
 #[derive(Debug)]
 struct Set {
     maps: Maps,
@@ -18,7 +18,7 @@ struct Set {
     bound: Bound,
 }
 
-/// Every set of images of a scene, each image uploaded once.
+/// Every set of textures of a scene, each texture uploaded once.
 #[derive(Debug, Default)]
 pub(crate) struct MapSets {
     sets: Vec<Set>,
@@ -29,16 +29,16 @@ pub(crate) struct MapSets {
 const IS_SRGB: [bool; 5] = [true, false, false, false, true];
 
 impl MapSets {
-    /// The number of the set that binds the images of a material that a variant reads.
+    /// The number of the set that binds the textures of a material that a variant reads.
     ///
     /// # Errors
-    /// An image beyond the adapter's limits.
+    /// A texture beyond the adapter's limits.
     pub fn number(
         &mut self,
         gpu: &Gpu,
         maps: &Maps,
         read: [bool; 5],
-    ) -> Result<usize, RenderError> {
+    ) -> Result<usize, RasterError> {
         let same = |set: &Set| {
             let pointers = |maps: &Maps| maps.all().map(|map| map.map(Arc::as_ptr));
             set.read == read
@@ -97,7 +97,7 @@ impl MapSets {
         gpu: &Gpu,
         map: &Arc<Texture>,
         srgb: bool,
-    ) -> Result<wgpu::TextureView, RenderError> {
+    ) -> Result<wgpu::TextureView, RasterError> {
         let mut known = self.images.iter();
         if let Some((_, _, view)) = known.find(|(m, s, _)| Arc::ptr_eq(m, map) && *s == srgb) {
             return Ok(view.clone());

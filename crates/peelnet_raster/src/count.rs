@@ -1,9 +1,6 @@
 //! How many fragments each pixel has, and the prefix sum of that.
 
-use crate::{
-    RenderError,
-    scene::{FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces},
-};
+use crate::{FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces};
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
@@ -30,7 +27,8 @@ pub struct CountPass {
     pub counts: wgpu::Buffer,
     /// First fragment of each pixel; one entry more than pixels, the last one the total.
     pub offsets: wgpu::Buffer,
-    total: wgpu::Buffer,
+    /// See [`Self::found`]; the bytes [`Self::TOTAL`].
+    pub total: wgpu::Buffer,
     // A pass needs an attachment; nothing is written to this one.
     attachment: wgpu::TextureView,
     pipelines: GeometryPipelines,
@@ -39,6 +37,9 @@ pub struct CountPass {
 }
 
 impl CountPass {
+    /// The bytes of [`Self::total`] that are read back.
+    pub const TOTAL: std::ops::Range<u64> = 0..12;
+
     /// Builds the pass for a frame. `features` may hold `sampled`.
     ///
     /// # Errors
@@ -48,13 +49,13 @@ impl CountPass {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
-    ) -> Result<Self, RenderError> {
+    ) -> Result<Self, RasterError> {
         let pixels = frame.pixels();
         let counts = gpu.storage("fragment counts", u64::from(pixels) * 4)?;
         let offsets = gpu.storage("fragment offsets", u64::from(pixels) * 4 + 4)?;
         let blocks_count = pixels.div_ceil(BLOCK);
         let blocks = gpu.storage("prefix-sum blocks", u64::from(blocks_count) * 8)?;
-        let total = gpu.storage("fragment total", 8)?;
+        let total = gpu.storage("fragment total", 12)?;
         let attachment = unwritten_texture(gpu, frame)?;
         let group = gpu.bind(
             "count",
@@ -69,10 +70,9 @@ impl CountPass {
                 label: "count",
                 shader: "peel::count",
                 features,
-                extra: &[],
-                group: Some(&group.layout),
+                group: Some(&group),
                 targets: &[unwritten()],
-                depth: None,
+                ..GeometryPass::NONE
             },
         )?;
         let groups = groups_2d(blocks_count);
@@ -84,8 +84,8 @@ impl CountPass {
         let kernel = |name: &'static str, entries: &[Bind<'_>], groups| {
             let bound = gpu.bind(name, wgpu::ShaderStages::COMPUTE, entries);
             let wgsl = peelnet_shaders::link(name, &[], &[])?;
-            let pipeline = gpu.compute(name, &wgsl, &[&bound.layout]);
-            Ok::<_, RenderError>((name, pipeline, bound, groups))
+            let pipeline = gpu.compute(name, &wgsl, &bound);
+            Ok::<_, RasterError>((name, pipeline, bound, groups))
         };
         let kernels = [
             kernel(
@@ -128,16 +128,8 @@ impl CountPass {
         })
     }
 
-    /// Counts a frame and reads the total back.
-    ///
-    /// # Errors
-    /// A lost device, or more fragments than 32-bit offsets can count.
-    pub fn run(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneBuffers,
-        frame: &FrameTargets,
-    ) -> Result<FragmentCount, RenderError> {
+    /// Counts a frame; [`Self::total`] holds the result once the commands are done.
+    pub fn encode(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, frame: &FrameTargets) {
         recorder.encoder().clear_buffer(&self.counts, 0, None);
         {
             let mut pass =
@@ -151,27 +143,42 @@ impl CountPass {
             pass.set_bind_group(0, &bound.group, &[]);
             pass.dispatch_workgroups(groups[0], groups[1], 1);
         }
-        recorder.submit();
-        let found: Vec<u32> = recorder.gpu().read(&self.total, 0..8)?;
-        let (total, most) = (found[0], found[1]);
-        // The 32-bit sum may have wrapped only if the fullest pixel times the pixels can reach 2³².
-        if u64::from(most) * u64::from(frame.pixels()) > u64::from(u32::MAX) {
-            let counts: Vec<u32> = recorder
-                .gpu()
-                .read(&self.counts, 0..u64::from(frame.pixels()) * 4)?;
-            let sum: u64 = counts.iter().map(|&c| u64::from(c)).sum();
-            if sum > u64::from(u32::MAX) {
-                return Err(RenderError::TooManyFragments(sum));
-            }
+    }
+
+    /// What was found, from the words of [`Self::total`].
+    ///
+    /// # Errors
+    /// More fragments than 32-bit offsets can count.
+    pub fn found(words: &[u32]) -> Result<FragmentCount, RasterError> {
+        let word = |i: usize| u64::from(words.get(i).copied().unwrap_or(0));
+        let total = word(2) << 32 | word(0);
+        if total > u64::from(u32::MAX) {
+            return Err(RasterError::TooManyFragments(total));
         }
         Ok(FragmentCount {
-            total: u64::from(total),
-            most,
+            total,
+            most: word(1) as u32,
         })
     }
 
-    /// A bind group and attachment for passes that write storage only.
-    pub(crate) fn attachment(&self) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    /// Counts a frame, submits and reads the result back.
+    ///
+    /// # Errors
+    /// A lost device, or more fragments than 32-bit offsets can count.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn run(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+    ) -> Result<FragmentCount, RasterError> {
+        self.encode(recorder, scene, frame);
+        recorder.submit();
+        Self::found(&recorder.gpu().read::<u32>(&self.total, Self::TOTAL)?)
+    }
+
+    /// The attachment of passes that write storage only.
+    pub fn attachment(&self) -> Option<wgpu::RenderPassColorAttachment<'_>> {
         unwritten_attachment(&self.attachment)
     }
 }
@@ -183,20 +190,23 @@ pub fn groups_2d(items: u32) -> [u32; 2] {
     [x, groups.div_ceil(x)]
 }
 
-/// Format of the attachment that passes have which write storage alone: WebGPU wants one.
+/// Format of the attachment of passes that write storage alone: WebGPU wants one.
 const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// That attachment's texture, a byte a pixel.
-pub(crate) fn unwritten_texture(
+///
+/// # Errors
+/// A frame beyond the adapter's limits.
+pub fn unwritten_texture(
     gpu: &Gpu,
     frame: &FrameTargets,
-) -> Result<wgpu::TextureView, RenderError> {
+) -> Result<wgpu::TextureView, RasterError> {
     let none = wgpu::TextureUsages::empty();
-    Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, none)?)
+    Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, 1, none)?)
 }
 
 /// A colour target that nothing is written to.
-pub(crate) fn unwritten() -> Option<wgpu::ColorTargetState> {
+pub fn unwritten() -> Option<wgpu::ColorTargetState> {
     Some(wgpu::ColorTargetState {
         format: UNWRITTEN,
         blend: None,
@@ -204,7 +214,8 @@ pub(crate) fn unwritten() -> Option<wgpu::ColorTargetState> {
     })
 }
 
-pub(crate) fn unwritten_attachment(
+/// The attachment, cleared and not stored.
+pub fn unwritten_attachment(
     view: &wgpu::TextureView,
 ) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     Some(wgpu::RenderPassColorAttachment {

@@ -1,0 +1,289 @@
+//! The targets of one frame size, and where the finished picture goes.
+
+use crate::{RasterError, SceneBuffers};
+use peelnet_gpu::{
+    Gpu,
+    bind::{Bind, Bound},
+    wgpu,
+};
+
+/// Where the finished picture goes, as pipelines need to know it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// Into [`FrameTargets::image`], with the background in it: RGBA32F, linear colour and coverage.
+    Image,
+    /// Onto a target of the caller's.
+    Target {
+        /// Its format.
+        format: wgpu::TextureFormat,
+        /// Its samples a pixel.
+        samples: u32,
+        /// Whether transparency is blended over what the target holds. Otherwise the whole pixel is written, background included.
+        over: bool,
+    },
+}
+
+impl Output {
+    /// Samples a pixel.
+    pub const fn samples(self) -> u32 {
+        match self {
+            Self::Image => 1,
+            Self::Target { samples, .. } => samples,
+        }
+    }
+
+    /// Whether resolves blend over what the target holds.
+    pub const fn is_over(self) -> bool {
+        matches!(self, Self::Target { over: true, .. })
+    }
+
+    /// The colour target of a pass that writes finished pixels: premultiplied colour and coverage.
+    pub const fn state(self) -> wgpu::ColorTargetState {
+        match self {
+            Self::Image => plain(IMAGE),
+            // The background is in the pixel: it is opaque, as its target was cleared.
+            Self::Target {
+                format,
+                over: false,
+                ..
+            } => wgpu::ColorTargetState {
+                format,
+                blend: None,
+                write_mask: wgpu::ColorWrites::COLOR,
+            },
+            Self::Target { format, .. } => wgpu::ColorTargetState {
+                format,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            },
+        }
+    }
+
+    /// The colour target of the opaque surfaces.
+    pub(crate) const fn opaque_state(self) -> wgpu::ColorTargetState {
+        match self {
+            Self::Target {
+                format, over: true, ..
+            } => plain(format),
+            _ => plain(IMAGE),
+        }
+    }
+}
+
+const fn plain(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState {
+        format,
+        blend: None,
+        write_mask: wgpu::ColorWrites::ALL,
+    }
+}
+
+/// Format of `C_0` and of the finished image.
+const IMAGE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// The depth of opaque surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpaqueDepth {
+    /// A view of depth alone, which passes bind and attach.
+    pub view: wgpu::TextureView,
+    /// Whether the caller drew it: it is loaded, not cleared.
+    pub is_callers: bool,
+}
+
+impl OpaqueDepth {
+    /// Samples a pixel.
+    pub fn samples(&self) -> u32 {
+        self.view.texture().sample_count()
+    }
+
+    /// As a binding.
+    pub fn bind(&self) -> Bind<'_> {
+        if self.samples() > 1 {
+            Bind::DepthMultisampled(&self.view)
+        } else {
+            Bind::Depth(&self.view)
+        }
+    }
+
+    /// The shader features of passes that compare with it.
+    pub(crate) fn features(&self) -> &'static [&'static str] {
+        if self.samples() > 1 {
+            &["opaque", "multisampled"]
+        } else {
+            &["opaque"]
+        }
+    }
+}
+
+/// The frame's own targets: `C_0`, the opaque depth and the finished image.
+#[derive(Debug)]
+pub struct FrameTargets {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Width over height of the view; not that of `size` where a lower resolution was rounded.
+    pub aspect: f32,
+    /// `C_0`, RGBA32F: the opaque image over the background; one black texel where the output blends over a target. Loads outside
+    /// of a texture give zero or one of its texels (WGSL), so that shaders find black everywhere.
+    pub background: wgpu::TextureView,
+    /// Depth of the opaque surfaces, where there are any.
+    pub depth: Option<OpaqueDepth>,
+    /// Where the finished picture goes.
+    pub output: Output,
+    /// The finished image, RGBA32F, of [`Output::Image`].
+    image: Option<wgpu::TextureView>,
+    pub(crate) scene_group: Bound,
+    pub(crate) opaque_group: Bound,
+}
+
+impl FrameTargets {
+    /// Number of pixels.
+    pub const fn pixels(&self) -> u32 {
+        self.size[0] * self.size[1]
+    }
+
+    /// A storage image for compute shaders that write finished pixels: the frame's own, or one beside a caller's target.
+    ///
+    /// # Errors
+    /// A frame beyond the adapter's limits.
+    pub fn storage_image(&self, gpu: &Gpu) -> Result<wgpu::TextureView, RasterError> {
+        match &self.image {
+            Some(image) => Ok(image.clone()),
+            None => storage_image(gpu, self.size),
+        }
+    }
+
+    /// The finished image of [`Output::Image`].
+    pub const fn image(&self) -> Option<&wgpu::TextureView> {
+        self.image.as_ref()
+    }
+
+    /// The attachment of a pass that writes finished pixels, to `target` where the output is one.
+    pub fn attachment<'a>(
+        &'a self,
+        target: Option<&'a wgpu::TextureView>,
+    ) -> Option<wgpu::RenderPassColorAttachment<'a>> {
+        let load = match self.output {
+            Output::Image => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            Output::Target { over: true, .. } => wgpu::LoadOp::Load,
+            Output::Target { over: false, .. } => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+        };
+        attachment(self.image.as_ref().or(target)?, load)
+    }
+}
+
+fn storage_image(gpu: &Gpu, size: [u32; 2]) -> Result<wgpu::TextureView, RasterError> {
+    let usage = wgpu::TextureUsages::STORAGE_BINDING;
+    Ok(gpu.texture("image", IMAGE, size, 1, usage)?)
+}
+
+impl SceneBuffers {
+    /// Makes the targets of a frame: of the image alone, or of what is drawn onto a caller's target with the depth that the caller
+    /// drew.
+    ///
+    /// # Errors
+    /// A frame without pixels, or larger than the adapter allows.
+    pub fn targets(
+        &self,
+        gpu: &Gpu,
+        size: [u32; 2],
+        output: Output,
+        depth: Option<&wgpu::TextureView>,
+    ) -> Result<FrameTargets, RasterError> {
+        self.targets_of(gpu, size, size[0] as f32 / size[1] as f32, output, depth)
+    }
+
+    /// The same for pixels that need not be square: `aspect` is the width of the view over its height.
+    ///
+    /// # Errors
+    /// See [`Self::targets`].
+    pub fn targets_of(
+        &self,
+        gpu: &Gpu,
+        size: [u32; 2],
+        aspect: f32,
+        output: Output,
+        depth: Option<&wgpu::TextureView>,
+    ) -> Result<FrameTargets, RasterError> {
+        if size[0] == 0 || size[1] == 0 {
+            return Err(RasterError::EmptyFrame {
+                width: size[0],
+                height: size[1],
+            });
+        }
+        let none = wgpu::TextureUsages::empty();
+        let depth = match depth {
+            Some(view) => Some(OpaqueDepth {
+                view: view.clone(),
+                is_callers: true,
+            }),
+            None if self.has_opaque() => {
+                // Opaque surfaces are drawn onto a target that is blended over, and into C_0 otherwise.
+                let samples = if output.is_over() {
+                    output.samples()
+                } else {
+                    1
+                };
+                let format = wgpu::TextureFormat::Depth32Float;
+                Some(OpaqueDepth {
+                    view: gpu.texture("opaque depth", format, size, samples, none)?,
+                    is_callers: false,
+                })
+            }
+            None => None,
+        };
+        let [opaque_group, scene_group] = self.groups(gpu, depth.as_ref());
+        let background = if output.is_over() { [1, 1] } else { size };
+        Ok(FrameTargets {
+            size,
+            aspect,
+            background: gpu.texture("background", IMAGE, background, 1, none)?,
+            image: match output {
+                Output::Image => Some(storage_image(gpu, size)?),
+                Output::Target { .. } => None,
+            },
+            output,
+            depth,
+            scene_group,
+            opaque_group,
+        })
+    }
+}
+
+/// Depth test state on a depth format.
+pub(crate) fn depth_state(
+    format: wgpu::TextureFormat,
+    write: bool,
+    compare: wgpu::CompareFunction,
+) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// A colour attachment that starts from one value.
+pub fn clear_color(
+    view: &wgpu::TextureView,
+    [r, g, b, a]: [f64; 4],
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    attachment(view, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }))
+}
+
+/// A colour attachment.
+pub fn attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load,
+            store: wgpu::StoreOp::Store,
+        },
+    })
+}

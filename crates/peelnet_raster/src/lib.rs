@@ -1,0 +1,33 @@
+//! A scene on the GPU, and everything that finds its fragments: below both rendering and peeling.
+//!
+//! [`SceneBuffers::new`] uploads a scene's triangles once, in world space and in one buffer. A [`GeometryPass`] becomes one
+//! pipeline for each [`Variant`](peelnet_scene::Variant) of material, specialised to what the pass reads. [`FrameTargets`] are
+//! the targets of one frame size. On top of these stand the passes that more than one method, or the extraction, is built of:
+//! [`count`] (fragments per pixel and their prefix sum), [`sbuffer`] (every fragment stored and sorted), [`single`] and
+//! [`dual`] (depth peeling), [`fullscreen`].
+//!
+//! Transparent passes have no fixed-function depth test. One shader function compares with the opaque depth, because
+//! storage writes of a fragment shader happen before that test; it exists only in frames that have opaque depth.
+
+pub mod count;
+pub mod dual;
+mod edit;
+mod error;
+pub mod frame;
+pub mod fullscreen;
+mod maps;
+pub mod pipelines;
+pub mod sbuffer;
+mod scene;
+pub mod single;
+pub mod sort;
+mod specialise;
+mod uniforms;
+mod upload;
+
+pub use error::RasterError;
+pub use frame::{FrameTargets, OpaqueDepth};
+pub use pipelines::{GeometryPass, GeometryPipelines, Surfaces};
+pub use scene::{SceneBuffers, shader_bytes};
+pub use sort::{Order, Sorted, Submission};
+pub use uniforms::PixelSample;

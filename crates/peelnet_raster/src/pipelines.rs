@@ -1,0 +1,192 @@
+//! Pipelines of geometry passes: one for each variant of the materials that a pass draws.
+
+use crate::{
+    FrameTargets, RasterError, SceneBuffers, specialise,
+    upload::{ATTRIBUTES, Vertex},
+};
+use peelnet_gpu::{Gpu, bind::Bound, wgpu};
+use peelnet_scene::Variant;
+
+/// Which half of the scene a geometry pass draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surfaces {
+    /// Opaque objects.
+    Opaque,
+    /// Transparent ones.
+    Transparent,
+}
+
+/// Pipelines of one geometry pass: one for each variant of the materials that it draws.
+#[derive(Debug)]
+pub struct GeometryPipelines(Vec<(Variant, wgpu::RenderPipeline)>);
+
+impl GeometryPipelines {
+    pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
+        // Built for every run's variant.
+        if let Some((_, pipeline)) = self.0.iter().find(|(v, _)| *v == variant) {
+            pass.set_pipeline(pipeline);
+        }
+    }
+}
+
+/// What a geometry pass is made of.
+#[derive(Debug)]
+pub struct GeometryPass<'a> {
+    /// Label for messages and times.
+    pub label: &'a str,
+    /// Root module of the fragment shader.
+    pub shader: &'a str,
+    /// Features besides those that the scene's materials need.
+    pub features: &'a [&'a str],
+    /// Modules that are not in the repository.
+    pub extra: &'a [(&'a str, &'a str)],
+    /// Bind group 1.
+    pub group: Option<&'a Bound>,
+    /// Colour targets.
+    pub targets: &'a [Option<wgpu::ColorTargetState>],
+    /// Depth state.
+    pub depth: Option<wgpu::DepthStencilState>,
+    /// Samples a pixel of the targets.
+    pub samples: u32,
+}
+
+impl GeometryPass<'_> {
+    /// What most passes leave out.
+    pub const NONE: GeometryPass<'static> = GeometryPass {
+        label: "",
+        shader: "",
+        features: &[],
+        extra: &[],
+        group: None,
+        targets: &[],
+        depth: None,
+        samples: 1,
+    };
+}
+
+impl SceneBuffers {
+    /// Builds a geometry pass's pipelines: the shared vertex shader, the pass's fragment shader, and the features
+    /// that this scene's materials need.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn pipelines(
+        &self,
+        gpu: &Gpu,
+        frame: &FrameTargets,
+        surfaces: Surfaces,
+        pass: &GeometryPass<'_>,
+    ) -> Result<GeometryPipelines, RasterError> {
+        let (group, runs) = self.half(frame, surfaces);
+        let mut variants: Vec<(Variant, Option<usize>)> = Vec::new();
+        for run in runs {
+            if !variants.iter().any(|(v, _)| *v == run.variant) {
+                variants.push((run.variant, run.maps));
+            }
+        }
+        let compared: &[&str] = match (surfaces, &frame.depth) {
+            (Surfaces::Transparent, Some(depth)) => depth.features(),
+            _ => &[],
+        };
+        let mut all = Vec::with_capacity(variants.len());
+        for (variant, maps) in variants {
+            let mut features = pass.features.to_vec();
+            features.extend(variant.features());
+            features.extend(compared);
+            let (features, fragment) = specialise::link(pass.shader, features, pass.extra)?;
+            let maps = maps.filter(|_| features.contains(&"mapped"));
+            let maps = maps.map(|number| self.maps.bound(number));
+            let mut groups = vec![Some(group), pass.group, maps];
+            while groups.last().is_some_and(Option::is_none) {
+                groups.pop();
+            }
+            all.push((
+                variant,
+                pipeline(gpu, pass, &groups, &features, &fragment, variant.culled)?,
+            ));
+        }
+        Ok(GeometryPipelines(all))
+    }
+}
+
+/// The pipeline of one variant. Passes that need no colour draw many variants alike: equal texts and groups share a pipeline.
+fn pipeline(
+    gpu: &Gpu,
+    pass: &GeometryPass<'_>,
+    groups: &[Option<&Bound>],
+    features: &[&str],
+    fragment: &str,
+    culled: bool,
+) -> Result<wgpu::RenderPipeline, RasterError> {
+    let carried = ["numbered", "lit", "mapped", "normal_map", "vertex_colors"];
+    let mut of_vertex = features.to_vec();
+    of_vertex.retain(|f| carried.contains(f));
+    let vertex = peelnet_shaders::link("scene::vertex", &of_vertex, &[])?;
+    let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
+    // The vertex shader's text says which attributes are bound.
+    let states = (pass.targets, &pass.depth, pass.samples, culled);
+    let key = format!("{states:?}\n{signatures:?}\n{vertex}\n{fragment}");
+    Ok(gpu.render_pipeline(key, || {
+        let vertex = gpu.shader("scene::vertex", &vertex);
+        let fragment = gpu.shader(pass.shader, fragment);
+        let attributes = ATTRIBUTES.iter().zip(2..);
+        let attributes: Vec<[wgpu::VertexAttribute; 1]> = attributes
+            .map(|((_, format, _), shader_location)| {
+                [wgpu::VertexAttribute {
+                    format: *format,
+                    offset: 0,
+                    shader_location,
+                }]
+            })
+            .collect();
+        let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
+        let mut buffers = vec![Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &always,
+        })];
+        buffers.extend(ATTRIBUTES.iter().zip(&attributes).map(
+            |((_, format, feature), attributes)| {
+                features
+                    .contains(feature)
+                    .then(|| wgpu::VertexBufferLayout {
+                        array_stride: format.size(),
+                        step_mode: wgpu::VertexStepMode::Vertex,
+                        attributes,
+                    })
+            },
+        ));
+        while buffers.last().is_some_and(Option::is_none) {
+            buffers.pop();
+        }
+        let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
+        gpu.device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(pass.label),
+                layout: Some(&gpu.layout(&layouts)),
+                vertex: wgpu::VertexState {
+                    module: &vertex,
+                    entry_point: Some("vertex_main"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: culled.then_some(wgpu::Face::Back),
+                    ..Default::default()
+                },
+                depth_stencil: pass.depth.clone(),
+                multisample: wgpu::MultisampleState {
+                    count: pass.samples,
+                    ..Default::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &fragment,
+                    entry_point: Some("fragment_main"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: pass.targets,
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+    }))
+}

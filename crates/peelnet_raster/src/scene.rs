@@ -1,0 +1,462 @@
+//! A scene's buffers, drawn from every view by every method, and edited in place.
+
+use crate::{
+    FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RasterError, Submission, Surfaces,
+    frame::{OpaqueDepth, attachment, clear_color, depth_state},
+    maps::MapSets,
+    uniforms::{CameraUniform, MaterialData, unit_from_depth},
+    upload::{
+        ATTRIBUTES, AttributeData, DrawRun, Placement, Vertex, bounding_box, centroid, push_run,
+    },
+};
+use bytemuck::Zeroable;
+use peelnet_core::absorbance::DepthWarp;
+use peelnet_gpu::{
+    Gpu, GpuError,
+    bind::{Bind, Bound},
+    record::Recorder,
+    wgpu,
+};
+use peelnet_scene::{Camera, Material, Scene, Setting, Variant};
+use std::ops::Range;
+
+/// A part of an object with one material, on the GPU.
+#[derive(Clone, Debug)]
+pub(crate) struct PartBuffers {
+    /// Number of its object and of the part in it.
+    pub(crate) place: (usize, usize),
+    pub(crate) run: DrawRun,
+    pub(crate) opaque: bool,
+    /// World-space box; `None` of no triangles.
+    pub(crate) bounds: Option<[glam::Vec3; 2]>,
+    /// World-space centre of every triangle, of transparent parts.
+    pub(crate) centroids: Vec<glam::Vec3>,
+}
+
+/// A scene's buffers, the same for every view and method.
+///
+/// Objects, materials and lights change in place; [`SceneBuffers::generation`] counts the changes that need other pipelines, bind
+/// groups or targets. Changes apply to all commands submitted after them.
+#[derive(Debug)]
+pub struct SceneBuffers {
+    pub(crate) scene: Scene,
+    pub(crate) vertices: wgpu::Buffer,
+    pub(crate) vertex_count: usize,
+    /// In the order of [`ATTRIBUTES`], for every vertex; each where any material reads it.
+    pub(crate) attributes: [Option<wgpu::Buffer>; 4],
+    pub(crate) maps: MapSets,
+    pub(crate) materials: wgpu::Buffer,
+    /// Where any material is lit.
+    pub(crate) lights: Option<wgpu::Buffer>,
+    camera: wgpu::Buffer,
+    /// In the scene's order; a part's number is its material's.
+    pub(crate) parts: Vec<PartBuffers>,
+    /// The order in which transparent parts are submitted.
+    submission: Submission,
+    submitted: Vec<usize>,
+    opaque: Vec<DrawRun>,
+    transparent: Vec<DrawRun>,
+    pub(crate) generation: u64,
+    /// Background radiance, linear RGB.
+    pub background: [f32; 3],
+    /// Whether every colour is grey.
+    pub grey: bool,
+    /// Whether transmission is coloured.
+    pub tinted: bool,
+    /// The share of the resolution that the scene wants transparency drawn at.
+    pub transparency_scale: f32,
+}
+
+impl SceneBuffers {
+    /// Transforms the scene to world space and uploads it.
+    ///
+    /// # Errors
+    /// A scene larger than the adapter's largest buffer.
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RasterError> {
+        let triangles = scene.triangles();
+        let needed = triangles as u64 * 3 * size_of::<Vertex>() as u64;
+        if needed > gpu.limits.max_buffer_size || triangles > (u32::MAX / 3) as usize {
+            return Err(RasterError::Gpu(GpuError::TooLarge {
+                what: format!("scene '{}' with {triangles} triangles", scene.name),
+                needed,
+                limit: gpu.limits.max_buffer_size,
+                adapter: gpu.info.name.clone(),
+                hint: "split the scene or simplify its meshes",
+            }));
+        }
+        let setting = Setting::of(scene);
+        let mut attributes = AttributeData::default();
+        let mut maps = MapSets::default();
+        let mut vertices = Vec::with_capacity(triangles * 3);
+        let mut materials = Vec::new();
+        let mut parts = Vec::new();
+        for (number, object) in scene.objects.iter().enumerate() {
+            let placement = Placement::of(object);
+            let all = object.mesh.parts.iter().zip(&object.materials);
+            for (part_number, (part, material)) in all.enumerate() {
+                let index = materials.len() as u32;
+                materials.push(MaterialData::of(material, object.layer.unwrap_or(0)));
+                let variant = Variant::of(material, object, setting);
+                let begin = vertices.len();
+                vertices.extend(placement.vertices(part.triangles.clone(), index));
+                attributes.extend(begin, placement.attributes(&part.triangles, variant));
+                let mut buffers = PartBuffers {
+                    place: (number, part_number),
+                    run: DrawRun {
+                        vertices: begin as u32..vertices.len() as u32,
+                        variant,
+                        maps: set_of(gpu, &mut maps, material, variant, &part.triangles)?,
+                    },
+                    opaque: material.is_opaque(),
+                    bounds: None,
+                    centroids: Vec::new(),
+                };
+                buffers.measure(&vertices[begin..]);
+                parts.push(buffers);
+            }
+        }
+        // A binding may not be smaller than one element.
+        materials.resize(materials.len().max(1), MaterialData::zeroed());
+        let mut buffers = Self {
+            attributes: attributes.upload(gpu, vertices.len()),
+            maps,
+            vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
+            vertex_count: vertices.len(),
+            materials: gpu.upload("materials", &materials, wgpu::BufferUsages::STORAGE),
+            lights: None,
+            camera: gpu.upload(
+                "camera",
+                &[CameraUniform::zeroed()],
+                wgpu::BufferUsages::UNIFORM,
+            ),
+            parts,
+            submission: Submission::Listed,
+            submitted: Vec::new(),
+            opaque: Vec::new(),
+            transparent: Vec::new(),
+            generation: 0,
+            background: scene.background,
+            grey: scene.is_grey(),
+            tinted: scene.is_tinted(),
+            transparency_scale: scene.transparency_scale,
+            scene: scene.clone(),
+        };
+        buffers.upload_lights(gpu);
+        buffers.arrange();
+        Ok(buffers)
+    }
+
+    /// The scene as it stands after all changes.
+    pub const fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Counts the changes that need pipelines, bind groups or targets made anew (from caches).
+    pub const fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// Puts the runs of triangles in order.
+    pub(crate) fn arrange(&mut self) {
+        let parts = self.parts.iter().enumerate();
+        let transparent = parts.filter(|(_, p)| !p.opaque && !p.run.vertices.is_empty());
+        self.submitted = transparent.map(|(number, _)| number).collect();
+        self.submitted.sort_by_key(|&number| {
+            let place = self.parts[number].run.vertices.start;
+            match self.submission {
+                Submission::Listed => place,
+                Submission::Reversed => u32::MAX - place,
+                Submission::Shuffled(seed) => peelnet_core::hash::pixel_hash(seed, 0, place, 0),
+            }
+        });
+        self.opaque.clear();
+        self.transparent.clear();
+        for part in self.parts.iter().filter(|p| p.opaque) {
+            push_run(&mut self.opaque, part.run.clone());
+        }
+        for &number in &self.submitted {
+            push_run(&mut self.transparent, self.parts[number].run.clone());
+        }
+    }
+
+    /// Submits the transparent parts in another order from now on.
+    pub fn submit(&mut self, order: Submission) {
+        self.submission = order;
+        self.arrange();
+    }
+
+    /// The transparent parts in the order of submission.
+    pub(crate) fn transparent_parts(&self) -> impl Iterator<Item = &PartBuffers> {
+        self.submitted.iter().map(|&number| &self.parts[number])
+    }
+
+    /// The view's uniform.
+    pub const fn camera_buffer(&self) -> &wgpu::Buffer {
+        &self.camera
+    }
+
+    /// Names of the bindings of the scene that a transparent pass has.
+    pub fn bindings(&self) -> Vec<&'static str> {
+        let drawn = || self.parts.iter().filter(|p| p.run.maps.is_some());
+        let mapped = |k: usize| drawn().any(|p| p.run.variant.maps[k]);
+        let mut names = vec!["camera", "materials"];
+        names.extend(self.lights.is_some().then_some("lights"));
+        names.extend(self.has_opaque().then_some("opaque depth"));
+        names.extend(drawn().next().map(|_| "sampler"));
+        let maps = peelnet_scene::Effect::MAPS.iter().enumerate();
+        names.extend(
+            maps.filter(|(k, _)| mapped(*k))
+                .map(|(_, effect)| effect.name()),
+        );
+        names
+    }
+
+    /// Names of the attributes of a vertex that the vertex shader reads.
+    pub fn vertex_attributes(&self) -> Vec<&'static str> {
+        let extra = ATTRIBUTES.iter().zip(&self.attributes);
+        let extra = extra.filter_map(|((name, ..), buffer)| buffer.as_ref().map(|_| *name));
+        ["position", "material"].into_iter().chain(extra).collect()
+    }
+
+    /// Whether anything opaque can hide transparent fragments.
+    pub fn has_opaque(&self) -> bool {
+        !self.opaque.is_empty()
+    }
+
+    /// Bind group 0 of opaque passes and of transparent ones.
+    pub(crate) fn groups(&self, gpu: &Gpu, depth: Option<&OpaqueDepth>) -> [Bound; 2] {
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        // Where nothing is lit no light is bound.
+        let lights = self.lights.as_ref().map_or(Bind::None, Bind::Read);
+        let mut entries = vec![
+            Bind::Uniform(&self.camera),
+            Bind::Read(&self.materials),
+            lights,
+        ];
+        let opaque = gpu.bind("opaque scene", stages, &entries);
+        entries.extend(depth.map(OpaqueDepth::bind));
+        [opaque, gpu.bind("scene", stages, &entries)]
+    }
+
+    /// Records the write of a view into the camera uniform.
+    pub fn set_view(
+        &self,
+        recorder: &mut Recorder<'_>,
+        camera: &Camera,
+        frame: &FrameTargets,
+        sample: PixelSample,
+    ) {
+        let clip_from_world = camera.clip_from_view(frame.aspect) * camera.view_from_world();
+        let warp = self.depth_warp(camera);
+        let uniform = CameraUniform {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            eye: camera.position.to_array(),
+            light_count: self.scene.lights.len() as u32,
+            frame_size: frame.size,
+            sample_seed: sample.seed,
+            sample_view: sample.view,
+            sample_threshold: sample.threshold,
+            unit_from_depth: unit_from_depth(camera.far),
+            warp_inverse_near: (-warp.log_near).exp() as f32,
+            warp_scale: warp.scale as f32,
+            window_depth_at_infinity: camera.far / (camera.far - camera.near),
+            pad: [0; 3],
+        };
+        recorder.write(&self.camera, &[uniform]);
+    }
+
+    /// The warp over the depths that transparent objects span in a view: from their boxes, clipped to near and far. A tight
+    /// range is what moments get their precision from.
+    pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
+        let view = camera.view_from_world();
+        let boxes = self.transparent_parts().filter_map(|part| part.bounds);
+        let points = boxes.flat_map(|[lo, hi]| {
+            (0..8).map(move |i| {
+                let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
+                glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
+            })
+        });
+        let (near, far) = points
+            .map(|p| (-view.transform_point3(p).z).clamp(camera.near, camera.far))
+            .fold((f32::INFINITY, 0.0f32), |(a, b), z| (a.min(z), b.max(z)));
+        if near <= far {
+            DepthWarp::new(near.into(), far.into())
+        } else {
+            DepthWarp::new(camera.near.into(), camera.far.into())
+        }
+    }
+
+    pub(crate) fn half<'a>(
+        &'a self,
+        frame: &'a FrameTargets,
+        surfaces: Surfaces,
+    ) -> (&'a Bound, &'a [DrawRun]) {
+        match surfaces {
+            Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
+            Surfaces::Transparent => (&frame.scene_group, &self.transparent),
+        }
+    }
+
+    /// Draws one half of the scene, triangles in the order of the scene's list.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        frame: &FrameTargets,
+        surfaces: Surfaces,
+        pipelines: &GeometryPipelines,
+    ) {
+        let (group, runs) = self.half(frame, surfaces);
+        self.set_vertices(pass, group);
+        for run in runs {
+            self.set_run(pass, pipelines, run);
+            pass.draw(run.vertices.clone(), 0..1);
+        }
+    }
+
+    pub(crate) fn set_vertices(&self, pass: &mut wgpu::RenderPass<'_>, group: &Bound) {
+        pass.set_bind_group(0, &group.group, &[]);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        for (buffer, slot) in self.attributes.iter().zip(1..) {
+            if let Some(buffer) = buffer {
+                pass.set_vertex_buffer(slot, buffer.slice(..));
+            }
+        }
+    }
+
+    pub(crate) fn set_run(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        all: &GeometryPipelines,
+        run: &DrawRun,
+    ) {
+        all.set(pass, run.variant);
+        if let Some(number) = run.maps {
+            pass.set_bind_group(2, &self.maps.bound(number).group, &[]);
+        }
+    }
+
+    /// Draws what lies behind the transparent surfaces: background colour and opaque objects, into `C_0`, or onto `target` where the
+    /// output blends over it (the background only if `clear`).
+    pub fn draw_background(
+        &self,
+        recorder: &mut Recorder<'_>,
+        frame: &FrameTargets,
+        pipelines: Option<&GeometryPipelines>,
+        target: Option<&wgpu::TextureView>,
+        clear: bool,
+    ) {
+        let [r, g, b] = self.background.map(f64::from);
+        let begin = [r, g, b, 1.0];
+        let over = frame.output.is_over();
+        if over && !clear && pipelines.is_none() {
+            return;
+        }
+        let color = match target.filter(|_| over) {
+            Some(view) if clear => clear_color(view, begin),
+            Some(view) => attachment(view, wgpu::LoadOp::Load),
+            None => clear_color(&frame.background, begin),
+        };
+        // Attached where the pass has that many samples: depth of the caller's for a C_0 of our own may have others.
+        let depth = frame
+            .depth
+            .as_ref()
+            .filter(|_| pipelines.is_some() || !over);
+        let depth = depth.map(|depth| wgpu::RenderPassDepthStencilAttachment {
+            view: &depth.view,
+            depth_ops: Some(wgpu::Operations {
+                load: if depth.is_callers {
+                    wgpu::LoadOp::Load
+                } else {
+                    wgpu::LoadOp::Clear(1.0)
+                },
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        });
+        let mut pass = recorder.render("background", &[color], depth);
+        if let Some(pipelines) = pipelines {
+            self.draw(&mut pass, frame, Surfaces::Opaque, pipelines);
+        }
+    }
+
+    /// The opaque pass's pipelines, where the scene has anything opaque.
+    ///
+    /// # Errors
+    /// A shader that does not link.
+    pub fn opaque_pipelines(
+        &self,
+        gpu: &Gpu,
+        frame: &FrameTargets,
+    ) -> Result<Option<GeometryPipelines>, RasterError> {
+        let Some(depth) = frame.depth.as_ref().filter(|_| self.has_opaque()) else {
+            return Ok(None);
+        };
+        let format = depth.view.texture().format();
+        let pass = GeometryPass {
+            label: "opaque",
+            shader: "scene::opaque",
+            targets: &[Some(frame.output.opaque_state())],
+            depth: Some(depth_state(format, true, wgpu::CompareFunction::Less)),
+            samples: if frame.output.is_over() {
+                frame.output.samples()
+            } else {
+                1
+            },
+            ..GeometryPass::NONE
+        };
+        self.pipelines(gpu, frame, Surfaces::Opaque, &pass)
+            .map(Some)
+    }
+}
+
+impl PartBuffers {
+    /// Takes the part's box and centres of triangles.
+    pub(crate) fn measure(&mut self, vertices: &[Vertex]) {
+        self.bounds = bounding_box(vertices);
+        self.centroids = vertices.chunks_exact(3).map(centroid).collect();
+    }
+}
+
+/// The number of the textures that a part of an object binds; `None` where it has none or no triangles.
+pub(crate) fn set_of(
+    gpu: &Gpu,
+    maps: &mut MapSets,
+    material: &Material,
+    variant: Variant,
+    triangles: &Range<usize>,
+) -> Result<Option<usize>, RasterError> {
+    if !variant.is_mapped() || triangles.is_empty() {
+        return Ok(None);
+    }
+    maps.number(gpu, &material.maps, variant.maps).map(Some)
+}
+
+/// Bytes of shader text that a scene's surfaces link, without tests of visibility: the opaque pass and one that gathers premultiplied
+/// colour (`blended`), a text for each variant.
+///
+/// # Errors
+/// A shader that does not link.
+pub fn shader_bytes(scene: &Scene) -> Result<usize, RasterError> {
+    let setting = Setting::of(scene);
+    let mut texts: Vec<String> = Vec::new();
+    for object in &scene.objects {
+        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+            if part.triangles.is_empty() {
+                continue;
+            }
+            let features = Variant::of(material, object, setting).features();
+            let pass = if material.is_opaque() {
+                "scene::opaque"
+            } else {
+                "methods::blended::gather"
+            };
+            for shader in ["scene::vertex", pass] {
+                let text = peelnet_shaders::link(shader, &features, &[])?;
+                if !texts.contains(&text) {
+                    texts.push(text);
+                }
+            }
+        }
+    }
+    Ok(texts.iter().map(String::len).sum())
+}

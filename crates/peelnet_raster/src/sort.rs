@@ -1,0 +1,143 @@
+//! The order in which transparent surfaces are drawn.
+
+use crate::{
+    FrameTargets, RasterError, SceneBuffers,
+    pipelines::GeometryPipelines,
+    upload::{DrawRun, push_run},
+};
+use peelnet_gpu::{Gpu, GpuError, record::Recorder, wgpu};
+use peelnet_scene::Camera;
+
+/// The order in which transparent surfaces are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// In the scene's order.
+    Scene,
+    /// Parts of objects with one material, the farthest centre of a box first.
+    Objects,
+    /// Triangles, the farthest centre first.
+    Triangles,
+}
+
+/// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
+/// computed of them stay as they are: only what depends on the order of drawing may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Submission {
+    /// In the scene's order.
+    Listed,
+    /// The last first.
+    Reversed,
+    /// By a hash of their places and this seed.
+    Shuffled(u32),
+}
+
+/// The transparent surfaces in an order that depends on the view.
+#[derive(Debug)]
+pub struct Sorted {
+    order: Order,
+    /// Vertex numbers of the sorted triangles; runs are ranges of it.
+    indices: Option<wgpu::Buffer>,
+    runs: Vec<DrawRun>,
+}
+
+impl Sorted {
+    /// Room for the order; none is needed to draw in the scene's order.
+    ///
+    /// # Errors
+    /// More triangles than the adapter's largest buffer indexes.
+    pub fn new(gpu: &Gpu, scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RasterError> {
+        let triangles: usize = scene.transparent_parts().map(|p| p.centroids.len()).sum();
+        let size = triangles.max(1) as u64 * 12;
+        if order == Order::Triangles && size > gpu.limits.max_buffer_size {
+            return Err(RasterError::Gpu(GpuError::TooLarge {
+                what: format!("the order of {triangles} triangles"),
+                needed: size,
+                limit: gpu.limits.max_buffer_size,
+                adapter: gpu.info.name.clone(),
+                hint: "sort objects instead (painter-object)",
+            }));
+        }
+        let indices = (order == Order::Triangles).then(|| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("sorted triangles"),
+                size,
+                usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        Ok((order != Order::Scene).then_some(Self {
+            order,
+            indices,
+            runs: Vec::new(),
+        }))
+    }
+
+    /// Bytes that the order takes on the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.indices.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+
+    /// Sorts for a view, on the CPU; its time is recorded beside those of the passes.
+    pub fn sort(&mut self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, camera: &Camera) {
+        let start = web_time::Instant::now();
+        let view = camera.view_from_world();
+        let depth = |p: glam::Vec3| -view.transform_point3(p).z;
+        let parts = || scene.transparent_parts();
+        self.runs.clear();
+        if let Some(buffer) = &self.indices {
+            let mut triangles: Vec<(f32, u32, &DrawRun)> = parts()
+                .flat_map(|part| {
+                    let first = part.run.vertices.start;
+                    let all = part.centroids.iter().zip(0..);
+                    all.map(move |(&c, i)| (depth(c), first + 3 * i, &part.run))
+                })
+                .collect();
+            // Ties by place, so that the image does not depend on the order of submission.
+            triangles.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            let mut indices = Vec::with_capacity(triangles.len() * 3);
+            for (_, first, run) in triangles {
+                let at = indices.len() as u32;
+                indices.extend([first, first + 1, first + 2]);
+                let own = DrawRun {
+                    vertices: at..at + 3,
+                    ..run.clone()
+                };
+                push_run(&mut self.runs, own);
+            }
+            recorder.write(buffer, &indices);
+        } else {
+            let middle = |[lo, hi]: [glam::Vec3; 2]| depth((lo + hi) / 2.0);
+            let mut sorted: Vec<_> = parts()
+                .filter_map(|p| Some((middle(p.bounds?), &p.run)))
+                .collect();
+            sorted.sort_by(|a, b| {
+                let place = |run: &DrawRun| run.vertices.start;
+                b.0.total_cmp(&a.0).then(place(a.1).cmp(&place(b.1)))
+            });
+            self.runs
+                .extend(sorted.into_iter().map(|(_, run)| run.clone()));
+        }
+        recorder.on_the_cpu("sort", start.elapsed());
+    }
+
+    /// Draws the transparent half in this order.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        pipelines: &GeometryPipelines,
+    ) {
+        scene.set_vertices(pass, &frame.scene_group);
+        if let Some(indices) = &self.indices {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        }
+        for run in &self.runs {
+            scene.set_run(pass, pipelines, run);
+            match self.order {
+                Order::Triangles => pass.draw_indexed(run.vertices.clone(), 0, 0..1),
+                _ => pass.draw(run.vertices.clone(), 0..1),
+            }
+        }
+    }
+}

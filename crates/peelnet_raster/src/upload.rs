@@ -1,0 +1,244 @@
+//! Vertices and their attributes in world space, and runs of triangles that one pipeline draws.
+
+use bytemuck::{Pod, Zeroable};
+use peelnet_gpu::{Gpu, wgpu};
+use peelnet_scene::{Object, Variant};
+use std::ops::Range;
+
+/// One vertex of a triangle. Vertices are not shared: `vertex_index / 3` is then the triangle's index in the scene's
+/// list, which portable WebGPU has no other way to learn.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct Vertex {
+    pub position: [f32; 3],
+    pub material: u32,
+}
+
+/// What only some materials read of a vertex, each in a buffer of its own: name, format, the shader feature that reads it.
+pub(crate) const ATTRIBUTES: [(&str, wgpu::VertexFormat, &str); 4] = [
+    ("uv", wgpu::VertexFormat::Float32x2, "mapped"),
+    ("tangent", wgpu::VertexFormat::Float32x4, "normal_map"),
+    ("color", wgpu::VertexFormat::Float32x4, "vertex_colors"),
+    ("normal", wgpu::VertexFormat::Float32x3, "lit"),
+];
+
+/// A run of triangles that one pipeline draws.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct DrawRun {
+    pub vertices: Range<u32>,
+    pub variant: Variant,
+    /// Number of its textures' set.
+    pub maps: Option<usize>,
+}
+
+/// Appends a run, joining it with the one before where the same pipeline draws both.
+pub(crate) fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
+    if run.vertices.is_empty() {
+        return;
+    }
+    let same = |last: &DrawRun| (last.variant, last.maps) == (run.variant, run.maps);
+    match runs.last_mut() {
+        Some(last) if same(last) && last.vertices.end == run.vertices.start => {
+            last.vertices.end = run.vertices.end;
+        }
+        _ => runs.push(run),
+    }
+}
+
+/// How an object stands in the world.
+#[derive(Clone, Copy)]
+pub(crate) struct Placement<'a> {
+    object: &'a Object,
+    normal_matrix: glam::Mat3,
+    mirrored: bool,
+}
+
+impl<'a> Placement<'a> {
+    pub fn of(object: &'a Object) -> Self {
+        let linear = glam::Mat3::from_mat4(object.world_from_object);
+        Self {
+            object,
+            normal_matrix: linear.inverse().transpose(),
+            mirrored: linear.determinant() < 0.0,
+        }
+    }
+
+    /// The order of a triangle's vertices. A mirrored object turns its triangles inside out: turned back, culling stays right.
+    const fn order(&self) -> [usize; 3] {
+        if self.mirrored { [0, 2, 1] } else { [0, 1, 2] }
+    }
+
+    fn indices(&self, triangles: Range<usize>) -> impl Iterator<Item = usize> {
+        let order = self.order();
+        self.object.mesh.triangles[triangles]
+            .iter()
+            .flat_map(move |t| order.map(|k| t[k] as usize))
+    }
+
+    /// The vertices of a run of triangles.
+    pub fn vertices(&self, triangles: Range<usize>, material: u32) -> impl Iterator<Item = Vertex> {
+        let world = self.object.world_from_object;
+        let positions = &self.object.mesh.positions;
+        self.indices(triangles).map(move |i| Vertex {
+            position: world.transform_point3(positions[i]).to_array(),
+            material,
+        })
+    }
+
+    /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing.
+    pub fn attributes(&self, triangles: &Range<usize>, variant: Variant) -> [Vec<f32>; 4] {
+        let mesh = &self.object.mesh;
+        let order = self.order();
+        let mut all: [Vec<f32>; 4] = Default::default();
+        let [uvs, tangents, colors, normals] = &mut all;
+        if variant.is_mapped() && !mesh.uvs.is_empty() {
+            let of = mesh.uvs[triangles.clone()].iter();
+            uvs.extend(of.flat_map(|t| order.map(|k| t[k].to_array())).flatten());
+        }
+        if variant.has_normal_map() {
+            // Tangents turn with the surface, and over with a mirror.
+            let sign = if self.mirrored { -1.0 } else { 1.0 };
+            let world = self.object.world_from_object;
+            let turned = |[x, y, z, w]: [f32; 4]| {
+                let tangent = world.transform_vector3(glam::Vec3::new(x, y, z));
+                let [x, y, z] = tangent.normalize_or_zero().to_array();
+                [x, y, z, w * sign]
+            };
+            if let Some(found) = mesh.tangents(triangles.clone()) {
+                let of = found.iter().flat_map(|t| order.map(|k| turned(t[k])));
+                tangents.extend(of.flatten());
+            }
+        }
+        if variant.vertex_colors {
+            colors.extend(self.indices(triangles.clone()).flat_map(|i| mesh.colors[i]));
+        }
+        if variant.is_lit() {
+            let turned = |i: usize| (self.normal_matrix * mesh.normals[i]).normalize_or_zero();
+            let of = self.indices(triangles.clone());
+            normals.extend(of.flat_map(|i| turned(i).to_array()));
+        }
+        all
+    }
+}
+
+/// Attribute buffers under way: zeros where nothing reads a vertex's.
+#[derive(Default)]
+pub(crate) struct AttributeData([Vec<f32>; 4]);
+
+/// Floats of one vertex's attribute.
+fn floats(attribute: usize) -> usize {
+    ATTRIBUTES[attribute].1.size() as usize / 4
+}
+
+impl AttributeData {
+    /// Adds those of a part whose first vertex is `first`.
+    pub fn extend(&mut self, first: usize, part: [Vec<f32>; 4]) {
+        for (i, (all, part)) in self.0.iter_mut().zip(part).enumerate() {
+            if !part.is_empty() {
+                all.resize(first * floats(i), 0.0);
+                all.extend(part);
+            }
+        }
+    }
+
+    pub fn upload(self, gpu: &Gpu, vertices: usize) -> [Option<wgpu::Buffer>; 4] {
+        let mut number = 0;
+        self.0.map(|mut all| {
+            let (label, ..) = ATTRIBUTES[number];
+            let size = vertices * floats(number);
+            number += 1;
+            if all.is_empty() {
+                return None;
+            }
+            all.resize(size, 0.0);
+            Some(gpu.upload(label, &all, wgpu::BufferUsages::VERTEX))
+        })
+    }
+}
+
+/// Writes a part's attributes into buffers of `vertices` vertices; makes those that nothing has read so far. Returns whether it
+/// made any.
+pub(crate) fn write_attributes(
+    gpu: &Gpu,
+    buffers: &mut [Option<wgpu::Buffer>; 4],
+    vertices: usize,
+    first: usize,
+    part: &[Vec<f32>; 4],
+) -> bool {
+    let mut made = false;
+    for (i, (buffer, part)) in buffers.iter_mut().zip(part).enumerate() {
+        if part.is_empty() {
+            continue;
+        }
+        let buffer = buffer.get_or_insert_with(|| {
+            made = true;
+            // Zeros are what WebGPU fills new buffers with.
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(ATTRIBUTES[i].0),
+                size: (vertices * floats(i) * 4) as u64,
+                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        let offset = (first * floats(i) * 4) as u64;
+        gpu.queue
+            .write_buffer(buffer, offset, bytemuck::cast_slice(part));
+    }
+    made
+}
+
+/// The middle of a triangle.
+pub(crate) fn centroid(vertices: &[Vertex]) -> glam::Vec3 {
+    let sum: glam::Vec3 = vertices
+        .iter()
+        .map(|c| glam::Vec3::from_array(c.position))
+        .sum();
+    sum / vertices.len() as f32
+}
+
+/// The box around some vertices; `None` without any.
+pub(crate) fn bounding_box(vertices: &[Vertex]) -> Option<[glam::Vec3; 2]> {
+    let mut points = vertices.iter().map(|c| glam::Vec3::from_array(c.position));
+    let first = points.next()?;
+    Some(points.fold([first; 2], |[lo, hi], p| [lo.min(p), hi.max(p)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use peelnet_scene::{Material, Setting};
+
+    #[test]
+    fn runs_join_where_they_can() {
+        let material = Material::unlit([1.0; 3], 0.5);
+        let object = Object::of_triangles("none", &[], material.clone());
+        let setting = Setting {
+            lit: false,
+            sun: false,
+        };
+        let two_sided = Variant::of(&material, &object, setting);
+        let culled = Variant {
+            culled: true,
+            ..two_sided
+        };
+        let mut runs = Vec::new();
+        for (vertices, variant, maps) in [
+            (0..3, two_sided, None),
+            (3..9, two_sided, None),
+            (9..12, culled, None),
+            (12..12, culled, None),
+            (15..18, culled, None),
+            (18..21, culled, Some(0)),
+            (21..24, culled, Some(0)),
+        ] {
+            let run = DrawRun {
+                vertices,
+                variant,
+                maps,
+            };
+            push_run(&mut runs, run);
+        }
+        let vertices: Vec<_> = runs.iter().map(|r| r.vertices.clone()).collect();
+        assert_eq!(vertices, [0..9, 9..12, 15..18, 18..24]);
+    }
+}

@@ -1,0 +1,90 @@
+//! What a method is made ready with, what it draws onto, and what becomes of the frame.
+
+use peelnet_gpu::wgpu;
+#[cfg(doc)]
+use {crate::Renderer, peelnet_scene::Camera};
+
+/// The exported text that a learned method draws with.
+#[derive(Clone, Debug)]
+pub struct LearnedWeight {
+    /// The recipe that the network was trained by.
+    pub recipe: peelnet_model::Recipe,
+    /// The exported WGSL.
+    pub wgsl: String,
+}
+
+/// What a method is made ready with.
+#[derive(Clone, Debug)]
+pub struct MethodOptions {
+    /// Size of [`Renderer::image`]s, width and height in pixels. [`Renderer::draw`] takes that of its target.
+    pub size: [u32; 2],
+    /// The network of a learned method.
+    pub learned: Option<LearnedWeight>,
+}
+
+impl Default for MethodOptions {
+    fn default() -> Self {
+        Self::sized([1024, 768])
+    }
+}
+
+impl MethodOptions {
+    /// For images of this size.
+    pub const fn sized(size: [u32; 2]) -> Self {
+        Self {
+            size,
+            learned: None,
+        }
+    }
+
+    /// With a network.
+    #[must_use]
+    pub fn with(mut self, learned: Option<&LearnedWeight>) -> Self {
+        self.learned = learned.cloned();
+        self
+    }
+}
+
+/// A texture of the caller's to draw onto.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// The colour target, of any format that can be blended, with 1 or 4 samples a pixel. Values written are linear; an sRGB format encodes
+    /// them.
+    pub color: &'a wgpu::TextureView,
+    /// Depth of opaque surfaces that the caller drew with [`Camera::clip_from_view`] (0 near, 1 far), in a format of depth alone, of the
+    /// colour's size, to be bound and attached. The scene's own opaque surfaces are drawn into it.
+    pub depth: Option<&'a wgpu::TextureView>,
+    /// Whether the scene's background replaces what the target holds.
+    pub clear: bool,
+}
+
+impl<'a> Target<'a> {
+    /// Over what the target holds, without a depth buffer of the caller's.
+    pub const fn over(color: &'a wgpu::TextureView) -> Self {
+        Self {
+            color,
+            depth: None,
+            clear: false,
+        }
+    }
+
+    /// Over the scene's background.
+    pub const fn cleared(color: &'a wgpu::TextureView) -> Self {
+        Self {
+            color,
+            depth: None,
+            clear: true,
+        }
+    }
+}
+
+/// Whether frames have room for all of their fragments, as far as counts have come back from the GPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameStatus {
+    /// The last frame that is known of was whole, or the method needs no counts.
+    Whole,
+    /// Nothing is known yet: room for a first guess.
+    Unknown,
+    /// The last frame that is known of was too small and lacks fragments; this one has the room that it needed.
+    Grown,
+}

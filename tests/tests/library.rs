@@ -1,0 +1,548 @@
+//! The renderer as a library: frames encoded onto a caller's targets, scenes that change in place, devices of an application's own.
+
+use glam::{Mat4, Vec3};
+use peelnet_core::fragment::{Fragment, worked_example};
+use peelnet_gpu::{Gpu, wgpu};
+use peelnet_render::{
+    FrameStatus, METHODS, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
+};
+use peelnet_scene::{Camera, Light, Lighting, Material, Scene, Source};
+use peelnet_tests::{gpu, network_of, scene, wall, walls};
+
+/// A texture to draw onto, cleared to a colour.
+fn target(
+    gpu: &Gpu,
+    format: wgpu::TextureFormat,
+    size: [u32; 2],
+    samples: u32,
+    color: [f64; 3],
+) -> wgpu::TextureView {
+    let none = wgpu::TextureUsages::empty();
+    let view = gpu
+        .texture("target", format, size, samples, none)
+        .expect("a small texture");
+    let [r, g, b] = color;
+    let mut encoder = gpu.encoder();
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..Default::default()
+    }));
+    gpu.queue.submit([encoder.finish()]);
+    view
+}
+
+/// A depth buffer, cleared to the window depth of a linear depth.
+fn depth_buffer(
+    gpu: &Gpu,
+    size: [u32; 2],
+    samples: u32,
+    camera: &Camera,
+    z: f32,
+) -> wgpu::TextureView {
+    let none = wgpu::TextureUsages::empty();
+    let format = wgpu::TextureFormat::Depth32Float;
+    let view = gpu
+        .texture("depth", format, size, samples, none)
+        .expect("a small texture");
+    let (near, far) = (camera.near, camera.far);
+    let mut encoder = gpu.encoder();
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &view,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(far / (far - near) * (1.0 - near / z)),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    }));
+    gpu.queue.submit([encoder.finish()]);
+    view
+}
+
+/// Encodes a frame, submits it and waits.
+fn draw(
+    renderer: &Renderer,
+    method: &mut Prepared,
+    camera: &Camera,
+    target: &Target<'_>,
+) -> FrameStatus {
+    let gpu = renderer.gpu();
+    let mut encoder = gpu.encoder();
+    let status = renderer
+        .draw(&mut encoder, method, camera, target)
+        .expect("draws");
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait().expect("no error");
+    status
+}
+
+/// Every method ready for a scene, the learned ones with their shipped networks.
+fn methods(renderer: &Renderer, size: [u32; 2]) -> Vec<(MethodSpec, Prepared)> {
+    let all = METHODS.iter().map(MethodSpec::representative);
+    all.map(|spec| {
+        let network = network_of(&spec).map(|(text, _)| text);
+        let options = MethodOptions::sized(size).with(network.as_ref());
+        let method = renderer.method(&spec, options);
+        let method = method.unwrap_or_else(|e| panic!("{spec}: {e}"));
+        (spec, method)
+    })
+    .collect()
+}
+
+/// Blending onto a 32-bit target adds the rounding of a product and a sum to what the image has: 2^-23 of values up to 2.
+const BLENDED: f32 = 4.0 * f32::EPSILON;
+
+fn assert_close(what: &str, found: &[[f32; 4]], expected: &[[f32; 4]], tolerance: f32) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (pixel, (a, b)) in found.iter().zip(expected).enumerate() {
+        for k in 0..3 {
+            let apart = (a[k] - b[k]).abs();
+            assert!(
+                apart <= tolerance,
+                "{what}: pixel {pixel}: {a:?}, not {b:?}"
+            );
+        }
+    }
+}
+
+/// What every method draws over the colour that a target holds is what it draws over a background of that colour, in two frames at
+/// most; opaque objects of the scene hide what lies behind them there as well.
+#[test]
+fn every_method_draws_over_what_a_target_holds() {
+    let gpu = gpu();
+    let size = [7, 5];
+    let behind = [0.1, 0.2, 0.9];
+    let mut objects = walls(&worked_example(), behind).objects;
+    let mut opaque = Material::unlit([0.3, 0.6, 0.1], 1.0);
+    opaque.blend = false;
+    objects.push(wall(5.0, opaque));
+    // In a corner of the frame only.
+    let corner = objects.len() - 1;
+    objects[corner].world_from_object = Mat4::from_translation(Vec3::new(6.0, 6.0, 0.0));
+    let scene = scene("over", behind, objects);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let camera = scene.views[0];
+    for (spec, mut method) in methods(&renderer, size) {
+        let image = renderer.image(&mut method, &camera).expect("draws").image;
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let mut last = FrameStatus::Unknown;
+        let mut found = Vec::new();
+        for frame in 0..3 {
+            let view = target(&gpu, format, size, 1, behind.map(f64::from));
+            last = draw(&renderer, &mut method, &camera, &Target::over(&view));
+            found = gpu.read_rgba32f(&view).expect("reads");
+            // The second frame has the room that the first one needed.
+            if frame == 1 {
+                assert_close(&format!("{spec}"), &found, &image.pixels, BLENDED);
+            }
+        }
+        assert_eq!(last, FrameStatus::Whole, "{spec}");
+        assert_close(&format!("{spec} again"), &found, &image.pixels, BLENDED);
+        assert!(
+            found.iter().all(|p| (p[3] - 1.0).abs() <= BLENDED),
+            "{spec}"
+        );
+        // With the scene's own background the same.
+        let view = target(&gpu, format, size, 1, [0.0; 3]);
+        draw(&renderer, &mut method, &camera, &Target::cleared(&view));
+        let found = gpu.read_rgba32f(&view).expect("reads");
+        assert_close(&format!("{spec} cleared"), &found, &image.pixels, BLENDED);
+    }
+}
+
+/// The bytes of a texture of 4 bytes a pixel.
+fn bytes(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[u8; 4]> {
+    let texture = view.texture();
+    let row = (texture.width() * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let size = u64::from(row * texture.height());
+    let buffer = gpu.storage("read-back", size).expect("a small buffer");
+    let mut encoder = gpu.encoder();
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(row),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let padded: Vec<[u8; 4]> = gpu.read(&buffer, 0..size).expect("reads");
+    let rows = padded.chunks_exact(row as usize / 4);
+    rows.flat_map(|r| &r[..texture.width() as usize])
+        .copied()
+        .collect()
+}
+
+/// Targets of other formats hold the same picture in their encoding, within one step: the rounding of the background and of the blend.
+#[test]
+fn formats_keep_the_picture() {
+    let gpu = gpu();
+    let size = [4, 3];
+    let behind = [0.25, 0.5, 0.75];
+    let scene = walls(&worked_example(), behind);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let mut method = renderer
+        .method(
+            &"abuffer".parse().expect("a name"),
+            MethodOptions::sized(size),
+        )
+        .expect("a method");
+    let image = renderer
+        .image(&mut method, &scene.views[0])
+        .expect("draws")
+        .image;
+    use wgpu::TextureFormat as F;
+    for (format, is_srgb, red) in [
+        (F::Rgba8Unorm, false, 0),
+        (F::Bgra8Unorm, false, 2),
+        (F::Rgba8UnormSrgb, true, 0),
+        (F::Bgra8UnormSrgb, true, 2),
+    ] {
+        let view = target(&gpu, format, size, 1, behind.map(f64::from));
+        for _ in 0..2 {
+            let cleared = Target::cleared(&view);
+            draw(&renderer, &mut method, &scene.views[0], &cleared);
+        }
+        for (found, exact) in bytes(&gpu, &view).iter().zip(&image.pixels) {
+            for k in 0..3 {
+                let at = if k == 1 { 1 } else { red ^ k };
+                let encoded = if is_srgb {
+                    peelnet_core::srgb::encode(exact[k])
+                } else {
+                    exact[k]
+                };
+                let apart = (f32::from(found[at]) - 255.0 * encoded).abs();
+                assert!(apart <= 1.5, "{format:?}: {found:?}, not {exact:?}");
+            }
+        }
+    }
+}
+
+/// Nothing happens before the caller submits.
+#[test]
+fn drawing_only_encodes() {
+    let gpu = gpu();
+    let scene = walls(&worked_example(), [0.0; 3]);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let format = wgpu::TextureFormat::Rgba32Float;
+    for name in ["wboit-eq9", "abuffer", "depth-peel", "linked-list"] {
+        let spec = name.parse().expect("a name");
+        let options = MethodOptions::sized([4, 4]);
+        let mut method = renderer.method(&spec, options).expect("a method");
+        let view = target(&gpu, format, [4, 4], 1, [0.5; 3]);
+        let mut encoder = gpu.encoder();
+        let over = Target::over(&view);
+        renderer
+            .draw(&mut encoder, &mut method, &scene.views[0], &over)
+            .expect("draws");
+        let before = gpu.read_rgba32f(&view).expect("reads");
+        assert!(before.iter().all(|p| *p == [0.5, 0.5, 0.5, 1.0]), "{name}");
+        gpu.queue.submit([encoder.finish()]);
+        let after = gpu.read_rgba32f(&view).expect("reads");
+        assert_ne!(before, after, "{name}");
+    }
+}
+
+/// A frame of more fragments than the first guess says so one frame later, and is whole in that one.
+#[test]
+fn frames_that_were_too_small_grow() {
+    let gpu = gpu();
+    let size = [6, 4];
+    let layers: Vec<_> = (0..40)
+        .map(|i| Fragment::new(1.0 + 0.1 * i as f32, 0.1, [0.9, 0.1 * (i % 9) as f32, 0.3]))
+        .collect();
+    let scene = walls(&layers, [0.2; 3]);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let camera = scene.views[0];
+    for name in ["abuffer", "linked-list", "depth-peel", "dual-peel"] {
+        let spec = name.parse().expect("a name");
+        let mut method = renderer
+            .method(&spec, MethodOptions::sized(size))
+            .expect("a method");
+        let exact = renderer.image(&mut method, &camera).expect("draws").image;
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let mut frames = Vec::new();
+        for _ in 0..3 {
+            let view = target(&gpu, format, size, 1, [0.2; 3]);
+            let status = draw(&renderer, &mut method, &camera, &Target::over(&view));
+            frames.push((status, gpu.read_rgba32f(&view).expect("reads")));
+        }
+        let statuses = [0, 1, 2].map(|i: usize| frames[i].0);
+        use FrameStatus::{Grown, Unknown, Whole};
+        assert_eq!(statuses, [Unknown, Grown, Whole], "{name}");
+        let differs = frames[0].1.iter().zip(&exact.pixels);
+        let differs = differs.filter(|(a, b)| (a[0] - b[0]).abs() > 0.01).count();
+        assert!(differs > 0, "{name}: the first frame had room for all");
+        for (_, pixels) in &frames[1..] {
+            assert_close(name, pixels, &exact.pixels, 8.0 * BLENDED);
+        }
+    }
+}
+
+/// The depth that a caller drew hides what lies behind it, with one sample a pixel and with four.
+#[test]
+fn a_callers_depth_hides() {
+    let gpu = gpu();
+    let fragments = worked_example();
+    let scene = walls(&fragments, [0.1, 0.2, 0.9]);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let camera = scene.views[0];
+    let near: Vec<_> = fragments
+        .iter()
+        .copied()
+        .filter(|f| f.depth < 3.0)
+        .collect();
+    let alone = Renderer::new(&gpu, &walls(&near, [0.1, 0.2, 0.9])).expect("uploads");
+    let size = [4, 4];
+    for samples in [1, 4] {
+        for name in ["wboit-eq9", "abuffer"] {
+            let spec: MethodSpec = name.parse().expect("a name");
+            let options = MethodOptions::sized(size);
+            let mut method = renderer.method(&spec, options.clone()).expect("a method");
+            let mut reference = alone.method(&spec, options).expect("a method");
+            let exact = alone.image(&mut reference, &camera).expect("draws").image;
+            let format = wgpu::TextureFormat::Rgba16Float;
+            let color = target(&gpu, format, size, samples, [0.0; 3]);
+            let depth = depth_buffer(&gpu, size, samples, &camera, 3.0);
+            for _ in 0..2 {
+                let target = Target {
+                    color: &color,
+                    depth: Some(&depth),
+                    clear: true,
+                };
+                draw(&renderer, &mut method, &camera, &target);
+            }
+            let found = resolved(&gpu, &color);
+            // Half floats of values up to 1: 2^-11 for the background and as much for the blend.
+            assert_close(&format!("{name} x{samples}"), &found, &exact.pixels, 1e-3);
+        }
+    }
+}
+
+/// A half-float target's pixels, the mean of its samples.
+fn resolved(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
+    let texture = view.texture();
+    let size = [texture.width(), texture.height()];
+    let single = target(gpu, texture.format(), size, 1, [0.0; 3]);
+    if texture.sample_count() == 1 {
+        return half_floats(gpu, view);
+    }
+    let mut encoder = gpu.encoder();
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: Some(&single),
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Load,
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..Default::default()
+    }));
+    gpu.queue.submit([encoder.finish()]);
+    half_floats(gpu, &single)
+}
+
+fn half_floats(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
+    let texture = view.texture();
+    let row = (texture.width() * 8).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let size = u64::from(row * texture.height());
+    let buffer = gpu.storage("read-back", size).expect("a small buffer");
+    let mut encoder = gpu.encoder();
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(row),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let padded: Vec<[u16; 4]> = gpu.read(&buffer, 0..size).expect("reads");
+    let rows = padded.chunks_exact(row as usize / 8);
+    rows.flat_map(|r| &r[..texture.width() as usize])
+        .map(|p| p.map(|bits| half::f16::from_bits(bits).to_f32()))
+        .collect()
+}
+
+/// A scene of two objects with one light, one of them lit.
+fn lit_scene() -> Scene {
+    let mut all = walls(&worked_example(), [0.1, 0.2, 0.3]);
+    for material in &mut all.objects[1].materials {
+        material.lighting = Lighting::Phong;
+    }
+    all.lights = vec![Light {
+        source: Source::Point(Vec3::new(1.0, 2.0, 1.0)),
+        color: [1.0, 0.9, 0.8],
+        intensity: 2.0,
+    }];
+    all
+}
+
+/// A renderer whose scene changed draws, to the bit, what a renderer of the changed scene draws; and only changes of what a material needs
+/// compile pipelines.
+#[test]
+fn scenes_change_in_place() {
+    let gpu = gpu();
+    let scene = lit_scene();
+    let mut renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let specs = ["mboit4", "abuffer", "painter-triangle", "blended"];
+    let mut prepared: Vec<Prepared> = specs
+        .map(|name| {
+            let spec = name.parse().expect("a name");
+            renderer
+                .method(&spec, MethodOptions::sized([9, 6]))
+                .expect("a method")
+        })
+        .into();
+    let mut check = |renderer: &Renderer, what: &str| {
+        let fresh = Renderer::new(&gpu, renderer.scene()).expect("uploads");
+        for (name, method) in specs.iter().zip(&mut prepared) {
+            let camera = scene.views[0];
+            let found = renderer.image(method, &camera).expect("draws").image;
+            let mut other = fresh
+                .method(&name.parse().expect("a name"), MethodOptions::sized([9, 6]))
+                .expect("a method");
+            let expected = fresh.image(&mut other, &camera).expect("draws").image;
+            assert_eq!(found.pixels, expected.pixels, "{name}, {what}");
+        }
+    };
+    check(&renderer, "as uploaded");
+    let compiled = gpu.compiled_pipelines();
+    // Values: nothing is compiled.
+    let moved = Mat4::from_rotation_y(0.3) * Mat4::from_translation(Vec3::new(0.4, -0.2, -1.0));
+    renderer.set_transform(1, moved).expect("moves");
+    check(&renderer, "an object moved");
+    let mirrored = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    renderer.set_transform(0, mirrored).expect("moves");
+    check(&renderer, "an object mirrored");
+    let mut material = renderer.scene().objects[2].materials[0].clone();
+    (material.color, material.alpha) = ([0.7, 0.1, 0.4], 0.35);
+    renderer.set_material(2, 0, material.clone()).expect("set");
+    check(&renderer, "another colour");
+    let mut lights = scene.lights.clone();
+    lights[0].intensity = 0.5;
+    lights.push(lights[0]);
+    lights[1].color = [0.0, 1.0, 0.0];
+    renderer.set_lights(lights).expect("set");
+    check(&renderer, "another light");
+    assert_eq!(gpu.compiled_pipelines(), compiled);
+    // Needs: another pass, normals of a part that had none, a light of another kind.
+    material.lighting = Lighting::Pbr;
+    renderer.set_material(2, 0, material.clone()).expect("set");
+    check(&renderer, "a material that is lit now");
+    assert!(gpu.compiled_pipelines() > compiled);
+    (material.alpha, material.blend) = (1.0, false);
+    renderer.set_material(2, 0, material).expect("set");
+    check(&renderer, "a material that is opaque now");
+    let sun = Light {
+        source: Source::Toward(Vec3::Z),
+        ..scene.lights[0]
+    };
+    renderer.set_lights(vec![sun]).expect("set");
+    check(&renderer, "the sun");
+    renderer.set_lights(Vec::new()).expect("set");
+    check(&renderer, "no light");
+    for error in [
+        renderer.set_transform(9, Mat4::IDENTITY),
+        renderer.set_material(0, 3, Material::unlit([0.0; 3], 0.5)),
+    ] {
+        assert!(matches!(error, Err(RenderError::Raster(_))), "{error:?}");
+    }
+}
+
+/// Another size takes its pipelines from the cache, and so does another scene of the same kind of materials.
+#[test]
+fn a_resize_keeps_pipelines() {
+    let gpu = gpu();
+    let scene = walls(&worked_example(), [0.0; 3]);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let mut all = methods(&renderer, [8, 8]);
+    let camera = scene.views[0];
+    for (_, method) in &mut all {
+        renderer.image(method, &camera).expect("draws");
+    }
+    let compiled = gpu.compiled_pipelines();
+    for (spec, method) in &mut all {
+        method.resize([11, 5]);
+        let image = renderer.image(method, &camera).expect("draws").image;
+        assert_eq!((image.width, image.height), (11, 5), "{spec}");
+        assert_eq!(gpu.compiled_pipelines(), compiled, "{spec}");
+    }
+    let other = walls(&worked_example()[1..], [0.5; 3]);
+    let other = Renderer::new(&gpu, &other).expect("uploads");
+    methods(&other, [5, 5]);
+    assert_eq!(gpu.compiled_pipelines(), compiled);
+}
+
+/// An application's own device, opened without any optional feature: what is missing is listed, and methods that need it say so.
+#[test]
+fn an_applications_own_device() {
+    let ours = gpu();
+    let descriptor = wgpu::DeviceDescriptor {
+        required_limits: ours.adapter.limits(),
+        ..Default::default()
+    };
+    let adapter = ours.adapter.clone();
+    let opened = adapter.request_device(&descriptor);
+    let (device, queue) = ours
+        .block_on(async {
+            opened
+                .await
+                .map_err(|e| peelnet_gpu::GpuError::Lost(e.to_string()))
+        })
+        .expect("a second device");
+    let gpu = Gpu::from_parts(ours.instance.clone(), adapter, device, queue);
+    let missing: Vec<_> = gpu.missing().iter().map(|f| f.name).collect();
+    assert_eq!(
+        missing,
+        ["float32-blendable", "timestamp-query", "shader-f16"]
+    );
+    let scene = walls(&worked_example(), [0.0; 3]);
+    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let options = || MethodOptions::sized([4, 4]);
+    let mut method = renderer
+        .method(&"abuffer".parse().expect("a name"), options())
+        .expect("a method");
+    let image = renderer
+        .image(&mut method, &scene.views[0])
+        .expect("draws")
+        .image;
+    // See the README's four fragments.
+    for (found, exact) in image.pixels[5].iter().zip([0.6125, 0.3625, 0.2375]) {
+        assert!((found - exact).abs() < 1e-6, "{found}, not {exact}");
+    }
+    let refused = renderer.method(&"dual-peel".parse().expect("a name"), options());
+    let message = refused.expect_err("blends in 32 bits").to_string();
+    assert!(message.contains("float32-blendable"), "{message}");
+}
+
+/// What can be drawn can be moved to another thread.
+#[test]
+fn public_types_are_send() {
+    fn is_send<T: Send>() {}
+    is_send::<Gpu>();
+    is_send::<Renderer>();
+    is_send::<Prepared>();
+    is_send::<Scene>();
+    is_send::<peelnet_peel::harvest::Harvester>();
+}
