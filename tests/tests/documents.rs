@@ -53,6 +53,29 @@ fn every_shader_is_described() {
     }
 }
 
+/// The scene in docs/scene-files.md loads, and the page names every shape.
+#[test]
+fn the_documented_scene_loads() {
+    let page = read("docs/scene-files.md");
+    let (_, rest) = page.split_once("```toml\n").unwrap();
+    let (scene, _) = rest.split_once("```").unwrap();
+    let scene = peelnet_scene::Scene::from_bytes("room.toml", |path| match path.to_str() {
+        Some("room.toml") => Ok(scene.into()),
+        Some("meshes/pot.obj") => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()),
+        _ => Err(std::io::ErrorKind::NotFound.into()),
+    })
+    .unwrap();
+    assert_eq!(
+        (scene.objects.len(), scene.views.len(), scene.timeline.len()),
+        (18, 4, 2)
+    );
+    let shapes = read("crates/peelnet_scene/src/shapes.rs");
+    for shape in shapes.split("=> \"").skip(1) {
+        let name = shape.split('"').next().unwrap();
+        assert!(page.contains(&format!("| `{name}` |")), "{name}");
+    }
+}
+
 #[test]
 fn every_shipped_scene_stands_in_its_readme() {
     let text = read("data/README.md");

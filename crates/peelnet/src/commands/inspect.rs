@@ -60,7 +60,7 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
             let census = if census.is_empty() {
                 census
             } else {
-                format!("\neffects that the scenes called for\n{census}")
+                format!("\neffects that the scenes needed\n{census}")
             };
             format!(
                 "dataset     {}\nwritten by  peelnet {} on {} ({} peeling, {} of the pixels, seed {})\ncommand     {}\n{}{census}",
@@ -239,7 +239,7 @@ fn scene_text(
         census.variants.len(),
         thousands(shader as u64)
     );
-    t.push_str("\neffect                  on   called for by\n");
+    t.push_str("\neffect                  on   needed by\n");
     for effect in &census.effects {
         let on = if effect.on { "yes" } else { "–" };
         let _ = writeln!(t, "{:<23} {on:<4} {}", effect.name, few(&effect.why));
