@@ -14,6 +14,7 @@
 //! | [`train`] | `peelnet_train` | networks from datasets (feature `train`) |
 //! | [`export`] | `peelnet_export` | a network as verified WGSL |
 //! | [`bench`] | `peelnet_eval` | errors against the exact image, times, hard cases |
+//! | [`report`] | `peelnet_report` | pages, charts and tables of what was measured |
 //! | [`models`] | `peelnet_models` | model files and WGSL of the shipped networks, embedded |
 //!
 //! # Use
@@ -85,6 +86,7 @@ pub use peelnet_model as model;
 pub use peelnet_models as models;
 pub use peelnet_peel as extract;
 pub use peelnet_render as render;
+pub use peelnet_report as report;
 pub use peelnet_scene as scene;
 #[cfg(feature = "train")]
 pub use peelnet_train as train;

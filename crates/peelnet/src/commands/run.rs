@@ -3,6 +3,7 @@
 use super::{Context, extract, train};
 use crate::cli::RunArgs;
 use crate::failure::Failure;
+use crate::learned;
 use crate::parse::{Size, command_line};
 use crate::progress::Bar;
 use crate::summary_text::summary_text;
@@ -11,6 +12,7 @@ use peelnet_chart::Svg;
 use peelnet_dataset::{Dataset, Format, Summary};
 use peelnet_eval::bench::{self, bench_watched};
 use peelnet_eval::compare::{EXACT, Plan};
+use peelnet_eval::front;
 use peelnet_eval::{Machine, Partial, Row};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
@@ -25,6 +27,25 @@ use std::time::Instant;
 
 /// Shipped scenes whose names begin so are the thesis's family.
 const FAMILY: &str = "sixteen-";
+
+/// Beside each other on the first screen of the report, with [`SHOWN_NETWORKS`]: the base of the times, the exact image,
+/// sorting, weighted blending, moments, and the networks.
+const SHOWN: [&str; 8] = [
+    front::BASE,
+    EXACT,
+    "painter-triangle",
+    "wboit-eq9",
+    "mboit4",
+    "deep-thesis",
+    "deep-medium",
+    "deep-large",
+];
+
+/// Of these the shipped networks are drawn, beside the one that the run trains.
+const SHOWN_NETWORKS: [Recipe; 2] = [Recipe::Medium, Recipe::Large];
+
+/// The scene of it: held out, and of another kind than those of the run.
+const SHOWN_SCENE: &str = "foliage-held";
 
 /// The sizes of a run.
 struct Sizes {
@@ -104,10 +125,12 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let (outcome, loss) = run.train(&dataset)?;
     let learned = run.export(&outcome.model)?;
     let images = args.out.join("images");
+    let showcase = run.showcase(&learned, &images)?;
     let rows = run.compare(learned, &images)?;
     let mut results = Results::of_rows(Machine::of(&run.gpu), command_line(), rows);
     results.measured.settings = run.settings(share, &outcome.model);
     results.measured.stages = run.clock.stages;
+    results.measured.showcase = showcase;
     results.write(
         &args.out,
         &Attachments {
@@ -222,27 +245,67 @@ impl Run<'_> {
         })
     }
 
+    /// The shipped networks beside the trained one and what they compete with, timed, on a scene that none of them saw; where scenes
+    /// were named, on the first of them that is held out.
+    fn showcase(&mut self, trained: &LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
+        let scene = if self.args.scenes.is_empty() {
+            suite::load(SHOWN_SCENE)?
+        } else {
+            let held_out = self.scenes.iter().find(|s| s.held_out);
+            match held_out {
+                Some(scene) => scene.clone(),
+                None => return Ok(Vec::new()),
+            }
+        };
+        let mut learned = vec![trained.clone()];
+        for recipe in SHOWN_NETWORKS {
+            learned.push(learned::text_of(&self.gpu, &Model::shipped(recipe)?)?);
+        }
+        let methods: Vec<MethodSpec> = SHOWN.iter().map(|m| m.parse()).collect::<Result<_, _>>()?;
+        let plan = Plan {
+            learned: &learned,
+            lenient: true,
+            images: Some(images),
+            ..Plan::new(self.sizes.frame.0, &methods)
+        };
+        self.draw("showcase", std::slice::from_ref(&scene), &plan)
+    }
+
     /// Every method that there is, and the learned one, on every view of every scene.
     fn compare(&mut self, learned: LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
         let mut methods = MethodSpec::all();
         methods.push(learned.recipe.method_name().parse()?);
         let learned = [learned];
-        let frame = self.sizes.frame;
         let plan = Plan {
             learned: &learned,
             lenient: true,
             frames: 0,
             images: Some(images),
-            ..Plan::new(frame.0, &methods)
+            ..Plan::new(self.sizes.frame.0, &methods)
         };
+        let scenes = std::mem::take(&mut self.scenes);
+        let rows = self.draw("compare", &scenes, &plan);
+        self.scenes = scenes;
+        rows
+    }
+
+    /// Draws the scenes by a plan, with a progress bar.
+    fn draw(
+        &mut self,
+        stage: &'static str,
+        scenes: &[Scene],
+        plan: &Plan<'_>,
+    ) -> Result<Vec<Row>, Failure> {
+        let frame = self.sizes.frame;
         let console = self.context.console;
-        let views: usize = self.scenes.iter().map(|s| s.views.len()).sum();
+        let views: usize = scenes.iter().map(|s| s.views.len()).sum();
+        let names: Vec<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
         console.message(format!(
-            "comparing {} methods on {views} views of {} scenes",
-            methods.len(),
-            self.scenes.len()
+            "{stage}: {} methods on {views} views of {}",
+            plan.methods.len(),
+            names.join(", ")
         ));
-        let bar = Bar::new(console, "compare", 0);
+        let bar = Bar::new(console, stage, 0);
         let mut show = |event: bench::Progress<'_>| match event {
             bench::Progress::Drawn {
                 done,
@@ -256,11 +319,11 @@ impl Run<'_> {
         };
         let partial = Partial::new(None, serde_json::Value::Null);
         let stop = self.context.stop;
-        let bench = bench_watched(&self.gpu, &self.scenes, &plan, partial, stop, &mut show)?;
+        let bench = bench_watched(&self.gpu, scenes, plan, partial, stop, &mut show)?;
         drop(bar);
         let frames = HumanCount(bench.rows.len() as u64);
         self.clock
-            .done("compare", format!("{frames} frames at {frame}"))?;
+            .done(stage, format!("{frames} frames at {frame}"))?;
         Ok(bench.rows)
     }
 

@@ -1,6 +1,6 @@
 //! The files of a bench: `results.json`, `results.csv`, `table.md`, `pareto.svg`, `pareto-mean.svg` and `report.html`.
 
-mod page;
+pub(crate) mod page;
 
 use crate::{
     ReportError, Results, Table,
@@ -78,7 +78,7 @@ impl Results<Bench> {
 }
 
 /// Error against time, the Pareto front drawn through it, a bubble for each method as large as its bytes per pixel.
-fn chart(points: &[Point]) -> Svg {
+pub(crate) fn chart(points: &[Point]) -> Svg {
     let bubble = |p: &Point| {
         let error = if p.is_exact() {
             "exact".to_owned()

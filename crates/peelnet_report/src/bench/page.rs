@@ -23,7 +23,7 @@ use std::path::Path;
 const PICTURE_WIDTH: u32 = 256;
 
 /// Factor of the difference maps.
-const MAGNIFIED: u16 = 8;
+pub(crate) const MAGNIFIED: u16 = 8;
 
 /// The whole page. `images` is the folder with `<scene>-<method>.png`.
 pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, ReportError> {
@@ -221,7 +221,7 @@ fn gallery(scene: &str, points: &[Point], folder: &Path) -> Result<Markup, Repor
 }
 
 /// How far every channel is off, magnified.
-fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
+pub(crate) fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
     let mut map = other.clone();
     for (d, e) in map.pixels_mut().zip(exact.pixels()) {
         for (d, e) in d.0.iter_mut().zip(e.0) {

@@ -2,6 +2,7 @@
 
 pub(crate) mod findings;
 mod page;
+mod showcase;
 mod table;
 
 use crate::{ReportError, Results, Table, files::write_file};
@@ -33,6 +34,9 @@ pub struct ThesisRun {
     pub findings: Vec<String>,
     /// All rows.
     pub rows: Vec<Row>,
+    /// Rows of one more scene, with shipped networks beside the trained one and timed frames.
+    #[serde(default)]
+    pub showcase: Vec<Row>,
 }
 
 /// What the page shows beside the results.
@@ -54,6 +58,7 @@ impl Results<ThesisRun> {
             settings: Vec::new(),
             findings: findings(&rows),
             rows,
+            showcase: Vec::new(),
         };
         Self::new(machine, command, run)
     }

@@ -1,6 +1,6 @@
 //! The page of a run.
 
-use super::{Attachments, EXPLANATION, Stage, ThesisRun, table};
+use super::{Attachments, EXPLANATION, Stage, ThesisRun, showcase, table};
 use crate::{
     ReportError, Results, Table, page,
     picture::{data_uri, figure, read},
@@ -26,9 +26,10 @@ pub(super) fn page(
         None => Markup::default(),
     };
     let body = html! {
-        h2 { "Findings" }
+        (showcase::section(&run.showcase, attachments.images)?)
+        h2 { "The thesis's promise" }
         ul { @for finding in &run.findings { li { (finding) } } }
-        h2 { "The table" }
+        h3 { "The thesis's table" }
         (table::like_the_thesis(&errors).html("", |_| false))
         p.note { (EXPLANATION.replace('`', "")) }
         h2 { "All methods" }
@@ -51,7 +52,7 @@ pub(super) fn page(
             (stages(&run.stages).html("text", |_| false))
         }
     };
-    let title = "learned weighted blending against the exact image";
+    let title = "learned transparency against the exact image";
     Ok(page::page(results, title, body, &run.settings, None))
 }
 
