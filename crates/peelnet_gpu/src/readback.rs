@@ -188,7 +188,8 @@ impl Gpu {
     fn copied(&self, view: &wgpu::TextureView) -> (wgpu::Buffer, usize) {
         let texture = view.texture();
         let (width, height) = (texture.width(), texture.height());
-        let row = (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let texel = texture.format().block_copy_size(None).unwrap_or(1);
+        let row = (width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("image read-back"),
             size: u64::from(row) * u64::from(height),
@@ -209,7 +210,7 @@ impl Gpu {
             texture.size(),
         );
         self.queue.submit([encoder.finish()]);
-        (buffer, row as usize / 16)
+        (buffer, (row / texel) as usize)
     }
 
     fn staging(&self, size: u64) -> wgpu::Buffer {
@@ -223,7 +224,7 @@ impl Gpu {
 }
 
 /// Rows of `row` texels without what pads them behind `width`.
-fn without_padding(padded: &[[f32; 4]], row: usize, width: u32) -> Vec<[f32; 4]> {
+fn without_padding<T: Copy>(padded: &[T], row: usize, width: u32) -> Vec<T> {
     padded
         .chunks_exact(row)
         .flat_map(|r| &r[..width as usize])
@@ -307,14 +308,31 @@ impl Gpu {
         Ok(out)
     }
 
-    /// Copies an RGBA32F texture: `height × width` pixels, row 0 at the top.
+    /// Copies a texture whose texels are `T`s: `height × width` of them, row 0 at the top.
+    ///
+    /// # Errors
+    /// A lost device, or a validation error.
+    ///
+    /// # Panics
+    /// If a texel has another size than `T`.
+    pub fn read_texture<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+        &self,
+        view: &wgpu::TextureView,
+    ) -> Result<Vec<T>, GpuError> {
+        let format = view.texture().format();
+        let texel = format.block_copy_size(None);
+        assert_eq!(texel, Some(size_of::<T>() as u32), "a texel of {format:?}");
+        let (buffer, row) = self.copied(view);
+        let padded: Vec<T> = self.read(&buffer, 0..buffer.size())?;
+        Ok(without_padding(&padded, row, view.texture().width()))
+    }
+
+    /// Copies an RGBA32F texture.
     ///
     /// # Errors
     /// A lost device, or a validation error.
     pub fn read_rgba32f(&self, view: &wgpu::TextureView) -> Result<Vec<[f32; 4]>, GpuError> {
-        let (buffer, row) = self.copied(view);
-        let padded: Vec<[f32; 4]> = self.read(&buffer, 0..buffer.size())?;
-        Ok(without_padding(&padded, row, view.texture().width()))
+        self.read_texture(view)
     }
 
     fn map(

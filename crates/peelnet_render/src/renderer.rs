@@ -1,7 +1,7 @@
 //! [`Renderer`]: a scene on a device, drawn into a caller's target, into an image, or for its time alone.
 
 use crate::{
-    FrameStatus, Image, LayerView, MethodOptions, MethodSpec, RenderError, Target,
+    FrameStatus, Image, LayerView, LearnedWeight, MethodOptions, MethodSpec, RenderError, Target,
     methods::{self, Build, Compositor, DrawContext, Fit, FrameStats, Learning},
 };
 use peelnet_core::absorbance::DepthWarp;
@@ -176,8 +176,10 @@ impl Renderer {
     pub fn method(
         &self,
         spec: &MethodSpec,
-        options: MethodOptions,
+        mut options: MethodOptions,
     ) -> Result<Prepared, RenderError> {
+        let shipped = || LearnedWeight::shipped(spec);
+        options.learned = options.learned.or_else(shipped);
         self.made(Kind::Method(spec.clone()), options)
     }
 

@@ -1,6 +1,8 @@
 //! What a method is made ready with, what it draws onto, and what becomes of the frame.
 
+use crate::MethodSpec;
 use peelnet_gpu::wgpu;
+use peelnet_model::Recipe;
 #[cfg(doc)]
 use {crate::Renderer, peelnet_scene::Camera};
 
@@ -8,9 +10,22 @@ use {crate::Renderer, peelnet_scene::Camera};
 #[derive(Clone, Debug)]
 pub struct LearnedWeight {
     /// The recipe that the network was trained by.
-    pub recipe: peelnet_model::Recipe,
+    pub recipe: Recipe,
     /// The exported WGSL.
     pub wgsl: String,
+}
+
+impl LearnedWeight {
+    /// The network that ships for a method; `None` for a method that has none.
+    pub fn shipped(spec: &MethodSpec) -> Option<Self> {
+        let mut recipes = Recipe::ALL.into_iter();
+        let recipe = recipes.find(|r| r.method_name() == spec.name())?;
+        let shipped = peelnet_models::find(recipe.name())?;
+        Some(Self {
+            recipe,
+            wgsl: shipped.wgsl.to_owned(),
+        })
+    }
 }
 
 /// What a method is made ready with.
@@ -18,7 +33,7 @@ pub struct LearnedWeight {
 pub struct MethodOptions {
     /// Size of [`Renderer::image`]s, width and height in pixels. [`Renderer::draw`] takes that of its target.
     pub size: [u32; 2],
-    /// The network of a learned method.
+    /// The network of a learned method; by default the one that ships for it.
     pub learned: Option<LearnedWeight>,
 }
 
