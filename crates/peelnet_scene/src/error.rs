@@ -28,7 +28,7 @@ pub enum SceneError {
         path: PathBuf,
         /// The key, such as `camera.near` or `object 3.material.alpha`.
         field: String,
-        /// What is wrong and what would be right.
+        /// What is wrong, and the values that are allowed.
         message: String,
     },
     /// A mesh file that cannot be used.
@@ -38,7 +38,7 @@ pub enum SceneError {
         path: PathBuf,
         /// The line, from 1, where it is known.
         line: Option<usize>,
-        /// What is wrong and what would be right.
+        /// What is wrong, and the values that are allowed.
         message: String,
     },
     /// A name that no shipped scene has.

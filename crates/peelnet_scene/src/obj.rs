@@ -169,7 +169,7 @@ struct Libraries<'a, 'f> {
     warnings: Vec<String>,
     /// Whether a library is missing.
     is_incomplete: bool,
-    /// `tobj` goes on after an error of a library, and keeps none of ours.
+    /// The first error. `tobj` continues after an error of a library, and its own errors hold no message.
     error: Option<SceneError>,
 }
 
@@ -368,7 +368,7 @@ fn part_geometry(
         .collect();
     let n = positions.len();
     PartGeometry {
-        // Where some vertices of a part have none, none has.
+        // A part has UVs only if all of its vertices have them; colours likewise.
         uvs: (uvs.len() == n).then_some(uvs),
         colors: (colors.len() == n).then_some(colors),
         positions,

@@ -156,7 +156,7 @@ pub(crate) struct Placed {
 }
 
 impl Scatter {
-    /// Checks what the types cannot say: the field and what is wrong.
+    /// Checks the values; an error holds the field and what is wrong.
     pub(crate) fn check(&self) -> Result<(), (&'static str, String)> {
         let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
         if self.mesh.is_some() == self.meshes.is_some() {

@@ -53,7 +53,7 @@ pub struct Maps {
     pub normal_scale: f32,
     /// Strength of the occlusion map, 0 … 1.
     pub occlusion_strength: f32,
-    /// Beyond the edges, across and down.
+    /// What lies beyond the edges, across and down.
     pub wrap: [Wrap; 2],
     /// Whether a magnified texture shows its texels as squares.
     pub nearest: bool,

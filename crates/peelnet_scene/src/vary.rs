@@ -8,7 +8,7 @@ use peelnet_core::random::Random;
 /// very faint layers.
 #[derive(Clone, Copy, Debug)]
 enum Alphas {
-    /// Each object its own, anywhere.
+    /// Each object its own, from the whole range.
     Uniform,
     /// One for all.
     Same,

@@ -1,4 +1,4 @@
-//! Materials of a scene file: a mesh's own with what the file sets, and their textures.
+//! Materials: a mesh's own, with the values and textures that the scene file sets.
 
 use super::{
     loader::Loader,
@@ -131,7 +131,7 @@ impl Loader<'_> {
             let message = "belongs to lighting = \"pbr\": add that, or leave it out";
             return Err(fail(("metallic_roughness_map", message.into())));
         }
-        // A map multiplies the material's value: all of it counts where no value is given.
+        // A map multiplies the material's value, which is 1 where the file gives a map and no value.
         let by_map = |map: &Option<MapRef>, base: f32| if map.is_some() { 1.0 } else { base };
         let metal = &raw.metallic_roughness_map;
         Ok(Material {

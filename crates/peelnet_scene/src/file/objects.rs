@@ -62,7 +62,7 @@ pub(super) fn place(
     })
 }
 
-/// An object's transform; in an error, the key behind the object's field, and what is wrong.
+/// An object's transform. An error holds the key, to be appended to the object's field, and what is wrong.
 fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, (&'static str, &'static str)> {
     let is_finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
     if !(raw.scale.is_finite() && raw.scale != 0.0) {

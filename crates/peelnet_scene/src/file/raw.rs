@@ -119,7 +119,7 @@ pub(super) struct RawObject {
     pub material: RawMaterial,
 }
 
-/// What a scene file sets of a material; the rest is the mesh's own.
+/// The values of a material that a scene file sets; the mesh's own material has the others.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawMaterial {

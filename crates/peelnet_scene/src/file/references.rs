@@ -1,4 +1,4 @@
-//! Meshes and textures as a scene file names them: a path, or a table of what is generated.
+//! Meshes and textures as a scene file names them: a path, or a table that describes a generated one.
 
 use crate::{pattern::Pattern, shapes::Shape};
 use serde::{Deserialize, Deserializer, de::Error as _};

@@ -1,4 +1,4 @@
-//! Scene files: what they mean, and what is wrong with them.
+//! Scene files, sound and bad.
 
 use super::*;
 use glam::Vec3;

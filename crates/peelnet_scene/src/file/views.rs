@@ -108,7 +108,7 @@ pub(super) fn lights(loader: &Loader<'_>, raw: &[RawLight]) -> Result<Vec<Light>
 fn light(raw: &RawLight) -> Result<Light, &'static str> {
     let source = match (raw.position, raw.direction) {
         (Some(position), None) => Source::Point(position.into()),
-        // A direction is where light shines to, a source where it comes from.
+        // The file gives the direction of the light, `Source` the direction towards it.
         (None, Some(direction)) => {
             let toward = (-Vec3::from(direction)).try_normalize();
             Source::Toward(toward.unwrap_or(Vec3::NAN))

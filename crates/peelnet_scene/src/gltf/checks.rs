@@ -1,5 +1,4 @@
-//! Checks of what the `gltf` crate takes for granted: it panics on a reference to nothing, and on an accessor of another type than its
-//! use needs.
+//! Checks that the `gltf` crate does not do: it panics on an index out of range, and on an accessor of the wrong type.
 
 use super::{KNOWN, MAX_TRIANGLES};
 use crate::files::MAX_FILE_BYTES;

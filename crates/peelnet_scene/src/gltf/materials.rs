@@ -1,4 +1,4 @@
-//! Materials, their textures, and where these lie.
+//! Materials, their textures, and the UV sets and transforms of these.
 
 use super::{
     buffers::read_uri,
@@ -16,7 +16,7 @@ use gltf::{
 };
 use std::{path::Path, sync::Arc};
 
-/// Where a texture lies: the set of UVs, and their transform.
+/// The UV set of a texture, and the transform of its UVs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placement {
     pub set: u32,
@@ -47,7 +47,7 @@ impl Placement {
     }
 }
 
-/// A material's textures in the order of [`Maps::all`], and where they lie.
+/// A material's textures in the order of [`Maps::all`], and their placements.
 fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Placement)>; 5] {
     let pbr = m.pbr_metallic_roughness();
     let infos = [
@@ -121,7 +121,7 @@ impl Reader<'_, '_> {
         found
     }
 
-    /// A material's maps, and where they lie.
+    /// A material's maps, and their common placement.
     fn maps(&mut self, m: &gltf::Material<'_>) -> (Maps, Placement) {
         let textures = placed_textures(m);
         let mut placements = textures.iter().flatten().map(|(_, placement)| *placement);
@@ -175,7 +175,7 @@ impl Reader<'_, '_> {
         (maps, placement)
     }
 
-    /// A material, and where its maps lie.
+    /// A material, and the placement of its maps.
     pub fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placement) {
         let (maps, placement) = self.maps(m);
         let pbr = m.pbr_metallic_roughness();

@@ -16,7 +16,7 @@ use std::{
     sync::Arc,
 };
 
-/// Reads the nodes of a file, and what hangs on them.
+/// Reads the nodes of a file: meshes, lights and cameras.
 pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
@@ -70,7 +70,7 @@ impl<'a, 'f> Reader<'a, 'f> {
         parent: Mat4,
         depth: usize,
     ) -> Result<(), SceneError> {
-        // A node that is its own descendant would never end.
+        // A node that is its own descendant would recurse forever.
         if depth > 256 {
             return Err(self.fail(format!(
                 "node {} lies more than 256 levels deep; is it its own child?",

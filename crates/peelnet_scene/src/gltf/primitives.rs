@@ -75,7 +75,7 @@ impl Reader<'_, '_> {
                 .collect(),
             _ => smooth,
         };
-        // Opacity of vertices counts for what blends or has holes.
+        // Opaque materials ignore the opacity of vertices.
         let is_opaque = primitive.material().alpha_mode() == AlphaMode::Opaque;
         let n = positions.len();
         let colors = reader.read_colors(0).map(|colors| {

@@ -1,5 +1,4 @@
-//! Statements that `tobj` would misread without an error, or panic on, and where the result does not show it. Everything else that is
-//! wrong with a file is found in what `tobj` returns.
+//! Statements that `tobj` would misread without an error, or panic on. All other faults are found in the values that `tobj` returns.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +42,7 @@ pub(super) fn repaired(text: &str) -> Result<Repaired, (usize, String)> {
             {
                 return Err((number, "an index is too large; repair the face".into()));
             }
-            // tobj lists the colours that it finds: where some vertices have none, or one that is not a number, they shift.
+            // tobj lists only the colours that it finds: a vertex without one, or with one that is not a number, shifts all that follow.
             "v" if is_colored => {
                 out.push_str(line);
                 let mut color = rest.split_whitespace().skip(3);

@@ -1,8 +1,8 @@
 //! Text of OBJ and MTL files, prepared for `tobj`.
 //!
 //! `tobj` reads UTF-8, a statement a line. Comments behind a statement, lines continued by a backslash, lines that end in a carriage return
-//! alone, and tabs where it expects blanks are not its own. They are rewritten here without looking at what a statement means, and every
-//! statement keeps its line number.
+//! alone, and tabs in place of blanks are not supported by it. They are rewritten here without interpreting statements, and every statement
+//! keeps its line number.
 
 use crate::error::SceneError;
 use encoding_rs::UTF_8;

@@ -198,7 +198,7 @@ impl Textures {
     }
 }
 
-/// Base colour with the opacity of `map_d`, which alone counts: opacity in the colour's own file is dropped.
+/// Base colour with the opacity of `map_d`. Opacity in the colour's own file is dropped.
 fn color_map(color: Option<&Arc<Texture>>, alpha: Option<&Arc<Texture>>) -> Option<Arc<Texture>> {
     let opacity = |texture: &Texture| {
         let by_alpha = texture.has_alpha();
