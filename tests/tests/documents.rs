@@ -130,7 +130,7 @@ fn links_lead_somewhere() {
 /// The committed comparison of all methods on the held-out scenes.
 const HELD_OUT: &str = "docs/results/llvmpipe-epyc-2cores/held-out";
 
-/// The methods that the README's table shows of it.
+/// The methods that the table of docs/benchmarks.md shows of it.
 const SHOWN: [&str; 22] = [
     "abuffer",
     "linked-list",
@@ -160,9 +160,9 @@ fn held_out_run() -> Results<Bench> {
     serde_json::from_str(&read(&format!("{HELD_OUT}/results.json"))).unwrap()
 }
 
-/// The README's table is the one that the committed rows give.
+/// The table of docs/benchmarks.md is the one that the committed rows give.
 #[test]
-fn the_readme_shows_the_committed_run() {
+fn benchmarks_show_the_committed_run() {
     let mut run = held_out_run();
     assert_eq!(read(&format!("{HELD_OUT}/table.md")), run.markdown());
     // Ratios to hardware blending need its rows, which the table does not show.
@@ -176,12 +176,12 @@ fn the_readme_shows_the_committed_run() {
         .filter(|line| !line.contains(base))
         .map(|line| format!("{line}\n"))
         .collect();
-    let readme = read("README.md");
-    let (_, block) = readme.split_once("<!-- methods:begin -->\n").unwrap();
+    let page = read("docs/benchmarks.md");
+    let (_, block) = page.split_once("<!-- methods:begin -->\n").unwrap();
     let (block, _) = block.split_once("<!-- methods:end -->").unwrap();
     assert_eq!(
         block, want,
-        "put this between the marks in README.md:\n{want}"
+        "put this between the marks in docs/benchmarks.md:\n{want}"
     );
 }
 

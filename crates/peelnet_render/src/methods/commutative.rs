@@ -242,50 +242,11 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     let attachment = bare
         .then(|| unwritten_texture(b.gpu, b.frame))
         .transpose()?;
+    let states: Vec<_> = all_targets.iter().map(|t| t.state(is_full(t))).collect();
     let mut passes = Vec::new();
     for (number, gather) in plan.passes.iter().enumerate() {
-        let mut features = gather.features.to_vec();
-        let mut writes = gather.writes.to_vec();
-        if tinting == Some(number) {
-            features.push("tinted");
-            writes.push(plan.targets.len());
-        }
-        let textures = gather.reads.iter().map(|&i| Bind::Texture(&targets[i].0));
-        let entries: Vec<_> = textures
-            .chain(gather.loads.iter().map(|&i| Bind::Read(&storage[i])))
-            .chain(gather.stores.iter().map(|&i| Bind::Write(&storage[i])))
-            .collect();
-        let group = (!entries.is_empty()).then(|| {
-            b.gpu
-                .bind(gather.label, wgpu::ShaderStages::FRAGMENT, &entries)
-        });
-        let mut states: Vec<_> = writes
-            .iter()
-            .map(|&i| Some(all_targets[i].state(is_full(&all_targets[i]))))
-            .collect();
-        if states.is_empty() {
-            states.push(unwritten());
-        }
-        let pipelines = b.scene.pipelines(
-            b.gpu,
-            b.frame,
-            Surfaces::Transparent,
-            &GeometryPass {
-                label: gather.label,
-                shader: gather.shader,
-                features: &features,
-                extra: gather.extra,
-                group: group.as_ref(),
-                targets: &states,
-                ..GeometryPass::NONE
-            },
-        )?;
-        passes.push(BuiltPass {
-            label: gather.label,
-            pipelines,
-            group,
-            writes,
-        });
+        let tinted = (tinting == Some(number)).then_some(plan.targets.len());
+        passes.push(build_pass(b, gather, &targets, &storage, &states, tinted)?);
     }
     let mut entries = vec![Bind::Texture(&b.frame.background)];
     entries.extend(
@@ -322,6 +283,51 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         resolve,
         bytes_per_pixel: f64::from(blended + stored + u32::from(bare)) + order,
     }))
+}
+
+/// Makes one geometry pass ready. `tinted` is the target that it also writes where transmission is coloured.
+fn build_pass(
+    b: &Build<'_>,
+    gather: &Gather<'_>,
+    targets: &[(wgpu::TextureView, Blend)],
+    storage: &[wgpu::Buffer],
+    states: &[wgpu::ColorTargetState],
+    tinted: Option<usize>,
+) -> Result<BuiltPass, RenderError> {
+    let mut features = gather.features.to_vec();
+    features.extend(tinted.map(|_| "tinted"));
+    let writes: Vec<_> = gather.writes.iter().copied().chain(tinted).collect();
+    let textures = gather.reads.iter().map(|&i| Bind::Texture(&targets[i].0));
+    let entries: Vec<_> = textures
+        .chain(gather.loads.iter().map(|&i| Bind::Read(&storage[i])))
+        .chain(gather.stores.iter().map(|&i| Bind::Write(&storage[i])))
+        .collect();
+    let group = (!entries.is_empty()).then(|| {
+        b.gpu
+            .bind(gather.label, wgpu::ShaderStages::FRAGMENT, &entries)
+    });
+    let mut written: Vec<_> = writes.iter().map(|&i| Some(states[i].clone())).collect();
+    if written.is_empty() {
+        written.push(unwritten());
+    }
+    let pass = GeometryPass {
+        label: gather.label,
+        shader: gather.shader,
+        features: &features,
+        extra: gather.extra,
+        group: group.as_ref(),
+        targets: &written,
+        ..GeometryPass::NONE
+    };
+    let pipelines = b
+        .scene
+        .pipelines(b.gpu, b.frame, Surfaces::Transparent, &pass)?;
+    Ok(BuiltPass {
+        label: gather.label,
+        pipelines,
+        group,
+        writes,
+    })
 }
 
 impl Compositor for Commutative {
