@@ -536,6 +536,36 @@ fn an_applications_own_device() {
     assert!(message.contains("float32-blendable"), "{message}");
 }
 
+/// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.
+#[test]
+fn batches_hold_the_rows_of_the_dataset() {
+    let gpu = gpu();
+    let scene = peelnet_scene::suite::load("panes").expect("a shipped scene");
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let options = peelnet_peel::ExtractOptions {
+        size: [64, 48],
+        ..peelnet_peel::ExtractOptions::new(folder.path().join("rows"))
+    };
+    let scenes = [scene];
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    peelnet_peel::extract(&gpu, &scenes, &options, &stop, &mut |_| ()).expect("extracts");
+    let dataset = peelnet_dataset::Dataset::open(&options.out).expect("opens");
+    let mut written = peelnet_dataset::FragmentBatch::default();
+    for batch in dataset.batches(1 << 16) {
+        let batch = batch.expect("reads");
+        written.extend_from(&batch, 0..batch.len());
+    }
+    let mut found = peelnet_dataset::FragmentBatch::default();
+    for batch in peelnet_peel::batches(&gpu, &scenes, &options).expect("begins") {
+        let batch = batch.expect("peels");
+        found.extend_from(&batch, 0..batch.len());
+    }
+    assert!(found.len() > 1000);
+    assert_eq!(found, written);
+    let mut dropped = peelnet_peel::batches(&gpu, &scenes, &options).expect("begins");
+    assert!(dropped.next().is_some_and(|batch| batch.is_ok()));
+}
+
 /// What can be drawn can be moved to another thread.
 #[test]
 fn public_types_are_send() {

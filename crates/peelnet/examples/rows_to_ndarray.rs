@@ -5,28 +5,23 @@
 use ndarray::{Array1, Array2, ArrayView1, Axis, concatenate, stack};
 use peelnet::{
     AdapterRequest, Gpu,
-    dataset::Dataset,
-    extract::{ExtractOptions, extract},
+    extract::{ExtractOptions, batches},
     scene::suite,
 };
-use std::{error::Error, sync::atomic::AtomicBool};
+use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let scene = std::env::args().nth(1).unwrap_or_else(|| "cups".into());
     let scene = suite::open(scene.as_ref(), None)?;
     let gpu = Gpu::open(&AdapterRequest::Auto)?;
 
-    let folder = tempfile::tempdir()?;
     let options = ExtractOptions {
         size: [320, 240],
-        ..ExtractOptions::new(folder.path().join("rows"))
+        ..ExtractOptions::new("")
     };
-    let stop = AtomicBool::new(false);
-    extract(&gpu, &[scene], &options, &stop, &mut |_| ())?;
-
     // A batch holds whole pixels, column by column: a column is an array without a copy.
     let (mut features, mut targets) = (Array2::zeros((0, 3)), Array1::zeros(0));
-    for batch in Dataset::open(&options.out)?.batches(1 << 16) {
+    for batch in batches(&gpu, &[scene], &options)? {
         let batch = batch?;
         let count: Array1<f32> = batch.fragment_count.iter().map(|&n| n as f32).collect();
         let rows = stack![

@@ -26,7 +26,7 @@ use std::{
 const DEFAULT_BUDGET: u64 = 4 << 20;
 
 /// Rows handed to the writer at a time.
-const ROWS_AT_A_TIME: usize = 1 << 18;
+pub(crate) const ROWS_AT_A_TIME: usize = 1 << 18;
 
 /// What to extract, and where to.
 #[derive(Clone, Debug)]
@@ -109,15 +109,39 @@ pub struct ExtractReport {
 
 /// What the GPU's side spent.
 #[derive(Default)]
-struct Effort {
+pub(crate) struct Effort {
     gpu_micros: f64,
     tiles: u64,
 }
 
-enum Message {
+/// What the GPU's side sends.
+pub(crate) enum Message {
     Begin(PartInfo, ViewConstants),
     Tile(RawTile),
     End,
+}
+
+/// The number of all work items, and those of the options' shard.
+pub(crate) fn work(
+    scenes: &[Scene],
+    options: &ExtractOptions,
+) -> Result<(u32, Vec<Item>), PeelError> {
+    if !(options.pixels > 0.0 && options.pixels <= 1.0) {
+        return Err(PeelError::Usage(format!(
+            "a fraction of {} of the pixels: it must lie above 0 and at most 1",
+            options.pixels
+        )));
+    }
+    let all = items(scenes, options.views, options.augment)?;
+    if all.is_empty() {
+        return Err(PeelError::Usage("no scene to extract".into()));
+    }
+    let mine = all
+        .iter()
+        .copied()
+        .filter(|i| options.shard.is_none_or(|s| s.contains(i.index)))
+        .collect();
+    Ok((all.len() as u32, mine))
 }
 
 /// Peels the scenes and writes the dataset. Nothing appears in the folder before everything is done.
@@ -133,21 +157,7 @@ pub fn extract(
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
     let start = Instant::now();
-    if !(options.pixels > 0.0 && options.pixels <= 1.0) {
-        return Err(PeelError::Usage(format!(
-            "--pixels {}: the fraction of pixels must lie above 0 and at most 1",
-            options.pixels
-        )));
-    }
-    let all = items(scenes, options.views, options.augment)?;
-    if all.is_empty() {
-        return Err(PeelError::Usage("no scene to extract".into()));
-    }
-    let mine: Vec<Item> = all
-        .iter()
-        .copied()
-        .filter(|i| options.shard.is_none_or(|s| s.contains(i.index)))
-        .collect();
+    let (all, mine) = work(scenes, options)?;
     let writer = DatasetWriter::create(
         &options.out,
         Header {
@@ -160,7 +170,7 @@ pub fn extract(
             pixels_fraction: options.pixels,
             augment: options.augment,
             scenes: scenes.iter().map(scene_entry).collect(),
-            work_items: all.len() as u32,
+            work_items: all,
             shard: options.shard,
         },
     )?;
@@ -208,7 +218,7 @@ pub fn extract(
     clippy::too_many_arguments,
     reason = "one call site, and a struct of references would only rename them"
 )]
-fn peel(
+pub(crate) fn peel(
     gpu: &Gpu,
     scenes: &[Scene],
     options: &ExtractOptions,
