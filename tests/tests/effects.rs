@@ -182,7 +182,7 @@ fn what_is_not_called_for_is_not_there() {
             Effect::OcclusionMap => &["occlusion_map"],
             Effect::EmissiveMap => &["emissive_map"],
             Effect::VertexColors => &["surface.color"],
-            Effect::Sun => &["is_point > 0.0"],
+            Effect::Sun => &["[i].is_point"],
             Effect::Transmission => &["material.transmission"],
             _ => &[],
         };
