@@ -18,9 +18,9 @@ pub mod items;
 pub mod rows;
 pub mod synthetic;
 
-pub use error::PeelError;
 #[cfg(not(target_arch = "wasm32"))]
 pub use batches::{Batches, batches};
+pub use error::PeelError;
 #[cfg(not(target_arch = "wasm32"))]
 pub use extract::{ExtractOptions, ExtractReport, Progress, extract};
 #[cfg(not(target_arch = "wasm32"))]
