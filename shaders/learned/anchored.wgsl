@@ -1,13 +1,3 @@
-// Statistics pass: draw all transparent surfaces, in any order, into
-//     moments  rgba16float (or rgba32float), cleared to 0, blending ONE, ONE, ADD;
-//     extent   rgba16float (or rgba32float), cleared to (-65504, -65504, -65504, 0), blending ONE, ONE, MAX for colour and
-//              ONE, ONE, ADD for alpha;
-// each fragment writing what peelnet_statistics(alpha, zeta) returns.
-// zeta is depth on a logarithmic scale: with z the distance along the view axis, and near and far the range that the
-// bounding boxes of the transparent objects in view span (clipped to the camera's),
-//     zeta = clamp(2 * log(z / near) / log(far / near) - 1, -1, 1).
-// Compute it with one function in both passes: the nearest and the farthest fragment are recognised by their zeta.
-
 // Fragments of less opacity are composited, but are never a pixel's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
 // Levels of depth, less one.
@@ -36,20 +26,17 @@ struct PeelnetPlace {
     zeta: vec3f,
 }
 
-// What peelnet_share and peelnet_weight read.
-struct PeelnetFeatures {
+// The rest of a pixel, seen from a fragment: all fragments but that one and the pixel's known ends. Depths are over the pixel's
+// range, -1 at the nearest and 1 at the farthest fragment.
+struct PeelnetRest {
+    // Root of its absorbance.
     root_absorbance: f32,
-    depth_fraction: f32,
-    mean_fraction: f32,
-    share_low: f32,
-    share_high: f32,
-    // Mean powers 1 to 3 of the rest's depth, -1 .. 1 from the nearest to the farthest.
-    means: vec3f,
-}
-
-// -log(1 - alpha), at most 16: opaque, but finite.
-fn peelnet_absorbance(alpha: f32) -> f32 {
-    return -log(max(1.0 - alpha, 1.1253517e-7));
+    // Depth of the fragment.
+    place: f32,
+    // Mean powers 1 to 4 of the rest's depth.
+    means: vec4f,
+    // Pull of the moments towards those of a measure that can be inverted.
+    bias: f32,
 }
 
 fn peelnet_level(zeta: f32) -> f32 {
@@ -65,26 +52,26 @@ fn peelnet_ends(b: f32, zeta: f32) -> vec2f {
 }
 
 // The half floats that stand for levels: all normal halves in ascending order, so that MAX blending of 16-bit targets
-// tells 61440 levels apart. A step of a half's bits is 8192 in those of 32 bits; no step here rounds.
+// distinguishes 61440 levels. A step of a half's bits is 8192 in those of 32 bits; no step here rounds. No level is in the middle.
 fn peelnet_halves(levels: vec3f) -> vec3f {
     let from_middle = levels - 30719.5;
-    let magnitude = bitcast<vec3f>(vec3i(abs(from_middle) * 8192.0 + 947908608.0));
-    return select(-magnitude, magnitude, from_middle > vec3f(0.0));
+    return sign(from_middle) * bitcast<vec3f>(vec3i(abs(from_middle) * 8192.0 + 947908608.0));
 }
 
 fn peelnet_levels(halves: vec3f) -> vec3f {
     let from_middle = vec3f(bitcast<vec3i>(abs(halves))) * 0.0001220703125 - 115711.5;
-    return 30719.5 + select(-from_middle, from_middle, halves > vec3f(0.0));
+    return 30719.5 + sign(halves) * from_middle;
 }
 
+// What a fragment adds to its pixel's statistics.
 fn peelnet_statistics(alpha: f32, zeta: f32) -> PeelnetStatistics {
     let b = peelnet_absorbance(alpha);
-    let z2 = zeta * zeta;
+    let square = zeta * zeta;
     // The nearest is kept as the maximum of levels counted from the far end.
     let halves = peelnet_halves(vec3f(PEELNET_TOP - peelnet_level(zeta), peelnet_ends(b, zeta)));
     return PeelnetStatistics(
-        b * vec4f(1.0, zeta, z2, z2 * zeta),
-        vec4f(select(halves, vec3f(-65504.0), alpha < PEELNET_FAINT), b * z2 * z2),
+        b * vec4f(1.0, zeta, square, square * zeta),
+        vec4f(select(halves, vec3f(-65504.0), alpha < PEELNET_FAINT), b * square * square),
     );
 }
 
@@ -100,83 +87,48 @@ fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> Peelne
     let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
     let bins = floor(ends / PEELNET_OPACITIES);
     let share = (ends - bins * PEELNET_OPACITIES) * PEELNET_OPACITY_STEP;
+    let known = share / (1.0625 - share);
     // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a more
     // opaque one in the same bin), stays with the rest.
-    let taken = vec2<bool>(level > first && own.x != ends.x, own.y < ends.y);
-    let absorbances = select(vec2f(0.0), share / (1.0625 - share), taken);
+    let nearest = select(0.0, known.x, level > first && own.x != ends.x);
+    let farthest = select(0.0, known.y, own.y < ends.y);
     let others = max(moments.x - b, 0.0);
     return PeelnetPlace(
         end,
-        select(select(absorbances.x, others, end == 2.0), 0.0, end == 1.0),
-        vec3f(b, absorbances),
+        select(select(nearest, others, end == 2.0), 0.0, end == 1.0),
+        vec3f(b, nearest, farthest),
         vec3f(zeta, first * (2.0 / PEELNET_TOP) - 1.0, (bins.y + 0.5) * (2.0 / PEELNET_BINS.y) - 1.0),
     );
 }
 
-// The least and the most of a distribution that can lie in front of x, given its first four moments, as shares
-// (Muenstermann et al. 2018). All are over -1 .. 1. `bias` pulls the moments towards those of a measure that can always
-// be inverted.
-fn peelnet_moment_bounds(moments: vec4f, x: f32, bias: f32) -> vec2f {
-    let m = mix(moments, vec4f(0.0, 0.375, 0.0, 0.375), bias);
-    // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
-    // its value at x, which is one over what lies at x itself.
-    let variance = m.y - m.x * m.x;
-    let l21 = m.z - m.x * m.y;
-    let d = variance * (m.w - m.y * m.y) - l21 * l21;
-    let y1 = x - m.x;
-    let y2 = (x * x - m.y) * variance - l21 * y1;
-    let determinant = variance * d;
-    let c2 = y2 * variance;
-    let c1 = y1 * d - l21 * y2;
-    let c0 = determinant - m.x * c1 - m.y * c2;
-    let own = determinant / (determinant + y1 * y1 * d + y2 * y2);
-    // Its roots are the extreme measure's other points: the smaller one, and one over the larger, which may be infinite.
-    let half = 0.5 * c1;
-    let root = sqrt(max(half * half - c0 * c2, 0.0));
-    let inverse = -1.0 / (half + select(-root, root, half >= 0.0));
-    let p = c0 * inverse;
-    let q = c2 * inverse;
-    // What lies at either.
-    let at_p = (1.0 - own - q * (m.x - own * x)) / (1.0 - p * q);
-    let at_q = 1.0 - own - at_p;
-    let low = select(0.0, at_p, p < x) + select(0.0, at_q, (1.0 - x * q) * q < 0.0);
-    let share = vec2f(low, low + own);
-    // Points that coincide give NaN, which no comparison finds true.
-    return select(vec2f(0.0), min(share, vec2f(1.0)), share >= vec2f(0.0));
-}
-
-// Features of a fragment between its pixel's ends: what is left without its own share and the known ends.
-fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetFeatures {
+fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRest {
     let z = place.zeta;
-    let z2 = z * z;
-    let m = moments - vec4f(
+    let square = z * z;
+    let left = moments - vec4f(
         place.taken.x + place.taken.y + place.taken.z,
         dot(place.taken, z),
-        dot(place.taken, z2),
-        dot(place.taken, z2 * z),
+        dot(place.taken, square),
+        dot(place.taken, square * z),
     );
-    let m0 = max(m.x, 0.0);
+    let absorbance = max(left.x, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its moments are noise.
-    let inverse_total = 1.0 / max(max(m0, moments.x * 0.0009765625), 1e-6);
-    let mean = vec4f(m.yzw, extent.w - dot(place.taken, z2 * z2)) * inverse_total;
+    let inverse_total = 1.0 / max(max(absorbance, moments.x * 0.0009765625), 1e-6);
+    let mean = vec4f(left.yzw, extent.w - dot(place.taken, square * square)) * inverse_total;
     // Moments over the pixel's range as -1 .. 1: of (zeta - middle) * scale.
     let middle = 0.5 * (z.y + z.z);
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
-    let s2 = scale * scale;
-    let m1 = clamp((mean.x - middle) * scale, -1.0, 1.0);
-    let m2 = (mean.y - middle * (2.0 * mean.x - middle)) * s2;
-    let m3 = (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * s2;
-    let m4 = (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * s2 * s2;
-    let x = clamp((z.x - middle) * scale, -1.0, 1.0);
-    // Moved to a narrow pixel's range, moments lose their last bits.
-    let bias = min(0.0009765625 + s2 * s2 * 0.0000152587890625, 0.25);
-    let bounds = peelnet_moment_bounds(vec4f(m1, m2, m3, m4), x, bias);
-    return PeelnetFeatures(
-        sqrt(m0),
-        0.5 * x + 0.5,
-        0.5 * m1 + 0.5,
-        bounds.x,
-        bounds.y,
-        vec3f(m1, m2, m3),
+    let scale_square = scale * scale;
+    let means = vec4f(
+        clamp((mean.x - middle) * scale, -1.0, 1.0),
+        (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
+        (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
+        (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
+    );
+    return PeelnetRest(
+        sqrt(absorbance),
+        clamp((z.x - middle) * scale, -1.0, 1.0),
+        means,
+        // Moved to a narrow pixel's range, moments lose their last bits.
+        min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
     );
 }

@@ -1,26 +1,26 @@
-// The two nearest fragments of each pixel are composited exactly (by depth peeling, or insertion); all others, the
-// tail, are summed in one additive pass behind the second: (alpha * rgb, alpha) and (absorbance, 1). Then, per pixel,
-// over the background C_0:
-//     front.rgb + front.a * (1 - t) * tail_color + front.a * t * C_0,   t = exp(-sums.x)
-
-struct PeelnetTail {
-    color: vec3f,
-    transmittance: f32,
+struct PeelnetStatistics {
+    // Premultiplied colour and alpha.
+    tail: vec4f,
+    // Absorbance and 1.
+    sums: vec2f,
 }
 
-fn peelnet_absorbance(alpha: f32) -> f32 {
-    return -log(max(1.0 - alpha, 1.1253517e-7));
+// What a fragment behind its pixel's two nearest adds to the statistics. color: premultiplied, with alpha.
+fn peelnet_statistics(color: vec4f) -> PeelnetStatistics {
+    return PeelnetStatistics(color, vec2f(peelnet_absorbance(color.a), 1.0));
 }
 
-// front: premultiplied colour and transmittance of the two nearest. tail: sums of (alpha * rgb, alpha). sums: absorbance
-// and number of the tail's fragments.
-fn peelnet_tail(front: vec4f, tail: vec4f, sums: vec2f) -> PeelnetTail {
-    let average = tail.rgb / max(tail.a, 1e-6);
+// The tail's mean colour, weighted by opacity.
+fn peelnet_average(tail: vec4f) -> vec3f {
+    return tail.rgb / max(tail.a, 1e-6);
+}
+
+// The colour and coverage of a pixel. front: premultiplied colour and transmittance of the two nearest fragments. tail, sums: the
+// statistics of the others.
+fn peelnet_resolve(front: vec4f, tail: vec4f, sums: vec2f, background: vec3f) -> vec4f {
+    // A tail of one fragment is its colour, and none is no colour.
+    let color = select(peelnet_network(front, tail, sums), peelnet_average(tail), sums.y < 1.5);
     let transmittance = exp(-sums.x);
-    let color = peelnet_tail_color(
-        front.r, front.g, front.b, front.a,
-        average.r, average.g, average.b, tail.a / max(sums.y, 1.0),
-        transmittance, sums.y);
-    // A tail of one fragment is its colour.
-    return PeelnetTail(select(color, average, sums.y < 1.5), transmittance);
+    let behind = select(mix(color, background, transmittance), background, sums.y == 0.0);
+    return vec4f(front.rgb + front.a * behind, 1.0 - front.a * transmittance);
 }

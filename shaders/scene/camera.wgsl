@@ -17,6 +17,9 @@ struct Camera {
     warp_scale: f32,
     // far / (far - near): window depth is this less a multiple of 1 / z.
     window_depth_at_infinity: f32,
+    // The nearest and the farthest linear depth that transparent objects span.
+    range_near: f32,
+    range_far: f32,
 }
 
 @group(0) @binding(0) var<uniform> camera: Camera;

@@ -24,8 +24,7 @@ pub fn shipped(recipe: Recipe) -> Model {
 
 /// The network that ships for a method, with its exported text; `None` for a method without a network.
 pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
-    let of_method = |r: &Recipe| method.needs_model() && r.method_name() == method.name();
-    let recipe = Recipe::ALL.into_iter().find(of_method)?;
+    let recipe = Recipe::of_method(method.name())?;
     let model = shipped(recipe);
     let wgsl = peelnet_export::wgsl(&model, &Default::default());
     let wgsl = wgsl.unwrap_or_else(|e| panic!("{method}: {e}"));

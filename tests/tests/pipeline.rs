@@ -275,7 +275,7 @@ fn model() -> Model {
         meta: Metadata {
             format_version: FORMAT_VERSION,
             tool_version: "test".into(),
-            recipe: Recipe::Thesis,
+            recipe: Recipe::THESIS,
             inputs: vec![
                 input("linear_depth", 4.0, 0.4),
                 input("alpha_sum", 2.0, 0.5),
@@ -299,7 +299,7 @@ fn the_exported_network_draws_what_the_model_says() {
     let model = model();
     let wgsl = peelnet_export::wgsl(&model, &peelnet_export::Options::default()).unwrap();
     let learned = LearnedWeight {
-        recipe: Recipe::Thesis,
+        recipe: Recipe::THESIS,
         wgsl,
     };
     let c0 = [0.3, 0.2, 0.1];
@@ -324,7 +324,8 @@ fn the_exported_network_draws_what_the_model_says() {
             .unwrap();
         let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
         let want = deep::composite(&fragments, c0, |f| {
-            model.forward_raw(&deep::thesis_inputs(f, &fragments))[0]
+            let row = deep::Row::of(f, &fragments);
+            model.forward_raw(&[row.linear_depth, row.alpha_sum, row.fragment_count])[0]
         });
         for p in &frame.image.pixels {
             for k in 0..3 {

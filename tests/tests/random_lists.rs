@@ -7,10 +7,11 @@
 
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
+    features::{self, Rest},
     fragment::{Fragment, transmittances},
     methods::{anchored, mboit4, mboit6, over, wavelet},
     random::Random,
-    statistics::{Statistics, SumPrecision, features},
+    statistics::{Statistics, SumPrecision},
     tolerance,
     weights::Weight,
 };
@@ -90,8 +91,10 @@ fn warp(list: &[Fragment]) -> DepthWarp {
 }
 
 /// A share that no network would predict: anything in 0 … 1.
-fn share(features: &[f64; 9]) -> f64 {
-    (features.iter().sum::<f64>() * 12.9898).sin().abs()
+fn share(rest: &Rest<f64>) -> f64 {
+    (features::all(rest).iter().sum::<f64>() * 12.9898)
+        .sin()
+        .abs()
 }
 
 /// A normalised method's colour of a pixel.
@@ -239,8 +242,9 @@ proptest! {
         let points: Vec<(f32, f32)> = f.iter().map(|f| (f.depth, f.alpha)).collect();
         for precision in [SumPrecision::Exact, SumPrecision::Half] {
             for seen in anchored::seen(&points, &warp, precision) {
-                prop_assert!(seen.features.iter().all(|x| x.is_finite()), "{:?}", seen);
-                let shares = &seen.features[3..7];
+                let features = features::all(&seen.rest);
+                prop_assert!(features.iter().all(|x| x.is_finite()), "{:?}", seen);
+                let shares = &features[3..7];
                 prop_assert!(shares.iter().all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", seen);
                 for s in [0.0, 0.3, 1.0] {
                     let w = seen.weight(|_| s);
@@ -256,7 +260,12 @@ proptest! {
         let x = bits.map(f32::from_bits).map(|x| if x.is_finite() { x } else { 1e30 });
         let s = Statistics { moments: [x[0].abs(), x[1], x[2], x[3], x[4]], nearest: x[5].clamp(-1.0, 1.0), farthest: x[6].clamp(-1.0, 1.0) };
         let rest = s.without(&[(x[7].abs().min(16.0), zeta)]);
-        for value in features(&s, &rest, zeta) {
+        let seen = Rest::new(&s, &rest, zeta);
+        let (bounds, interval) = (seen.moment_bounds(), seen.interval_bounds());
+        for value in [
+            seen.root_absorbance(), seen.depth_fraction(), seen.mean_fraction(), bounds.0, bounds.1, interval.0, interval.1,
+            seen.depth_deviation(), seen.skewness(),
+        ] {
             prop_assert!(value.is_finite(), "{:?} {:?}", s, rest);
         }
     }

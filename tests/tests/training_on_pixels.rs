@@ -51,7 +51,7 @@ fn synthetic_lists_are_a_sound_dataset() {
 fn with_the_true_shares_nothing_is_scaled() {
     let dir = tempfile::tempdir().unwrap();
     let dataset = lists(&dir.path().join("d"), 4096, 3);
-    for recipe in [Recipe::Small, Recipe::Medium, Recipe::Large] {
+    for recipe in [Recipe::SMALL, Recipe::MEDIUM, Recipe::LARGE] {
         let config = Config::for_recipe(recipe);
         let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
         let pixels = data.pixels.as_ref().unwrap();
@@ -88,7 +88,7 @@ fn with_the_true_shares_nothing_is_scaled() {
 fn a_network_learns_from_whole_pixels_and_repeats() {
     let dir = tempfile::tempdir().unwrap();
     let dataset = lists(&dir.path().join("d"), 6144, 5);
-    let mut config = Config::for_recipe(Recipe::Medium);
+    let mut config = Config::for_recipe(Recipe::MEDIUM);
     config.epochs = 6;
     config.batch = 128;
     let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
@@ -120,7 +120,7 @@ fn every_loss_trains() {
     let mut files = std::collections::BTreeSet::new();
     for loss in PixelLoss::ALL {
         assert_eq!(loss.name().parse(), Ok(loss));
-        let mut config = Config::for_recipe(Recipe::Small);
+        let mut config = Config::for_recipe(Recipe::SMALL);
         (config.epochs, config.batch, config.loss) = (4, 128, loss);
         let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
         let out = dir.path().join(loss.name()).with_extension("safetensors");

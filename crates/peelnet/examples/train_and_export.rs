@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let config = Config {
         epochs: 4,
         learning_rate: 1e-3,
-        ..Config::for_recipe(Recipe::Thesis)
+        ..Config::for_recipe(Recipe::THESIS)
     };
     let data = TrainingData::from_datasets(&config, &[Dataset::open(&options.out)?])?;
     let run = RunOptions::new(folder.join("model.safetensors"), &stop);

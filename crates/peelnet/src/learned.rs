@@ -26,9 +26,7 @@ pub fn weight_of(
             ))),
         };
     }
-    let recipe = Recipe::ALL
-        .into_iter()
-        .find(|r| r.method_name() == method.name())
+    let recipe = Recipe::of_method(method.name())
         .ok_or_else(|| Failure::Failed(format!("method {} belongs to no recipe", method.name())))?;
     let Some(path) = model else {
         return text_of(gpu, &Model::shipped(recipe)?).map(Some);
@@ -40,7 +38,7 @@ pub fn weight_of(
             path.display(),
             model.meta.recipe,
             method.name(),
-            model.meta.recipe.method_name()
+            model.meta.recipe.method
         )));
     }
     text_of(gpu, &model).map(Some)

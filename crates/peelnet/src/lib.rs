@@ -24,7 +24,7 @@
 //! ```
 //! use peelnet::{Model, Recipe, export};
 //!
-//! let model = Model::shipped(Recipe::Medium)?;
+//! let model = Model::shipped(Recipe::MEDIUM)?;
 //! let text = export::wgsl(&model, &export::Options::default())?;
 //! assert!(text.contains("fn peelnet_fragment"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -17,35 +17,63 @@ pub fn absorbance(alpha: f32) -> f64 {
 }
 
 /// Maps depth to −1 … 1 by its logarithm over a range (Münstermann et al. 2018, §3.1): ratios of depth become
-/// differences, so that near and far layers are told apart alike.
+/// differences, so that near and far layers are resolved equally well. A range whose near end is not above 0, as orthographic
+/// cameras may have, is mapped linearly. The shader twin for networks is `learned/zeta.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthWarp {
-    /// `ln` of the range's near end.
-    pub log_near: f64,
-    /// `2 / (ln far − ln near)`; 0 for a range without extent.
-    pub scale: f64,
+    near: f64,
+    far: f64,
+    log_near: f64,
+    scale: f64,
 }
 
 impl DepthWarp {
-    /// The warp of a depth range, scene units, `0 < near ≤ far`.
+    /// The warp of a depth range, scene units, `near ≤ far`.
     ///
     /// ```
     /// # use peelnet_core::absorbance::DepthWarp;
     /// let w = DepthWarp::new(1.0, 100.0);
     /// assert!(w.apply(10.0).abs() < 1e-12 && (w.apply(100.0) - 1.0).abs() < 1e-12);
     /// assert_eq!(DepthWarp::new(3.0, 3.0).apply(3.0), -1.0);
+    /// assert_eq!(DepthWarp::new(-2.0, 6.0).apply(2.0), 0.0);
     /// ```
     pub fn new(near: f64, far: f64) -> Self {
-        let extent = far.ln() - near.ln();
+        // Closer than that, 32-bit depths hardly differ.
+        let (extent, least) = if near > 0.0 {
+            (far.ln() - near.ln(), 1e-6)
+        } else {
+            (far - near, 0.0)
+        };
         Self {
+            near,
+            far,
             log_near: near.ln(),
-            // Closer than that, 32-bit depths hardly differ.
-            scale: if extent > 1e-6 { 2.0 / extent } else { 0.0 },
+            scale: if extent > least { 2.0 / extent } else { 0.0 },
         }
+    }
+
+    /// The near end of the range.
+    pub const fn near(&self) -> f64 {
+        self.near
+    }
+
+    /// The far end of the range.
+    pub const fn far(&self) -> f64 {
+        self.far
+    }
+
+    /// `2 / (ln far − ln near)`; 0 for a range without extent.
+    pub const fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// The warped depth ζ.
     pub fn apply(&self, depth: f64) -> f64 {
-        ((depth.ln() - self.log_near) * self.scale - 1.0).clamp(-1.0, 1.0)
+        let from_near = if self.near > 0.0 {
+            depth.ln() - self.log_near
+        } else {
+            depth - self.near
+        };
+        (from_near * self.scale - 1.0).clamp(-1.0, 1.0)
     }
 }

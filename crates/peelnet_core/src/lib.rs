@@ -12,6 +12,7 @@
 //! The worked example of the whole project is four fragments, see [`fragment::worked_example`].
 
 pub mod absorbance;
+pub mod features;
 pub mod fragment;
 pub mod guards;
 pub mod hash;

@@ -169,7 +169,7 @@ impl<'a> Stage<'a> {
             let learned = plan
                 .learned
                 .iter()
-                .find(|l| l.recipe.method_name() == method.name());
+                .find(|l| l.recipe.method == method.name());
             let prepared = match self
                 .renderer
                 .method(method, MethodOptions::sized(plan.size).with(learned))
@@ -184,7 +184,7 @@ impl<'a> Stage<'a> {
             entries.push(Entry {
                 name,
                 method: method.clone(),
-                model: models.find(|m| m.meta.recipe.method_name() == method.name()),
+                model: models.find(|m| m.meta.recipe.method == method.name()),
                 prepared,
             });
         }

@@ -204,9 +204,7 @@ pub fn measure(
                 ));
                 continue;
             }
-            let weight = learned
-                .iter()
-                .find(|l| l.recipe.method_name() == method.name());
+            let weight = learned.iter().find(|l| l.recipe.method == method.name());
             // The first frame warms up, and tells the bytes.
             let first = renderer
                 .method(method, MethodOptions::sized(step.size).with(weight))

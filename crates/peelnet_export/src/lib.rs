@@ -6,10 +6,14 @@
 //! both and writes the file only if they agree. The renderer draws with the same text, so that what is measured is
 //! what is shipped.
 
+mod description;
+mod header;
 mod literal;
+mod network;
 mod verify;
 mod wgsl;
 
+pub use description::{Blend, Description, Pass, Target};
 pub use verify::{Verification, evaluate, verify};
 pub use wgsl::{multiply_adds, wgsl};
 

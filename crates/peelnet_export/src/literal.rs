@@ -23,6 +23,29 @@ pub(crate) fn vec4(values: &[f32]) -> String {
     text
 }
 
+/// A name that no translator renames: naga changes those that end in a digit.
+pub(crate) fn identifier(name: &str) -> String {
+    const DIGITS: [&str; 10] = [
+        "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine",
+    ];
+    match name.char_indices().last() {
+        Some((at, last)) if last.is_ascii_digit() => {
+            let digit = DIGITS[usize::from(last as u8 - b'0')];
+            format!("{}{digit}", &name[..at])
+        }
+        _ => name.to_owned(),
+    }
+}
+
+/// A number as letters: a, b … z, ba, bb ….
+pub(crate) fn letters(k: usize) -> String {
+    let last = char::from(b'a' + (k % 26) as u8);
+    match k / 26 {
+        0 => last.to_string(),
+        more => letters(more) + &last.to_string(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +72,12 @@ mod tests {
             assert!(text.contains(['.', 'e']), "{text}");
         }
         assert_eq!(vec4(&[1.0, 2.5]), "vec4f(1.0, 2.5, 0.0, 0.0)");
+    }
+
+    #[test]
+    fn names_end_in_letters() {
+        assert_eq!(identifier("moment_1"), "moment_one");
+        assert_eq!(identifier("share_low"), "share_low");
+        assert_eq!([0, 25, 26, 53].map(letters), ["a", "z", "ba", "cb"]);
     }
 }

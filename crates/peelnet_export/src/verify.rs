@@ -1,9 +1,6 @@
 //! The exported text, run on the GPU, against the trainer's forward pass.
 
-use crate::{
-    ExportError,
-    wgsl::{function_name, self_test_inputs},
-};
+use crate::{ExportError, network::function_name, wgsl::self_test_inputs};
 use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, random::Random, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
@@ -205,26 +202,18 @@ mod tests {
     use crate::{Options, export, wgsl};
     use peelnet_core::mlp::{Activation, Layer, Mlp};
     use peelnet_gpu::AdapterRequest;
-    use peelnet_model::{DatasetRef, Input, Losses, Metadata, Output, Recipe};
+    use peelnet_model::{DatasetRef, Input, Losses, Metadata, Recipe};
 
     /// A random network of the thesis's recipe with these hidden layers.
     fn model(hidden: &[usize], seed: u64) -> Model {
-        model_of(Recipe::Thesis, hidden, seed)
+        model_of(Recipe::THESIS, hidden, seed)
     }
 
     /// A random network of a recipe.
     fn model_of(recipe: Recipe, hidden: &[usize], seed: u64) -> Model {
         let mut stream = Random::new(seed, &[]);
         let mut random = move || stream.between(-1.0, 1.0);
-        let (output, activation) = match recipe {
-            Recipe::Thesis => (Output::Transmittance, Activation::Identity),
-            Recipe::Nmt => (Output::Transmittance, Activation::Sigmoid),
-            Recipe::Small => (Output::AnchoredShare, Activation::Sigmoid),
-            Recipe::Medium | Recipe::Large => {
-                (Output::AnchoredShareSeparateEnds, Activation::Sigmoid)
-            }
-            Recipe::Dfaoit => (Output::TailColor, Activation::Sigmoid),
-        };
+        let (output, activation) = (recipe.output, recipe.network.output_activation);
         let names = recipe.input_names();
         let mut sizes = vec![names.len()];
         sizes.extend(hidden);
@@ -255,7 +244,7 @@ mod tests {
                 .cycle(),
             )
             .map(|(name, (offset, scale, min, max))| Input {
-                name: (*name).into(),
+                name: (*name).to_owned(),
                 unit: "1".into(),
                 offset,
                 scale,

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use peelnet_core::mlp::ShapeError;
 
-use crate::metadata::{FORMAT_VERSION, Output, Recipe};
+use crate::metadata::{FORMAT_VERSION, Output};
+use crate::recipe::Recipe;
 
 /// An error of loading or saving a model.
 #[derive(Debug, thiserror::Error)]

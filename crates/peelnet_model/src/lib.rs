@@ -22,8 +22,10 @@ mod error;
 mod file;
 mod metadata;
 mod model;
+mod recipe;
 mod weights;
 
 pub use error::{ModelError, Problem};
-pub use metadata::{DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output, Recipe};
+pub use metadata::{DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output};
 pub use model::Model;
+pub use recipe::{Budget, Declaration, Inputs, Network, PixelLoss, Recipe};

@@ -1,157 +1,16 @@
 //! What a model knows about itself.
 
-use peelnet_core::statistics::SumPrecision;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::str::FromStr;
 
 use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT, WEIGHT_FLOOR};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Problem;
+use crate::recipe::Recipe;
 
 /// The version of the file's layout that this crate writes and reads.
 pub const FORMAT_VERSION: u32 = 1;
-
-/// How a network is built: its inputs, output and use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Recipe {
-    /// Papakostas's network: z, Σα and n to T, 3-10-8-1.
-    Thesis,
-    /// Five features of the other fragments' absorbance, anchored share, 5-8-1.
-    Small,
-    /// The same with separate ends, 5-8-8-1.
-    Medium,
-    /// A network that corrects the moment estimate, separate ends.
-    Large,
-    /// Tsopouridis et al. 2024: seven inputs to T, 7-32-16-1.
-    Nmt,
-    /// Tsopouridis et al. 2024: ten inputs to the tail's colour, 10-32-16-3.
-    Dfaoit,
-}
-
-impl Recipe {
-    /// All recipes.
-    pub const ALL: [Self; 6] = [
-        Self::Thesis,
-        Self::Small,
-        Self::Medium,
-        Self::Large,
-        Self::Nmt,
-        Self::Dfaoit,
-    ];
-
-    /// The name in files and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Thesis => "thesis",
-            Self::Small => "small",
-            Self::Medium => "medium",
-            Self::Large => "large",
-            Self::Nmt => "nmt",
-            Self::Dfaoit => "dfaoit",
-        }
-    }
-
-    /// The name of the rendering method that uses such a model.
-    pub const fn method_name(self) -> &'static str {
-        match self {
-            Self::Thesis => "deep-thesis",
-            Self::Small => "deep-small",
-            Self::Medium => "deep-medium",
-            Self::Large => "deep-large",
-            Self::Nmt => "nmt",
-            Self::Dfaoit => "dfaoit",
-        }
-    }
-
-    /// How the recipe's method keeps its sums unless told otherwise; networks train on what they will read.
-    pub const fn sum_precision(self) -> SumPrecision {
-        match self {
-            Self::Small | Self::Medium => SumPrecision::Half,
-            _ => SumPrecision::Exact,
-        }
-    }
-
-    /// The names of the inputs, in order; they are also the names of the exported function's parameters.
-    pub const fn input_names(self) -> &'static [&'static str] {
-        match self {
-            Self::Thesis => &["linear_depth", "alpha_sum", "fragment_count"],
-            Self::Small | Self::Medium => &[
-                "root_absorbance",
-                "depth_fraction",
-                "mean_fraction",
-                "share_low",
-                "share_high",
-            ],
-            Self::Large => &[
-                "root_absorbance",
-                "depth_fraction",
-                "mean_fraction",
-                "share_low",
-                "share_high",
-                "interval_low",
-                "interval_high",
-                "depth_deviation",
-                "skewness",
-            ],
-            Self::Nmt => &[
-                "depth",
-                "fragment_count",
-                "absorbance",
-                "moment_1",
-                "moment_2",
-                "moment_3",
-                "moment_4",
-            ],
-            Self::Dfaoit => &[
-                "front_r",
-                "front_g",
-                "front_b",
-                "front_transmittance",
-                "tail_r",
-                "tail_g",
-                "tail_b",
-                "tail_alpha",
-                "tail_transmittance",
-                "tail_count",
-            ],
-        }
-    }
-
-    /// Whether a network of this recipe may predict `output`.
-    pub const fn predicts(self, output: Output) -> bool {
-        match self {
-            Self::Thesis | Self::Nmt => matches!(output, Output::Transmittance),
-            Self::Small => matches!(output, Output::AnchoredShare),
-            Self::Medium | Self::Large => matches!(output, Output::AnchoredShareSeparateEnds),
-            Self::Dfaoit => matches!(output, Output::TailColor),
-        }
-    }
-}
-
-impl fmt::Display for Recipe {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Recipe {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|r| r.name() == text)
-            .ok_or_else(|| {
-                format!(
-                    "recipe {text:?}: expected one of {}",
-                    Self::ALL.map(Self::name).join(", ")
-                )
-            })
-    }
-}
 
 /// What the network's output means, and how it is kept in range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -350,7 +209,7 @@ impl Metadata {
             finite(format!("the held-out error of {scene:?}"), error)?;
         }
         self.check_features()?;
-        if !self.recipe.predicts(self.output) {
+        if self.output != self.recipe.output {
             return Err(Problem::OutputKind {
                 recipe: self.recipe,
                 output: self.output,

@@ -9,7 +9,8 @@ use peelnet_core::{
 
 use crate::error::{ModelError, Problem};
 use crate::file;
-use crate::metadata::{Metadata, Recipe};
+use crate::metadata::Metadata;
+use crate::recipe::Recipe;
 
 /// A trained network that knows its features.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,7 @@ impl Model {
     /// ```
     /// use peelnet_model::{Model, Recipe};
     ///
-    /// let medium = Model::shipped(Recipe::Medium)?;
+    /// let medium = Model::shipped(Recipe::MEDIUM)?;
     /// assert_eq!(medium.mlp.topology(), "5-12-1");
     /// # Ok::<(), peelnet_model::ModelError>(())
     /// ```
@@ -42,7 +43,7 @@ impl Model {
     /// # Errors
     /// [`ModelError::NotShipped`] for a recipe that was added but not yet trained for a release.
     pub fn shipped(recipe: Recipe) -> Result<Self, ModelError> {
-        let name = recipe.name();
+        let name = recipe.name;
         let shipped = peelnet_models::find(name).ok_or(ModelError::NotShipped(recipe))?;
         Self::from_bytes(shipped.file, format!("models/{name}/model.safetensors"))
     }

@@ -1,7 +1,8 @@
-use crate::{Model, Output, Recipe};
+use crate::{Inputs, Model};
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
-    methods::{anchored, mboit4, nmt},
+    features::Feature,
+    methods::{anchored, deep, mboit4, nmt},
     statistics::SumPrecision,
 };
 
@@ -14,38 +15,55 @@ impl Model {
         warp: &DepthWarp,
         precision: SumPrecision,
     ) -> Vec<f64> {
-        let inputs = self.meta.inputs.len();
-        match self.meta.output {
-            Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
-                anchored::seen(points, warp, precision)
-                    .iter()
-                    .map(|s| s.weight(|features| self.forward_raw_f64(&features[..inputs])[0]))
-                    .collect()
-            }
-            Output::Transmittance if self.meta.recipe == Recipe::Nmt => {
+        match self.meta.recipe.inputs {
+            Inputs::Rest(features) => anchored::seen(points, warp, precision)
+                .iter()
+                .map(|seen| seen.weight(|rest| self.answer(features, rest)))
+                .collect(),
+            Inputs::Moments(features) => {
                 let zeta = |depth: f32| warp.apply(depth.into());
                 let mut moments = mboit4::Moments::default();
                 for &(depth, alpha) in points {
                     moments.add(absorbance(alpha), zeta(depth));
                 }
+                let seen = |&(depth, _): &(f32, f32)| nmt::Seen {
+                    zeta: zeta(depth),
+                    count: points.len(),
+                    moments: moments.0,
+                };
                 points
                     .iter()
-                    .map(|&(depth, _)| {
-                        let inputs = nmt::inputs(&moments, points.len(), zeta(depth));
-                        self.forward_raw_f64(&inputs)[0]
+                    .map(|point| self.answer(features, &seen(point)))
+                    .collect()
+            }
+            Inputs::Row(features) => {
+                let alpha_sum = points.iter().map(|(_, alpha)| alpha).sum();
+                let row = |&(linear_depth, _): &(f32, f32)| deep::Row {
+                    linear_depth,
+                    alpha_sum,
+                    fragment_count: points.len() as f32,
+                };
+                points
+                    .iter()
+                    .map(|point| {
+                        let known = row(point);
+                        let inputs = features.iter().map(|f| (f.value)(&known) as f32);
+                        self.forward_raw(&inputs.collect::<Vec<_>>())[0].into()
                     })
                     .collect()
             }
-            Output::Transmittance => {
-                let sum: f32 = points.iter().map(|(_, alpha)| alpha).sum();
-                points
-                    .iter()
-                    .map(|&(depth, _)| {
-                        self.forward_raw(&[depth, sum, points.len() as f32])[0].into()
-                    })
-                    .collect()
-            }
-            Output::TailColor => Vec::new(),
+            Inputs::Tail(_) => Vec::new(),
         }
+    }
+
+    /// The network's outputs for what is known of a fragment or a pixel.
+    pub fn answers<C>(&self, features: &[&Feature<C>], known: &C) -> Vec<f64> {
+        let inputs: Vec<f64> = features.iter().map(|f| (f.value)(known)).collect();
+        self.forward_raw_f64(&inputs)
+    }
+
+    /// The first of [`Model::answers`].
+    pub fn answer<C>(&self, features: &[&Feature<C>], known: &C) -> f64 {
+        self.answers(features, known)[0]
     }
 }

@@ -37,7 +37,7 @@ fn model() -> Model {
         meta: Metadata {
             format_version: FORMAT_VERSION,
             tool_version: "0.1.0".to_owned(),
-            recipe: Recipe::Thesis,
+            recipe: Recipe::THESIS,
             inputs: vec![
                 input("linear_depth", "scene units", 5.7, 1.0 / 3.0, 9.3),
                 input("alpha_sum", "1", 4.1, 0.3, 11.0),

@@ -257,10 +257,12 @@ impl SceneBuffers {
             sample_view: sample.view,
             sample_threshold: sample.threshold,
             unit_from_depth: unit_from_depth(camera.far),
-            warp_inverse_near: (-warp.log_near).exp() as f32,
-            warp_scale: warp.scale as f32,
+            warp_inverse_near: (1.0 / warp.near()) as f32,
+            warp_scale: warp.scale() as f32,
             window_depth_at_infinity: camera.far / (camera.far - camera.near),
-            pad: [0; 3],
+            range_near: warp.near() as f32,
+            range_far: warp.far() as f32,
+            pad: 0,
         };
         recorder.write(&self.camera, &[uniform]);
     }

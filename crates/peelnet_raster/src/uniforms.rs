@@ -24,7 +24,11 @@ pub(crate) struct CameraUniform {
     pub warp_scale: f32,
     /// far / (far − near): window depth is this less a multiple of 1 / z.
     pub window_depth_at_infinity: f32,
-    pub pad: [u32; 3],
+    /// Near end of the depth range that transparent objects span.
+    pub range_near: f32,
+    /// Far end of that range.
+    pub range_far: f32,
+    pub pad: u32,
 }
 
 /// `Material` in `scene/shade.wgsl`.
@@ -202,7 +206,9 @@ mod tests {
                 unit_from_depth,
                 warp_inverse_near,
                 warp_scale,
-                window_depth_at_infinity
+                window_depth_at_infinity,
+                range_near,
+                range_far
             ]
         );
     }

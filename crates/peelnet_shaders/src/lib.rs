@@ -153,31 +153,53 @@ mod tests {
     use std::collections::BTreeSet;
 
     /// A stand-in for a network that was exported for the methods in `folder`.
-    fn learned(folder: &str) -> String {
-        let (modules, parameters): (&[&str], &str) = match folder {
-            "methods::deep_thesis" => (&["learned::thesis"], "a: f32, b: f32, c: f32"),
-            "methods::nmt" => (
-                &["learned::nmt", "learned::fragment_nmt"],
-                "a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32",
+    fn learned(folder: &str, features: &[&str]) -> String {
+        let (modules, network): (&[&str], &str) = match folder {
+            "methods::deep_thesis" => (
+                &["learned::composite", "learned::thesis"],
+                "linear_depth: f32, statistics: vec2f) -> f32 { return 1.0; }",
             ),
-            "methods::dfaoit" => (&["learned::dfaoit"], ""),
+            "methods::nmt" => (
+                &[
+                    "learned::zeta",
+                    "learned::absorbance",
+                    "learned::nmt",
+                    "learned::composite",
+                    "learned::resolve",
+                ],
+                "zeta: f32, absorbance: vec2f, moments: vec4f) -> f32 { return 1.0; }",
+            ),
+            "methods::dfaoit" => (
+                &["learned::absorbance", "learned::dfaoit"],
+                "front: vec4f, tail: vec4f, sums: vec2f) -> vec3f { return vec3f(1.0); }",
+            ),
+            _ if features.contains(&"separate_ends") => (
+                &[
+                    "learned::zeta",
+                    "learned::absorbance",
+                    "learned::anchored",
+                    "learned::anchored_fragment",
+                    "learned::resolve_separate_ends",
+                ],
+                "rest: PeelnetRest) -> f32 { return 1.0; }",
+            ),
             _ => (
-                &["learned::anchored", "learned::fragment_medium"],
-                "a: f32, b: f32, c: f32, d: f32, e: f32",
+                &[
+                    "learned::zeta",
+                    "learned::absorbance",
+                    "learned::anchored",
+                    "learned::anchored_fragment",
+                    "learned::composite",
+                    "learned::resolve",
+                ],
+                "rest: PeelnetRest) -> f32 { return 1.0; }",
             ),
         };
         let texts: Vec<_> = modules
             .iter()
             .map(|m| source(m).expect("a module of the table"))
             .collect();
-        format!(
-            "{}\nfn peelnet_weight({parameters}) -> f32 {{ return 1.0; }}
-            fn peelnet_share({parameters}) -> f32 {{ return 1.0; }}
-            fn peelnet_tail_color(a: f32, b: f32, c: f32, d: f32, e: f32, f: f32, g: f32, h: f32, i: f32, j: f32) -> vec3f {{
-                return vec3f(1.0);
-            }}\n",
-            texts.join("\n")
-        )
+        format!("{}\nfn peelnet_network({network}\n", texts.join("\n"))
     }
 
     /// Stand-ins for the constants that methods write: whole numbers, which take the type that is needed.
@@ -286,8 +308,8 @@ mod tests {
                 all.extend(MATERIALS.map(|material| with(&own[0], material)));
             }
             let folder = path.rsplit_once("::").map_or("", |(folder, _)| folder);
-            let learned = learned(folder);
             for features in all {
+                let learned = learned(folder, &features);
                 let extra = [
                     ("learned::weight", learned.as_str()),
                     ("parameters", parameters.as_str()),

@@ -36,7 +36,7 @@ fn epochs(c: &mut Criterion) {
             batch,
             epochs: 8,
             held_out: 0.0,
-            ..Config::for_recipe(Recipe::Thesis)
+            ..Config::for_recipe(Recipe::THESIS)
         };
         group.bench_function(BenchmarkId::new("epoch", batch), |bencher| {
             // The loop times itself, so that normalisation and files are left out.

@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         batch: batch.parse()?,
         epochs: epochs.parse()?,
         held_out: 0.0,
-        ..Config::for_recipe(Recipe::Thesis)
+        ..Config::for_recipe(Recipe::THESIS)
     };
     let folder = tempfile::tempdir()?;
     let stop = AtomicBool::new(false);

@@ -69,7 +69,7 @@ mod tests {
     /// moves the parameters by at most the rate: 100 steps stay within 100 · 10 · 2⁻²⁴ ≈ 6e-5.
     #[test]
     fn steps_follow_the_written_out_algorithm() {
-        let config = Config::for_recipe(Recipe::Thesis);
+        let config = Config::for_recipe(Recipe::THESIS);
         let device = Device::flex();
         let mut parameters =
             Tensor::<1>::from_data(TensorData::new(vec![0.5f32, -0.25], [2]), &device);

@@ -1,13 +1,10 @@
 //! Every hyper-parameter of a run.
 
-use std::str::FromStr;
-
 use peelnet_core::mlp::Activation;
-use peelnet_model::Recipe;
+use peelnet_model::{PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
 
 use crate::error::TrainError;
-use crate::recipe::Definition;
 
 /// Everything that decides the weights, except the data. Saved in the model file and beside the checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,62 +45,8 @@ pub struct Config {
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
     /// What recipes that learn from whole pixels minimise.
-    #[serde(default, skip_serializing_if = "PixelLoss::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub loss: PixelLoss,
-}
-
-/// The loss of a whole pixel, with `k_i` a fragment's contribution before normalisation, `p̂_i` after it and `α_i T_i` the exact
-/// one. Sums go over the fragments that the network is asked about.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PixelLoss {
-    /// Squared error of the pixel's colour, `|Σ (p̂_i − α_i T_i) c_i|² / 3`.
-    #[default]
-    Image,
-    /// `Σ (p̂_i − α_i T_i)²`.
-    Contributions,
-    /// Squared error of T, weighted by opacity: `Σ (k_i − α_i T_i)²`.
-    WeightedTransmittance,
-    /// Squared error of what the network answers, the transmittance of the rest in front.
-    Transmittance,
-}
-
-impl PixelLoss {
-    /// All of them.
-    pub const ALL: [Self; 4] = [
-        Self::Image,
-        Self::Contributions,
-        Self::WeightedTransmittance,
-        Self::Transmittance,
-    ];
-
-    /// The name in files and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Image => "image",
-            Self::Contributions => "contributions",
-            Self::WeightedTransmittance => "weighted-transmittance",
-            Self::Transmittance => "transmittance",
-        }
-    }
-
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
-impl FromStr for PixelLoss {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|l| l.name() == name);
-        found.ok_or_else(|| {
-            format!(
-                "no such loss; there are {}",
-                Self::ALL.map(Self::name).join(", ")
-            )
-        })
-    }
 }
 
 /// The learning rate over a run.
@@ -138,20 +81,46 @@ impl Schedule {
     }
 }
 
+/// Left out of saved configurations: those of versions without a choice of loss read the same.
+fn is_default(loss: &PixelLoss) -> bool {
+    *loss == PixelLoss::default()
+}
+
 impl Config {
-    /// The settings that a recipe is trained with unless told otherwise.
+    /// The settings that a recipe declares, and the defaults of Adam.
     pub fn for_recipe(recipe: Recipe) -> Self {
-        Definition::of(recipe).config
+        let (network, budget) = (recipe.network, recipe.budget);
+        Self {
+            recipe,
+            seed: 1,
+            hidden: network.hidden.to_vec(),
+            hidden_activation: network.hidden_activation,
+            output_activation: network.output_activation,
+            epochs: budget.epochs,
+            batch: budget.batch,
+            chunk: budget.chunk,
+            learning_rate: budget.learning_rate,
+            schedule: budget
+                .warmup
+                .map_or(Schedule::Constant, |warmup| Schedule::OneCycle { warmup }),
+            beta1: 0.9,
+            beta2: 0.999,
+            epsilon: 1e-8,
+            held_out: budget.held_out,
+            validation: budget.validation,
+            patience: None,
+            loss: recipe.loss.unwrap_or_default(),
+        }
     }
 
     /// # Errors
     /// [`TrainError::Config`] names the first setting out of its range.
     pub fn check(&self) -> Result<(), TrainError> {
-        let bad = |setting: &'static str, value: String, mend: &'static str| {
+        let bad = |setting: &'static str, value: String, hint: &'static str| {
             Err(TrainError::Config {
                 setting,
                 value,
-                mend,
+                hint,
             })
         };
         if self.epochs == 0 {
@@ -201,8 +170,7 @@ impl Config {
         if self.patience == Some(0) {
             return bad("patience", "0".into(), "give at least 1, or leave it out");
         }
-        let whole_pixels = Definition::of(self.recipe).output.is_share();
-        if !whole_pixels && self.loss != PixelLoss::default() {
+        if self.recipe.loss.is_none() && self.loss != PixelLoss::default() {
             return bad(
                 "loss",
                 self.loss.name().into(),
@@ -239,7 +207,7 @@ mod tests {
 
     #[test]
     fn settings_out_of_range_are_named() {
-        let good = Config::for_recipe(Recipe::Thesis);
+        let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
         let spoiled: [(&str, Spoil); 9] = [
@@ -263,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_config_survives_json_and_unknown_keys_are_refused() {
-        let config = Config::for_recipe(Recipe::Thesis);
+        let config = Config::for_recipe(Recipe::THESIS);
         let mut json = serde_json::to_value(&config).unwrap();
         assert_eq!(
             serde_json::from_value::<Config>(json.clone()).unwrap(),

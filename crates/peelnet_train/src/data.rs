@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use peelnet_dataset::{Column, ColumnData, Dataset, Split, Subset};
-use peelnet_model::{DatasetRef, Model, Recipe};
+use peelnet_core::features::Feature;
+use peelnet_core::methods::deep::Row;
+use peelnet_dataset::{Column, Dataset, Split, Subset};
+use peelnet_model::{DatasetRef, Inputs, Model};
 
 use crate::config::Config;
 use crate::error::TrainError;
@@ -20,10 +22,9 @@ impl TrainingData {
     /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
         let split = Split::new(config.seed, config.validation, config.held_out)?;
-        let mut data = if config.recipe == Recipe::Thesis {
-            thesis_rows(&split, datasets)?
-        } else {
-            pixels::gather(config.recipe, &split, datasets)?
+        let mut data = match config.recipe.inputs {
+            Inputs::Row(features) => rows(features, &split, datasets)?,
+            _ => pixels::gather(config.recipe, &split, datasets)?,
         };
         let paths: Vec<String> = datasets
             .iter()
@@ -52,42 +53,47 @@ impl TrainingData {
     }
 }
 
-/// The thesis's rows: columns as they are.
-fn thesis_rows(split: &Split, datasets: &[Dataset]) -> Result<TrainingData, TrainError> {
-    let names = Recipe::Thesis.input_names();
-    let mut columns: Vec<Column> = names
-        .iter()
-        .filter_map(|name| Column::from_name(name))
-        .collect();
-    columns.extend([Column::Transmittance, Column::View, Column::X, Column::Y]);
-    let mut inputs = vec![Vec::new(); names.len()];
-    let mut targets = vec![Vec::new()];
+/// Every row is an example with its transmittance as the target.
+fn rows(
+    features: &[&Feature<Row>],
+    split: &Split,
+    datasets: &[Dataset],
+) -> Result<TrainingData, TrainError> {
+    const COLUMNS: [Column; 7] = [
+        Column::LinearDepth,
+        Column::AlphaSum,
+        Column::Transmittance,
+        Column::FragmentCount,
+        Column::View,
+        Column::X,
+        Column::Y,
+    ];
+    let mut inputs = vec![Vec::new(); features.len()];
+    let mut targets = Vec::new();
     let mut subsets = Vec::new();
     for dataset in datasets {
-        let mut data = dataset.read_columns_where(&columns, |part| !dataset.is_held_out(part))?;
-        let pixels = data.split_off(names.len() + 1);
-        if let [view, x, y] = pixels.as_slice()
-            && let (Some(view), Some(x), Some(y)) = (view.as_u32(), x.as_u32(), y.as_u32())
-        {
-            subsets.extend(
-                view.iter()
-                    .zip(x.iter().zip(y))
-                    .map(|(&view, (&x, &y))| split.pixel(view, x, y)),
-            );
-        }
-        for (into, column) in inputs.iter_mut().chain(&mut targets).zip(data) {
-            match column {
-                ColumnData::F32(values) if into.is_empty() => *into = values,
-                ColumnData::F32(values) => into.extend(values),
+        let data = dataset.read_columns_where(&COLUMNS, |part| !dataset.is_held_out(part))?;
+        let [linear_depth, alpha_sum, transmittance] =
+            [0, 1, 2].map(|k| data[k].as_f32().unwrap_or_default());
+        let [count, view, x, y] = [3, 4, 5, 6].map(|k| data[k].as_u32().unwrap_or_default());
+        for i in 0..transmittance.len() {
+            let row = Row {
+                linear_depth: linear_depth[i],
+                alpha_sum: alpha_sum[i],
                 // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
-                ColumnData::U32(values) => into.extend(values.iter().map(|&v| v as f32)),
+                fragment_count: count[i] as f32,
+            };
+            for (column, feature) in inputs.iter_mut().zip(features) {
+                column.push((feature.value)(&row) as f32);
             }
+            subsets.push(split.pixel(view[i], x[i], y[i]));
         }
+        targets.extend_from_slice(transmittance);
     }
     Ok(TrainingData {
         source: String::new(),
         inputs,
-        targets,
+        targets: vec![targets],
         weights: None,
         pixels: None,
         subsets: Some(subsets),
@@ -115,7 +121,7 @@ pub fn held_out_errors(
                 .or_default();
             let warp = pixels::warp(dataset, part)?;
             pixels::for_each_pixel(dataset, part, |_, pixel| {
-                let precision = model.meta.recipe.sum_precision();
+                let precision = model.meta.recipe.sums;
                 let weights = model.transmittances(pixel.points, &warp, precision);
                 for (w, &t) in weights.iter().zip(pixel.transmittance) {
                     sum.0 += (w - f64::from(t)).abs();

@@ -6,14 +6,14 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum TrainError {
     /// A hyper-parameter is out of its range.
-    #[error("setting `{setting}` is {value}: {mend}")]
+    #[error("setting `{setting}` is {value}: {hint}")]
     Config {
         /// Name of the field.
         setting: &'static str,
         /// What it was.
         value: String,
         /// What to do.
-        mend: &'static str,
+        hint: &'static str,
     },
     /// The columns do not fit one another or the recipe.
     #[error("{data}: {problem}")]

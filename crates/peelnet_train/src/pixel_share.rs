@@ -12,11 +12,11 @@ use std::ops::Range;
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use peelnet_core::guards::SUM_FLOOR;
 
-use crate::config::PixelLoss;
 use crate::network::Network;
 use crate::normalise::Normalisation;
 use crate::task::{Part, Task};
 use crate::training_data::{PixelColumns, TrainingData};
+use peelnet_model::PixelLoss;
 
 /// Columns of a pixel: [`PixelFixed`], then its weight.
 const FIXED: usize = 9;

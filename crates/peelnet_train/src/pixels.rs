@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use peelnet_core::absorbance::{DepthWarp, absorbance};
+use peelnet_core::features::{Feature, Rest};
 use peelnet_core::methods::anchored::{Place, seen};
+use peelnet_core::methods::dfaoit::Tail;
 use peelnet_core::methods::{mboit4, nmt};
-use peelnet_core::statistics;
 use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
-use peelnet_model::Recipe;
+use peelnet_model::{Inputs, Output, Recipe};
 
 use crate::error::TrainError;
-use crate::recipe::Definition;
 use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
 
 /// Rows that are read at once.
@@ -136,13 +136,12 @@ pub(crate) fn gather(
     split: &Split,
     datasets: &[Dataset],
 ) -> Result<TrainingData, TrainError> {
-    let definition = Definition::of(recipe);
     let mut data = TrainingData {
         source: String::new(),
-        inputs: vec![Vec::new(); recipe.input_names().len()],
-        targets: vec![Vec::new(); definition.outputs],
+        inputs: vec![Vec::new(); recipe.inputs.about().len()],
+        targets: vec![Vec::new(); recipe.output.count()],
         weights: Some(Vec::new()),
-        pixels: definition.output.is_share().then(PixelColumns::default),
+        pixels: recipe.loss.map(|_| PixelColumns::default()),
         subsets: Some(Vec::new()),
         dataset: None,
     };
@@ -159,10 +158,16 @@ pub(crate) fn gather(
                 gathered.hardness += hardness(pixel, &warp);
                 gathered.pixels += 1;
                 let subset = split.pixel(view, x, y);
-                match recipe {
-                    Recipe::Nmt => transmittance_rows(&mut data, pixel, &warp, subset),
-                    Recipe::Dfaoit => tail_row(&mut data, pixel, subset),
-                    _ => share_pixel(&mut data, pixel, &warp, recipe, subset),
+                match recipe.inputs {
+                    Inputs::Moments(features) => {
+                        transmittance_rows(features, &mut data, pixel, &warp, subset);
+                    }
+                    Inputs::Tail(features) => tail_row(features, &mut data, pixel, subset),
+                    Inputs::Rest(features) => {
+                        share_pixel(features, &mut data, pixel, &warp, recipe, subset);
+                    }
+                    // Columns of the dataset, read without whole pixels.
+                    Inputs::Row(_) => {}
                 }
             })?;
             parts.push(gathered);
@@ -191,6 +196,11 @@ fn weigh(data: &mut TrainingData, parts: &[Gathered]) {
     }
 }
 
+/// Appends the inputs of an example.
+fn push_inputs<C>(data: &mut TrainingData, features: &[&Feature<C>], known: &C) {
+    push(&mut data.inputs, features.iter().map(|f| (f.value)(known)));
+}
+
 fn push(columns: &mut [Vec<f32>], values: impl IntoIterator<Item = f64>) {
     for (column, value) in columns.iter_mut().zip(values) {
         column.push(value as f32);
@@ -199,6 +209,7 @@ fn push(columns: &mut [Vec<f32>], values: impl IntoIterator<Item = f64>) {
 
 /// The fragments of a pixel whose share the network is asked for, and what the others contribute.
 fn share_pixel(
+    features: &[&Feature<Rest<f64>>],
     data: &mut TrainingData,
     pixel: &Pixel<'_>,
     warp: &DepthWarp,
@@ -208,8 +219,8 @@ fn share_pixel(
     let Some(columns) = &mut data.pixels else {
         return;
     };
-    let separate_ends = recipe != Recipe::Small;
-    let all = seen(pixel.points, warp, recipe.sum_precision());
+    let separate_ends = recipe.output == Output::AnchoredShareSeparateEnds;
+    let all = seen(pixel.points, warp, recipe.sums);
     let between = all.iter().filter(|s| s.place == Place::Between).count();
     // Exact whatever the network says: nothing to learn.
     if between == 0 || (separate_ends && between == 1) {
@@ -222,9 +233,12 @@ fn share_pixel(
         let (s, color) = (&all[i], pixel.colors[i]);
         let alpha = f64::from(pixel.points[i].1);
         if s.place == Place::Between {
-            push(&mut data.inputs, s.features);
+            push(
+                &mut data.inputs,
+                features.iter().map(|f| (f.value)(&s.rest)),
+            );
             push(&mut data.targets, [exact]);
-            columns.rest.push(s.rest as f32);
+            columns.rest.push(s.rest.absorbance as f32);
             // What is known of its weight goes with its opacity.
             columns.alpha.push((alpha * (-s.front).exp()) as f32);
             for (column, c) in columns.color.iter_mut().zip(color) {
@@ -253,6 +267,7 @@ fn share_pixel(
 }
 
 fn transmittance_rows(
+    features: &[&Feature<nmt::Seen>],
     data: &mut TrainingData,
     pixel: &Pixel<'_>,
     warp: &DepthWarp,
@@ -262,12 +277,13 @@ fn transmittance_rows(
     for &(depth, alpha) in pixel.points {
         moments.add(absorbance(alpha), warp.apply(depth.into()));
     }
-    let n = pixel.points.len();
     for (&(depth, alpha), &t) in pixel.points.iter().zip(pixel.transmittance) {
-        push(
-            &mut data.inputs,
-            nmt::inputs(&moments, n, warp.apply(depth.into())),
-        );
+        let seen = nmt::Seen {
+            zeta: warp.apply(depth.into()),
+            count: pixel.points.len(),
+            moments: moments.0,
+        };
+        push_inputs(data, features, &seen);
         data.targets[0].push(t);
         if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
             // An error of T is seen as much as the fragment is opaque.
@@ -278,7 +294,12 @@ fn transmittance_rows(
 }
 
 /// One row for a pixel with a tail of two or more fragments; a tail of one needs no network.
-fn tail_row(data: &mut TrainingData, pixel: &Pixel<'_>, subset: Subset) {
+fn tail_row(
+    features: &[&Feature<Tail>],
+    data: &mut TrainingData,
+    pixel: &Pixel<'_>,
+    subset: Subset,
+) {
     const FRONT: usize = 2;
     let n = pixel.points.len();
     if n < FRONT + 2 {
@@ -313,12 +334,15 @@ fn tail_row(data: &mut TrainingData, pixel: &Pixel<'_>, subset: Subset) {
     if covered <= 0.0 || alphas <= 0.0 {
         return;
     }
-    let [r, g, b] = front;
-    let [ar, ag, ab] = average.map(|c| c / alphas);
-    push(
-        &mut data.inputs,
-        [r, g, b, through, ar, ag, ab, alphas / tail, behind, tail],
-    );
+    let known = Tail {
+        front,
+        front_transmittance: through,
+        average: average.map(|c| c / alphas),
+        alpha: alphas / tail,
+        transmittance: behind,
+        count: tail,
+    };
+    push_inputs(data, features, &known);
     push(&mut data.targets, exact.map(|c| (c / covered).min(1.0)));
     if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
         weights.push((covered * covered) as f32);
@@ -339,16 +363,4 @@ pub(crate) fn training_scenes(datasets: &[Dataset]) -> BTreeSet<String> {
                 .map(|part| manifest.scenes[part.scene as usize].name.clone())
         })
         .collect()
-}
-
-/// Units of a recipe's inputs, for readers of the model file.
-pub(crate) fn unit(name: &str) -> &'static str {
-    match name {
-        "linear_depth" => "scene units",
-        "depth" => "warped, -1 .. 1 over the frame's transparent depth range",
-        _ => statistics::FEATURES
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map_or("1", |(_, unit)| unit),
-    }
 }

@@ -18,7 +18,6 @@ use crate::fragment_mse::FragmentMse;
 use crate::network::Shape;
 use crate::normalise::Normalisation;
 use crate::pixel_share::PixelShare;
-use crate::recipe::Definition;
 use crate::report::{End, EpochReport, Outcome};
 use crate::split::Split;
 use crate::streams::Stream;
@@ -87,8 +86,7 @@ pub fn train(
             });
         }
     }
-    let definition = Definition::of(config.recipe);
-    data.check(&definition.features)?;
+    data.check(config.recipe)?;
     let split = match &data.subsets {
         Some(subsets) => Split::of(subsets),
         None => Split::random(data.examples() as u32, config.held_out, config.seed),
@@ -119,23 +117,23 @@ pub fn train(
     };
     let run = Run {
         config,
-        definition: &definition,
         normalisation: &normalisation,
         data,
         fingerprint: data.fingerprint(),
         options,
         device,
         threads: options.compute.threads(options.threads),
-        shape: shape(config, &definition),
+        shape: shape(config),
         folder: checkpoint::folder(&options.out),
     };
     run.go(task.as_mut(), on_epoch)
 }
 
-fn shape(config: &Config, definition: &Definition) -> Shape {
-    let widths = std::iter::once(definition.features.len())
+fn shape(config: &Config) -> Shape {
+    let recipe = config.recipe;
+    let widths = std::iter::once(recipe.inputs.about().len())
         .chain(config.hidden.iter().copied())
-        .chain([definition.outputs])
+        .chain([recipe.output.count()])
         .collect();
     Shape {
         widths,
@@ -147,7 +145,6 @@ fn shape(config: &Config, definition: &Definition) -> Shape {
 /// What does not change during a run.
 struct Run<'a> {
     config: &'a Config,
-    definition: &'a Definition,
     normalisation: &'a [Normalisation],
     data: &'a TrainingData,
     fingerprint: String,
@@ -182,34 +179,7 @@ impl Run<'_> {
         task: &mut dyn Task,
         mut on_epoch: impl FnMut(&EpochReport),
     ) -> Result<Outcome, TrainError> {
-        let resumed = if self.options.resume {
-            State::load(
-                &self.folder,
-                self.config,
-                &self.fingerprint,
-                self.shape.parameters(),
-            )?
-        } else {
-            None
-        };
-        let resumed_from = resumed.as_ref().map(|state| state.history.len() as u32);
-        let mut progress = match resumed {
-            Some(state) => self.restore(state),
-            None => {
-                let parameters = self.upload(self.shape.initial(self.config.seed));
-                Progress {
-                    adam: Adam::new(&parameters),
-                    parameters,
-                    best: None,
-                    history: Vec::new(),
-                }
-            }
-        };
-        if resumed_from.is_none() {
-            self.clear()?;
-            // Also tells now, and not after the last epoch, that the folder cannot be written.
-            self.save(&progress)?;
-        }
+        let (mut progress, resumed_from) = self.start()?;
         let mut saved = Instant::now();
         let end = loop {
             let epoch = progress.history.len() as u32 + 1;
@@ -221,37 +191,13 @@ impl Run<'_> {
             if epoch > self.config.epochs {
                 break End::Finished;
             }
-            let Some(Pass {
-                parameters,
-                adam,
-                train_loss,
-                held_out_loss,
-                seconds,
-            }) = self.epoch(epoch, task, &progress)
-            else {
+            let Some(pass) = self.epoch(epoch, task, &progress) else {
                 break End::Interrupted;
             };
-            if let Some(what) = self.not_finite(train_loss, held_out_loss, &parameters) {
-                return Err(self.diverged(epoch, what, &progress));
+            self.take(pass, epoch, task.examples(Part::Train), &mut progress)?;
+            if let Some(report) = progress.history.last() {
+                on_epoch(report);
             }
-            let score = held_out_loss.unwrap_or(train_loss);
-            let best = self.score(&progress).is_none_or(|lowest| score < lowest);
-            if best {
-                progress.best = Some((epoch, parameters.clone()));
-            }
-            progress.parameters = parameters;
-            progress.adam = adam;
-            let report = EpochReport {
-                epoch,
-                epochs: self.config.epochs,
-                train_loss,
-                held_out_loss,
-                seconds,
-                rows_per_s: task.examples(Part::Train) as f64 / seconds.max(f64::MIN_POSITIVE),
-                best,
-            };
-            on_epoch(&report);
-            progress.history.push(report);
             if saved.elapsed() >= SAVE_EVERY {
                 self.save(&progress)?;
                 saved = Instant::now();
@@ -261,6 +207,73 @@ impl Run<'_> {
         for path in &self.options.loss_curve {
             write_curve(path, &progress.history)?;
         }
+        self.finish(task, progress, end, resumed_from)
+    }
+
+    /// The state that a run starts from: the checkpoint's, with the epoch that it was saved after, or a new one.
+    fn start(&self) -> Result<(Progress, Option<u32>), TrainError> {
+        if self.options.resume
+            && let Some(state) = State::load(
+                &self.folder,
+                self.config,
+                &self.fingerprint,
+                self.shape.parameters(),
+            )?
+        {
+            let epoch = state.history.len() as u32;
+            return Ok((self.restore(state), Some(epoch)));
+        }
+        let parameters = self.upload(self.shape.initial(self.config.seed));
+        let progress = Progress {
+            adam: Adam::new(&parameters),
+            parameters,
+            best: None,
+            history: Vec::new(),
+        };
+        self.clear()?;
+        // Reports now, and not after the last epoch, that the folder cannot be written.
+        self.save(&progress)?;
+        Ok((progress, None))
+    }
+
+    /// Makes what an epoch computed the state of the run.
+    fn take(
+        &self,
+        pass: Pass,
+        epoch: u32,
+        examples: usize,
+        progress: &mut Progress,
+    ) -> Result<(), TrainError> {
+        if let Some(what) = self.not_finite(pass.train_loss, pass.held_out_loss, &pass.parameters) {
+            return Err(self.diverged(epoch, what, progress));
+        }
+        let score = pass.held_out_loss.unwrap_or(pass.train_loss);
+        let best = self.score(progress).is_none_or(|lowest| score < lowest);
+        if best {
+            progress.best = Some((epoch, pass.parameters.clone()));
+        }
+        progress.parameters = pass.parameters;
+        progress.adam = pass.adam;
+        progress.history.push(EpochReport {
+            epoch,
+            epochs: self.config.epochs,
+            train_loss: pass.train_loss,
+            held_out_loss: pass.held_out_loss,
+            seconds: pass.seconds,
+            rows_per_s: examples as f64 / pass.seconds.max(f64::MIN_POSITIVE),
+            best,
+        });
+        Ok(())
+    }
+
+    /// Chooses the model, judges it by the test examples and writes it, unless the run was interrupted.
+    fn finish(
+        &self,
+        task: &dyn Task,
+        progress: Progress,
+        end: End,
+        resumed_from: Option<u32>,
+    ) -> Result<Outcome, TrainError> {
         // Choosing the best epoch is what patience asks for; see the crate's documentation.
         let chosen = match &progress.best {
             Some((epoch, parameters)) if self.config.patience.is_some() => (*epoch, parameters),
@@ -270,22 +283,18 @@ impl Run<'_> {
         if task.examples(Part::Validation) > 0 {
             let losses = &mut model.meta.losses;
             losses.validation = losses.validation.or(losses.test);
-            losses.test = Team::with(
-                self.threads,
-                &*task,
-                &self.shape,
-                self.config.chunk,
-                |team| mean_loss(team, chosen.1, Part::Test),
-            );
+            losses.test = Team::with(self.threads, task, &self.shape, self.config.chunk, |team| {
+                mean_loss(team, chosen.1, Part::Test)
+            });
         }
         if end != End::Interrupted {
             save_model(&model, &self.options.out)?;
         }
         Ok(Outcome {
             model,
+            model_epoch: chosen.0,
             history: progress.history,
             end,
-            model_epoch: chosen.0,
             resumed_from,
             checkpoint: self.folder.clone(),
         })
@@ -454,14 +463,13 @@ impl Run<'_> {
         let row = (epoch as usize).checked_sub(1).and_then(|i| history.get(i));
         let held_out = row.and_then(|r| r.held_out_loss);
         let chosen_by_it = self.config.patience.is_some();
-        let inputs = self
-            .definition
-            .features
+        let about = self.config.recipe.inputs.about();
+        let inputs = about
             .iter()
             .zip(self.normalisation)
-            .map(|(feature, n)| Input {
-                name: feature.name.to_owned(),
-                unit: feature.unit.to_owned(),
+            .map(|(about, n)| Input {
+                name: about.name.to_owned(),
+                unit: about.unit.to_owned(),
                 offset: n.offset,
                 scale: n.scale,
                 min: n.min,
@@ -488,7 +496,7 @@ impl Run<'_> {
                 tool_version: env!("CARGO_PKG_VERSION").to_owned(),
                 recipe: self.config.recipe,
                 inputs,
-                output: self.definition.output,
+                output: self.config.recipe.output,
                 seed: self.config.seed,
                 dataset: self.data.dataset.clone(),
                 epochs: epoch,

@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use peelnet_dataset::Subset;
-use peelnet_model::DatasetRef;
+use peelnet_model::{DatasetRef, Recipe};
 
 use crate::error::TrainError;
-use crate::recipe::Feature;
 
 /// Rows in memory, by column. All columns are equally long.
 ///
@@ -104,23 +103,20 @@ impl TrainingData {
     /// # Errors
     /// A missing column, columns of different lengths, no rows at all, more rows than 32-bit indices can name, or a
     /// value that is not finite.
-    pub(crate) fn check(&self, features: &[Feature]) -> Result<(), TrainError> {
+    pub(crate) fn check(&self, recipe: Recipe) -> Result<(), TrainError> {
+        let names = recipe.input_names();
         let columns = |problem: String| {
             Err(TrainError::Columns {
                 data: self.source.clone(),
                 problem,
             })
         };
-        if self.inputs.len() != features.len() {
+        if self.inputs.len() != names.len() {
             return columns(format!(
                 "{} input columns, but the recipe takes {}: {}",
                 self.inputs.len(),
-                features.len(),
-                features
-                    .iter()
-                    .map(|f| f.name)
-                    .collect::<Vec<_>>()
-                    .join(", ")
+                names.len(),
+                names.join(", ")
             ));
         }
         if self.rows() == 0 {
@@ -128,16 +124,15 @@ impl TrainingData {
         }
         if self.rows() > i32::MAX as usize {
             return columns(format!(
-                "{} rows are more than the {} that one training run can hold; extract with a smaller --pixels fraction",
+                "{} rows are more than the {} that one training run can hold; extract a smaller fraction of the pixels",
                 self.rows(),
                 i32::MAX
             ));
         }
-        for (feature, values) in features.iter().zip(&self.inputs) {
+        for (name, values) in names.iter().zip(&self.inputs) {
             if values.len() != self.rows() {
                 return columns(format!(
-                    "column `{}` has {} rows, but the target has {}",
-                    feature.name,
+                    "column `{name}` has {} rows, but the target has {}",
                     values.len(),
                     self.rows()
                 ));
@@ -158,8 +153,7 @@ impl TrainingData {
                 );
             }
         }
-        let named = features.iter().map(|f| f.name);
-        let named = named.chain(std::iter::repeat("target"));
+        let named = names.into_iter().chain(std::iter::repeat("target"));
         for (name, values) in named.zip(self.inputs.iter().chain(&self.targets)) {
             if let Some(row) = values.iter().position(|v| !v.is_finite()) {
                 return Err(TrainError::Value {
@@ -173,7 +167,7 @@ impl TrainingData {
         Ok(())
     }
 
-    /// Tells whether a checkpoint was made with the same rows: a 64-bit hash over the bits of every value.
+    /// Identifies the rows, so that a checkpoint is continued with the same ones: a 64-bit hash over the bits of every value.
     pub(crate) fn fingerprint(&self) -> String {
         let mut hash = 0xCBF2_9CE4_8422_2325_u64;
         for column in self.inputs.iter().chain(&self.targets).chain(&self.weights) {

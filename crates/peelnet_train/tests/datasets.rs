@@ -104,7 +104,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let b = write(&folder.path().join("b"), vec![scene("smoke", false)]);
     let config = Config {
         epochs: 2,
-        ..Config::for_recipe(Recipe::Thesis)
+        ..Config::for_recipe(Recipe::THESIS)
     };
     let datasets = [a, b];
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
@@ -159,7 +159,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
 fn a_dataset_of_held_out_scenes_only_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let datasets = [write(&folder.path().join("a"), vec![scene("panes", true)])];
-    let config = Config::for_recipe(Recipe::Thesis);
+    let config = Config::for_recipe(Recipe::THESIS);
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
     let stop = AtomicBool::new(false);
     let options = RunOptions::new(folder.path().join("net.safetensors"), &stop);

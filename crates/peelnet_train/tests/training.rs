@@ -43,7 +43,7 @@ fn config() -> Config {
     Config {
         epochs: 6,
         learning_rate: 1e-3,
-        ..Config::for_recipe(Recipe::Thesis)
+        ..Config::for_recipe(Recipe::THESIS)
     }
 }
 

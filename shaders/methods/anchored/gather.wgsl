@@ -1,7 +1,7 @@
-// Learned methods with anchors, pass 2: the exported text's weight.
+// Learned methods with anchors, pass 2: the exported text's weight of each fragment.
 // Variants: none | separate_ends | tinted | separate_ends tinted
-import package::helpers::absorbance::warped_depth;
-import package::learned::weight::peelnet_fragment;
+import package::learned::weight::{peelnet_fragment, peelnet_zeta};
+import package::scene::camera::camera;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
@@ -26,7 +26,7 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
-    let zeta = warped_depth(surface.depth_linear);
+    let zeta = peelnet_zeta(surface.depth_linear, camera.range_near, camera.range_far);
     let m = textureLoad(moments, pixel, 0);
     let e = textureLoad(extent, pixel, 0);
     let w = peelnet_fragment(color.a, zeta, m, e);

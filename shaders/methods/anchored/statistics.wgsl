@@ -1,6 +1,6 @@
-// Learned methods with anchors, pass 1: what the exported text's features are computed from.
-import package::helpers::absorbance::warped_depth;
-import package::learned::weight::peelnet_statistics;
+// Learned methods with anchors, pass 1: the exported text's statistics.
+import package::learned::weight::{peelnet_statistics, peelnet_zeta};
+import package::scene::camera::camera;
 import package::scene::shade::opacity;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -15,6 +15,7 @@ fn fragment_main(surface: Surface) -> Statistics {
     if !visible(surface) {
         discard;
     }
-    let s = peelnet_statistics(opacity(surface), warped_depth(surface.depth_linear));
+    let zeta = peelnet_zeta(surface.depth_linear, camera.range_near, camera.range_far);
+    let s = peelnet_statistics(opacity(surface), zeta);
     return Statistics(s.moments, s.extent);
 }

@@ -1,5 +1,5 @@
 // deep-thesis (Papakostas 2022), pass 2: eq 6 with the weight that the exported network gives.
-import package::learned::weight::{peelnet_weight, peelnet_features};
+import package::learned::weight::peelnet_fragment;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -19,7 +19,5 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let color = shade(surface);
     let sums = textureLoad(statistics, vec2u(surface.position.xy), 0).xy;
-    let features = peelnet_features(surface.depth_linear, sums);
-    let weight = peelnet_weight(features.x, features.y, features.z);
-    return Sums(color * weight, color.a);
+    return Sums(color * peelnet_fragment(surface.depth_linear, sums), color.a);
 }

@@ -1,5 +1,5 @@
 // dfaoit: sums over the fragments behind the two nearest.
-import package::learned::weight::peelnet_absorbance;
+import package::learned::weight::peelnet_statistics;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -22,6 +22,6 @@ fn fragment_main(surface: Surface) -> Sums {
     if depth < before.x || (depth == before.x && surface.triangle + 1u <= before.y) {
         discard;
     }
-    let color = shade(surface);
-    return Sums(color, vec2f(peelnet_absorbance(color.a), 1.0));
+    let s = peelnet_statistics(shade(surface));
+    return Sums(s.tail, s.sums);
 }

@@ -1,6 +1,6 @@
 // nmt, pass 2: eq 6 with the weight that the exported network gives.
-import package::helpers::absorbance::warped_depth;
-import package::learned::weight::peelnet_fragment;
+import package::learned::weight::{peelnet_fragment, peelnet_zeta};
+import package::scene::camera::camera;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -16,7 +16,7 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
     let weight = peelnet_fragment(
-        warped_depth(surface.depth_linear),
+        peelnet_zeta(surface.depth_linear, camera.range_near, camera.range_far),
         textureLoad(absorbance, pixel, 0).xy,
         textureLoad(moments, pixel, 0),
     );

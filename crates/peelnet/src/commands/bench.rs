@@ -192,7 +192,7 @@ pub(super) fn chosen(
     let all = matches!(methods, MethodList::All);
     let mut missing: Vec<&str> = Vec::new();
     for recipe in Recipe::ALL {
-        let name = recipe.method_name();
+        let name = recipe.method;
         if !wanted.iter().any(|m| m.name() == name)
             || models.iter().any(|m| m.meta.recipe == recipe)
         {
@@ -213,7 +213,7 @@ pub(super) fn chosen(
         ));
     }
     for model in &models {
-        let name = model.meta.recipe.method_name();
+        let name = model.meta.recipe.method;
         if !wanted.iter().any(|m| m.name() == name) {
             wanted.push(name.parse()?);
         }

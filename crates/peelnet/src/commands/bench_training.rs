@@ -22,7 +22,7 @@ use peelnet_train::{Config, RunOptions, TrainingData, train};
 use serde_json::json;
 
 /// The recipe whose inputs and output form all networks have.
-const RECIPE: Recipe = Recipe::Medium;
+const RECIPE: Recipe = Recipe::MEDIUM;
 
 /// Hidden layers from next to nothing to more than anyone ships.
 const HIDDEN: [&[usize]; 7] = [&[2], &[4], &[8], &[12], &[24], &[8, 8], &[16, 16]];
@@ -85,7 +85,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     }
     drop(bar);
     let learning = Learning {
-        recipe: RECIPE.name().to_owned(),
+        recipe: RECIPE.name.to_owned(),
         rows,
     };
     let results = Results::new(Machine::of(&gpu), command_line(), learning);
@@ -103,7 +103,7 @@ fn judge(
     args: &BenchArgs,
     model: Model,
 ) -> Result<(f64, f64), Failure> {
-    let name = model.meta.recipe.method_name();
+    let name = model.meta.recipe.method;
     let learned = [learned::text_of(gpu, &model)?];
     let methods = [MOMENTS.parse()?, name.parse()?];
     let plan = Plan {

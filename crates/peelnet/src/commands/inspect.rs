@@ -304,7 +304,7 @@ fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
                 "kind": "model",
                 "path": path,
                 "hash": hash,
-                "method": model.meta.recipe.method_name(),
+                "method": model.meta.recipe.method,
                 "topology": model.mlp.topology(),
                 "parameters": model.mlp.parameters(),
                 "meta": model.meta,
@@ -320,8 +320,7 @@ fn model_text(path: &Path, model: &Model, hash: &str) -> String {
     let _ = writeln!(
         t,
         "recipe      {} (method {})",
-        meta.recipe,
-        meta.recipe.method_name()
+        meta.recipe, meta.recipe.method
     );
     let _ = writeln!(
         t,

@@ -62,7 +62,7 @@ impl Sizes {
         } else {
             (Size([512, 384]), 300_000)
         };
-        let mut config = Config::for_recipe(Recipe::Thesis);
+        let mut config = Config::for_recipe(Recipe::THESIS);
         config.seed = args.seed;
         config.epochs = args.epochs.unwrap_or(config.epochs);
         Ok(Self {
@@ -274,7 +274,7 @@ impl Run<'_> {
     /// Every method that there is, and the learned one, on every view of every scene.
     fn compare(&mut self, learned: LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
         let mut methods = MethodSpec::all();
-        methods.push(learned.recipe.method_name().parse()?);
+        methods.push(learned.recipe.method.parse()?);
         let learned = [learned];
         let plan = Plan {
             learned: &learned,

@@ -29,7 +29,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     let chosen = chosen(context, &gpu, &args.methods, &args.models, all)?;
     let own: Vec<&str> = if own_only {
         let loaded = chosen.models.iter().take(args.models.len());
-        loaded.map(|m| m.meta.recipe.method_name()).collect()
+        loaded.map(|m| m.meta.recipe.method).collect()
     } else {
         Vec::new()
     };
@@ -39,7 +39,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         .filter(|m| !own_only || own.contains(&m.name()))
         .map(|method| {
             let networks = chosen.learned.iter().zip(&chosen.models);
-            let mut networks = networks.filter(|(l, _)| l.recipe.method_name() == method.name());
+            let mut networks = networks.filter(|(l, _)| l.recipe.method == method.name());
             let learned = networks.next().map(|(l, m)| (l.clone(), m.clone()));
             Subject::new(method.clone(), learned)
         })

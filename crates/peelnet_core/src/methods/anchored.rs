@@ -9,11 +9,11 @@
 
 use crate::{
     absorbance::{DepthWarp, absorbance},
+    features::Rest,
     fragment::Fragment,
     guards::FILL_MAX,
     statistics::{
-        self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, features,
-        zeta_of_code,
+        self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, zeta_of_code,
     },
 };
 
@@ -41,18 +41,16 @@ pub struct Seen {
     pub others: f64,
     /// Absorbance of the nearest fragment, `b_n`; 0 where it does not lie in front.
     pub front: f64,
-    /// Absorbance of the rest, `r`.
-    pub rest: f64,
-    /// What the network reads ([`statistics::features`]).
-    pub features: [f64; 9],
+    /// All fragments but this one and the ends, which the network is asked about.
+    pub rest: Rest<f64>,
 }
 
 impl Seen {
     /// The weight, given what the network answers for a fragment that lies between the ends.
-    pub fn weight(&self, share: impl FnOnce(&[f64; 9]) -> f64) -> f64 {
+    pub fn weight(&self, share: impl FnOnce(&Rest<f64>) -> f64) -> f64 {
         match self.place {
             Place::Nearest => 1.0,
-            Place::Between => (-(self.front + self.rest * share(&self.features))).exp(),
+            Place::Between => (-(self.front + self.rest.absorbance * share(&self.rest))).exp(),
             Place::Farthest => (-self.others).exp(),
         }
     }
@@ -133,8 +131,7 @@ fn seen_at(fragments: &[(f32, f32)], points: &[(f64, f64)], moments: [f64; 5]) -
                 place,
                 others: s.without(&[(b, zeta)])[0],
                 front,
-                rest: rest[0],
-                features: features(&s, &rest, zeta),
+                rest: Rest::new(&s, &rest, zeta),
             }
         })
         .collect()
@@ -146,7 +143,7 @@ pub fn composite(
     background: [f32; 3],
     warp: &DepthWarp,
     separate_ends: bool,
-    share: impl Fn(&[f64; 9]) -> f64,
+    share: impl Fn(&Rest<f64>) -> f64,
 ) -> [f32; 3] {
     let points: Vec<(f32, f32)> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
     let total: f64 = fragments.iter().map(|f| absorbance(f.alpha)).sum();
@@ -169,22 +166,49 @@ pub fn composite(
     }
     let [between, ends] = sums;
     let t = (-total).exp();
+    let background = background.map(f64::from);
+    if separate_ends {
+        resolve_separate_ends(between, ends, t, background)
+    } else {
+        resolve(between, t, background)
+    }
+    .map(|c| c as f32)
+}
+
+/// A pixel's colour from the sums of all its fragments, `Σ α c w` and `Σ α w`, its transmittance and the background. The shader
+/// twin is `peelnet_composite` in `learned/resolve.wgsl`.
+pub fn resolve(sums: [f64; 4], transmittance: f64, background: [f64; 3]) -> [f64; 3] {
+    let share = if sums[3] > 0.0 {
+        (1.0 - transmittance) / sums[3].max(f64::MIN_POSITIVE)
+    } else {
+        0.0
+    };
+    std::array::from_fn(|k| sums[k] * share + background[k] * transmittance)
+}
+
+/// The same with the pixel's ends in sums of their own. The shader twin is `peelnet_composite` in
+/// `learned/resolve_separate_ends.wgsl`.
+pub fn resolve_separate_ends(
+    between: [f64; 4],
+    ends: [f64; 4],
+    transmittance: f64,
+    background: [f64; 3],
+) -> [f64; 3] {
+    let coverage = 1.0 - transmittance;
     let floor = f64::MIN_POSITIVE;
-    // The ends never take more than there is, and what lies between no more than it can fill; what is then missing, all fill.
-    let own = ends[3].min(1.0 - t);
-    let rest = (1.0 - t - own).min(f64::from(FILL_MAX) * between[3]);
-    let fill = (1.0 - t) / (own + rest).max(floor);
-    let share = fill * own / ends[3].max(floor);
-    let left = fill * rest / between[3].max(floor);
-    std::array::from_fn(|k| {
-        (ends[k] * share + between[k] * left + f64::from(background[k]) * t) as f32
-    })
+    // The ends never take more than the coverage, and what lies between no more than it can fill. Both then fill what is missing.
+    let own = ends[3].min(coverage);
+    let left = (coverage - own).min(f64::from(FILL_MAX) * between[3]);
+    let fill = coverage / (own + left).max(floor);
+    let own = fill * own / ends[3].max(floor);
+    let left = fill * left / between[3].max(floor);
+    std::array::from_fn(|k| ends[k] * own + between[k] * left + background[k] * transmittance)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{methods::over, random::Random};
+    use crate::{features::all, methods::over, random::Random};
 
     const C0: [f32; 3] = [0.3, 0.1, 0.7];
 
@@ -233,13 +257,10 @@ mod tests {
             let all = seen(&points, &warp, SumPrecision::Exact);
             for separate_ends in [false, true] {
                 let got = composite(&f, C0, &warp, separate_ends, |x| {
-                    // Which fragment it is, by its features.
-                    let i = all
-                        .iter()
-                        .position(|s| s.features == *x)
-                        .expect("one of them");
+                    // Which fragment it is, by what it sees.
+                    let i = all.iter().position(|s| s.rest == *x).expect("one of them");
                     let front: f64 = f[..i].iter().map(|f| absorbance(f.alpha)).sum();
-                    (front - all[i].front) / all[i].rest
+                    (front - all[i].front) / all[i].rest.absorbance
                 });
                 let same_level = all.iter().filter(|s| s.place != Place::Between).count() > 2;
                 for k in 0..3 {
@@ -272,12 +293,13 @@ mod tests {
                 for (a, b) in base.iter().zip(seen(&scaled, &warp, SumPrecision::Exact)) {
                     assert_eq!(a.place, b.place);
                     // A depth at the edge of a bin may fall on its other side, and another end be known then.
-                    if (a.front - b.front).abs() + (a.rest - b.rest).abs() > 1e-9 {
+                    let rests = a.rest.absorbance - b.rest.absorbance;
+                    if (a.front - b.front).abs() + rests.abs() > 1e-9 {
                         continue;
                     }
                     // The share bounds jump where a point of the bound passes the fragment.
-                    for k in 0..3 {
-                        assert!((a.features[k] - b.features[k]).abs() < 1e-3, "{a:?} {b:?}");
+                    for (x, y) in all(&a.rest).iter().zip(all(&b.rest)).take(3) {
+                        assert!((x - y).abs() < 1e-3, "{a:?} {b:?}");
                     }
                 }
             }
@@ -298,7 +320,8 @@ mod tests {
         let near = 0.5 / 255.0 * (1.0 + half).powi(2);
         let far = 0.5 / 31.0 * (1.0 + half).powi(2);
         assert!((s[2].front - half).abs() < near);
-        assert!((s[2].rest - 2.0 * half).abs() < near + far);
+        let rest = s[2].rest;
+        assert!((rest.absorbance - 2.0 * half).abs() < near + far);
         // With three moments, the extreme distributions have an eighth at each end and the rest in the middle.
         let want = [
             (2.0 * half).sqrt(),
@@ -318,9 +341,9 @@ mod tests {
                 // The farthest fragment's depth is known to half a bin.
                 + 1.0 / f64::from(FAR_END.bins);
             assert!(
-                (s[2].features[k] - want).abs() < tolerance,
+                (all(&rest)[k] - want).abs() < tolerance,
                 "{k}: {:?}",
-                s[2].features
+                all(&rest)
             );
         }
         // The second layer has nothing of the rest in front, the fourth all.

@@ -1,16 +1,59 @@
 //! `deep-thesis`: Papakostas 2022 — eq 6 with a weight that a network predicts.
 
+use crate::features::{About, Feature};
 use crate::fragment::Fragment;
 use crate::methods::wboit::{Sums, normalised};
 
-/// The inputs of the thesis's network for one fragment: `(z_i, Σα, n)`, the last two over its pixel.
-pub fn thesis_inputs(fragment: &Fragment, pixel: &[Fragment]) -> [f32; 3] {
-    [
-        fragment.depth,
-        pixel.iter().map(|f| f.alpha).sum(),
-        pixel.len() as f32,
-    ]
+/// What is known of a fragment: a row of a dataset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Distance along the view axis, in scene units.
+    pub linear_depth: f32,
+    /// Sum of the opacities of the pixel's fragments.
+    pub alpha_sum: f32,
+    /// Number of the pixel's fragments.
+    pub fragment_count: f32,
 }
+
+impl Row {
+    /// Of a fragment and its pixel.
+    pub fn of(fragment: &Fragment, pixel: &[Fragment]) -> Self {
+        Self {
+            linear_depth: fragment.depth,
+            alpha_sum: pixel.iter().map(|f| f.alpha).sum(),
+            fragment_count: pixel.len() as f32,
+        }
+    }
+}
+
+/// A feature of a row; in WGSL a function of `linear_depth` and `statistics`.
+const fn of_row(
+    name: &'static str,
+    unit: &'static str,
+    wgsl: &'static str,
+    value: fn(&Row) -> f64,
+) -> Feature<Row> {
+    Feature {
+        about: About {
+            name,
+            unit,
+            wgsl,
+            shared: None,
+        },
+        value,
+    }
+}
+
+/// The inputs of the thesis's network, `(z_i, Σα, n)`.
+pub static THESIS_INPUTS: [&Feature<Row>; 3] = [
+    &of_row("linear_depth", "scene units", "linear_depth", |row| {
+        row.linear_depth.into()
+    }),
+    &of_row("alpha_sum", "1", "statistics.x", |row| row.alpha_sum.into()),
+    &of_row("fragment_count", "1", "statistics.y", |row| {
+        row.fragment_count.into()
+    }),
+];
 
 /// Eq 6 with `weight(fragment)` as the weight; the weight must be positive and finite.
 pub fn composite(

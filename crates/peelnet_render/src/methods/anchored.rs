@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{Flaw, Property, RenderError, flaw::half_sums};
 use peelnet_core::{methods::anchored, statistics::SumPrecision};
-use peelnet_model::{Output, Recipe};
+use peelnet_model::{Inputs, Output};
 
 const fn promises(statistics: Precision) -> Promises {
     Promises {
@@ -24,15 +24,15 @@ const fn promises(statistics: Precision) -> Promises {
 fn twin(_: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
     let model = p.model?;
     let separate_ends = model.meta.output == Output::AnchoredShareSeparateEnds;
-    let inputs = model.meta.inputs.len();
-    let share = |features: &[f64; 9]| model.forward_raw_f64(&features[..inputs])[0];
-    let (fragments, c0) = (p.fragments, p.background);
+    let Inputs::Rest(features) = model.meta.recipe.inputs else {
+        return None;
+    };
     Some(anchored::composite(
-        fragments,
-        c0,
+        p.fragments,
+        p.background,
         &p.warp,
         separate_ends,
-        share,
+        |rest| model.answer(features, rest),
     ))
 }
 
@@ -99,8 +99,8 @@ pub(super) const LARGE: Method = Method {
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
-    let separate_ends = learned.recipe != Recipe::Small;
-    let full = learned.recipe.sum_precision() == SumPrecision::Exact;
+    let separate_ends = learned.recipe.output == Output::AnchoredShareSeparateEnds;
+    let full = learned.recipe.sums == SumPrecision::Exact;
     let target = |label, blend| Target {
         label,
         channels: 4,
@@ -149,6 +149,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             ],
             resolve: "methods::anchored::resolve",
             resolve_features: features,
+            resolve_extra: &extra,
             resolve_reads: &resolve_reads,
             tinted_by: Some(1),
             ..Plan::NONE

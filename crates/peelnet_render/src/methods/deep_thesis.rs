@@ -22,7 +22,8 @@ pub(super) const METHOD: Method = Method {
     twin: Some(|_, p| {
         let model = p.model?;
         Some(deep::composite(p.fragments, p.background, |f| {
-            model.forward_raw(&deep::thesis_inputs(f, p.fragments))[0]
+            let row = deep::Row::of(f, p.fragments);
+            model.forward_raw(&[row.linear_depth, row.alpha_sum, row.fragment_count])[0]
         }))
     }),
     transmittances: Some(learned_transmittances),
@@ -72,6 +73,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         full: false,
         blend: Blend::Add,
     };
+    let extra = [("learned::weight", learned.wgsl.as_str())];
     commutative::build(
         b,
         &Plan {
@@ -80,19 +82,21 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Gather {
                     label: "statistics",
                     shader: "methods::deep_thesis::statistics",
+                    extra: &extra,
                     writes: &[2],
                     ..Gather::NONE
                 },
                 Gather {
                     label: "gather",
                     shader: "methods::deep_thesis::gather",
-                    extra: &[("learned::weight", &learned.wgsl)],
+                    extra: &extra,
                     writes: &[0, 1],
                     reads: &[2],
                     ..Gather::NONE
                 },
             ],
-            resolve: "methods::wboit::resolve",
+            resolve: "methods::deep_thesis::resolve",
+            resolve_extra: &extra,
             resolve_reads: &[0, 1],
             ..Plan::NONE
         },

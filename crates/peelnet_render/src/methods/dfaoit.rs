@@ -13,6 +13,7 @@ use peelnet_gpu::{
     bind::{Bind, Bound},
     wgpu,
 };
+use peelnet_model::Inputs;
 use peelnet_raster::{
     GeometryPass, GeometryPipelines, Surfaces,
     frame::clear_color,
@@ -30,9 +31,12 @@ pub(super) const METHOD: Method = Method {
     },
     twin: Some(|_, p| {
         let model = p.model?;
-        let tail = |inputs: [f32; 10]| {
-            let color = model.forward_raw(&inputs);
-            [color[0], color[1], color[2]]
+        let Inputs::Tail(features) = model.meta.recipe.inputs else {
+            return None;
+        };
+        let tail = |known: &dfaoit::Tail| {
+            let color = model.answers(features, known);
+            [0, 1, 2].map(|k| color[k] as f32)
         };
         Some(dfaoit::composite(p.fragments, p.background, tail))
     }),

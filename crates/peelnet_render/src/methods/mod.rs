@@ -178,7 +178,7 @@ impl Build<'_> {
         let learned = self
             .learned
             .ok_or_else(|| RenderError::NeedsModel(self.spec.to_string()))?;
-        let method = learned.recipe.method_name();
+        let method = learned.recipe.method;
         if method != self.spec.name() {
             return Err(RenderError::Parameter {
                 method: self.spec.to_string(),

@@ -77,7 +77,8 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                     ..Gather::NONE
                 },
             ],
-            resolve: "methods::mboit4::resolve",
+            resolve: "methods::nmt::resolve",
+            resolve_extra: &extra,
             resolve_reads: &[0, 1],
             ..Plan::NONE
         },

@@ -1,0 +1,126 @@
+//! The comment at the beginning of an exported text.
+
+use crate::{
+    description::Description,
+    literal::{float, identifier},
+    network::function_name,
+    wgsl::{multiply_adds, self_test_inputs},
+};
+use peelnet_model::{Model, Output};
+
+/// What the text is, where it comes from, how to check it and what a renderer must do around it, as comments.
+pub(crate) fn header(model: &Model) -> String {
+    let mut lines = about(model);
+    lines.extend(provenance(model));
+    lines.extend(self_tests(model));
+    lines.push(String::new());
+    lines.extend(Description::of(model.meta.recipe).lines());
+    let mut text: String = lines
+        .iter()
+        .map(|line| format!("{}\n", format!("// {line}").trim_end()))
+        .collect();
+    text.push('\n');
+    text
+}
+
+/// The network, what it answers and what it reads.
+fn about(model: &Model) -> Vec<String> {
+    let meta = &model.meta;
+    let (low, high) = meta.output.range();
+    let answer = match meta.output {
+        Output::Transmittance => format!(
+            "transmittance in front, kept in {} .. {}",
+            float(low),
+            float(high)
+        ),
+        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
+            "transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1"
+                .into()
+        }
+        Output::TailColor => "linear RGB, kept in 0 .. 1".into(),
+    };
+    let mut lines = vec![
+        format!(
+            "A learned weight for order-independent transparency. Exported by peelnet {}.",
+            env!("CARGO_PKG_VERSION")
+        ),
+        "Licence of this generated text: MIT OR Apache-2.0.".into(),
+        format!(
+            "Network: {} ({:?} hidden, {:?} last), {} parameters, {} multiply-adds. Recipe {}, seed {}, {} epochs.",
+            model.mlp.topology(),
+            model.mlp.hidden,
+            model.mlp.output,
+            model.mlp.parameters(),
+            multiply_adds(&model.mlp),
+            meta.recipe,
+            meta.seed,
+            meta.epochs
+        ),
+        format!("Answers: {answer}."),
+    ];
+    lines.extend(meta.inputs.iter().enumerate().map(|(i, input)| {
+        format!(
+            "Input {i}: {} in {}, valid range {} .. {} (what training saw).",
+            identifier(&input.name),
+            input.unit,
+            float(input.min),
+            float(input.max)
+        )
+    }));
+    lines
+}
+
+/// The data that it was trained on, and its errors.
+fn provenance(model: &Model) -> [String; 3] {
+    let meta = &model.meta;
+    let data = meta.dataset.as_ref().map_or_else(
+        || "Trained on: unknown.".to_owned(),
+        |d| {
+            format!(
+                "Trained on {} rows of {} (dataset {}).",
+                d.rows,
+                d.scenes.join(", "),
+                d.hash
+            )
+        },
+    );
+    let loss = |name: &str, value: Option<f64>| value.map(|v| format!("{name} {v:.6}"));
+    let losses: Vec<_> = [
+        loss("training", meta.losses.train),
+        loss("validation", meta.losses.validation),
+        loss("test", meta.losses.test),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let losses = match losses.as_slice() {
+        [] => "unknown".to_owned(),
+        losses => losses.join(", "),
+    };
+    let errors: Vec<_> = meta
+        .held_out
+        .iter()
+        .map(|(scene, e)| format!("{scene} {e:.5}"))
+        .collect();
+    let errors = match errors.as_slice() {
+        [] => "Held-out error: not measured.".into(),
+        errors => format!("Held-out error, mean |T - T_exact|: {}.", errors.join(", ")),
+    };
+    [data, format!("Loss: {losses}."), errors]
+}
+
+/// Inputs of the network with its answers.
+fn self_tests(model: &Model) -> [String; 3] {
+    self_test_inputs(model).map(|inputs| {
+        let list = |values: &[f32]| -> String {
+            let all: Vec<_> = values.iter().map(|&x| float(x)).collect();
+            all.join(", ")
+        };
+        format!(
+            "Self-test: {}({}) = {}",
+            function_name(model.meta.output),
+            list(&inputs),
+            list(&model.shader_output(&inputs))
+        )
+    })
+}

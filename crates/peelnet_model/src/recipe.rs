@@ -1,0 +1,422 @@
+//! Recipes: each network is one declaration of its inputs, output, shape, loss and training budget.
+//!
+//! What trains, exports, draws and documents networks reads these declarations. It distinguishes recipes by what their
+//! networks read ([`Inputs`]) and answer ([`Output`]), never by name. To add one, see `CONTRIBUTING.md`.
+
+use std::{
+    cmp::Ordering,
+    fmt,
+    hash::{Hash, Hasher},
+    ops::Deref,
+    str::FromStr,
+};
+
+use peelnet_core::{
+    features::{
+        About, DEPTH_DEVIATION, DEPTH_FRACTION, Feature, INTERVAL_HIGH, INTERVAL_LOW,
+        MEAN_FRACTION, ROOT_ABSORBANCE, Rest, SHARE_HIGH, SHARE_LOW, SKEWNESS,
+    },
+    methods::{
+        deep::{Row, THESIS_INPUTS},
+        dfaoit::{self, Tail},
+        nmt,
+    },
+    mlp::Activation,
+    statistics::SumPrecision,
+};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+
+use crate::metadata::Output;
+
+/// What a network reads, and what it is a function of.
+#[derive(Clone, Copy, Debug)]
+pub enum Inputs {
+    /// Columns of a dataset: every row is an example.
+    Row(&'static [&'static Feature<Row>]),
+    /// The moments of a pixel and a depth: every row is an example.
+    Moments(&'static [&'static Feature<nmt::Seen>]),
+    /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be
+    /// [`ROOT_ABSORBANCE`].
+    Rest(&'static [&'static Feature<Rest<f64>>]),
+    /// A pixel behind its two nearest fragments: every pixel is an example.
+    Tail(&'static [&'static Feature<Tail>]),
+}
+
+impl Inputs {
+    /// Names, units and WGSL of the inputs, in order.
+    pub fn about(&self) -> Vec<&'static About> {
+        fn of<C>(features: &'static [&'static Feature<C>]) -> Vec<&'static About> {
+            features.iter().map(|feature| &feature.about).collect()
+        }
+        match self {
+            Self::Row(features) => of(features),
+            Self::Moments(features) => of(features),
+            Self::Rest(features) => of(features),
+            Self::Tail(features) => of(features),
+        }
+    }
+}
+
+/// The shape of a network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Network {
+    /// Widths of the hidden layers.
+    pub hidden: &'static [usize],
+    /// After each hidden layer.
+    pub hidden_activation: Activation,
+    /// After the last layer.
+    pub output_activation: Activation,
+}
+
+/// How long and how fast a network is trained.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Passes over the training examples.
+    pub epochs: u32,
+    /// Examples per step of the optimiser.
+    pub batch: usize,
+    /// Examples evaluated at once.
+    pub chunk: usize,
+    /// Adam's step size; the peak where a schedule changes it.
+    pub learning_rate: f64,
+    /// Share of the steps in which the step size rises, with a one-cycle schedule; none for a constant one.
+    pub warmup: Option<f64>,
+    /// Share of the examples held out for testing.
+    pub held_out: f64,
+    /// Share of the examples that choices are made by.
+    pub validation: f64,
+}
+
+/// The loss of a whole pixel, with `k_i` a fragment's contribution before normalisation, `p̂_i` after it and `α_i T_i` the exact
+/// one. Sums go over the fragments that the network is asked about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PixelLoss {
+    /// Squared error of the pixel's colour, `|Σ (p̂_i − α_i T_i) c_i|² / 3`.
+    #[default]
+    Image,
+    /// `Σ (p̂_i − α_i T_i)²`.
+    Contributions,
+    /// Squared error of T, weighted by opacity: `Σ (k_i − α_i T_i)²`.
+    WeightedTransmittance,
+    /// Squared error of what the network answers, the transmittance of the rest in front.
+    Transmittance,
+}
+
+impl PixelLoss {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Image,
+        Self::Contributions,
+        Self::WeightedTransmittance,
+        Self::Transmittance,
+    ];
+
+    /// The name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Image => "image",
+            Self::Contributions => "contributions",
+            Self::WeightedTransmittance => "weighted-transmittance",
+            Self::Transmittance => "transmittance",
+        }
+    }
+}
+
+impl FromStr for PixelLoss {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|l| l.name() == name);
+        found.ok_or_else(|| {
+            format!(
+                "no such loss; there are {}",
+                Self::ALL.map(Self::name).join(", ")
+            )
+        })
+    }
+}
+
+/// All that is known of a recipe.
+#[derive(Debug)]
+pub struct Declaration {
+    /// The name in files and on the command line.
+    pub name: &'static str,
+    /// The name of the rendering method that draws with such a network.
+    pub method: &'static str,
+    /// What the network reads.
+    pub inputs: Inputs,
+    /// What the network answers.
+    pub output: Output,
+    /// How the method keeps its sums by default; networks train on what they will read.
+    pub sums: SumPrecision,
+    /// The network's shape.
+    pub network: Network,
+    /// Its training.
+    pub budget: Budget,
+    /// What training minimises where the examples are whole pixels; the squared error of the output elsewhere.
+    pub loss: Option<PixelLoss>,
+}
+
+/// A recipe: a reference to its [`Declaration`], known by its name.
+#[derive(Clone, Copy)]
+pub struct Recipe(&'static Declaration);
+
+/// Budgets that were chosen on validation pixels.
+const PIXELS: Budget = Budget {
+    epochs: 24,
+    batch: 1024,
+    chunk: 256,
+    learning_rate: 4e-3,
+    warmup: Some(0.2),
+    held_out: 0.1,
+    validation: 0.1,
+};
+
+/// The competitors' batches are rows: as many fragments as ours have on average.
+const ROWS: Budget = Budget {
+    batch: 8192,
+    chunk: 2048,
+    ..PIXELS
+};
+
+const fn relu(hidden: &'static [usize], output_activation: Activation) -> Network {
+    Network {
+        hidden,
+        hidden_activation: Activation::Relu,
+        output_activation,
+    }
+}
+
+impl Recipe {
+    /// Papakostas 2022, with the published network and settings.
+    pub const THESIS: Self = Self(&Declaration {
+        name: "thesis",
+        method: "deep-thesis",
+        inputs: Inputs::Row(&THESIS_INPUTS),
+        output: Output::Transmittance,
+        sums: SumPrecision::Exact,
+        network: relu(&[10, 8], Activation::Identity),
+        budget: Budget {
+            epochs: 150,
+            batch: 128,
+            chunk: 2048,
+            learning_rate: 1e-4,
+            warmup: None,
+            held_out: 1.0 / 3.0,
+            validation: 0.0,
+        },
+        loss: None,
+    });
+
+    /// The cheapest network that beats moments.
+    pub const SMALL: Self = Self(&Declaration {
+        name: "small",
+        method: "deep-small",
+        inputs: Inputs::Rest(&[
+            &ROOT_ABSORBANCE,
+            &DEPTH_FRACTION,
+            &MEAN_FRACTION,
+            &SHARE_LOW,
+            &SHARE_HIGH,
+        ]),
+        output: Output::AnchoredShare,
+        sums: SumPrecision::Half,
+        network: relu(&[8], Activation::Sigmoid),
+        budget: PIXELS,
+        loss: Some(PixelLoss::Image),
+    });
+
+    /// The default: the same inputs, separate ends.
+    pub const MEDIUM: Self = Self(&Declaration {
+        name: "medium",
+        method: "deep-medium",
+        inputs: Inputs::Rest(&[
+            &ROOT_ABSORBANCE,
+            &DEPTH_FRACTION,
+            &MEAN_FRACTION,
+            &SHARE_LOW,
+            &SHARE_HIGH,
+        ]),
+        output: Output::AnchoredShareSeparateEnds,
+        sums: SumPrecision::Half,
+        network: relu(&[12], Activation::Sigmoid),
+        budget: PIXELS,
+        loss: Some(PixelLoss::Image),
+    });
+
+    /// The best image: more inputs, 32-bit statistics, separate ends.
+    pub const LARGE: Self = Self(&Declaration {
+        name: "large",
+        method: "deep-large",
+        inputs: Inputs::Rest(&[
+            &ROOT_ABSORBANCE,
+            &DEPTH_FRACTION,
+            &MEAN_FRACTION,
+            &SHARE_LOW,
+            &SHARE_HIGH,
+            &INTERVAL_LOW,
+            &INTERVAL_HIGH,
+            &DEPTH_DEVIATION,
+            &SKEWNESS,
+        ]),
+        output: Output::AnchoredShareSeparateEnds,
+        sums: SumPrecision::Exact,
+        network: relu(&[14, 9], Activation::Sigmoid),
+        budget: Budget {
+            epochs: 80,
+            ..PIXELS
+        },
+        loss: Some(PixelLoss::Image),
+    });
+
+    /// Tsopouridis et al. 2024: transmittance from four moments.
+    pub const NMT: Self = Self(&Declaration {
+        name: "nmt",
+        method: "nmt",
+        inputs: Inputs::Moments(&nmt::INPUTS),
+        output: Output::Transmittance,
+        sums: SumPrecision::Exact,
+        network: relu(&[32, 16], Activation::Sigmoid),
+        budget: ROWS,
+        loss: None,
+    });
+
+    /// Tsopouridis et al. 2024: the colour behind two exact layers.
+    pub const DFAOIT: Self = Self(&Declaration {
+        name: "dfaoit",
+        method: "dfaoit",
+        inputs: Inputs::Tail(&dfaoit::INPUTS),
+        output: Output::TailColor,
+        sums: SumPrecision::Exact,
+        network: relu(&[32, 16], Activation::Sigmoid),
+        budget: Budget {
+            batch: 1024,
+            ..ROWS
+        },
+        loss: None,
+    });
+
+    /// All recipes.
+    pub const ALL: [Self; 6] = [
+        Self::THESIS,
+        Self::SMALL,
+        Self::MEDIUM,
+        Self::LARGE,
+        Self::NMT,
+        Self::DFAOIT,
+    ];
+
+    /// The recipe of a rendering method, if it draws with a network.
+    pub fn of_method(method: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|r| r.method == method)
+    }
+
+    /// The names of the inputs, in order.
+    pub fn input_names(self) -> Vec<&'static str> {
+        self.inputs.about().iter().map(|about| about.name).collect()
+    }
+}
+
+impl Deref for Recipe {
+    type Target = Declaration;
+
+    fn deref(&self) -> &Declaration {
+        self.0
+    }
+}
+
+impl PartialEq for Recipe {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Recipe {}
+
+impl PartialOrd for Recipe {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Recipe {
+    /// In the order of [`Recipe::ALL`].
+    fn cmp(&self, other: &Self) -> Ordering {
+        let place = |recipe: &Self| Self::ALL.iter().position(|r| r == recipe);
+        place(self).cmp(&place(other))
+    }
+}
+
+impl Hash for Recipe {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+impl fmt::Debug for Recipe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl fmt::Display for Recipe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+impl FromStr for Recipe {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|r| r.name == text)
+            .ok_or_else(|| {
+                format!(
+                    "recipe {text:?}: expected one of {}",
+                    Self::ALL.map(|r| r.name).join(", ")
+                )
+            })
+    }
+}
+
+impl Serialize for Recipe {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
+    }
+}
+
+impl<'de> Deserialize<'de> for Recipe {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?
+            .parse()
+            .map_err(de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What everything that reads the declarations relies on.
+    #[test]
+    fn declarations_hold_together() {
+        for recipe in Recipe::ALL {
+            assert_eq!(recipe.name.parse(), Ok(recipe));
+            assert_eq!(Recipe::of_method(recipe.method), Some(recipe));
+            let names = recipe.input_names();
+            for (i, name) in names.iter().enumerate() {
+                assert!(!names[..i].contains(name), "{recipe} reads {name} twice");
+            }
+            let shares = matches!(recipe.inputs, Inputs::Rest(_));
+            assert_eq!(recipe.output.is_share(), shares, "{recipe}");
+            assert_eq!(recipe.loss.is_some(), shares, "{recipe}");
+            assert!(
+                !shares || names[0] == ROOT_ABSORBANCE.about.name,
+                "{recipe}"
+            );
+        }
+    }
+}
