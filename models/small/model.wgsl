@@ -13,16 +13,39 @@
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
 // Self-test: peelnet_weight(11.174756, 0.5, 0.5, 0.5, 0.5) = 1.7059722e-35
 // Self-test: peelnet_weight(22.349512, 1.0, 1.0, 1.0, 1.0) = 0.0
+//
+// How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes.
+// 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta);
+//    moments: rgba16float, cleared to 0, blending ADD, from s.moments
+//    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
+// 2. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, moments, extent).x;
+//    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
+// 3. Resolve: peelnet_resolve(sums, moments.x, background) is the colour of the pixel, and its coverage in alpha.
+// - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
+// - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
+// - z grows with distance, also where depth buffers are reversed.
+// - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
 
-// Statistics pass: draw all transparent surfaces, in any order, into
-//     moments  rgba16float (or rgba32float), cleared to 0, blending ONE, ONE, ADD;
-//     extent   rgba16float (or rgba32float), cleared to (-65504, -65504, -65504, 0), blending ONE, ONE, MAX for colour and
-//              ONE, ONE, ADD for alpha;
-// each fragment writing what peelnet_statistics(alpha, zeta) returns.
-// zeta is depth on a logarithmic scale: with z the distance along the view axis, and near and far the range that the
-// bounding boxes of the transparent objects in view span (clipped to the camera's),
-//     zeta = clamp(2 * log(z / near) / log(far / near) - 1, -1, 1).
-// Compute it with one function in both passes: the nearest and the farthest fragment are recognised by their zeta.
+// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. near, far: the nearest and the
+// farthest z that transparent surfaces have in this frame. Where near is not above 0 the scale is linear: with an orthographic
+// camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
+fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+    let linear = near <= 0.0;
+    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
+    let start = max(near, 1.17549435e-38);
+    let depth = select(log(max(z / start, 1.0)), z - near, linear);
+    let range = select(log(max(far / start, 1.0)), far - near, linear);
+    // Closer than that, depths hardly differ.
+    let flat = range <= select(1e-6, 0.0, linear);
+    let scaled = select(depth * (2.0 / max(range, 1e-30)), 0.0, flat);
+    return clamp(scaled - 1.0, -1.0, 1.0);
+}
+
+// -log(1 - alpha), at most 16: opaque, but finite.
+fn peelnet_absorbance(alpha: f32) -> f32 {
+    return -log(max(1.0 - alpha, 1.1253517e-7));
+}
 
 // Fragments of less opacity are composited, but are never a pixel's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
@@ -52,20 +75,17 @@ struct PeelnetPlace {
     zeta: vec3f,
 }
 
-// What peelnet_share and peelnet_weight read.
-struct PeelnetFeatures {
+// The rest of a pixel, seen from a fragment: all fragments but that one and the pixel's known ends. Depths are over the pixel's
+// range, -1 at the nearest and 1 at the farthest fragment.
+struct PeelnetRest {
+    // Root of its absorbance.
     root_absorbance: f32,
-    depth_fraction: f32,
-    mean_fraction: f32,
-    share_low: f32,
-    share_high: f32,
-    // Mean powers 1 to 3 of the rest's depth, -1 .. 1 from the nearest to the farthest.
-    means: vec3f,
-}
-
-// -log(1 - alpha), at most 16: opaque, but finite.
-fn peelnet_absorbance(alpha: f32) -> f32 {
-    return -log(max(1.0 - alpha, 1.1253517e-7));
+    // Depth of the fragment.
+    place: f32,
+    // Mean powers 1 to 4 of the rest's depth.
+    means: vec4f,
+    // Pull of the moments towards those of a measure that can be inverted.
+    bias: f32,
 }
 
 fn peelnet_level(zeta: f32) -> f32 {
@@ -81,26 +101,26 @@ fn peelnet_ends(b: f32, zeta: f32) -> vec2f {
 }
 
 // The half floats that stand for levels: all normal halves in ascending order, so that MAX blending of 16-bit targets
-// tells 61440 levels apart. A step of a half's bits is 8192 in those of 32 bits; no step here rounds.
+// distinguishes 61440 levels. A step of a half's bits is 8192 in those of 32 bits; no step here rounds. No level is in the middle.
 fn peelnet_halves(levels: vec3f) -> vec3f {
     let from_middle = levels - 30719.5;
-    let magnitude = bitcast<vec3f>(vec3i(abs(from_middle) * 8192.0 + 947908608.0));
-    return select(-magnitude, magnitude, from_middle > vec3f(0.0));
+    return sign(from_middle) * bitcast<vec3f>(vec3i(abs(from_middle) * 8192.0 + 947908608.0));
 }
 
 fn peelnet_levels(halves: vec3f) -> vec3f {
     let from_middle = vec3f(bitcast<vec3i>(abs(halves))) * 0.0001220703125 - 115711.5;
-    return 30719.5 + select(-from_middle, from_middle, halves > vec3f(0.0));
+    return 30719.5 + sign(halves) * from_middle;
 }
 
+// What a fragment adds to its pixel's statistics.
 fn peelnet_statistics(alpha: f32, zeta: f32) -> PeelnetStatistics {
     let b = peelnet_absorbance(alpha);
-    let z2 = zeta * zeta;
+    let square = zeta * zeta;
     // The nearest is kept as the maximum of levels counted from the far end.
     let halves = peelnet_halves(vec3f(PEELNET_TOP - peelnet_level(zeta), peelnet_ends(b, zeta)));
     return PeelnetStatistics(
-        b * vec4f(1.0, zeta, z2, z2 * zeta),
-        vec4f(select(halves, vec3f(-65504.0), alpha < PEELNET_FAINT), b * z2 * z2),
+        b * vec4f(1.0, zeta, square, square * zeta),
+        vec4f(select(halves, vec3f(-65504.0), alpha < PEELNET_FAINT), b * square * square),
     );
 }
 
@@ -116,117 +136,137 @@ fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> Peelne
     let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
     let bins = floor(ends / PEELNET_OPACITIES);
     let share = (ends - bins * PEELNET_OPACITIES) * PEELNET_OPACITY_STEP;
+    let known = share / (1.0625 - share);
     // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a more
     // opaque one in the same bin), stays with the rest.
-    let taken = vec2<bool>(level > first && own.x != ends.x, own.y < ends.y);
-    let absorbances = select(vec2f(0.0), share / (1.0625 - share), taken);
+    let nearest = select(0.0, known.x, level > first && own.x != ends.x);
+    let farthest = select(0.0, known.y, own.y < ends.y);
     let others = max(moments.x - b, 0.0);
     return PeelnetPlace(
         end,
-        select(select(absorbances.x, others, end == 2.0), 0.0, end == 1.0),
-        vec3f(b, absorbances),
+        select(select(nearest, others, end == 2.0), 0.0, end == 1.0),
+        vec3f(b, nearest, farthest),
         vec3f(zeta, first * (2.0 / PEELNET_TOP) - 1.0, (bins.y + 0.5) * (2.0 / PEELNET_BINS.y) - 1.0),
     );
 }
 
-// The least and the most of a distribution that can lie in front of x, given its first four moments, as shares
-// (Muenstermann et al. 2018). All are over -1 .. 1. `bias` pulls the moments towards those of a measure that can always
-// be inverted.
-fn peelnet_moment_bounds(moments: vec4f, x: f32, bias: f32) -> vec2f {
-    let m = mix(moments, vec4f(0.0, 0.375, 0.0, 0.375), bias);
-    // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
-    // its value at x, which is one over what lies at x itself.
-    let variance = m.y - m.x * m.x;
-    let l21 = m.z - m.x * m.y;
-    let d = variance * (m.w - m.y * m.y) - l21 * l21;
-    let y1 = x - m.x;
-    let y2 = (x * x - m.y) * variance - l21 * y1;
-    let determinant = variance * d;
-    let c2 = y2 * variance;
-    let c1 = y1 * d - l21 * y2;
-    let c0 = determinant - m.x * c1 - m.y * c2;
-    let own = determinant / (determinant + y1 * y1 * d + y2 * y2);
-    // Its roots are the extreme measure's other points: the smaller one, and one over the larger, which may be infinite.
-    let half = 0.5 * c1;
-    let root = sqrt(max(half * half - c0 * c2, 0.0));
-    let inverse = -1.0 / (half + select(-root, root, half >= 0.0));
-    let p = c0 * inverse;
-    let q = c2 * inverse;
-    // What lies at either.
-    let at_p = (1.0 - own - q * (m.x - own * x)) / (1.0 - p * q);
-    let at_q = 1.0 - own - at_p;
-    let low = select(0.0, at_p, p < x) + select(0.0, at_q, (1.0 - x * q) * q < 0.0);
-    let share = vec2f(low, low + own);
-    // Points that coincide give NaN, which no comparison finds true.
-    return select(vec2f(0.0), min(share, vec2f(1.0)), share >= vec2f(0.0));
-}
-
-// Features of a fragment between its pixel's ends: what is left without its own share and the known ends.
-fn peelnet_features(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetFeatures {
+fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRest {
     let z = place.zeta;
-    let z2 = z * z;
-    let m = moments - vec4f(
+    let square = z * z;
+    let left = moments - vec4f(
         place.taken.x + place.taken.y + place.taken.z,
         dot(place.taken, z),
-        dot(place.taken, z2),
-        dot(place.taken, z2 * z),
+        dot(place.taken, square),
+        dot(place.taken, square * z),
     );
-    let m0 = max(m.x, 0.0);
+    let absorbance = max(left.x, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its moments are noise.
-    let inverse_total = 1.0 / max(max(m0, moments.x * 0.0009765625), 1e-6);
-    let mean = vec4f(m.yzw, extent.w - dot(place.taken, z2 * z2)) * inverse_total;
+    let inverse_total = 1.0 / max(max(absorbance, moments.x * 0.0009765625), 1e-6);
+    let mean = vec4f(left.yzw, extent.w - dot(place.taken, square * square)) * inverse_total;
     // Moments over the pixel's range as -1 .. 1: of (zeta - middle) * scale.
     let middle = 0.5 * (z.y + z.z);
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
-    let s2 = scale * scale;
-    let m1 = clamp((mean.x - middle) * scale, -1.0, 1.0);
-    let m2 = (mean.y - middle * (2.0 * mean.x - middle)) * s2;
-    let m3 = (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * s2;
-    let m4 = (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * s2 * s2;
-    let x = clamp((z.x - middle) * scale, -1.0, 1.0);
-    // Moved to a narrow pixel's range, moments lose their last bits.
-    let bias = min(0.0009765625 + s2 * s2 * 0.0000152587890625, 0.25);
-    let bounds = peelnet_moment_bounds(vec4f(m1, m2, m3, m4), x, bias);
-    return PeelnetFeatures(
-        sqrt(m0),
-        0.5 * x + 0.5,
-        0.5 * m1 + 0.5,
-        bounds.x,
-        bounds.y,
-        vec3f(m1, m2, m3),
+    let scale_square = scale * scale;
+    let means = vec4f(
+        clamp((mean.x - middle) * scale, -1.0, 1.0),
+        (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
+        (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
+        (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
+    );
+    return PeelnetRest(
+        sqrt(absorbance),
+        clamp((z.x - middle) * scale, -1.0, 1.0),
+        means,
+        // Moved to a narrow pixel's range, moments lose their last bits.
+        min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
     );
 }
 
-// Weight pass: draw all transparent surfaces again; each fragment reads its pixel's statistics and writes
-// (alpha * rgb * w, alpha * w) with w = peelnet_fragment(..).x to an rgba16float target cleared to 0, blending ONE, ONE,
-// ADD. Resolve over the background C_0 with T = exp(-moments.x), where T is not 1:
-//     sums.rgb / sums.a * (1 - T) + C_0 * T
-
-// The weight of a fragment, and its end (see PeelnetPlace). What the network says of the ends is not used: they are known.
+// The weight of a fragment, and its end (see PeelnetPlace). The network's answer is not used for the ends, whose weights are known.
 // No branch around it: neighbouring fragments rarely all lie at an end, and then it only costs.
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
-    let place = peelnet_place(alpha, zeta, moments, extent);
-    let f = peelnet_features(place, moments, extent);
-    let share = peelnet_share(
-        f.root_absorbance, f.depth_fraction, f.mean_fraction, f.share_low, f.share_high);
-    let between = select(f.root_absorbance * f.root_absorbance * share, 0.0, place.end > 0.0);
+    // Sums of 16-bit targets may become infinite.
+    let finite_moments = clamp(moments, vec4f(-65504.0), vec4f(65504.0));
+    let finite_extent = clamp(extent, vec4f(-65504.0), vec4f(65504.0));
+    let place = peelnet_place(alpha, zeta, finite_moments, finite_extent);
+    let rest = peelnet_rest(place, finite_moments, finite_extent);
+    let share = peelnet_network(rest);
+    let between = select(rest.root_absorbance * rest.root_absorbance * share, 0.0, place.end > 0.0);
     return vec2f(exp(-(place.in_front + between)), place.end);
 }
 
-// The share of the rest's absorbance that lies in front, for inputs as peelnet_features gives them.
+// The colour and coverage of a pixel with 16-bit sums, which may become infinite. absorbance: the pixel's total.
+fn peelnet_resolve(sums: vec4f, absorbance: f32, background: vec3f) -> vec4f {
+    let transmittance = exp(-absorbance);
+    return peelnet_composite(min(sums, vec4f(65504.0)), 1.0 - transmittance, vec3f(transmittance), background);
+}
+
+// The colour and coverage of a pixel. sums: alpha * rgb * w and alpha * w of all fragments, finite. transmittance: of red, green
+// and blue light; coverage: 1 less their mean. Where nothing is covered the background stays as it is.
+fn peelnet_composite(sums: vec4f, coverage: f32, transmittance: vec3f, background: vec3f) -> vec4f {
+    let average = select(vec3f(0.0), sums.rgb / max(sums.a, 1.17549435e-38), sums.a > 0.0 && coverage > 0.0);
+    return vec4f(average * coverage + background * transmittance, coverage);
+}
+
+// The least and the most of the rest that can lie in front of the fragment, given its first four moments, as shares
+// (Muenstermann et al. 2018).
+fn peelnet_moment_bounds(rest: PeelnetRest) -> vec2f {
+    let mixed = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
+    // Shares do not depend on the unit of depth. Another one where moments exceed the range, as those of narrow pixels and noise do:
+    // their products would overflow.
+    let unit = 1.0 / sqrt(max(1.0, max(abs(mixed.y), sqrt(abs(mixed.w)))));
+    let square = unit * unit;
+    let x = rest.place * unit;
+    let m = mixed * vec4f(unit, square, square * unit, square * square);
+    // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
+    // its value at x, which is one over what lies at x itself.
+    let variance = m.y - m.x * m.x;
+    let third = m.z - m.x * m.y;
+    let d = variance * (m.w - m.y * m.y) - third * third;
+    let linear = x - m.x;
+    let quadratic = (x * x - m.y) * variance - third * linear;
+    let determinant = variance * d;
+    let kc = quadratic * variance;
+    let kb = linear * d - third * quadratic;
+    let ka = determinant - m.x * kb - m.y * kc;
+    // Divisors are kept from 0, and shares of noise from infinity: no real pixel has such.
+    let whole = determinant + linear * linear * d + quadratic * quadratic;
+    let own = clamp(determinant / select(whole, 1e-20, abs(whole) < 1e-20), -1e4, 1e4);
+    // Its roots are the extreme measure's other points: the smaller one, and one over the larger, which may be infinite.
+    let half = 0.5 * kb;
+    let root = sqrt(max(half * half - ka * kc, 0.0));
+    let inverse = select(1.0, -1.0, half >= 0.0) / max(abs(half) + root, 1e-20);
+    let p = ka * inverse;
+    let q = kc * inverse;
+    // What lies at either.
+    let apart = 1.0 - p * q;
+    let at_p = clamp((1.0 - own - q * (m.x - own * x)) / select(apart, 1e-20, apart == 0.0), -1e4, 1e4);
+    let at_q = 1.0 - own - at_p;
+    let low = select(0.0, at_p, p < x) + select(0.0, at_q, (1.0 - x * q) * q < 0.0);
+    return clamp(vec2f(low, low + own), vec2f(0.0), vec2f(1.0));
+}
+
+// The network's answer for what is known of a fragment.
+fn peelnet_network(rest: PeelnetRest) -> f32 {
+    let bounds = peelnet_moment_bounds(rest);
+    return peelnet_share(
+        rest.root_absorbance, 0.5 * rest.place + 0.5, 0.5 * rest.means.x + 0.5, bounds.x, bounds.y);
+}
+
+// The share of the rest's absorbance that lies in front, for inputs as peelnet_network evaluates them.
 fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
-    let x0 = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
-    let x1 = vec4f(share_high, 0.0, 0.0, 0.0);
-    let h0_0 = max(vec4f(-3.403848, 5.659858, 1.1971129, -1.9402503)
-        + mat4x4f(vec4f(-0.048261918, -0.049491554, 0.13784179, 0.024843408), vec4f(2.8354657, -4.3898478, -0.009191628, 1.688664), vec4f(1.3774431, -2.432028, -0.322701, 1.0614194), vec4f(0.33418316, -0.86584413, -4.413494, -4.890697)) * x0
-        + vec4f(1.7644012, -1.7904849, -2.2149596, 4.8002143) * x1.x, vec4f(0.0));
-    let h0_1 = max(vec4f(0.5420309, 3.5868983, 1.0010448, -1.3259909)
-        + mat4x4f(vec4f(-0.08698753, -0.17512268, 0.04461627, 0.015495436), vec4f(-0.9744305, -0.86506003, 2.9325352, -0.270699), vec4f(0.27855828, 1.7259756, -3.7425344, 1.9209986), vec4f(2.2361915, -0.05330946, -0.15355836, -4.5470953)) * x0
-        + vec4f(0.7207937, -3.2857769, -1.9770964, 4.4835553) * x1.x, vec4f(0.0));
-    let h1_0 = 1.0 / (1.0 + exp(min(-(0.33157063
-        + dot(vec4f(0.80303395, -0.44773844, -1.0498732, -1.9469818), h0_0)
-        + dot(vec4f(0.8917978, -0.6287421, 1.1671531, 1.7540251), h0_1)), 80.0)));
-    return h1_0;
+    let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
+    let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
+    let layer_a_a = max(vec4f(-3.403848, 5.659858, 1.1971129, -1.9402503)
+        + mat4x4f(vec4f(-0.048261918, -0.049491554, 0.13784179, 0.024843408), vec4f(2.8354657, -4.3898478, -0.009191628, 1.688664), vec4f(1.3774431, -2.432028, -0.322701, 1.0614194), vec4f(0.33418316, -0.86584413, -4.413494, -4.890697)) * input_a
+        + vec4f(1.7644012, -1.7904849, -2.2149596, 4.8002143) * input_b.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(0.5420309, 3.5868983, 1.0010448, -1.3259909)
+        + mat4x4f(vec4f(-0.08698753, -0.17512268, 0.04461627, 0.015495436), vec4f(-0.9744305, -0.86506003, 2.9325352, -0.270699), vec4f(0.27855828, 1.7259756, -3.7425344, 1.9209986), vec4f(2.2361915, -0.05330946, -0.15355836, -4.5470953)) * input_a
+        + vec4f(0.7207937, -3.2857769, -1.9770964, 4.4835553) * input_b.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.33157063
+        + dot(vec4f(0.80303395, -0.44773844, -1.0498732, -1.9469818), layer_a_a)
+        + dot(vec4f(0.8917978, -0.6287421, 1.1671531, 1.7540251), layer_a_b)), 80.0)));
+    return layer_b_a;
 }
 
 // Its transmittance, for any finite inputs.
