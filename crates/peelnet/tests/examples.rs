@@ -66,9 +66,9 @@ fn a_network_draws_into_a_texture_of_ones_own() {
     let drawn = image::open(&out).unwrap().into_rgb8();
     let gpu = Gpu::open(&AdapterRequest::Auto).unwrap();
     let scene = peelnet::scene::suite::load("cups-held").unwrap();
-    let model = peelnet::Model::shipped(Recipe::Medium).unwrap();
+    let model = peelnet::Model::shipped(Recipe::MEDIUM).unwrap();
     let learned = LearnedWeight {
-        recipe: Recipe::Medium,
+        recipe: Recipe::MEDIUM,
         wgsl: peelnet::export::wgsl(&model, &Default::default()).unwrap(),
     };
     let renderer = Renderer::new(&gpu, &scene).unwrap();

@@ -19,8 +19,8 @@ impl LearnedWeight {
     /// The network that ships for a method; `None` for a method that has none.
     pub fn shipped(spec: &MethodSpec) -> Option<Self> {
         let mut recipes = Recipe::ALL.into_iter();
-        let recipe = recipes.find(|r| r.method_name() == spec.name())?;
-        let shipped = peelnet_models::find(recipe.name())?;
+        let recipe = recipes.find(|r| r.method == spec.name())?;
+        let shipped = peelnet_models::find(recipe.name)?;
         Some(Self {
             recipe,
             wgsl: shipped.wgsl.to_owned(),

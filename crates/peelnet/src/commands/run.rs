@@ -42,7 +42,7 @@ const SHOWN: [&str; 8] = [
 ];
 
 /// Of these the shipped networks are drawn, beside the one that the run trains.
-const SHOWN_NETWORKS: [Recipe; 2] = [Recipe::Medium, Recipe::Large];
+const SHOWN_NETWORKS: [Recipe; 2] = [Recipe::MEDIUM, Recipe::LARGE];
 
 /// The scene of it: held out, and of another kind than those of the run.
 const SHOWN_SCENE: &str = "foliage-held";
