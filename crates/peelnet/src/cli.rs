@@ -23,15 +23,15 @@ use std::path::PathBuf;
   peelnet run --out out/demo                            everything, on the shipped scenes
   peelnet extract sixteen-050 --out d                   peel a scene
   peelnet train d --out m.safetensors                   train the thesis's network on it
-  peelnet export m.safetensors --out w.wgsl             bake the weights into a shader
+  peelnet export m.safetensors --out w.wgsl             export it as shader code
   peelnet render sixteen-050 --method deep-thesis --model m.safetensors --out a.png
-  peelnet recommend cups --budget-ms 30                 which method to take
+  peelnet recommend cups --budget-ms 30                 which method to use
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage.
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
-    /// What holds for every command.
+    /// Flags of every command.
     #[command(flatten)]
     pub global: Global,
     /// The command.
@@ -62,25 +62,25 @@ pub struct Global {
 /// Every command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Extract, train, export and compare in one go
+    /// Extract, train, export and compare in one command
     Run(RunArgs),
     /// Peel scenes on the GPU and write per-fragment features
     Extract(ExtractArgs),
     /// Train a network on a dataset
     Train(TrainArgs),
-    /// Bake a network's weights into shader code
+    /// Export a network as shader code
     Export(ExportArgs),
     /// Draw a scene with one method
     Render(RenderArgs),
     /// Compare many methods: error against time
     Bench(BenchArgs),
-    /// Draw the cases where transparency is known to break, and tell what holds
+    /// Draw the cases where transparency is known to break, and report what holds
     Stress(StressArgs),
-    /// Name the method that a budget of time, error or memory calls for
+    /// Recommend the method for a budget of time, error or memory
     Recommend(RecommendArgs),
-    /// Tell what a scene, a dataset or a model is
+    /// Describe a scene, a dataset or a model
     Inspect(InspectArgs),
-    /// Tell which adapters there are, which one is used and why
+    /// List the adapters, which one is used, and why
     Doctor,
 }
 
@@ -97,16 +97,16 @@ pub struct RunArgs {
     /// Scene files, or names of shipped scenes; by default the shipped sixteen-model scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The thesis's recipe in full size instead of the quick one
+    /// The thesis's full-size recipe instead of the quick one
     #[arg(long)]
     pub full: bool,
     /// Frame size [default: 512x384, with --full 1024x768]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Rows to train on, about: pixels are sampled to get there [default: 300000, with --full 1500000]
+    /// Approximate number of rows to train on; pixels are sampled to reach it [default: 300000, with --full 1500000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub rows: Option<u64>,
     /// Passes over the training rows [default: the recipe's]
@@ -124,14 +124,14 @@ pub struct RunArgs {
   peelnet extract data/scenes/*.toml --out d --views all --pixels 0.1 --augment 4 --seed 7
   peelnet extract scene.toml --out d --format csv --size 640x480
   peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler
-  peelnet extract --synthetic 300000 --out d            no scene: lists of fragments made up from the seed
+  peelnet extract --synthetic 300000 --out d            no scene: synthetic fragment lists, from the seed
 
 DATASET is a folder: manifest.json and the fragment files. The same seed gives the same bytes.")]
 pub struct ExtractArgs {
     /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required_unless_present = "synthetic")]
     pub scenes: Vec<PathBuf>,
-    /// Make N fragment lists up instead of peeling scenes
+    /// Generate N synthetic fragment lists instead of peeling scenes
     #[arg(
         long,
         value_name = "N",
@@ -154,13 +154,13 @@ pub struct ExtractArgs {
     /// How to peel: sbuffer, dual or single
     #[arg(long, value_name = "METHOD", default_value = "sbuffer")]
     pub peel: Peel,
-    /// Stop peeling after N passes and tell what that left out
+    /// Stop peeling after N passes and report what was left out
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_passes: Option<u32>,
-    /// Share of the pixels to keep
+    /// Fraction of the pixels to keep
     #[arg(long, value_name = "FRACTION", default_value = "1", value_parser = fraction)]
     pub pixels: f64,
-    /// Varied copies of each scene besides itself
+    /// Varied copies of each scene, in addition to the scene itself
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub augment: u32,
     /// Seed of sampling and variation
@@ -176,14 +176,14 @@ pub struct ExtractArgs {
 #[command(after_help = "Examples:
   peelnet train d --out m.safetensors
   peelnet train d1 d2 --out m.safetensors --epochs 40 --loss-curve loss.csv --loss-curve loss.svg
-  peelnet train d --out m.safetensors --resume          go on after Ctrl-C, with the same result
+  peelnet train d --out m.safetensors --resume          resume after Ctrl-C, with the same result
 
 Rows of scenes that are marked held-out are never trained on.")]
 pub struct TrainArgs {
     /// Dataset folders
     #[arg(value_name = "DATASET", required = true)]
     pub datasets: Vec<PathBuf>,
-    /// The model file to write; checkpoints lie beside it
+    /// The model file to write; checkpoints are written next to it
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
     /// What to train: thesis, small, medium, large, nmt or dfaoit
@@ -195,7 +195,7 @@ pub struct TrainArgs {
     /// Widths of the hidden layers [default: the recipe's]
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub hidden: Option<Vec<usize>>,
-    /// Fragments, or pixels where a recipe learns from whole pixels, per step [default: the recipe's]
+    /// Fragments per step (pixels, for recipes that learn from whole pixels) [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub batch: Option<u32>,
     /// Learning rate [default: the recipe's]
@@ -207,7 +207,7 @@ pub struct TrainArgs {
     /// Seed of initial weights, order and split
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Continue from the checkpoint beside MODEL
+    /// Continue from the checkpoint next to MODEL
     #[arg(long)]
     pub resume: bool,
     /// Also write the loss of every epoch: .csv or .svg; may be repeated
@@ -272,7 +272,7 @@ pub struct ExportArgs {
   peelnet render vase --time 40 --highlight 1 --out glaze.png
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
-A learned method without --model takes the shipped model.")]
+A learned method without --model uses the shipped model.")]
 pub struct RenderArgs {
     /// Scene file, or name of a shipped scene
     #[arg(value_name = "SCENE")]
@@ -280,7 +280,7 @@ pub struct RenderArgs {
     /// The image to write
     #[arg(long, value_name = "IMAGE")]
     pub out: PathBuf,
-    /// How to draw; a knob follows a colon
+    /// How to draw; parameters follow a colon, as in mboit4:targets=f16
     #[arg(long, value_name = "METHOD", default_value = "abuffer")]
     pub method: MethodSpec,
     /// Model file of a learned method
@@ -292,13 +292,13 @@ pub struct RenderArgs {
     /// Frame size in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x768")]
     pub size: Size,
-    /// Time of the scene's timeline; numbers of materials lie between the states around it
+    /// Time in the scene's timeline; material values are interpolated between its states
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub time: Option<f32>,
-    /// Highlight one layer of a nested object, 0 outermost: it alone is shaded, the others veil it with their base colour
+    /// Highlight one layer of a nested object, 0 is the outermost: only it is shaded, the others cover it with their base colour
     #[arg(long, value_name = "LAYER", conflicts_with_all = ["method", "model"])]
     pub highlight: Option<u32>,
-    /// With --highlight: leave out what lies on no further layer than what is in front of it, such as an object's own far side
+    /// With --highlight: omit surfaces whose layer is not deeper than that of the surface in front, such as an object's far side
     #[arg(long, requires = "highlight")]
     pub increasing: bool,
 }
@@ -313,36 +313,36 @@ pub struct RenderArgs {
   peelnet bench --training out/synthetic data/scenes/*-held.toml --out out/training
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
-DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. A learned method takes the shipped model unless --models names
-another one of its recipe.")]
+DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. Learned methods use the shipped models unless --models
+names another of the same recipe.")]
 pub struct BenchArgs {
     /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required_unless_present_any = ["scaling", "redraw", "effects"])]
     pub scenes: Vec<PathBuf>,
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Instead of scenes: how time and memory grow with fragments a pixel, pixels and triangles
+    /// Instead of scenes: measure how time and memory grow with fragments per pixel, pixels and triangles
     #[arg(long, conflicts_with_all = ["scenes", "size", "views", "resume"])]
     pub scaling: bool,
-    /// Instead of methods: what each effect that the scenes (those in data/effects where none is named) call for costs, and what shading
-    /// one layer of several saves; with the first of --methods, wboit-eq9 by default
+    /// Instead of methods: measure what each effect in the scenes costs (by default the shipped scenes for effects), and what is saved by
+    /// shading one layer of several; uses the first of --methods, by default wboit-eq9
     #[arg(long, conflicts_with_all = ["scaling", "training", "models", "views", "resume", "redraw"])]
     pub effects: bool,
-    /// Instead of methods: the error of networks on the scenes against parameters, training examples and epochs, trained on these
-    /// datasets
+    /// Instead of methods: train networks on these datasets, and measure their error on the scenes against parameters, training examples
+    /// and epochs
     #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "methods", "models", "frames", "resume"])]
     pub training: Vec<PathBuf>,
-    /// Nothing is measured: report, chart and tables are made anew from DIR/results.json
+    /// Measure nothing; write report, charts and tables again from DIR/results.json
     #[arg(long, conflicts_with_all = ["scenes", "scaling", "training"])]
     pub redraw: bool,
-    /// Methods to compare, with commas between them; a knob follows a colon
+    /// Methods to compare, separated by commas; parameters follow a colon
     #[arg(long, value_name = "all|A,B", default_value = "all")]
     pub methods: MethodList,
-    /// Model files of learned methods, with commas between them
+    /// Model files of learned methods, separated by commas
     #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',')]
     pub models: Vec<PathBuf>,
-    /// Frames of each method and view that are timed, all methods in turn; 0 times the compared frame
+    /// Timed frames per method and view, drawn method after method in turn; 0 times the compared frame
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub frames: u32,
     /// Frame size in pixels
@@ -351,7 +351,7 @@ pub struct BenchArgs {
     /// Views of each scene
     #[arg(long, value_name = "N|all", default_value = "all")]
     pub views: ViewCount,
-    /// Go on with an interrupted run of the same settings: views that it finished are not drawn again
+    /// Resume an interrupted run with the same settings; finished views are not drawn again
     #[arg(long)]
     pub resume: bool,
 }
@@ -364,13 +364,13 @@ pub struct BenchArgs {
   peelnet stress --methods mboit4,deep-medium --cases deep,coplanar
   peelnet stress --json | jq '.rows[] | select(.result == \"fail\")'
 
-Exit code 1 where a property does not hold that is not declared as a flaw, or where a declared flaw is gone. DIR gets stress.json,
+Exit code 1 if a property fails that is not declared as a flaw on this adapter, or if a declared flaw no longer occurs. DIR gets stress.json,
 stress.csv, stress.md, stress.html, and pictures of what fails in images/; with --numerics it gets numerics.json and numerics.md.")]
 pub struct StressArgs {
-    /// Methods, with commas between them; all means every method in every precision
+    /// Methods, separated by commas; all means every method in every precision
     #[arg(long, value_name = "all|A,B", default_value = "all")]
     pub methods: MethodList,
-    /// Model files of learned methods, with commas between them; without --methods they alone are judged
+    /// Model files of learned methods, separated by commas; without --methods only these are judged
     #[arg(
         long,
         visible_alias = "model",
@@ -378,13 +378,13 @@ pub struct StressArgs {
         value_delimiter = ','
     )]
     pub models: Vec<PathBuf>,
-    /// Instead of cases: what target formats cost in accuracy on this adapter, measured beside the bounds of docs/numerics.md
+    /// Instead of cases: measure the rounding errors of target formats on this adapter, and compare them with the bounds in docs/numerics.md
     #[arg(long, conflicts_with_all = ["methods", "models", "cases"])]
     pub numerics: bool,
-    /// Names of cases, with commas between them [default: all]
+    /// Names of cases, separated by commas [default: all]
     #[arg(long, value_name = "CASE,CASE", value_delimiter = ',')]
     pub cases: Vec<String>,
-    /// Folder for the results, and for pictures of what fails
+    /// Folder for the results and for pictures of failures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -396,8 +396,8 @@ pub struct StressArgs {
   peelnet recommend scene.toml --max-error 1e-4
   peelnet recommend scene.toml --budget-ms 2 --max-bytes 40 --json | jq -r .method
 
-With --max-error the fastest method that keeps it is named, else the most accurate one within the other bounds. Without any bound
-that is the fastest exact one.")]
+With --max-error the fastest method within that error is recommended, otherwise the most accurate one within the other bounds. Without
+any bound, the fastest exact method.")]
 pub struct RecommendArgs {
     /// Scene file, or name of a shipped scene
     #[arg(value_name = "SCENE")]
@@ -408,13 +408,13 @@ pub struct RecommendArgs {
     /// Largest mean squared error against the exact image, linear light
     #[arg(long, value_name = "E", value_parser = positive)]
     pub max_error: Option<f64>,
-    /// Most bytes a pixel beside the colour target
+    /// Most bytes per pixel, in addition to the colour target
     #[arg(long, value_name = "B", value_parser = positive)]
     pub max_bytes: Option<f64>,
-    /// Folder or results.json of a bench; without it the scene is measured now, with all methods
+    /// Folder or results.json of a bench; without it all methods are measured now
     #[arg(long, value_name = "DIR|FILE")]
     pub results: Option<PathBuf>,
-    /// Frame size in pixels, where it is measured now
+    /// Frame size in pixels, if measured now
     #[arg(
         long,
         value_name = "WxH",
@@ -422,7 +422,7 @@ pub struct RecommendArgs {
         conflicts_with = "results"
     )]
     pub size: Size,
-    /// Frames of each method and view that are timed, where it is measured now
+    /// Timed frames per method and view, if measured now
     #[arg(
         long,
         value_name = "N",
@@ -439,12 +439,12 @@ pub struct RecommendArgs {
   peelnet inspect d --json | jq .rows
   peelnet inspect m.safetensors
 
-A dataset is read whole: what its rows say about one another is recomputed, and exit code 1 tells that they disagree.")]
+A dataset is read completely: values that follow from other rows are recomputed, and the exit code is 1 if they disagree.")]
 pub struct InspectArgs {
     /// A scene (.toml, .gltf, .glb or the name of a shipped one), a dataset (a folder) or a model (.safetensors)
     #[arg(value_name = "SCENE|DATASET|MODEL")]
     pub what: PathBuf,
-    /// Of a scene: also measure what each effect that it calls for costs on this machine
+    /// For a scene: also measure what each of its effects costs on this machine
     #[arg(long)]
     pub time: bool,
 }

@@ -1,4 +1,4 @@
-//! Where words go: results to stdout, messages to stderr.
+//! Output: results to stdout, messages to stderr.
 
 use crate::failure::Failure;
 use std::io::{self, IsTerminal as _, Write as _};

@@ -1,12 +1,14 @@
 //! How a command fails: one line and an exit code.
 
+mod flags;
+
 use std::error::Error;
 use std::fmt;
 
 /// Why a command ended early.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The command line cannot be meant so. Exit code 2.
+    /// The command line is wrong. Exit code 2.
     Usage(String),
     /// Something went wrong. Exit code 1.
     Failed(String),
@@ -33,9 +35,18 @@ impl fmt::Display for Failure {
     }
 }
 
-impl<E: Error> From<E> for Failure {
+/// Libraries speak of values; which flag sets them is added here.
+impl<E: Error + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self::Failed(one_line(&error))
+        let mut text = one_line(&error);
+        if let Some(hint) = flags::hint(&error) {
+            text.push_str(&format!(" ({hint})"));
+        }
+        if flags::are_wrong(&error) {
+            Self::Usage(text)
+        } else {
+            Self::Failed(text)
+        }
     }
 }
 
@@ -91,5 +102,28 @@ mod tests {
             })),
         };
         assert_eq!(Failure::from(error), Failure::Failed("a: gone".to_owned()));
+    }
+
+    /// Errors deep inside others get their flag, wrong values the exit code of wrong usage.
+    #[test]
+    fn flags_are_added() {
+        let gpu = peelnet_gpu::GpuError::Lost("gone".to_owned());
+        let render = peelnet_render::RenderError::Gpu(gpu);
+        let error = peelnet_eval::EvalError::Render {
+            scene: "cups".to_owned(),
+            method: "mboit4".to_owned(),
+            source: Box::new(render),
+        };
+        let failure = Failure::from(error);
+        assert_eq!(failure.exit_code(), 1);
+        let text = failure.to_string();
+        assert!(
+            text.starts_with("scene 'cups', method 'mboit4': "),
+            "{text}"
+        );
+        assert!(text.ends_with(" (--adapter software)"), "{text}");
+        let failure = Failure::from(peelnet_peel::PeelError::Fraction(2.0));
+        assert_eq!(failure.exit_code(), 2);
+        assert!(failure.to_string().ends_with(" (set it with --pixels)"));
     }
 }

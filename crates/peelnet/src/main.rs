@@ -3,7 +3,7 @@
 //! [`cli`] declares the flags; every command is one file of [`commands`], which calls the libraries and prints.
 //! Results go to stdout and messages to stderr, both through [`console`]; progress bars ([`progress`]) show on a
 //! terminal only. Whatever fails becomes a [`failure::Failure`]: one line, and the exit code 1, or 2 for wrong
-//! usage. Ctrl-C sets one flag ([`interrupt`]) that the long loops look at, so that files are whole or absent.
+//! usage. Ctrl-C sets one flag ([`interrupt`]) that the long loops check, so files are complete or absent.
 
 mod cli;
 mod commands;

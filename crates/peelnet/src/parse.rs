@@ -92,31 +92,18 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// One argument as a shell would need it.
-pub fn shell_word(argument: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@%".contains(c);
-    if !argument.is_empty() && argument.chars().all(plain) {
-        argument.to_owned()
-    } else {
-        format!("'{}'", argument.replace('\'', r"'\''"))
-    }
-}
-
-/// The command line of this process, for provenance: the program's bare name and its arguments.
+/// The command line of this process, for provenance: the program's bare name and its arguments, quoted for a shell.
 pub fn command_line() -> String {
     let arguments = std::env::args_os()
         .skip(1)
-        .map(|a| shell_word(&a.to_string_lossy()));
-    std::iter::once("peelnet".to_owned())
-        .chain(arguments)
-        .collect::<Vec<_>>()
-        .join(" ")
+        .map(|a| a.to_string_lossy().into_owned());
+    shell_words::join(std::iter::once("peelnet".to_owned()).chain(arguments))
 }
 
 /// Methods of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MethodList {
-    /// Every one there is.
+    /// Every method.
     All,
     /// These.
     These(Vec<MethodSpec>),
@@ -125,7 +112,7 @@ pub enum MethodList {
 impl FromStr for MethodList {
     type Err = String;
 
-    /// Commas stand between methods and between a method's knobs: what has no colon but an equals sign is a knob.
+    /// Commas stand between methods and between a method's parameters: a part with an equals sign and no colon is a parameter.
     fn from_str(text: &str) -> Result<Self, String> {
         if text == "all" {
             return Ok(Self::All);
@@ -153,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn method_lists_keep_knobs_together() {
+    fn method_lists_keep_parameters_together() {
         let list: MethodList = "mboit4:bias=1e-6,own=out,wboit-eq9"
             .parse()
             .expect("parses");
@@ -209,13 +196,5 @@ mod tests {
         for bad in ["0", "-1", "NaN", "inf", ""] {
             assert!(positive(bad).is_err(), "{bad}");
         }
-    }
-
-    #[test]
-    fn shell_words() {
-        assert_eq!(shell_word("a/b.toml"), "a/b.toml");
-        assert_eq!(shell_word("a b"), "'a b'");
-        assert_eq!(shell_word("it's"), r"'it'\''s'");
-        assert_eq!(shell_word(""), "''");
     }
 }

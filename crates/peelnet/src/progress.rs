@@ -3,7 +3,7 @@
 use crate::console::Console;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// A bar with a name before it and a text behind it.
+/// A bar between a name and a text.
 #[derive(Debug)]
 pub struct Bar(ProgressBar);
 

@@ -19,11 +19,11 @@ pub const EXACT: &str = Role::Reference.method();
 pub struct Plan<'a> {
     /// Width and height of every frame, pixels.
     pub size: [u32; 2],
-    /// Methods beside the exact one; the exact one may be among them.
+    /// Methods in addition to the exact one; the exact one may be among them.
     pub methods: &'a [MethodSpec],
     /// Weights for the learned methods among them, found by recipe.
     pub learned: &'a [LearnedWeight],
-    /// The models that those weights come from, as far as their estimates shall be judged fragment by fragment.
+    /// The models of those weights; the estimates of those given here are judged fragment by fragment.
     pub models: &'a [Model],
     /// Whether a method that needs more than this adapter allows is left out and reported, instead of ending the comparison.
     pub lenient: bool,

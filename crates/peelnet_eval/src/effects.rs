@@ -1,4 +1,4 @@
-//! What effects cost: each that a scene calls for with and without it, shading of one layer against all, and how the view of layers
+//! What effects cost: each effect of a scene with and without it, shading of one layer against all, and how the view of layers
 //! grows with triangles and with the part of the frame that it fills.
 
 use crate::{EvalError, compare};
@@ -26,7 +26,7 @@ pub struct Cost {
     pub effect: String,
     /// Median time of a frame, milliseconds.
     pub ms_with: f64,
-    /// The same of the scene as if nothing called for the effect, drawn in turn.
+    /// The same for the scene without the effect, drawn in turn.
     pub ms_without: f64,
     /// The former over the latter.
     pub ratio: f64,
@@ -103,7 +103,7 @@ pub struct Settings {
 /// Parts of the frame that an object fills in the table of triangles.
 pub const FILLED: [f64; 3] = [0.5, 0.75, 1.0];
 
-/// Times every effect that a scene calls for: the frame as it is, and of the scene without it, drawn in turn.
+/// Times every effect of a scene: the frame as it is and without the effect, drawn in turn.
 ///
 /// # Errors
 /// What drawing meets.
@@ -157,7 +157,7 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
     })
 }
 
-/// Median times of two frames that are drawn in turn, so that both meet the same machine; the first of each warms up.
+/// Median times of two frames that are drawn in turn, so that both see the same machine load; the first of each warms up.
 fn in_turn(
     mut frames: [(&Renderer, &mut Prepared); 2],
     camera: &Camera,

@@ -1,4 +1,4 @@
-//! Error against time: a point for every method and its knobs, and the Pareto front of them.
+//! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
 use crate::{Row, geometric_mean};
 use peelnet_render::Role;
@@ -19,10 +19,10 @@ pub enum Mean {
     Arithmetic,
 }
 
-/// A method with its knobs.
+/// A method with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// The method's name with its knobs.
+    /// The method's name with its parameters.
     pub method: String,
     /// Mean of `mse_linear`, at least [`EXACT_MSE`].
     pub error: f64,

@@ -6,7 +6,7 @@
 //! effects, scaling, numerics, learning ─► rows of their own
 //! ```
 //!
-//! [`bench::bench`] compares methods and returns a [`Row`] for each method, scene and view. [`compare`] draws every view exactly
+//! [`fn@bench`] compares methods and returns a [`Row`] for each method, scene and view. [`compare`] draws every view exactly
 //! (`abuffer`) and with each method, and [`metrics`] and [`perceptual`] compute the differences. [`front`], [`ratios`] and [`by_scene`]
 //! average the rows. The crate draws no charts and writes no pages: that is `peelnet_report`.
 //!
@@ -34,6 +34,7 @@ pub mod stress;
 pub mod thesis;
 pub mod transmittance;
 
+pub use bench::bench;
 pub use error::EvalError;
 pub use machine::{Machine, load};
 pub use mean::geometric_mean;

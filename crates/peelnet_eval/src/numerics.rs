@@ -1,5 +1,5 @@
-//! What target formats cost in accuracy: how far sums and products of blending are from the exact ones, measured on the adapter at
-//! hand, beside the bound that follows from the format. docs/numerics.md explains the formulas.
+//! What target formats cost in accuracy: how far sums and products of blending are from the exact ones, measured on this
+//! adapter, with the bound that follows from the format. docs/numerics.md explains the formulas.
 
 use crate::EvalError;
 use peelnet_core::{fragment::Fragment, methods::over, random::Random};

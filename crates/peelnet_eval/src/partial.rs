@@ -4,7 +4,7 @@ use crate::{EvalError, Row};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Rows of finished views, and what they are measured with: a run goes on only where that is the same.
+/// Rows of finished views, and the settings they were measured with: only a run with the same settings is resumed.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Partial {
     plan: serde_json::Value,
@@ -75,7 +75,7 @@ impl Partial {
         views
     }
 
-    /// Adds a view's rows, and writes the file anew.
+    /// Adds a view's rows, and writes the file again.
     ///
     /// # Errors
     /// If it cannot be written.

@@ -12,7 +12,7 @@ pub const MOMENTS: &str = Role::MomentBlending.method();
 /// A method's figures over all scenes and views.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratios {
-    /// The method's name with its knobs.
+    /// The method's name with its parameters.
     pub method: String,
     /// Geometric mean of `mse_linear` over scenes and views; `None` where one is 0.
     pub mse_linear: Option<f64>,

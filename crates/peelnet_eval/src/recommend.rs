@@ -1,4 +1,4 @@
-//! Which method a budget calls for.
+//! The best method within a budget.
 
 use crate::front::Point;
 

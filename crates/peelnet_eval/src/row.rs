@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// `null`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The method's name with its knobs.
+    /// The method's name with its parameters.
     pub method: String,
     /// The scene's name.
     pub scene: String,

@@ -108,7 +108,7 @@ fn steps() -> Vec<Step> {
 /// What one method took in one step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
-    /// The method's name with its knobs.
+    /// The method's name with its parameters.
     pub method: String,
     /// What grows.
     pub series: Series,
@@ -123,7 +123,7 @@ pub struct Growth {
 /// A step that a method was not measured in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// The method's name with its knobs.
+    /// The method's name with its parameters.
     pub method: String,
     /// What grows.
     pub series: Series,
@@ -136,7 +136,7 @@ pub struct LeftOut {
 /// How a method's time and memory grow with a series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Exponent {
-    /// The method's name with its knobs.
+    /// The method's name with its parameters.
     pub method: String,
     /// What grows.
     pub series: Series,
@@ -157,7 +157,7 @@ pub struct Scaling {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Measures all steps. `told` is called for each frame with the frames so far, all frames at most, and the method.
+/// Measures all steps. `report` is called for each frame with the frames so far, all frames at most, and the method.
 ///
 /// # Errors
 /// If a method cannot draw; [`EvalError::Interrupted`] once `stop` is set.
@@ -167,7 +167,7 @@ pub fn measure(
     learned: &[LearnedWeight],
     settings: Settings,
     stop: &AtomicBool,
-    told: &mut dyn FnMut(u64, u64, &str),
+    report: &mut dyn FnMut(u64, u64, &str),
 ) -> Result<(Vec<Growth>, Vec<LeftOut>), EvalError> {
     let Settings {
         frames,
@@ -205,7 +205,7 @@ pub fn measure(
                 continue;
             }
             let weight = learned.iter().find(|l| l.recipe.method == method.name());
-            // The first frame warms up, and tells the bytes.
+            // The first frame warms up, and gives the bytes.
             let first = renderer
                 .method(method, MethodOptions::sized(step.size).with(weight))
                 .and_then(|mut prepared| {
@@ -213,7 +213,7 @@ pub fn measure(
                     Ok((prepared, frame.stats.bytes_per_pixel))
                 });
             done += 1;
-            told(done, total, &name);
+            report(done, total, &name);
             match first {
                 Ok((prepared, bytes)) => ready.push((name, prepared, bytes, Vec::new())),
                 // Memory is what grows: that it ends is a result.
@@ -232,7 +232,7 @@ pub fn measure(
                 let (passes, wall) = renderer.profile(prepared, camera).map_err(failed(name))?;
                 times.push(crate::compare::milliseconds(&passes).unwrap_or(wall / 1e3));
                 done += 1;
-                told(done, total, name);
+                report(done, total, name);
             }
         }
         for (method, _, bytes_per_pixel, mut times) in ready {

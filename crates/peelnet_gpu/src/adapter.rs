@@ -64,7 +64,7 @@ pub const OPTIONAL_FEATURES: &[OptionalFeature] = &[
     },
     OptionalFeature {
         name: "shader-f16",
-        without: "functions exported with --precision f16 cannot be verified here",
+        without: "functions exported in 16-bit precision cannot be verified here",
         flag: wgpu::Features::SHADER_F16,
     },
 ];

@@ -8,7 +8,7 @@ pub enum GpuError {
     )]
     NoAdapter,
     /// The adapter that was asked for is not there.
-    #[error("no adapter matches '{wanted}'; there are: {available}")]
+    #[error("no adapter matches '{wanted}'; the adapters are: {available}")]
     NoSuchAdapter {
         /// What was asked for.
         wanted: String,

@@ -1,3 +1,5 @@
+use std::path::PathBuf;
+
 /// What can go wrong while peeling.
 #[derive(Debug, thiserror::Error)]
 pub enum PeelError {
@@ -15,9 +17,35 @@ pub enum PeelError {
     /// Writing.
     #[error(transparent)]
     Dataset(#[from] peelnet_dataset::DatasetError),
-    /// The command asks for something that is not there.
-    #[error("{0}")]
-    Usage(String),
+    /// Nothing to peel.
+    #[error("no scene to extract")]
+    NoScene,
+    /// Rows could not be assigned to their scene.
+    #[error("two scenes are named '{name}' ({} and {}): rename one, because rows name their scene", first.display(), second.display())]
+    SameName {
+        /// The name of both.
+        name: String,
+        /// Where one comes from.
+        first: PathBuf,
+        /// Where the other comes from.
+        second: PathBuf,
+    },
+    /// A scene has fewer views than were asked for.
+    #[error("scene {} has {views} views, not {asked}: ask for fewer, or add [orbit] or [[view]]", scene.display())]
+    TooFewViews {
+        /// Where the scene comes from.
+        scene: PathBuf,
+        /// Views that it has.
+        views: u32,
+        /// Views that were asked for.
+        asked: u32,
+    },
+    /// Not a fraction.
+    #[error("{0} is not a fraction of the pixels: it must be above 0 and at most 1")]
+    Fraction(f64),
+    /// More synthetic lists than can be counted.
+    #[error("{0} synthetic lists are too many")]
+    TooManyLists(u64),
     /// Stopped from outside before the end; nothing was left behind.
     #[error("interrupted: nothing was written; run the command again")]
     Interrupted,

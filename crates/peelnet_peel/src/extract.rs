@@ -127,14 +127,11 @@ pub(crate) fn work(
     options: &ExtractOptions,
 ) -> Result<(u32, Vec<Item>), PeelError> {
     if !(options.pixels > 0.0 && options.pixels <= 1.0) {
-        return Err(PeelError::Usage(format!(
-            "a fraction of {} of the pixels: it must lie above 0 and at most 1",
-            options.pixels
-        )));
+        return Err(PeelError::Fraction(options.pixels));
     }
     let all = items(scenes, options.views, options.augment)?;
     if all.is_empty() {
-        return Err(PeelError::Usage("no scene to extract".into()));
+        return Err(PeelError::NoScene);
     }
     let mine = all
         .iter()

@@ -34,22 +34,22 @@ pub fn items(scenes: &[Scene], views: Views, augment: u32) -> Result<Vec<Item>, 
     let mut all = Vec::new();
     for (i, scene) in scenes.iter().enumerate() {
         if let Some(other) = scenes[..i].iter().find(|s| s.name == scene.name) {
-            return Err(PeelError::Usage(format!(
-                "two scenes are named '{}' ({} and {}): rename one, rows are told apart by the name",
-                scene.name,
-                other.source.display(),
-                scene.source.display()
-            )));
+            return Err(PeelError::SameName {
+                name: scene.name.clone(),
+                first: other.source.clone(),
+                second: scene.source.clone(),
+            });
         }
         let there = scene.views.len() as u32;
         let taken = match views {
             Views::All => there,
             Views::First(n) if n <= there => n,
             Views::First(n) => {
-                return Err(PeelError::Usage(format!(
-                    "scene {} has {there} views, not {n}: ask for fewer with --views, or add [orbit] or [[view]]",
-                    scene.source.display()
-                )));
+                return Err(PeelError::TooFewViews {
+                    scene: scene.source.clone(),
+                    views: there,
+                    asked: n,
+                });
             }
         };
         for copy in 0..=augment {

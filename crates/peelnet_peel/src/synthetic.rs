@@ -186,7 +186,7 @@ pub fn synthetic(
 ) -> Result<ExtractReport, PeelError> {
     let start = Instant::now();
     let worlds = u32::try_from(options.lists.div_ceil(PIXELS))
-        .map_err(|_| PeelError::Usage(format!("--synthetic {}: too many lists", options.lists)))?;
+        .map_err(|_| PeelError::TooManyLists(options.lists))?;
     let writer = DatasetWriter::create(
         &options.out,
         Header {

@@ -58,7 +58,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         MethodSpec::curve,
     )?;
     if matches!(args.methods, MethodList::All) {
-        // Knobs change what a method costs, hardly how that grows.
+        // Parameters change what a method costs, but hardly how that grows.
         methods.dedup_by_key(|m| m.name());
     }
     let bar = Bar::new(context.console, "scaling", 0);
@@ -66,9 +66,9 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         frames: args.frames,
         ..Default::default()
     };
-    let mut told = |done, total, method: &str| bar.set(done, total, method.to_owned());
+    let mut show = |done, total, method: &str| bar.set(done, total, method.to_owned());
     let (rows, left_out) =
-        scaling::measure(&gpu, &methods, &learned, settings, context.stop, &mut told)?;
+        scaling::measure(&gpu, &methods, &learned, settings, context.stop, &mut show)?;
     drop(bar);
     let scaling = Scaling::new(rows, left_out);
     let results = Results::new(Machine::of(&gpu), command_line(), scaling);
@@ -78,7 +78,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         .result(|| results.table().plain(), || json!(results))
 }
 
-/// Compares as the arguments say; pictures and what an interrupted run leaves go to `out`.
+/// Compares as the arguments say; pictures and the rows of finished views go to `out`.
 ///
 /// # Errors
 /// Whatever stopped it.
@@ -135,7 +135,7 @@ pub(super) fn measure(
     };
     let measured = bench_watched(&gpu, scenes, &plan, partial, context.stop, &mut show)?;
     drop(bar);
-    context.tell_of_memory(&gpu);
+    context.warn_of_memory(&gpu);
     Ok(Results::new(Machine::of(&gpu), command_line(), measured))
 }
 

@@ -7,7 +7,7 @@ use crate::parse::{ViewCount, command_line};
 use crate::progress::{Bar, thousands};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{
-    ExtractOptions, ExtractReport, PeelError, Views, extract,
+    ExtractOptions, ExtractReport, Views, extract,
     synthetic::{SyntheticOptions, synthetic},
 };
 use peelnet_scene::Scene;
@@ -75,7 +75,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     )
 }
 
-/// Makes lists up with a progress bar.
+/// Generates lists with a progress bar.
 fn make_up(context: &Context<'_>, options: &SyntheticOptions) -> Result<ExtractReport, Failure> {
     let bar = Bar::new(context.console, "synthetic", 1);
     let report = synthetic(options, context.stop, &mut |p| show(&bar, p))?;
@@ -113,11 +113,8 @@ pub(super) fn peel(
     let bar = Bar::new(context.console, "extract", 1);
     let report = extract(gpu, scenes, options, context.stop, &mut |p| show(&bar, p));
     drop(bar);
-    let report = report.map_err(|error| match error {
-        PeelError::Usage(text) => Failure::Usage(text),
-        other => other.into(),
-    })?;
-    context.tell_of_memory(gpu);
+    let report = report?;
+    context.warn_of_memory(gpu);
     if report.lost > 0 {
         context.console.warn(format!(
             "{} fragments were left out ({} peeling); --peel sbuffer without --max-passes keeps all",

@@ -28,7 +28,7 @@ use std::sync::atomic::AtomicBool;
 /// What every command works with.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
-    /// Where words go.
+    /// Output.
     pub console: Console,
     /// The global flags.
     pub global: &'a Global,
@@ -42,8 +42,8 @@ impl Context<'_> {
         Ok(Gpu::open(&self.global.adapter)?)
     }
 
-    /// Says that a command got through with less memory than it would have taken.
-    fn tell_of_memory(&self, gpu: &Gpu) {
+    /// Warns if the GPU's memory was full and a command used smaller tiles.
+    fn warn_of_memory(&self, gpu: &Gpu) {
         if gpu.memory_was_full() {
             self.console.warn(format!(
                 "the memory of {} was full: fragments were kept in smaller tiles, which takes longer and loses nothing",

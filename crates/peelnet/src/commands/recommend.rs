@@ -1,4 +1,4 @@
-//! `peelnet recommend`: the method that a budget calls for.
+//! `peelnet recommend`: the best method within a budget.
 
 use super::{Context, bench};
 use crate::cli::{BenchArgs, RecommendArgs};

@@ -54,7 +54,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
             thousands(frame.stats.lost)
         ));
     }
-    context.tell_of_memory(&gpu);
+    context.warn_of_memory(&gpu);
     if frame.image.non_finite() > 0 {
         context.console.warn(format!(
             "{method}: {} pixels are not finite",

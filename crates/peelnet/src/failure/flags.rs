@@ -1,0 +1,94 @@
+//! Which flag a library's error depends on.
+
+use peelnet_eval::EvalError;
+use peelnet_export::ExportError;
+use peelnet_gpu::GpuError;
+use peelnet_peel::PeelError;
+use peelnet_render::RenderError;
+use std::error::Error;
+
+/// What to do about an error, in terms of flags: of the first error in its chain that depends on one.
+pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    let mut next = Some(error);
+    while let Some(error) = next {
+        let hint = find(error, gpu)
+            .or_else(|| find(error, render))
+            .or_else(|| find(error, peel))
+            .or_else(|| find(error, export))
+            .or_else(|| find(error, eval));
+        if hint.is_some() {
+            return hint;
+        }
+        next = error.source();
+    }
+    None
+}
+
+/// Whether the cause is a wrong value on the command line.
+pub(super) fn are_wrong(error: &(dyn Error + 'static)) -> bool {
+    let wrong = |error: &PeelError| match error {
+        PeelError::NoScene
+        | PeelError::SameName { .. }
+        | PeelError::TooFewViews { .. }
+        | PeelError::Fraction(_)
+        | PeelError::TooManyLists(_) => Some(()),
+        _ => None,
+    };
+    find(error, wrong).is_some()
+}
+
+/// What `of` finds in an error of its type. Sources in a box are seen as the box.
+fn find<E: Error + 'static, T>(
+    error: &(dyn Error + 'static),
+    of: impl Fn(&E) -> Option<T>,
+) -> Option<T> {
+    let boxed = || error.downcast_ref::<Box<E>>().map(|b| &**b);
+    error.downcast_ref::<E>().or_else(boxed).and_then(of)
+}
+
+fn gpu(error: &GpuError) -> Option<&'static str> {
+    match error {
+        GpuError::NoSuchAdapter { .. } => Some("choose one with --adapter, or leave the flag out"),
+        GpuError::OutOfMemory { .. } | GpuError::Lost(_) => Some("--adapter software"),
+        GpuError::MissingFeature { what, .. } | GpuError::TooLarge { what, .. }
+            if what.starts_with("dual depth peeling") =>
+        {
+            Some("--peel sbuffer or --peel single")
+        }
+        _ => None,
+    }
+}
+
+fn render(error: &RenderError) -> Option<&'static str> {
+    match error {
+        // Transparent errors stand for what they wrap, and are not in the chain twice.
+        RenderError::Gpu(error) => gpu(error),
+        RenderError::NeedsModel(_) => Some("give its model file with --model"),
+        _ => None,
+    }
+}
+
+fn peel(error: &PeelError) -> Option<&'static str> {
+    match error {
+        PeelError::Render(error) => render(error),
+        PeelError::Gpu(error) => gpu(error),
+        PeelError::TooFewViews { .. } => Some("set it with --views"),
+        PeelError::Fraction(_) => Some("set it with --pixels"),
+        PeelError::TooManyLists(_) => Some("set it with --synthetic"),
+        _ => None,
+    }
+}
+
+fn export(error: &ExportError) -> Option<&'static str> {
+    match error {
+        ExportError::Gpu(error) => gpu(error),
+        _ => None,
+    }
+}
+
+fn eval(error: &EvalError) -> Option<&'static str> {
+    match error {
+        EvalError::Resume { .. } => Some("leave out --resume to start again"),
+        _ => None,
+    }
+}
