@@ -119,11 +119,11 @@ impl LineChart<'_> {
             .draw()?;
         let mut ends = Vec::new();
         for (k, line) in self.lines.iter().enumerate() {
-            let color = Palette99::pick(k).to_rgba();
+            let color = color(k);
             let points: Vec<(f64, f64)> = self.shown(line).collect();
             if let Some(last) = points.last() {
                 let (x, y) = chart.backend_coord(last);
-                let (r, g, b) = color.rgb();
+                let RGBColor(r, g, b) = color;
                 ends.push((&line.name, x, y, format!("#{r:02x}{g:02x}{b:02x}")));
             }
             chart.draw_series(LineSeries::new(points, color.stroke_width(2)).point_size(2))?;
@@ -138,6 +138,13 @@ impl LineChart<'_> {
             }
         })
     }
+}
+
+/// The colour of a line, dark enough for text on white paper.
+fn color(line: usize) -> RGBColor {
+    let (r, g, b) = Palette99::pick(line).rgb();
+    let darker = |c: u8| (f32::from(c) * 0.75) as u8;
+    RGBColor(darker(r), darker(g), darker(b))
 }
 
 /// The nearest place for a name at or below the end of its line.

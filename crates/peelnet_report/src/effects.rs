@@ -179,7 +179,7 @@ impl Results<Effects> {
             h2 { "With and without" }
             @for pair in pairs { (pair) }
         };
-        Ok(page::page(self, "what effects cost", body, &[], None))
+        Ok(page::page(self, "What effects cost", body, &[], None))
     }
 }
 

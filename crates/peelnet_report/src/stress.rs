@@ -150,7 +150,7 @@ impl Results<Stressed> {
             h2 { "The cases" }
             (cases.html("text", |_| false))
         };
-        page::page(self, "hard cases", body, &[], None)
+        page::page(self, "Hard cases", body, &[], None)
     }
 }
 

@@ -4,6 +4,7 @@ use peelnet_eval::EvalError;
 use peelnet_export::ExportError;
 use peelnet_gpu::GpuError;
 use peelnet_peel::PeelError;
+use peelnet_raster::RasterError;
 use peelnet_render::RenderError;
 use std::error::Error;
 
@@ -70,7 +71,7 @@ fn render(error: &RenderError) -> Option<&'static str> {
 
 fn peel(error: &PeelError) -> Option<&'static str> {
     match error {
-        PeelError::Render(error) => render(error),
+        PeelError::Raster(RasterError::Gpu(error)) => gpu(error),
         PeelError::Gpu(error) => gpu(error),
         PeelError::TooFewViews { .. } => Some("set it with --views"),
         PeelError::Fraction(_) => Some("set it with --pixels"),

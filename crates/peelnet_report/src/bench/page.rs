@@ -43,8 +43,7 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
     let views = rows.iter().filter(|r| r.method == EXACT).count();
     let body = html! {
         p {
-            (all.len()) " methods and settings on " (scenes.len()) " scenes, " (views) " views in all, drawn by "
-            (results.machine.adapter) "."
+            "Methods and settings: " (all.len()) ". Scenes: " (scenes.len()) ". Views: " (views) ". Drawn by " (results.machine.adapter) "."
         }
         h2 { "All scenes" }
         p.note {
@@ -77,7 +76,7 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
         "load before and after".to_owned(),
         format!("{before}, {after}"),
     )];
-    let title = "error against time";
+    let title = "Error against time";
     Ok(page::page(results, title, body, &more, Some(SORT_SCRIPT)))
 }
 

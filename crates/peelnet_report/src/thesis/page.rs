@@ -52,7 +52,7 @@ pub(super) fn page(
             (stages(&run.stages).html("text", |_| false))
         }
     };
-    let title = "learned transparency against the exact image";
+    let title = "Learned transparency against the exact image";
     Ok(page::page(results, title, body, &run.settings, None))
 }
 
