@@ -116,7 +116,7 @@ pub enum DatasetError {
         path: PathBuf,
     },
     /// Some shards have not been written.
-    #[error("{}: {} of {of} shards are missing ({}); run `peelnet extract` with these `--shard` values", path.display(), missing.len(), missing.join(", "))]
+    #[error("{}: {} of {of} shards are missing ({}); extract these as well", path.display(), missing.len(), missing.join(", "))]
     MissingShards {
         /// The folder that holds the shards.
         path: PathBuf,

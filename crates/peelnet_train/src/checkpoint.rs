@@ -156,7 +156,7 @@ impl State {
     }
 
     fn parse(bytes: &[u8], config: &Config, data: &str, parameters: usize) -> Result<Self, String> {
-        const DAMAGED: &str = "delete the checkpoint folder, or train without --resume";
+        const DAMAGED: &str = "delete the checkpoint folder, or start without it";
         let damaged =
             |e: &dyn std::fmt::Display| format!("is not a whole checkpoint ({e}); {DAMAGED}");
         let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|e| damaged(&e))?;
@@ -178,12 +178,12 @@ impl State {
         let header: Header = serde_json::from_str(header).map_err(|e| damaged(&e))?;
         if let Some(setting) = difference(&header.config, config) {
             return Err(format!(
-                "was made with another `{setting}`; repeat that setting, or train without --resume"
+                "was made with another `{setting}`; repeat that setting, or start without the checkpoint"
             ));
         }
         if header.data != data {
             return Err(
-                "was made with other rows; give the same dataset, or train without --resume"
+                "was made with other rows; give the same dataset, or start without the checkpoint"
                     .to_owned(),
             );
         }

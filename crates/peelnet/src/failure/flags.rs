@@ -1,11 +1,13 @@
 //! Which flag a library's error depends on.
 
+use peelnet_dataset::DatasetError;
 use peelnet_eval::EvalError;
 use peelnet_export::ExportError;
 use peelnet_gpu::GpuError;
 use peelnet_peel::PeelError;
 use peelnet_raster::RasterError;
 use peelnet_render::RenderError;
+use peelnet_train::TrainError;
 use std::error::Error;
 
 /// What to do about an error, in terms of flags: of the first error in its chain that depends on one.
@@ -15,6 +17,8 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<&'static str> {
         let hint = find(error, gpu)
             .or_else(|| find(error, render))
             .or_else(|| find(error, peel))
+            .or_else(|| find(error, dataset))
+            .or_else(|| find(error, train))
             .or_else(|| find(error, export))
             .or_else(|| find(error, eval));
         if hint.is_some() {
@@ -73,9 +77,25 @@ fn peel(error: &PeelError) -> Option<&'static str> {
     match error {
         PeelError::Raster(RasterError::Gpu(error)) => gpu(error),
         PeelError::Gpu(error) => gpu(error),
+        PeelError::Dataset(error) => dataset(error),
         PeelError::TooFewViews { .. } => Some("set it with --views"),
         PeelError::Fraction(_) => Some("set it with --pixels"),
         PeelError::TooManyLists(_) => Some("set it with --synthetic"),
+        _ => None,
+    }
+}
+
+fn dataset(error: &DatasetError) -> Option<&'static str> {
+    match error {
+        DatasetError::MissingShards { .. } => Some("peelnet extract with these --shard values"),
+        _ => None,
+    }
+}
+
+fn train(error: &TrainError) -> Option<&'static str> {
+    match error {
+        TrainError::Checkpoint { .. } => Some("leave out --resume to start again"),
+        TrainError::Dataset(error) => dataset(error),
         _ => None,
     }
 }
