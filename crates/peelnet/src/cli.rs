@@ -263,16 +263,18 @@ pub struct ExportArgs {
     pub precision: Precision,
 }
 
-/// `peelnet render`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:
+const RENDER_EXAMPLES: &str = "Examples:
   peelnet render scene.toml --out exact.png
   peelnet render scene.toml --method wboit-eq9:targets=f32 --out a.exr
   peelnet render scene.toml --method deep-thesis --model m.safetensors --view 2 --out b.npy
   peelnet render vase --time 40 --highlight 1 --out glaze.png
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
-A learned method without --model uses the shipped model.")]
+A learned method without --model uses the shipped model.";
+
+/// `peelnet render`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = RENDER_EXAMPLES, after_long_help = format!("{RENDER_EXAMPLES}\n\n{}", crate::methods_text::methods()))]
 pub struct RenderArgs {
     /// Scene file, or name of a shipped scene
     #[arg(value_name = "SCENE")]
@@ -280,7 +282,7 @@ pub struct RenderArgs {
     /// The image to write
     #[arg(long, value_name = "IMAGE")]
     pub out: PathBuf,
-    /// How to draw; parameters follow a colon, as in mboit4:targets=f16
+    /// How to draw; parameters follow a colon, as in mboit4:targets=f16. --help lists the methods
     #[arg(long, value_name = "METHOD", default_value = "abuffer")]
     pub method: MethodSpec,
     /// Model file of a learned method

@@ -11,6 +11,7 @@ mod console;
 mod failure;
 mod interrupt;
 mod learned;
+mod methods_text;
 mod parse;
 mod progress;
 mod summary_text;
