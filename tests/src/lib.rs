@@ -6,8 +6,9 @@ use glam::{Vec2, Vec3};
 use peelnet_core::{fragment::Fragment, scanline};
 use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
-use peelnet_render::{LearnedWeight, MethodSpec};
-use peelnet_scene::{Camera, Material, Object, Scene};
+use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
+use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
+use std::sync::Arc;
 
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
@@ -31,6 +32,30 @@ pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
     Some((LearnedWeight { recipe, wgsl }, model))
 }
 
+/// Draws a scene's first view with a method that needs no network.
+pub fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
+    let drawn = || {
+        let renderer = Renderer::new(gpu, scene)?;
+        let mut prepared = renderer.method(&method.parse()?, MethodOptions::sized(size))?;
+        renderer.image(&mut prepared, &scene.views[0])
+    };
+    drawn().unwrap_or_else(|e| panic!("{e}")).image
+}
+
+/// A texture of one colour.
+pub fn even(texel: [u8; 4]) -> Option<Arc<Texture>> {
+    Some(Arc::new(Texture::of("even", [4, 4], |_, _| texel)))
+}
+
+/// A point light.
+pub fn light(position: Vec3, color: [f32; 3]) -> Light {
+    Light {
+        source: Source::Point(position),
+        color,
+        intensity: 1.5,
+    }
+}
+
 /// A camera at the origin that looks along −z with a square frame of 90°, so that a quad of half side `z` at depth
 /// `z` just fills it.
 pub fn camera() -> Camera {
@@ -51,7 +76,7 @@ pub fn wall(z: f32, material: Material) -> Object {
     let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
     let mut wall = Object::of_triangles(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material);
     // It shows the whole of an image.
-    let mesh = std::sync::Arc::make_mut(&mut wall.mesh);
+    let mesh = Arc::make_mut(&mut wall.mesh);
     let (a, b, c, d) = (Vec2::Y, Vec2::ONE, Vec2::X, Vec2::ZERO);
     mesh.uvs = vec![[a, b, c], [a, c, d]];
     wall

@@ -4,18 +4,9 @@
 
 use glam::Vec3;
 use peelnet_core::fragment::worked_example;
-use peelnet_gpu::Gpu;
-use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer};
-use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{gpu, scene, wall, walls};
-
-fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
-    let renderer = Renderer::new(gpu, scene).unwrap();
-    let spec = method.parse().unwrap();
-    let mut prepared = renderer.method(&spec, MethodOptions::sized(size)).unwrap();
-    let camera = scene.views[0];
-    renderer.image(&mut prepared, &camera).unwrap().image
-}
+use peelnet_render::{Image, MethodSpec};
+use peelnet_scene::{Material, Object};
+use peelnet_tests::{draw, gpu, scene, wall, walls};
 
 fn furthest(a: &Image, b: &Image) -> f32 {
     let channels = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());

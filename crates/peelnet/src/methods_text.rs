@@ -3,13 +3,30 @@
 use peelnet_render::{METHODS, methods::SCALE};
 use std::fmt::Write as _;
 
+/// Where descriptions begin.
+const COLUMN: usize = 24;
+
+/// The width that help texts are wrapped to.
+const WIDTH: usize = 100;
+
 /// Every method with its parameters, a line each.
 pub fn methods() -> String {
     let mut text = "Methods, as NAME or NAME:parameter=value,parameter=value:\n".to_owned();
     let mut line = |indent: usize, name: &str, about: &str| {
-        let width = 24 - indent;
+        let (width, mut column) = (COLUMN - indent, COLUMN);
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{:indent$}{name:width$}{about}", "");
+        let _ = write!(text, "{:indent$}{name:width$}", "");
+        for (i, word) in about.split(' ').enumerate() {
+            if column + word.chars().count() >= WIDTH {
+                let _ = write!(text, "\n{:COLUMN$}", "");
+                column = COLUMN;
+            } else if i > 0 {
+                text.push(' ');
+            }
+            text.push_str(word);
+            column += word.chars().count() + 1;
+        }
+        text.push('\n');
     };
     for method in METHODS {
         line(2, &method.usage(), method.about);
@@ -30,11 +47,15 @@ mod tests {
     fn every_method_has_its_line() {
         let text = methods();
         for method in METHODS {
-            let named = text
-                .lines()
-                .any(|l| l.trim_start().starts_with(&method.usage()));
-            assert!(named && text.contains(method.about), "{}", method.name);
+            let usage = method.usage();
+            let named = |l: &str| l.split_whitespace().next() == Some(&usage);
+            assert!(text.lines().any(named), "{usage}");
         }
-        assert!(text.lines().all(|l| l.chars().count() <= 140));
+        let words: Vec<&str> = text.split_whitespace().collect();
+        for parameter in METHODS.iter().flat_map(|m| m.parameters) {
+            let mut about = parameter.about().split_whitespace();
+            assert!(about.all(|word| words.contains(&word)), "{parameter:?}");
+        }
+        assert!(text.lines().all(|l| l.chars().count() <= WIDTH));
     }
 }

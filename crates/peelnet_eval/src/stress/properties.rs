@@ -112,6 +112,9 @@ pub(super) fn judge(
         };
         let finite = p.iter().all(|c| c.is_finite());
         note(Property::Finite, f64::from(u8::from(!finite)), 0.0, &place);
+        if !subject.promises.per_pixel {
+            continue;
+        }
         let Some(k) = kind_index else {
             let same = p[..3] == trial.scene.background && p[3] == 0.0;
             note(

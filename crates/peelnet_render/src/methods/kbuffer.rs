@@ -20,13 +20,9 @@ const K: Option<Numbered> = Some(Numbered {
     power_of_two: false,
 });
 
-/// Flaws were seen with four places.
-fn four(spec: &MethodSpec) -> bool {
-    spec.number() == 4
-}
-
-fn four_in_half(spec: &MethodSpec) -> bool {
-    four(spec) && half_sums(spec)
+/// Few enough places that tails of hundreds of fragments are left in the hard cases.
+fn long_tails(spec: &MethodSpec) -> bool {
+    spec.number() <= 8 && half_sums(spec)
 }
 
 const TOO_FEW_PLACES: Flaw = Flaw::new(
@@ -34,7 +30,7 @@ const TOO_FEW_PLACES: Flaw = Flaw::new(
     &["coplanar"],
     "of more coincident fragments than places, those drawn first are kept",
 )
-.when(four);
+.when(|s| s.number() < 16);
 
 pub(super) const PLAIN: Method = Method {
     numbered: K,
@@ -46,7 +42,7 @@ pub(super) const PLAIN: Method = Method {
     }),
     flaws: &[
         TOO_FEW_PLACES,
-        Flaw::swallowed(&["alpha-tiny", "deep"]).when(four_in_half),
+        Flaw::swallowed(&["alpha-tiny", "deep"]).when(long_tails),
     ],
     ..Method::new(
         "kbuffer",
@@ -71,8 +67,8 @@ pub(super) const HYBRID: Method = Method {
     }),
     flaws: &[
         TOO_FEW_PLACES,
-        Flaw::swallowed(&["deep"]).when(four_in_half),
-        Flaw::overflowing(&["near-overflow"]).when(four_in_half),
+        Flaw::swallowed(&["deep"]).when(long_tails),
+        Flaw::overflowing(&["near-overflow"]).when(long_tails),
     ],
     ..Method::new(
         "hybrid",

@@ -75,8 +75,12 @@ pub struct Numbered {
 pub struct Promises {
     /// Every pixel equals the composite of its sorted fragments in 64 bits.
     pub exact: bool,
+    /// The order of drawing does not matter.
+    pub order_independent: bool,
     /// It sorts what it draws: another order of drawing gives the very same operations.
     pub sorted: bool,
+    /// A pixel is made of its own fragments alone.
+    pub per_pixel: bool,
     /// A pixel's colour is a mean of its fragments' colours and `C_0`: it lies in their convex hull.
     pub normalised: bool,
     /// It draws light that takes a colour where it passes through surfaces.
@@ -98,7 +102,9 @@ impl Promises {
     /// Of exact methods, whose fragments are kept in 32 bits.
     pub(super) const EXACT: Self = Self {
         exact: true,
+        order_independent: true,
         sorted: true,
+        per_pixel: true,
         normalised: true,
         tinted: false,
         noisy: false,

@@ -17,6 +17,7 @@ const SORT: Word = Word {
 
 const fn promises(sorted: bool) -> Promises {
     Promises {
+        order_independent: sorted,
         sorted,
         ..Promises::NORMALISED
     }

@@ -95,6 +95,7 @@ impl MethodSpec {
         let scaled = self.is_scaled();
         Promises {
             exact: own.exact && !scaled,
+            per_pixel: own.per_pixel && !scaled,
             normalised: own.normalised && !scaled,
             tinted: own.tinted && !scaled,
             sums: self.targets().unwrap_or(own.sums),
@@ -376,7 +377,7 @@ mod tests {
         let of = |text: &str| text.parse::<MethodSpec>().unwrap().promises();
         assert!(of("depth-peel").exact && !of("depth-peel:passes=2").exact);
         assert!(of("abuffer").tinted && !of("abuffer:scale=0.5").exact);
-        assert!(of("painter-object").sorted && !of("painter-object:sort=off").sorted);
+        assert!(of("painter-object").sorted && !of("painter-object:sort=off").order_independent);
         assert_eq!(of("mboit4").statistics, Precision::Full);
         assert_eq!(of("mboit4").sums, Precision::Half);
         assert_eq!(of("mboit4:targets=f16").statistics, Precision::Half);

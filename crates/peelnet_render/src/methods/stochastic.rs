@@ -25,13 +25,13 @@ pub(super) const METHOD: Method = Method {
         Some(stochastic::composite(fragments, c0, s.number(), p.position))
     }),
     flaws: &[
-        Flaw::swallowed(&["deep", "near-overflow"]).when(|s| s.number() == 16 && half_sums(s)),
+        Flaw::swallowed(&["deep", "near-overflow"]),
+        Flaw::swallowed(&["alpha-tiny"]).when(|s| s.number() >= 64 && half_sums(s)),
         Flaw::new(
             Property::Opaque,
             &["alpha-near-one"],
             "noise: one sample of sixteen weighs 0.06 (Enderton et al. 2010)",
-        )
-        .when(|s| s.number() == 16),
+        ),
     ],
     ..Method::new(
         "stochastic",
