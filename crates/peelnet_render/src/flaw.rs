@@ -143,13 +143,6 @@ impl Flaw {
         &["alpha-near-one"],
         "a weight of depth alone, or of depth and sums, does not know what lies in front (McGuire & Bavoil 2013, section 5)",
     );
-
-    /// Networks that half floats do not evaluate within their limit.
-    pub(crate) const WIDE_LAYERS: Self = Self::new(
-        Property::Half,
-        &["half-float"],
-        "wide layers and inputs of scene units: roundings of the first layers add up to more than the last layer's own",
-    );
 }
 
 /// Whether the sums of colour have 16 bits.

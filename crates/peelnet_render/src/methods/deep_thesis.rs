@@ -56,7 +56,11 @@ pub(super) const METHOD: Method = Method {
             &["isolated", "two-layers", "coplanar"],
             "its output is a weight among others, not a transmittance that stands alone",
         ),
-        Flaw::WIDE_LAYERS,
+        Flaw::new(
+            Property::Half,
+            &["half-float"],
+            "inputs of scene units: roundings of the first layers add up to more than the last layer's own",
+        ),
     ],
     ..Method::new(
         "deep-thesis",

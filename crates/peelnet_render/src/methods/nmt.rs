@@ -38,7 +38,6 @@ pub(super) const METHOD: Method = Method {
             &["isolated", "two-layers", "coplanar"],
             "the network's own error (Tsopouridis et al. 2024)",
         ),
-        Flaw::WIDE_LAYERS,
     ],
     ..Method::new(
         "nmt",
