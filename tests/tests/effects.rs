@@ -150,7 +150,7 @@ fn what_is_not_called_for_is_not_there() {
             Effect::OcclusionMap => &["occlusion_map"],
             Effect::EmissiveMap => &["emissive_map"],
             Effect::VertexColors => &["surface.color"],
-            Effect::Sun => &["[i].is_point"],
+            Effect::Sun => &["light.is_point"],
             Effect::Transmission => &["material.transmission"],
             _ => &[],
         };
