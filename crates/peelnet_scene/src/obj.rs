@@ -62,6 +62,13 @@ pub fn load_obj_from(
     load(path, lighting, &mut Files::new(&read))
 }
 
+/// Whether a position or normal is written with other letters than those of an exponent, as `nan` and `inf` are.
+fn is_not_numeric(line: &str) -> bool {
+    let numbers = line.strip_prefix("v ").or_else(|| line.strip_prefix("vn "));
+    let is_word = |b: u8| b.is_ascii_alphabetic() && !b.eq_ignore_ascii_case(&b'e');
+    numbers.is_some_and(|n| n.bytes().any(is_word))
+}
+
 /// Reads an OBJ file.
 pub(crate) fn load(
     path: &Path,
@@ -112,6 +119,11 @@ pub(crate) fn load(
     if !models.iter().all(|m| is_sound(&m.mesh)) {
         let message = "a number is not finite, or a face has fewer than 3 vertices";
         return Err(bad((1, format!("{message}; export the mesh again"))));
+    }
+    // tobj drops what no face uses, but a file with such a number is damaged.
+    if text.lines().any(is_not_numeric) {
+        let message = "a number is not finite; repair the mesh and export it again";
+        return Err(bad((1, message.into())));
     }
     if models.iter().all(|m| m.mesh.indices.is_empty()) {
         let message = "holds no faces; is the file empty or cut off?";

@@ -324,7 +324,7 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
         std::fs::write(&state, damaged).unwrap();
         let text = message(&config(), &data);
         assert!(
-            text.contains("state.safetensors") && text.contains("without --resume"),
+            text.contains("state.safetensors") && text.contains("delete the checkpoint folder"),
             "{text}"
         );
     }

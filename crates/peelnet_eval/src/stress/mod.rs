@@ -466,7 +466,9 @@ mod tests {
     /// Every flaw that a method declares names cases that exist, and belongs to at least one of the methods that run.
     #[test]
     fn flaws_are_of_cases_and_methods_that_run() {
-        let run = Subject::all_methods();
+        // Those of a full run, and points of curves, which `peelnet stress --methods` draws.
+        let mut run = Subject::all_methods();
+        run.extend(peelnet_render::MethodSpec::curve());
         for method in peelnet_render::METHODS {
             for flaw in method.flaws {
                 let at = format!("{} of {}", flaw.property, method.name);
