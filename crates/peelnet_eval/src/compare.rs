@@ -59,7 +59,7 @@ impl<'a> Plan<'a> {
 
 /// File name of a method's picture of a scene.
 pub fn image_name(scene: &str, method: &str) -> String {
-    // Knobs bring ':' and '=' into the name, which some file systems refuse.
+    // Parameters bring ':' and '=' into the name, which some file systems refuse.
     let plain = |text: &str| -> String {
         text.chars()
             .map(|c| {

@@ -172,7 +172,7 @@ impl Renderer {
     /// Makes a method ready for images of the size in `options`.
     ///
     /// # Errors
-    /// A knob's value, a missing model, a missing feature of the adapter, or a frame beyond its limits.
+    /// A missing model, a missing feature of the adapter, or a frame beyond its limits.
     pub fn method(
         &self,
         spec: &MethodSpec,

@@ -45,7 +45,7 @@ pub enum Outcome {
 /// One property of one method in one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The method with its knobs.
+    /// The method with its parameters.
     pub method: String,
     /// The case's name.
     pub case: String,
