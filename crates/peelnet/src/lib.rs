@@ -13,7 +13,7 @@
 //! | [`Model`], [`model`] | `peelnet_model` | model files; [`Model::shipped`] has the shipped networks |
 //! | [`train`] | `peelnet_train` | networks from datasets (feature `train`) |
 //! | [`export`] | `peelnet_export` | a network as verified WGSL |
-//! | [`bench`] | `peelnet_eval` | errors against the exact image, times, hard cases |
+//! | [`mod@bench`] | `peelnet_eval` | errors against the exact image, times, hard cases |
 //! | [`report`] | `peelnet_report` | pages, charts and tables of what was measured |
 //! | [`models`] | `peelnet_models` | model files and WGSL of the shipped networks, embedded |
 //!

@@ -53,7 +53,7 @@ pub enum Progress<'a> {
 /// use peelnet_scene::Scene;
 ///
 /// let gpu = Gpu::open(&AdapterRequest::Auto)?;
-/// let scene = Scene::load("data/scenes/cups.toml".as_ref())?;
+/// let scene = Scene::load("data/scenes/cups.toml")?;
 /// let methods = ["mboit4".parse()?, "wboit-eq9".parse()?];
 /// for row in bench(&gpu, &[scene], &Plan::new([512, 384], &methods))? {
 ///     println!("{} on {}: {:.2e} in {:?} ms", row.method, row.scene, row.mse_linear, row.time_ms);
@@ -69,10 +69,10 @@ pub fn bench(gpu: &Gpu, scenes: &[Scene], plan: &Plan<'_>) -> Result<Vec<Row>, E
     Ok(bench_watched(gpu, scenes, plan, partial, &stop, &mut |_| {})?.rows)
 }
 
-/// As [`bench`], but continues what `partial` holds, adds each finished view to it, reports progress, and can be stopped.
+/// As [`bench()`], but continues what `partial` holds, adds each finished view to it, reports progress, and can be stopped.
 ///
 /// # Errors
-/// As [`bench`]; [`EvalError::Interrupted`] once `stop` is set.
+/// As [`bench()`]; [`EvalError::Interrupted`] once `stop` is set.
 pub fn bench_watched(
     gpu: &Gpu,
     scenes: &[Scene],
