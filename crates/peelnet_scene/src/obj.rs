@@ -2,7 +2,7 @@
 //!
 //! `tobj` is the only parser. What it lacks is added around it: encodings, comments and continued lines before it (`text`), the few
 //! statements that it would misread (`repair`), and behind it checks of the values that it returns, polygons cut into triangles
-//! ([`crate::polygons`]), and the line of an error (`fault`).
+//! (`polygons`), and the line of an error (`fault`).
 
 mod fault;
 mod library;
