@@ -160,33 +160,6 @@ fn every_method_draws_over_what_a_target_holds() {
     }
 }
 
-/// The bytes of a texture of 4 bytes a pixel.
-fn bytes(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[u8; 4]> {
-    let texture = view.texture();
-    let row = (texture.width() * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let size = u64::from(row * texture.height());
-    let buffer = gpu.storage("read-back", size).expect("a small buffer");
-    let mut encoder = gpu.encoder();
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(row),
-                rows_per_image: None,
-            },
-        },
-        texture.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
-    let padded: Vec<[u8; 4]> = gpu.read(&buffer, 0..size).expect("reads");
-    let rows = padded.chunks_exact(row as usize / 4);
-    rows.flat_map(|r| &r[..texture.width() as usize])
-        .copied()
-        .collect()
-}
-
 /// Targets of other formats hold the same picture in their encoding, within one step: the rounding of the background and of the blend.
 #[test]
 fn formats_keep_the_picture() {
@@ -217,7 +190,8 @@ fn formats_keep_the_picture() {
             let cleared = Target::cleared(&view);
             draw(&renderer, &mut method, &scene.views[0], &cleared);
         }
-        for (found, exact) in bytes(&gpu, &view).iter().zip(&image.pixels) {
+        let bytes: Vec<[u8; 4]> = gpu.read_texture(&view).expect("reads");
+        for (found, exact) in bytes.iter().zip(&image.pixels) {
             for k in 0..3 {
                 let at = if k == 1 { 1 } else { red ^ k };
                 let encoded = if is_srgb {
@@ -359,27 +333,9 @@ fn resolved(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
 }
 
 fn half_floats(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
-    let texture = view.texture();
-    let row = (texture.width() * 8).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let size = u64::from(row * texture.height());
-    let buffer = gpu.storage("read-back", size).expect("a small buffer");
-    let mut encoder = gpu.encoder();
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(row),
-                rows_per_image: None,
-            },
-        },
-        texture.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
-    let padded: Vec<[u16; 4]> = gpu.read(&buffer, 0..size).expect("reads");
-    let rows = padded.chunks_exact(row as usize / 8);
-    rows.flat_map(|r| &r[..texture.width() as usize])
+    let texels: Vec<[u16; 4]> = gpu.read_texture(view).expect("reads");
+    let values = texels.into_iter();
+    values
         .map(|p| p.map(|bits| half::f16::from_bits(bits).to_f32()))
         .collect()
 }

@@ -163,7 +163,7 @@ impl Gpu {
     ) -> Result<T, E> {
         let mut future = std::pin::pin!(future);
         let mut cx = Context::from_waker(Waker::noop());
-        // A wait runs the callbacks of everything submitted; what is still not done after two never will be.
+        // A wait runs the callbacks of everything submitted. What is not done long after the queue is empty never will be.
         let mut waits_in_vain = 0;
         loop {
             if let Poll::Ready(result) = future.as_mut().poll(&mut cx) {

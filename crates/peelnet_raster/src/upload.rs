@@ -156,22 +156,19 @@ impl AttributeData {
     }
 }
 
-/// Writes a part's attributes into buffers of `vertices` vertices; makes those that nothing has read so far. Returns whether it
-/// made any.
+/// Writes a part's attributes into buffers of `vertices` vertices; makes those that nothing has read so far.
 pub(crate) fn write_attributes(
     gpu: &Gpu,
     buffers: &mut [Option<wgpu::Buffer>; 4],
     vertices: usize,
     first: usize,
     part: &[Vec<f32>; 4],
-) -> bool {
-    let mut made = false;
+) {
     for (i, (buffer, part)) in buffers.iter_mut().zip(part).enumerate() {
         if part.is_empty() {
             continue;
         }
         let buffer = buffer.get_or_insert_with(|| {
-            made = true;
             // Zeros are what WebGPU fills new buffers with.
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(ATTRIBUTES[i].0),
@@ -184,7 +181,6 @@ pub(crate) fn write_attributes(
         gpu.queue
             .write_buffer(buffer, offset, bytemuck::cast_slice(part));
     }
-    made
 }
 
 /// The middle of a triangle.

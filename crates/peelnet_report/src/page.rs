@@ -48,7 +48,7 @@ pub(crate) fn chart(class: &str, svg: &Svg) -> Markup {
     html! { div class=(class) { (PreEscaped(svg.as_str())) } }
 }
 
-/// Name and value of each property of the machine, and of what else is told.
+/// Name and value of each property of the machine, and of what else is reported.
 fn machine(m: &Machine, more: &[(String, String)]) -> Table {
     let lines = [
         ("adapter", format!("{} ({})", m.adapter, m.adapter_kind)),

@@ -179,11 +179,11 @@ impl Compositor for Dual {
 
     fn learn(
         &mut self,
-        cx: &Learning<'_>,
+        _cx: &Learning<'_>,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
-        self.passes.learn(cx, words, stats)
+        self.passes.learn(words, stats)
     }
 
     fn version(&self) -> u64 {

@@ -1,6 +1,6 @@
 //! How many passes peeling takes: as many as an earlier frame needed. What a pass found is logged on the GPU and read back with the frame.
 
-use super::{DrawContext, Fit, FrameStats, Learning};
+use super::{DrawContext, Fit, FrameStats};
 use crate::RenderError;
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_raster::count::CountPass;
@@ -71,7 +71,7 @@ impl Passes {
         Ok(self.recorded)
     }
 
-    /// Before pass `number`.
+    /// Before each pass.
     pub fn before(&self, cx: &mut DrawContext<'_, '_>) {
         cx.recorder.encoder().clear_buffer(&self.found, 0, Some(4));
     }
@@ -104,7 +104,6 @@ impl Passes {
     /// Learns how many passes the frame needed: those that left something to peel, and the one that found this out.
     pub fn learn(
         &mut self,
-        _cx: &Learning<'_>,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
