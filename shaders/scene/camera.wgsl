@@ -12,14 +12,12 @@ struct Camera {
     sample_threshold: u32,
     // 2^-k with 2^k > far, which maps linear depth to 0..1 without rounding.
     unit_from_depth: f32,
-    // The depth warp: 1 / near and 2 / (ln(far) - ln(near)) of the range that transparent objects span.
+    // The depth warp: 1 / near, near, and 2 / (ln(far) - ln(near)) of the range that transparent objects span.
     warp_inverse_near: f32,
+    warp_near: f32,
     warp_scale: f32,
     // far / (far - near): window depth is this less a multiple of 1 / z.
     window_depth_at_infinity: f32,
-    // The nearest and the farthest linear depth that transparent objects span.
-    range_near: f32,
-    range_far: f32,
 }
 
 @group(0) @binding(0) var<uniform> camera: Camera;

@@ -22,7 +22,6 @@ pub fn absorbance(alpha: f32) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthWarp {
     near: f64,
-    far: f64,
     log_near: f64,
     scale: f64,
 }
@@ -46,7 +45,6 @@ impl DepthWarp {
         };
         Self {
             near,
-            far,
             log_near: near.ln(),
             scale: if extent > least { 2.0 / extent } else { 0.0 },
         }
@@ -55,11 +53,6 @@ impl DepthWarp {
     /// The near end of the range.
     pub const fn near(&self) -> f64 {
         self.near
-    }
-
-    /// The far end of the range.
-    pub const fn far(&self) -> f64 {
-        self.far
     }
 
     /// `2 / (ln far − ln near)`; 0 for a range without extent.

@@ -80,7 +80,8 @@ const fn sum(name: &'static str, format: &'static str, write: &'static str) -> T
 
 const ZETA: &str = "zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the \
     bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else \
-    you choose. Compute zeta with this function in both passes.";
+    you choose. Compute zeta with this function in both passes. Its range is the same for the whole frame: \
+    peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.";
 
 const WEIGHTED: &str = "vec4f(alpha * rgb, alpha) * w";
 

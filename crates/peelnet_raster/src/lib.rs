@@ -16,6 +16,8 @@ mod error;
 pub mod frame;
 pub mod fullscreen;
 mod maps;
+#[cfg(feature = "images")]
+mod mip_levels;
 pub mod pipelines;
 pub mod sbuffer;
 mod scene;

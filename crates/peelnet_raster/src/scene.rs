@@ -258,11 +258,10 @@ impl SceneBuffers {
             sample_threshold: sample.threshold,
             unit_from_depth: unit_from_depth(camera.far),
             warp_inverse_near: (-warp.near().ln()).exp() as f32,
+            warp_near: warp.near() as f32,
             warp_scale: warp.scale() as f32,
             window_depth_at_infinity: camera.far / (camera.far - camera.near),
-            range_near: warp.near() as f32,
-            range_far: warp.far() as f32,
-            pad: 0,
+            pad: [0; 2],
         };
         recorder.write(&self.camera, &[uniform]);
     }

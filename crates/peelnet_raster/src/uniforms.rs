@@ -20,15 +20,13 @@ pub(crate) struct CameraUniform {
     pub unit_from_depth: f32,
     /// 1 / near of the depth range that transparent objects span.
     pub warp_inverse_near: f32,
+    /// Near end of that range.
+    pub warp_near: f32,
     /// 2 / (ln far − ln near) of that range.
     pub warp_scale: f32,
     /// far / (far − near): window depth is this less a multiple of 1 / z.
     pub window_depth_at_infinity: f32,
-    /// Near end of the depth range that transparent objects span.
-    pub range_near: f32,
-    /// Far end of that range.
-    pub range_far: f32,
-    pub pad: u32,
+    pub pad: [u32; 2],
 }
 
 /// `Material` in `scene/shade.wgsl`.
@@ -205,10 +203,9 @@ mod tests {
                 sample_threshold,
                 unit_from_depth,
                 warp_inverse_near,
+                warp_near,
                 warp_scale,
-                window_depth_at_infinity,
-                range_near,
-                range_far
+                window_depth_at_infinity
             ]
         );
     }

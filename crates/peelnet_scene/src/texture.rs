@@ -92,6 +92,7 @@ impl Default for Maps {
 }
 
 /// Longest side of a texture that is read: WebGPU guarantees no longer one.
+#[cfg(feature = "images")]
 const LONGEST: u32 = 8192;
 
 impl Texture {
@@ -109,7 +110,17 @@ impl Texture {
     /// Reads a PNG or JPEG image from memory.
     ///
     /// # Errors
+    /// What is wrong, and a fix. Without the feature `images` nothing is read.
+    #[cfg(not(feature = "images"))]
+    pub fn decode(_: &str, _: &[u8]) -> Result<Self, String> {
+        Err("is an image, which this build cannot read; build peelnet_scene with its feature `images`".into())
+    }
+
+    /// Reads a PNG or JPEG image from memory.
+    ///
+    /// # Errors
     /// What is wrong, and a fix.
+    #[cfg(feature = "images")]
     pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, String> {
         let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
             .with_guessed_format()
@@ -146,11 +157,16 @@ impl Texture {
         self.grey
     }
 
-    /// The same texture at another size.
+    /// The same texture at another size: of the nearest texels without the feature `images`.
     pub fn resized(&self, size: [u32; 2]) -> Self {
         if size == self.size {
             return self.clone();
         }
+        self.resampled(size)
+    }
+
+    #[cfg(feature = "images")]
+    fn resampled(&self, size: [u32; 2]) -> Self {
         let [width, height] = self.size;
         let flat = self.texels.concat();
         let Some(image) = image::RgbaImage::from_raw(width, height, flat) else {
@@ -159,6 +175,16 @@ impl Texture {
         let filter = image::imageops::FilterType::Triangle;
         let image = image::imageops::resize(&image, size[0], size[1], filter);
         Self::new(&self.name, size, image.pixels().map(|p| p.0).collect())
+    }
+
+    #[cfg(not(feature = "images"))]
+    fn resampled(&self, size: [u32; 2]) -> Self {
+        let [width, height] = self.size;
+        Self::of(&self.name, size, |x, y| {
+            let column = u64::from(x) * u64::from(width) / u64::from(size[0]);
+            let row = u64::from(y) * u64::from(height) / u64::from(size[1]);
+            self.texels[(row * u64::from(width) + column) as usize]
+        })
     }
 
     /// Two textures joined texel by texel, at the larger size of each side.
@@ -225,6 +251,7 @@ mod tests {
         assert!(flat.texels.iter().all(|t| *t == [128, 128, 255, 255]));
     }
 
+    #[cfg(feature = "images")]
     #[test]
     fn files_that_are_no_images_are_errors() {
         let e = Texture::decode("x", b"RIFF....WEBP").expect_err("no PNG");

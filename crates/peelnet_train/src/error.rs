@@ -51,6 +51,9 @@ pub enum TrainError {
         /// What the system says.
         error: std::io::Error,
     },
+    /// Threads could not be started.
+    #[error("threads could not be started: {0}")]
+    Threads(String),
     /// A checkpoint cannot be continued.
     #[error("{}: {problem}", path.display())]
     Checkpoint {

@@ -122,7 +122,10 @@ pub fn train(
         fingerprint: data.fingerprint(),
         options,
         device,
-        threads: options.compute.threads(options.threads),
+        threads: rayon::ThreadPoolBuilder::new()
+            .num_threads(options.compute.threads(options.threads))
+            .build()
+            .map_err(|error| TrainError::Threads(error.to_string()))?,
         shape: shape(config),
         folder: checkpoint::folder(&options.out),
     };
@@ -150,7 +153,7 @@ struct Run<'a> {
     fingerprint: String,
     options: &'a RunOptions<'a>,
     device: Device,
-    threads: usize,
+    threads: rayon::ThreadPool,
     shape: Shape,
     folder: PathBuf,
 }
@@ -283,9 +286,7 @@ impl Run<'_> {
         if task.examples(Part::Validation) > 0 {
             let losses = &mut model.meta.losses;
             losses.validation = losses.validation.or(losses.test);
-            losses.test = Team::with(self.threads, task, &self.shape, self.config.chunk, |team| {
-                mean_loss(team, chosen.1, Part::Test)
-            });
+            losses.test = mean_loss(&self.team(task), chosen.1, Part::Test);
         }
         if end != End::Interrupted {
             save_model(&model, &self.options.out)?;
@@ -312,36 +313,44 @@ impl Run<'_> {
                 .of(config.seed)
                 .permutation(examples as u32),
         );
-        Team::with(self.threads, &*task, &self.shape, config.chunk, |team| {
-            let mut parameters = start.parameters.clone();
-            let mut adam = start.adam.clone();
-            let count = self.shape.parameters();
-            let mut losses = Vec::with_capacity(steps_per_epoch as usize);
-            for first in (0..examples).step_by(config.batch) {
-                if self.options.stop.load(Ordering::Relaxed) {
-                    return None;
-                }
-                let range = first..(first + config.batch).min(examples);
-                let scale = 1.0 / range.len() as f64;
-                let sum = team.gradient(&parameters, range);
-                losses.push(sum.clone().narrow(0, count, 1));
-                let gradient = sum.narrow(0, 0, count) * scale;
-                let rate = config
-                    .schedule
-                    .rate(config.learning_rate, adam.steps, steps);
-                (adam, parameters) = adam.step(config, rate, parameters, gradient);
+        let team = self.team(task);
+        let mut parameters = start.parameters.clone();
+        let mut adam = start.adam.clone();
+        let count = self.shape.parameters();
+        let mut losses = Vec::with_capacity(steps_per_epoch as usize);
+        for first in (0..examples).step_by(config.batch) {
+            if self.options.stop.load(Ordering::Relaxed) {
+                return None;
             }
-            let train_loss = total(losses) / examples as f64;
-            let seconds = begin.elapsed().as_secs_f64();
-            let held_out_loss = held_out_loss(team, &parameters);
-            Some(Pass {
-                train_loss,
-                held_out_loss,
-                seconds,
-                parameters,
-                adam,
-            })
+            let range = first..(first + config.batch).min(examples);
+            let scale = 1.0 / range.len() as f64;
+            let sum = team.gradient(&parameters, range);
+            losses.push(sum.clone().narrow(0, count, 1));
+            let gradient = sum.narrow(0, 0, count) * scale;
+            let rate = config
+                .schedule
+                .rate(config.learning_rate, adam.steps, steps);
+            (adam, parameters) = adam.step(config, rate, parameters, gradient);
+        }
+        let train_loss = total(losses) / examples as f64;
+        let seconds = begin.elapsed().as_secs_f64();
+        let held_out_loss = held_out_loss(&team, &parameters);
+        Some(Pass {
+            train_loss,
+            held_out_loss,
+            seconds,
+            parameters,
+            adam,
         })
+    }
+
+    fn team<'a>(&'a self, task: &'a dyn Task) -> Team<'a> {
+        Team {
+            threads: &self.threads,
+            task,
+            shape: &self.shape,
+            chunk: self.config.chunk,
+        }
     }
 
     /// Removes an earlier run's model files: they must not pass for this run's.

@@ -1,6 +1,7 @@
 // Learned methods with anchors, pass 2: the exported text's weight of each fragment.
 // Variants: none | separate_ends | tinted | separate_ends tinted
-import package::learned::weight::{peelnet_fragment, peelnet_zeta};
+import package::helpers::range::transparent_range;
+import package::learned::weight::{peelnet_fragment, peelnet_zeta_in};
 import package::scene::camera::camera;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
@@ -26,7 +27,7 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
-    let zeta = peelnet_zeta(surface.depth_linear, camera.range_near, camera.range_far);
+    let zeta = peelnet_zeta_in(surface.depth_linear, transparent_range());
     let m = textureLoad(moments, pixel, 0);
     let e = textureLoad(extent, pixel, 0);
     let w = peelnet_fragment(color.a, zeta, m, e);

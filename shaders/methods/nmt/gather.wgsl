@@ -1,5 +1,6 @@
 // nmt, pass 2: eq 6 with the weight that the exported network gives.
-import package::learned::weight::{peelnet_fragment, peelnet_zeta};
+import package::helpers::range::transparent_range;
+import package::learned::weight::{peelnet_fragment, peelnet_zeta_in};
 import package::scene::camera::camera;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
@@ -16,7 +17,7 @@ fn fragment_main(surface: Surface) -> @location(0) vec4f {
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
     let weight = peelnet_fragment(
-        peelnet_zeta(surface.depth_linear, camera.range_near, camera.range_far),
+        peelnet_zeta_in(surface.depth_linear, transparent_range()),
         textureLoad(absorbance, pixel, 0).xy,
         textureLoad(moments, pixel, 0),
     );

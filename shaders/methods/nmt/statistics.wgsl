@@ -1,5 +1,6 @@
 // nmt, pass 1: absorbance, the number of fragments, and four power moments.
-import package::learned::weight::{peelnet_statistics, peelnet_zeta};
+import package::helpers::range::transparent_range;
+import package::learned::weight::{peelnet_statistics, peelnet_zeta_in};
 import package::scene::camera::camera;
 import package::scene::shade::opacity;
 import package::scene::surface::Surface;
@@ -15,7 +16,7 @@ fn fragment_main(surface: Surface) -> Statistics {
     if !visible(surface) {
         discard;
     }
-    let zeta = peelnet_zeta(surface.depth_linear, camera.range_near, camera.range_far);
+    let zeta = peelnet_zeta_in(surface.depth_linear, transparent_range());
     let s = peelnet_statistics(opacity(surface), zeta);
     return Statistics(s.absorbance, s.moments);
 }

@@ -31,9 +31,9 @@ fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
 @group(0) @binding(2) var sums: texture_2d<f32>;
 @group(0) @binding(3) var ends: texture_2d<f32>;
 
-// The same function in both passes, over the range of depth that the layers span.
+// The range of depth that the layers span.
 fn zeta(depth: f32) -> f32 {
-    return clamp(2.0 * log(depth / 1.0) / log(8.0 / 1.0) - 1.0, -1.0, 1.0);
+    return peelnet_zeta(depth, 1.0, 8.0);
 }
 
 struct Two {
@@ -58,14 +58,8 @@ fn weighted(in: Varyings) -> Two {
 @fragment
 fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = vec2u(position.xy);
-    let background = vec3f(0.0);
-    let t = exp(-textureLoad(moments, at, 0).x);
-    if t == 1.0 {
-        return vec4f(background, 1.0);
-    }
-    let s = textureLoad(sums, at, 0);
-    let e = textureLoad(ends, at, 0);
-    let k = select(min((1.0 - t) / e.a, 1.0), (1.0 - t) / e.a, s.a == 0.0);
-    let between = s.rgb / max(s.a, 1e-30) * max(1.0 - t - e.a * k, 0.0);
-    return vec4f(e.rgb * k + between + background * t, 1.0);
+    let absorbance = textureLoad(moments, at, 0).x;
+    let color = peelnet_resolve(textureLoad(sums, at, 0), textureLoad(ends, at, 0), absorbance, vec3f(0.0));
+    // The background is opaque.
+    return vec4f(color.rgb, 1.0);
 }

@@ -4,7 +4,18 @@ use crate::{
     error::SceneError,
     files::{FileKind, Files},
 };
+use base64::{
+    Engine as _,
+    alphabet::STANDARD,
+    engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
+};
 use std::path::{Path, PathBuf};
+
+/// Base64 with or without padding, as exporters write it.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
 
 /// The file that a URI names. The `gltf` crate reads from the file system only, so it is not asked.
 fn uri_path(uri: &str, folder: &Path) -> Result<PathBuf, String> {
@@ -29,9 +40,11 @@ pub(super) fn read_uri(
     kind: FileKind,
     files: &mut Files<'_>,
 ) -> Result<Vec<u8>, String> {
-    if uri.starts_with("data:") {
-        let data = gltf::buffer::Data::from_source(gltf::buffer::Source::Uri(uri), None);
-        return data.map(|data| data.0).map_err(|e| e.to_string());
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (_, text) = data
+            .split_once(";base64,")
+            .ok_or("a data URI is not base64")?;
+        return BASE64.decode(text).map_err(|e| e.to_string());
     }
     let path = uri_path(uri, folder)?;
     let bytes = files.read(&path, kind).map_err(|e| match e {
