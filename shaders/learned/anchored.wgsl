@@ -7,6 +7,10 @@ const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
 const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
 const PEELNET_OPACITY_STEP: vec2f = 1.0 / (PEELNET_OPACITIES - 1.0);
 
+// Limits of a rest's mean powers. In narrow pixels, the rounding of the ends and of the sums takes the higher powers beyond 1;
+// bounds multiply up to seven of them, which 32 bits hold.
+const PEELNET_MEANS_MAX: vec4f = vec4f(1.0, 65536.0, 65536.0, 65536.0);
+
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3.
     moments: vec4f,
@@ -119,7 +123,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
     let scale_square = scale * scale;
     let means = vec4f(
-        clamp((mean.x - middle) * scale, -1.0, 1.0),
+        (mean.x - middle) * scale,
         (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
         (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
         (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
@@ -127,7 +131,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     return PeelnetRest(
         sqrt(absorbance),
         clamp((z.x - middle) * scale, -1.0, 1.0),
-        means,
+        clamp(means, -PEELNET_MEANS_MAX, PEELNET_MEANS_MAX),
         // Moved to a narrow pixel's range, moments lose their last bits.
         min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
     );

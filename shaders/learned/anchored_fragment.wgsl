@@ -3,7 +3,7 @@
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let finite_moments = clamp(moments, vec4f(-65504.0), vec4f(65504.0));
-    let finite_extent = clamp(extent, vec4f(-65504.0), vec4f(65504.0));
+    let finite_extent = vec4f(extent.xyz, min(extent.w, 65504.0));
     let place = peelnet_place(alpha, zeta, finite_moments, finite_extent);
     let rest = peelnet_rest(place, finite_moments, finite_extent);
     let share = peelnet_network(rest);

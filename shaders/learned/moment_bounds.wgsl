@@ -1,13 +1,8 @@
 // The least and the most of the rest that can lie in front of the fragment, given its first four moments, as shares
 // (Muenstermann et al. 2018).
 fn peelnet_moment_bounds(rest: PeelnetRest) -> vec2f {
-    let mixed = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
-    // Shares do not depend on the unit of depth. Another one where moments exceed the range, as those of narrow pixels and noise do:
-    // their products would overflow.
-    let unit = 1.0 / sqrt(max(1.0, max(abs(mixed.y), sqrt(abs(mixed.w)))));
-    let square = unit * unit;
-    let x = rest.place * unit;
-    let m = mixed * vec4f(unit, square, square * unit, square * square);
+    let x = rest.place;
+    let m = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
     // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
     // its value at x, which is one over what lies at x itself.
     let variance = m.y - m.x * m.x;

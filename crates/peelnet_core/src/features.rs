@@ -63,6 +63,10 @@ const BIAS: f64 = 1.0 / 1024.0;
 /// the pixel's, and without it the bounds depend on the last bits of 32-bit sums.
 const BIAS_BY_SCALE: f64 = 1.0 / 65_536.0;
 
+/// Limit of the mean powers 2 to 4. In narrow pixels, the rounding of the ends and of the sums takes them beyond 1; bounds multiply
+/// up to seven of them, which 32 bits hold.
+const POWER_MAX: f64 = 65_536.0;
+
 /// The most of that pull.
 const BIAS_MAX: f64 = 0.25;
 
@@ -104,10 +108,11 @@ impl<F: Float> Rest<F> {
             let inner = c::<F>(6.0) * m2 - middle * (c::<F>(4.0) * m1 - middle);
             (m4 - middle * (c::<F>(4.0) * m3 - middle * inner)) * scale.powi(4)
         };
+        let power = |mean: F| mean.max(c(-POWER_MAX)).min(c(POWER_MAX));
         Self {
             absorbance: m[0],
             place: ((zeta - middle) * scale).max(-one).min(one),
-            means: [x1, x2, x3, x4],
+            means: [x1, power(x2), power(x3), power(x4)],
             bias: (c::<F>(BIAS) + c::<F>(BIAS_BY_SCALE) * scale.powi(4)).min(c(BIAS_MAX)),
         }
     }
