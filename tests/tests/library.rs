@@ -242,7 +242,14 @@ fn frames_that_were_too_small_grow() {
     let scene = walls(&layers, [0.2; 3]);
     let renderer = Renderer::new(&gpu, &scene).expect("uploads");
     let camera = scene.views[0];
-    for name in ["abuffer", "linked-list", "depth-peel", "dual-peel"] {
+    // With a budget, a frame of many tiles.
+    for name in [
+        "abuffer",
+        "abuffer:budget=100",
+        "linked-list",
+        "depth-peel",
+        "dual-peel",
+    ] {
         let spec = name.parse().expect("a name");
         let mut method = renderer
             .method(&spec, MethodOptions::sized(size))

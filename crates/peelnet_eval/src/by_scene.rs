@@ -1,6 +1,7 @@
 //! Errors of every method on every scene: means over the views.
 
 use crate::{Row, geometric_mean};
+use peelnet_render::MethodSpec;
 use std::collections::BTreeMap;
 
 /// Figures of one scene, means over its views.
@@ -93,7 +94,10 @@ impl ByScene {
             .collect();
         let best_published = methods
             .iter()
-            .filter(|m| m.starts_with("wboit-"))
+            .filter(|m| {
+                m.parse::<MethodSpec>()
+                    .is_ok_and(|spec| spec.promises().own_weight)
+            })
             .filter_map(|m| {
                 let errors: Option<Vec<f64>> =
                     scenes.iter().map(|s| s.mse255.get(m).copied()).collect();

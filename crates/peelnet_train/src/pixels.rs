@@ -17,7 +17,7 @@ use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
 /// Rows that are read at once.
 const ROWS_AT_A_TIME: usize = 1 << 16;
 
-/// A pixel of a dataset, nearest fragment first.
+/// A pixel, nearest fragment first.
 pub(crate) struct Pixel<'a> {
     /// Linear depth and opacity.
     pub(crate) points: &'a [(f32, f32)],
@@ -47,45 +47,82 @@ impl Pixel<'_> {
     }
 }
 
-/// The depth warp of a part: over the range of its fragments. The features do not depend on the warp's range; where it
-/// matters (`nmt`), this is the range that tight bounding boxes would give.
-pub(crate) fn warp(dataset: &Dataset, part: &Part) -> Result<DepthWarp, TrainError> {
-    let columns = dataset.read_columns_where(&[Column::LinearDepth], |p| p.index == part.index)?;
-    let depths = columns.first().and_then(|c| c.as_f32()).unwrap_or_default();
-    let near = depths.iter().copied().fold(f32::MAX, f32::min);
-    let far = depths.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-    Ok(DepthWarp::new(near.min(far).into(), far.into()))
+/// The rows of one view of a scene.
+#[derive(Clone, Copy)]
+pub(crate) enum View<'a> {
+    /// A part of a dataset.
+    Stored(&'a Dataset, &'a Part),
+    /// Batches of whole pixels in memory.
+    Held(&'a [FragmentBatch]),
 }
 
-/// Calls `each` with every pixel of a part, and its place (view, x, y).
-pub(crate) fn for_each_pixel(
-    dataset: &Dataset,
-    part: &Part,
-    mut each: impl FnMut([u32; 3], &Pixel<'_>),
-) -> Result<(), TrainError> {
-    for batch in dataset.batches_where(ROWS_AT_A_TIME, |p| p.index == part.index) {
-        let batch: FragmentBatch = batch?;
-        let points: Vec<(f32, f32)> = batch
-            .linear_depth
-            .iter()
-            .zip(&batch.one_minus_alpha)
-            .map(|(&z, &through)| (z, 1.0 - through))
-            .collect();
-        let colors: Vec<[f32; 3]> = (0..batch.len())
-            .map(|i| [batch.r[i], batch.g[i], batch.b[i]])
-            .collect();
-        for Range { start, end } in batch.pixels() {
-            each(
-                [batch.view[start], batch.x[start], batch.y[start]],
-                &Pixel {
-                    points: &points[start..end],
-                    transmittance: &batch.transmittance[start..end],
-                    colors: &colors[start..end],
-                },
-            );
-        }
+impl View<'_> {
+    /// The depth warp over the range of the view's fragments. The features do not depend on the warp's range; where it
+    /// matters (`nmt`), this is the range that tight bounding boxes would give.
+    pub(crate) fn warp(self) -> Result<DepthWarp, TrainError> {
+        let range = |[near, far]: [f32; 2], depths: &[f32]| {
+            depths
+                .iter()
+                .fold([near, far], |[a, b], &z| [a.min(z), b.max(z)])
+        };
+        let none = [f32::MAX, f32::MIN_POSITIVE];
+        let [near, far] = match self {
+            Self::Stored(dataset, part) => {
+                let columns = dataset
+                    .read_columns_where(&[Column::LinearDepth], |p| p.index == part.index)?;
+                range(
+                    none,
+                    columns.first().and_then(|c| c.as_f32()).unwrap_or_default(),
+                )
+            }
+            Self::Held(batches) => batches
+                .iter()
+                .fold(none, |known, batch| range(known, &batch.linear_depth)),
+        };
+        Ok(DepthWarp::new(near.min(far).into(), far.into()))
     }
-    Ok(())
+
+    /// Calls `each` with every pixel of the view, and its place (view, x, y).
+    pub(crate) fn for_each_pixel(
+        self,
+        mut each: impl FnMut([u32; 3], &Pixel<'_>),
+    ) -> Result<(), TrainError> {
+        match self {
+            Self::Stored(dataset, part) => {
+                for batch in dataset.batches_where(ROWS_AT_A_TIME, |p| p.index == part.index) {
+                    pixels_of(&batch?, &mut each);
+                }
+            }
+            Self::Held(batches) => {
+                for batch in batches {
+                    pixels_of(batch, &mut each);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn pixels_of(batch: &FragmentBatch, each: &mut impl FnMut([u32; 3], &Pixel<'_>)) {
+    let points: Vec<(f32, f32)> = batch
+        .linear_depth
+        .iter()
+        .zip(&batch.one_minus_alpha)
+        .map(|(&z, &through)| (z, 1.0 - through))
+        .collect();
+    let colors: Vec<[f32; 3]> = (0..batch.len())
+        .map(|i| [batch.r[i], batch.g[i], batch.b[i]])
+        .collect();
+    for Range { start, end } in batch.pixels() {
+        each(
+            [batch.view[start], batch.x[start], batch.y[start]],
+            &Pixel {
+                points: &points[start..end],
+                transmittance: &batch.transmittance[start..end],
+                colors: &colors[start..end],
+            },
+        );
+    }
 }
 
 /// Squared error of a pixel that MBOIT-4 draws, mean over the channels: how hard the pixel is.
@@ -121,20 +158,20 @@ fn hardness(pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
     error.iter().map(|e| e * e / 3.0).sum()
 }
 
-/// Examples of one part, before they are weighed.
+/// Examples of one view, before they are weighed.
 #[derive(Default)]
 struct Gathered {
     hardness: f64,
     pixels: u64,
-    /// First example of the part.
+    /// First example of the view.
     first: usize,
 }
 
-/// Reads the datasets' training scenes as the recipe's examples.
-pub(crate) fn gather(
+/// Reads views as the recipe's examples.
+pub(crate) fn gather<'a>(
     recipe: Recipe,
     split: &Split,
-    datasets: &[Dataset],
+    views: impl IntoIterator<Item = View<'a>>,
 ) -> Result<TrainingData, TrainError> {
     let mut data = TrainingData {
         source: String::new(),
@@ -145,52 +182,49 @@ pub(crate) fn gather(
         subsets: Some(Vec::new()),
         dataset: None,
     };
-    let mut parts = Vec::new();
-    for dataset in datasets {
-        let ours = dataset.manifest().parts.iter();
-        for part in ours.filter(|part| !dataset.is_held_out(part) && part.rows > 0) {
-            let warp = warp(dataset, part)?;
-            let mut gathered = Gathered {
-                first: data.weights.as_ref().map_or(0, Vec::len),
-                ..Default::default()
-            };
-            for_each_pixel(dataset, part, |[view, x, y], pixel| {
-                gathered.hardness += hardness(pixel, &warp);
-                gathered.pixels += 1;
-                let subset = split.pixel(view, x, y);
-                match recipe.inputs {
-                    Inputs::Moments(features) => {
-                        transmittance_rows(features, &mut data, pixel, &warp, subset);
-                    }
-                    Inputs::Tail(features) => tail_row(features, &mut data, pixel, subset),
-                    Inputs::Rest(features) => {
-                        share_pixel(features, &mut data, pixel, &warp, recipe, subset);
-                    }
-                    // Columns of the dataset, read without whole pixels.
-                    Inputs::Row(_) => {}
+    let mut all = Vec::new();
+    for view in views {
+        let warp = view.warp()?;
+        let mut gathered = Gathered {
+            first: data.weights.as_ref().map_or(0, Vec::len),
+            ..Default::default()
+        };
+        view.for_each_pixel(|[view, x, y], pixel| {
+            gathered.hardness += hardness(pixel, &warp);
+            gathered.pixels += 1;
+            let subset = split.pixel(view, x, y);
+            match recipe.inputs {
+                Inputs::Moments(features) => {
+                    transmittance_rows(features, &mut data, pixel, &warp, subset);
                 }
-            })?;
-            parts.push(gathered);
-        }
+                Inputs::Tail(features) => tail_row(features, &mut data, pixel, subset),
+                Inputs::Rest(features) => {
+                    share_pixel(features, &mut data, pixel, &warp, recipe, subset);
+                }
+                // Columns of the dataset, read without whole pixels.
+                Inputs::Row(_) => {}
+            }
+        })?;
+        all.push(gathered);
     }
-    weigh(&mut data, &parts);
+    weigh(&mut data, &all);
     Ok(data)
 }
 
-/// Divides the weights of each part's examples by the part's mean hardness, and all by their mean.
-fn weigh(data: &mut TrainingData, parts: &[Gathered]) {
+/// Divides the weights of each view's examples by the view's mean hardness, and all by their mean.
+fn weigh(data: &mut TrainingData, views: &[Gathered]) {
     let Some(weights) = &mut data.weights else {
         return;
     };
-    let (sum, pixels) = parts.iter().fold((0.0, 0), |(s, p), part| {
-        (s + part.hardness, p + part.pixels)
+    let (sum, pixels) = views.iter().fold((0.0, 0), |(s, p), view| {
+        (s + view.hardness, p + view.pixels)
     });
     let overall = sum / pixels.max(1) as f64;
-    for (k, part) in parts.iter().enumerate() {
-        let end = parts.get(k + 1).map_or(weights.len(), |next| next.first);
+    for (k, view) in views.iter().enumerate() {
+        let end = views.get(k + 1).map_or(weights.len(), |next| next.first);
         // A view that MBOIT-4 draws almost exactly must not outweigh all others.
-        let mean = part.hardness / part.pixels.max(1) as f64 + 0.02 * overall;
-        for weight in &mut weights[part.first..end] {
+        let mean = view.hardness / view.pixels.max(1) as f64 + 0.02 * overall;
+        for weight in &mut weights[view.first..end] {
             *weight = (f64::from(*weight) * overall / mean.max(f64::MIN_POSITIVE)) as f32;
         }
     }

@@ -25,15 +25,20 @@ fn scene(name: &str, held_out: bool) -> SceneEntry {
 
 /// A view of 30×30 pixels with three fragments of α = ½ each.
 fn view(index: u32) -> FragmentBatch {
+    stacks(index, 3)
+}
+
+/// The same with any number of fragments.
+fn stacks(index: u32, layers: u32) -> FragmentBatch {
     let mut batch = FragmentBatch::default();
     for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
-        for layer in 0..3 {
+        for layer in 0..layers {
             batch.one_minus_alpha.push(0.5);
             batch
                 .linear_depth
                 .push(1.0 + layer as f32 + x as f32 / 64.0);
-            batch.alpha_sum.push(1.5);
-            batch.fragment_count.push(3);
+            batch.alpha_sum.push(0.5 * layers as f32);
+            batch.fragment_count.push(layers);
             batch.transmittance.push(0.5f32.powi(layer as i32));
             batch.view.push(index);
             batch.x.push(x);
@@ -50,6 +55,14 @@ fn view(index: u32) -> FragmentBatch {
 }
 
 fn write(folder: &Path, scenes: Vec<SceneEntry>) -> Dataset {
+    write_views(folder, scenes, view)
+}
+
+fn write_views(
+    folder: &Path,
+    scenes: Vec<SceneEntry>,
+    rows: impl Fn(u32) -> FragmentBatch,
+) -> Dataset {
     let parts = scenes.len() as u32;
     let writer = DatasetWriter::create(
         folder,
@@ -87,7 +100,7 @@ fn write(folder: &Path, scenes: Vec<SceneEntry>) -> Dataset {
                 height: SIDE,
             })
             .unwrap();
-        part.write(&view(index)).unwrap();
+        part.write(&rows(index)).unwrap();
         part.finish(PartCounts::default()).unwrap();
     }
     writer.finish().unwrap();
@@ -171,4 +184,46 @@ fn a_dataset_of_held_out_scenes_only_is_refused() {
         data.ends_with('a') && problem.contains("held out"),
         "{error}"
     );
+}
+
+/// Rows in memory are the examples of the dataset that holds them, for every kind of input; a view may come in several batches.
+#[test]
+fn batches_in_memory_train_as_their_dataset() {
+    let folder = tempfile::tempdir().unwrap();
+    let view = |index| stacks(index, 6);
+    let scenes = vec![scene("one", false), scene("two", false)];
+    let dataset = write_views(&folder.path().join("rows"), scenes, view);
+    let mut halves = [FragmentBatch::default(), FragmentBatch::default()];
+    let first = view(0);
+    let half = first.len() / 2 / 6 * 6;
+    halves[0].extend_from(&first, 0..half);
+    halves[1].extend_from(&first, half..first.len());
+    let [early, late] = halves;
+    let batches = [early, late, view(1)];
+    for recipe in [
+        Recipe::THESIS,
+        Recipe::MEDIUM,
+        Recipe::LARGE,
+        Recipe::NMT,
+        Recipe::DFAOIT,
+    ] {
+        let config = Config::for_recipe(recipe);
+        let stored = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
+        let held = TrainingData::from_batches(&config, "rows", &batches).unwrap();
+        assert!(stored.rows() > 0, "{recipe}");
+        assert_eq!(held.source, "rows");
+        assert_eq!(stored.inputs, held.inputs, "{recipe}");
+        assert_eq!(stored.targets, held.targets, "{recipe}");
+        assert_eq!(stored.weights, held.weights, "{recipe}");
+        assert_eq!(stored.subsets, held.subsets, "{recipe}");
+        assert_eq!(
+            format!("{:?}", stored.pixels),
+            format!("{:?}", held.pixels),
+            "{recipe}"
+        );
+    }
+    let mut broken = view(0);
+    broken.linear_depth.pop();
+    let config = Config::for_recipe(Recipe::MEDIUM);
+    assert!(TrainingData::from_batches(&config, "rows", &[broken]).is_err());
 }

@@ -9,12 +9,13 @@ use peelnet_eval::{
     Machine,
     effects::{self, Settings},
 };
+use peelnet_render::Role;
 use peelnet_report::Results;
 use peelnet_scene::suite;
 use serde_json::json;
 
 /// Drawn where no method is named: one pass, nothing that could hide what an effect costs.
-pub(super) const METHOD: &str = "wboit-eq9";
+pub(super) const METHOD: &str = Role::WeightedBlending.method();
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let scenes = if args.scenes.is_empty() {

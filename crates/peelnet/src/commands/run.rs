@@ -17,7 +17,7 @@ use peelnet_eval::{Machine, Partial, Row};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views};
-use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer};
+use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, Role};
 use peelnet_report::{Attachments, Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
 use peelnet_train::{Config, Outcome, RunOptions, curve_chart};
@@ -34,9 +34,9 @@ const SHOWN: [&str; 8] = [
     front::BASE,
     EXACT,
     "painter-triangle",
-    "wboit-eq9",
-    "mboit4",
-    "deep-thesis",
+    Role::WeightedBlending.method(),
+    Role::MomentBlending.method(),
+    Role::ThesisNetwork.method(),
     "deep-medium",
     "deep-large",
 ];

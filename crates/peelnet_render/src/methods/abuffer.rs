@@ -58,7 +58,7 @@ struct ABuffer {
     ends: wgpu::Buffer,
     /// Whether the tiles come from counts, not from a guess.
     is_counted: bool,
-    /// Whether the next frame's offsets are needed to plan its tiles.
+    /// Whether the next frame's offsets come back: the tiles of the frame behind it may be planned by them.
     wants_offsets: bool,
     version: u64,
 }
@@ -89,7 +89,8 @@ pub(super) fn build_with(
         tiles: Vec::new(),
         ends: gpu.storage("tile ends", 4)?,
         is_counted: false,
-        wants_offsets: false,
+        // A first frame may need several tiles.
+        wants_offsets: true,
         version: 0,
     }))
 }
@@ -218,6 +219,8 @@ impl Compositor for ABuffer {
         };
         // Count, offset and the unwritten attachment; then the fragments.
         stats.bytes_per_pixel = 9.0 + (stored * bytes) as f64 / f64::from(cx.frame.pixels());
+        // A frame that fits one tile may be followed by one that does not; at least half of a tile is left then.
+        self.wants_offsets = found.total > self.sbuffer.limit() / 2;
         let is_whole = !self.tiles.is_empty() && self.had_room(found.total, words.get(1));
         let one_would_do = self.tiles.len() > 1 && found.total <= self.sbuffer.limit();
         if is_whole && !one_would_do {
@@ -232,7 +235,6 @@ impl Compositor for ABuffer {
         };
         let offsets = words.get(2).map(Vec::as_slice);
         self.is_counted = self.plan(cx.gpu, cx.scene, cx.frame, room, offsets)?;
-        self.wants_offsets = !self.is_counted;
         Ok(if is_whole { Fit::Whole } else { Fit::TooSmall })
     }
 

@@ -96,6 +96,8 @@ pub struct Promises {
     pub root: Option<u32>,
     /// Its estimate of transmittance is held to a fraction of the limits that published methods are held to.
     pub close_estimate: bool,
+    /// A fragment's weight is a formula of its own depth and opacity (McGuire & Bavoil 2013).
+    pub own_weight: bool,
 }
 
 impl Promises {
@@ -112,6 +114,7 @@ impl Promises {
         statistics: Precision::Full,
         root: None,
         close_estimate: false,
+        own_weight: false,
     };
 
     /// Of methods that normalise sums kept in 16 bits.

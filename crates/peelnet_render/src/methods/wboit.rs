@@ -26,6 +26,7 @@ macro_rules! wboit {
             parameters: &[TARGETS],
             promises: |_| Promises {
                 tinted: true,
+                own_weight: true,
                 ..Promises::NORMALISED
             },
             curve: &["", ":targets=f32"],
