@@ -32,6 +32,27 @@ fn every_crate_stands_in_the_architecture() {
     }
 }
 
+/// No source file is over 600 lines.
+#[test]
+fn files_are_short() {
+    let mut folders = vec![root()];
+    let mut seen = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if path.is_dir() && !name.starts_with('.') && !["target", "out"].contains(&name.as_str()) {
+                folders.push(path);
+            } else if [".rs", ".wgsl", ".py"].iter().any(|e| name.ends_with(e)) {
+                let lines = fs::read_to_string(&path).unwrap().lines().count();
+                assert!(lines <= 600, "{}: {lines} lines", path.display());
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 100, "{seen} files");
+}
+
 /// Every shader is described: a method's passes at the head of their files, all others in the list of shaders.
 #[test]
 fn every_shader_is_described() {
