@@ -29,7 +29,7 @@ fn fragment_main(surface: Surface) {
     }
     // Counting down to zero gives every fragment of the pixel another slot and needs no second counter.
     let slot = offsets[index] - offsets[tile.begin] + atomicSub(&counts[index], 1u) - 1u;
-    // Storage made for another frame may be too small: the counts tell, and the next frame has room.
+    // Storage made for another frame may be too small: the counts show it, and the next frame has room.
     if slot >= tile.capacity {
         discard;
     }

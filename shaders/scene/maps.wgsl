@@ -1,4 +1,4 @@
-// Images on surfaces. A pipeline binds those that its material has.
+// Textures. A pipeline binds those that its material has.
 @if(mapped) @group(2) @binding(0) var map_sampler: sampler;
 @if(color_map) @group(2) @binding(1) var color_map: texture_2d<f32>;
 @if(normal_map) @group(2) @binding(2) var normal_map: texture_2d<f32>;
@@ -6,7 +6,7 @@
 @if(occlusion_map) @group(2) @binding(4) var occlusion_map: texture_2d<f32>;
 @if(emissive_map) @group(2) @binding(5) var emissive_map: texture_2d<f32>;
 
-// How places on images change from pixel to pixel. Derivatives exist in uniform control flow only, and images are fetched after
+// How UVs change from pixel to pixel. Derivatives exist in uniform control flow only, and textures are fetched after
 // hidden fragments have left.
 @if(mapped) var<private> uv_across: vec2f;
 @if(mapped) var<private> uv_down: vec2f;

@@ -1,5 +1,5 @@
 // Radiance and opacity of a surface. Which of it exists is decided when a shader is linked, by what the scene's materials and
-// lights call for. Twin of peelnet_core::shading.
+// lights need. Twin of peelnet_core::shading.
 import package::scene::camera::camera;
 @if(emission || transmission) import package::helpers::guards::EMISSIVE_ALPHA;
 @if(color_map) import package::scene::maps::color_at;
@@ -121,7 +121,7 @@ fn opaque(surface: Surface) -> vec3f {
     return color;
 }
 
-// Un-premultiplied radiance and opacity, as datasets keep it. An invisible fragment's emission cannot be told so.
+// Un-premultiplied radiance and opacity, as datasets keep it. An invisible fragment's emission has no such form.
 fn radiance(surface: Surface) -> vec4f {
     @if(emission || transmission) {
         let color = shade(surface);
@@ -162,7 +162,7 @@ fn ambient_share(surface: Surface, material: Material) -> f32 {
     }
 }
 
-// The normal towards the eye. An interpolated one can vanish between opposite corners: the view direction stands in, never NaN.
+// The normal towards the eye. An interpolated one can vanish between opposite vertices: the view direction stands in, never NaN.
 @if(lit)
 fn facing_normal(surface: Surface, material: Material, view: vec3f) -> vec3f {
     let length_squared = dot(surface.normal, surface.normal);

@@ -2,7 +2,7 @@
 import package::scene::camera::camera;
 import package::scene::surface::Surface;
 
-struct Corner {
+struct Vertex {
     @location(0) position: vec3f,
     @location(1) material: u32,
     @if(mapped) @location(2) uv: vec2f,
@@ -12,19 +12,19 @@ struct Corner {
 }
 
 @vertex
-fn vertex_main(corner: Corner, @if(numbered) @builtin(vertex_index) index: u32) -> Surface {
+fn vertex_main(vertex: Vertex, @if(numbered) @builtin(vertex_index) index: u32) -> Surface {
     var out: Surface;
-    out.position = camera.clip_from_world * vec4f(corner.position, 1.0);
+    out.position = camera.clip_from_world * vec4f(vertex.position, 1.0);
     @if(lit) {
-        out.world = corner.position;
-        out.normal = corner.normal;
+        out.world = vertex.position;
+        out.normal = vertex.normal;
     }
-    @if(mapped) out.uv = corner.uv;
-    @if(normal_map) out.tangent = corner.tangent;
-    @if(vertex_colors) out.color = corner.color;
+    @if(mapped) out.uv = vertex.uv;
+    @if(normal_map) out.tangent = vertex.tangent;
+    @if(vertex_colors) out.color = vertex.color;
     // A perspective projection puts the distance along the view axis into w.
     out.depth_linear = out.position.w;
     @if(numbered) out.triangle = index / 3u;
-    out.material = corner.material;
+    out.material = vertex.material;
     return out;
 }

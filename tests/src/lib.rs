@@ -108,14 +108,14 @@ pub fn clip_triangles(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<sca
     let mut triangles = Vec::new();
     for object in &scene.objects {
         for triangle in &object.mesh.triangles {
-            let corners = triangle.map(|i| {
+            let vertices = triangle.map(|i| {
                 let world = object
                     .world_from_object
                     .transform_point3(object.mesh.positions[i as usize]);
                 (clip * world.as_dvec3().extend(1.0)).to_array()
             });
             triangles.push(scanline::Triangle {
-                clip: corners,
+                clip: vertices,
                 id: triangles.len() as u32,
             });
         }

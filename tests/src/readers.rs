@@ -100,8 +100,8 @@ fn is_sound(scene: &Scene) {
         let mesh = &object.mesh;
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
         assert!(mesh.normals.iter().all(|n| n.is_finite()));
-        let mut corners = mesh.triangles.iter().flatten();
-        assert!(corners.all(|i| (*i as usize) < mesh.positions.len()));
+        let mut vertices = mesh.triangles.iter().flatten();
+        assert!(vertices.all(|i| (*i as usize) < mesh.positions.len()));
         assert_eq!(object.materials.len(), mesh.parts.len());
         assert!(mesh.uvs.iter().flatten().all(|uv| uv.is_finite()));
         for (part, material) in mesh.parts.iter().zip(&object.materials) {
@@ -127,7 +127,7 @@ fn gltf(bytes: &[u8]) {
     }
 }
 
-/// A triangle with its buffer as a data URI: nine zeros but for two corners, in base 64.
+/// A triangle with its buffer as a data URI: nine zeros but for two vertices, in base 64.
 fn gltf_seeds() -> Vec<Vec<u8>> {
     let buffer = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
     let text = format!(
@@ -139,7 +139,7 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
 "bufferViews":[{{"buffer":0,"byteLength":36}}],
 "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{buffer}"}}]}}"#
     );
-    // The same with places, colours of corners and an image.
+    // The same with UVs, vertex colours and a texture.
     let mapped = text
         .replace(r#""POSITION":0"#, r#""POSITION":0,"COLOR_0":0,"TEXCOORD_0":1"#)
         .replace(
@@ -198,9 +198,9 @@ fn obj(bytes: &[u8]) {
         let mesh = &loaded.mesh;
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
         assert!(mesh.normals.iter().all(|n| n.is_finite()));
-        let corners = mesh.triangles.iter().flatten();
+        let vertices = mesh.triangles.iter().flatten();
         assert!(
-            corners
+            vertices
                 .into_iter()
                 .all(|i| (*i as usize) < mesh.positions.len())
         );

@@ -75,7 +75,7 @@ fn a_resumed_comparison_draws_what_is_left() {
     assert_eq!(rows(&methods, 3, &[0, 1, 2]).1, 0);
 }
 
-/// A method whose storage the adapter does not allow is told of where all are asked for, and ends the comparison where it was
+/// A method whose storage the adapter does not allow is reported where all are asked for, and ends the comparison where it was
 /// asked for itself; the others have their rows either way.
 #[test]
 fn what_is_too_large_is_left_out_and_told() {

@@ -41,7 +41,10 @@ fn files_are_short() {
         for entry in fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            if path.is_dir() && !name.starts_with('.') && !["target", "out"].contains(&name.as_str()) {
+            if path.is_dir()
+                && !name.starts_with('.')
+                && !["target", "out"].contains(&name.as_str())
+            {
                 folders.push(path);
             } else if [".rs", ".wgsl", ".py"].iter().any(|e| name.ends_with(e)) {
                 let lines = fs::read_to_string(&path).unwrap().lines().count();

@@ -73,7 +73,7 @@ fn scene_with(effect: Option<Effect>) -> Scene {
     all
 }
 
-/// What an effect brings with it is built where a scene calls for it and only there: bindings, targets, passes, and the text of the
+/// What an effect brings with it is built where a scene needs it and only there: bindings, targets, passes, and the text of the
 /// shaders that the pipelines are made of.
 #[test]
 fn what_is_not_called_for_is_not_there() {
@@ -174,7 +174,7 @@ fn what_is_not_called_for_is_not_there() {
     }
 }
 
-/// One plain object keeps the text of its shader, whatever another one calls for.
+/// One plain object keeps the text of its shader, whatever another one needs.
 #[test]
 fn an_effect_changes_only_what_it_names() {
     let plain = Census::of(&scene_with(None)).variants;

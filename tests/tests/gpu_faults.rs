@@ -14,7 +14,7 @@ fn stack() -> Vec<Fragment> {
         .collect()
 }
 
-/// Storage for all fragments does not fit: the frame is drawn in smaller tiles, all fragments are there, and it is told.
+/// Storage for all fragments does not fit: the frame is drawn in smaller tiles, all fragments are there, and it is reported.
 #[test]
 fn full_memory_makes_smaller_tiles() {
     let mut gpu = gpu();

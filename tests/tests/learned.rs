@@ -157,7 +157,7 @@ fn the_ends_are_recognised() {
 ///
 /// But for a pixel in ten thousand, by sixteen steps at most: a thousand is no power of two, so that depths are rounded
 /// otherwise, a sum in 16 bits falls on the other side of a rounding, and where little is left of it without the fragment's
-/// own share and the ends that is a large part. docs/learned-weights.md tells what was measured and tried.
+/// own share and the ends that is a large part. docs/learned-weights.md reports what was measured and tried.
 #[test]
 fn scale_changes_nothing_visible() {
     let gpu = gpu();
@@ -179,7 +179,7 @@ fn scale_changes_nothing_visible() {
                             d.max((display(a[k]) - display(b[k])).abs())
                         })
                     };
-                    // At a silhouette the scaled triangle may miss a pixel's centre: the exact image tells.
+                    // At a silhouette the scaled triangle may miss a pixel's centre: the exact image shows it.
                     let same: Vec<bool> = exact
                         .pixels
                         .iter()

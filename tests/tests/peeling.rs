@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 const SIZE: [u32; 2] = [61, 47];
 
-/// Half the sub-pixel grid that WebGPU's adapters must at least have (1/16 pixel in Vulkan; 4 bits): corners move by
+/// Half the sub-pixel grid that WebGPU's adapters must at least have (1/16 pixel in Vulkan; 4 bits): vertices move by
 /// at most this far, so a pixel whose fragments do not change under a shift this large is no silhouette.
 const SNAP: f64 = 1.0 / 16.0;
 
@@ -26,7 +26,7 @@ fn soup(objects: usize, seed: u64) -> Scene {
     let mut random = move || stream.unit();
     let objects: Vec<Object> = (0..objects)
         .map(|i| {
-            let corners: Vec<[Vec3; 3]> = (0..3)
+            let vertices: Vec<[Vec3; 3]> = (0..3)
                 .map(|_| {
                     [(); 3].map(|()| {
                         let z = 2.0 + 30.0 * random();
@@ -37,7 +37,7 @@ fn soup(objects: usize, seed: u64) -> Scene {
             let color = [random(), random(), random()];
             Object::of_triangles(
                 &format!("soup {i}"),
-                &corners,
+                &vertices,
                 Material::unlit(color, 0.05 + 0.9 * random()),
             )
         })
@@ -203,7 +203,7 @@ fn depth_is_linear() {
     }
 }
 
-/// What is peeled is what is seen: opacity and colour from an image, corners' colours, light, and holes through which the rest shows.
+/// What is peeled is what is seen: opacity and colour from a texture, vertex colours, light, and holes through which the rest shows.
 #[test]
 fn fragments_carry_what_surfaces_look_like() {
     let gpu = gpu();
@@ -216,7 +216,7 @@ fn fragments_carry_what_surfaces_look_like() {
     (fence.alpha_cutoff, fence.blend) = (Some(0.5), false);
     fence.maps.color = halves([255, 255, 255, 0], [255; 4]);
     fence.maps.nearest = true;
-    // Behind: opacity from an image, and from its corners.
+    // Behind: opacity from a texture, and from its vertices.
     let mut pane = Material::unlit([1.0, 0.5, 0.25], 0.5);
     pane.maps.color = halves([255, 0, 255, 204], [255; 4]);
     pane.maps.nearest = true;

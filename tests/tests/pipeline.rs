@@ -48,14 +48,14 @@ fn scenes() -> Vec<Scene> {
             let mut random = move || stream.unit();
             let objects = (0..12)
                 .map(|i| {
-                    let corners = [(); 3].map(|()| {
+                    let vertices = [(); 3].map(|()| {
                         let z = 2.0 + 8.0 * random();
                         glam::Vec3::new((2.0 * random() - 1.0) * z, (2.0 * random() - 1.0) * z, -z)
                     });
                     let color = [random(), random(), random()];
                     Object::of_triangles(
                         &format!("pane {i}"),
-                        &[corners],
+                        &[vertices],
                         Material::unlit(color, random()),
                     )
                 })
@@ -182,7 +182,7 @@ fn extraction_repeats_and_shards_add_up() {
     assert_eq!(merged.rows(), whole.rows);
 }
 
-/// A dataset tells what its scenes called for.
+/// A dataset records the effects that its scenes needed.
 #[test]
 fn a_dataset_records_its_census() {
     let gpu = gpu();

@@ -22,7 +22,7 @@ fn ensure(version: &mut Command, package: &str) -> Result<(), String> {
 }
 
 /// Makes sure that a Vulkan driver is there: installs Mesa's software rasteriser through apt where none is and apt
-/// exists, saying so; elsewhere tells what to do.
+/// exists, saying so; elsewhere says what to do.
 pub fn ensure_driver() -> Result<(), String> {
     if !cfg!(target_os = "linux") || driver_exists() {
         return Ok(());

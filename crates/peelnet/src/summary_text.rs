@@ -104,7 +104,7 @@ fn figure(v: f64) -> String {
 
 fn histogram(t: &mut String, bins: &[Bin], unit: &str, label: impl Fn(&Bin) -> String) {
     let most = bins.iter().map(|b| b.count).max().unwrap_or(0).max(1) as f64;
-    // Empty bins at both ends tell nothing.
+    // Empty bins at both ends are left out.
     let first = bins.iter().position(|b| b.count > 0).unwrap_or(0);
     let last = bins.iter().rposition(|b| b.count > 0).map_or(0, |k| k + 1);
     for bin in &bins[first..last.max(first)] {

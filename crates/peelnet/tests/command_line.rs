@@ -223,7 +223,7 @@ fn broken_models(folder: &Path) {
     std::fs::write(folder.join("shape.safetensors"), &model).unwrap();
 }
 
-/// Hard input in every kind of file: exit code 1, one line that names the file, the place in it and the mend, and nothing written.
+/// Hard input in every kind of file: exit code 1, one line that names the file, the place in it and the fix, and nothing written.
 #[test]
 fn hard_input_is_refused_with_its_place() {
     let dir = tempfile::tempdir().unwrap();
@@ -317,7 +317,7 @@ fn an_unknown_adapter_is_refused() {
 }
 
 /// The shipped vase: each layer highlighted at a time of its own, what there is not is refused, and `inspect` and the measurement of
-/// effects tell what it calls for.
+/// effects list what it needs.
 #[test]
 fn the_vase_shows_its_layers_and_its_age() {
     let dir = tempfile::tempdir().unwrap();

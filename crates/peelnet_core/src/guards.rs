@@ -10,7 +10,7 @@ pub const WEIGHT_FLOOR: f32 = 1.0 / 16384.0;
 /// The divisor's floor in the resolve of weighted methods with 16-bit targets. With 32-bit ones, and in the CPU twins, it is the
 /// smallest normal number.
 ///
-/// `2⁻²⁴` is the smallest positive half float: a sum of weights that a 16-bit target can tell from zero is never
+/// `2⁻²⁴` is the smallest positive half float: a sum of weights that a 16-bit target can distinguish from zero is never
 /// changed by the floor, and zero over the floor stays zero.
 pub const SUM_FLOOR: f32 = 1.0 / 16_777_216.0;
 

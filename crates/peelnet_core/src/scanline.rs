@@ -3,13 +3,13 @@
 //! Deliberately another algorithm than the GPU's (Carpenter's A-buffer over a scan-line walk rather than passes over
 //! the whole frame) and another arithmetic: triangles are clipped in homogeneous coordinates, each is walked row by
 //! row between its edges' crossings, and every pixel keeps all of its fragments. There is no sub-pixel grid, so a
-//! GPU differs where an edge passes within its snapping distance of a pixel centre; [`stable_pixels`] tells those
+//! GPU differs where an edge passes within its snapping distance of a pixel centre; [`stable_pixels`] lists those
 //! pixels apart.
 
 /// A triangle in clip space with what its fragments carry.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
-    /// Clip-space corners `(x, y, z, w)`, depth range 0 ≤ z ≤ w.
+    /// Clip-space vertices `(x, y, z, w)`, depth range 0 ≤ z ≤ w.
     pub clip: [[f64; 4]; 3],
     /// Index in the scene's list; ties of depth are broken by it.
     pub id: u32,
@@ -64,7 +64,7 @@ pub fn rasterise(triangles: &[Triangle], width: usize, height: usize, offset: [f
 }
 
 /// Which pixels see the same triangles when the sample moves by `radius` pixels in any of eight directions: the others lie
-/// on an edge for a rasteriser that snaps its corners to a grid no coarser than `radius`.
+/// on an edge for a rasteriser that snaps vertices to a grid no coarser than `radius`.
 pub fn stable_pixels(
     triangles: &[Triangle],
     width: usize,
@@ -101,8 +101,8 @@ pub fn stable_pixels(
 }
 
 /// Clips a triangle against the near (z ≥ 0) and far (z ≤ w) planes: Sutherland & Hodgman 1974.
-fn clip_depth(corners: &[[f64; 4]; 3]) -> Vec<[f64; 4]> {
-    let mut polygon = corners.to_vec();
+fn clip_depth(vertices: &[[f64; 4]; 3]) -> Vec<[f64; 4]> {
+    let mut polygon = vertices.to_vec();
     for plane in [|p: &[f64; 4]| p[2], |p: &[f64; 4]| p[3] - p[2]] {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (i, b) in polygon.iter().enumerate() {
@@ -122,10 +122,10 @@ fn clip_depth(corners: &[[f64; 4]; 3]) -> Vec<[f64; 4]> {
 }
 
 /// Walks one clipped triangle row by row.
-fn walk(frame: &mut Frame, corners: [[f64; 4]; 3], id: u32, offset: [f64; 2]) {
+fn walk(frame: &mut Frame, vertices: [[f64; 4]; 3], id: u32, offset: [f64; 2]) {
     let (w, h) = (frame.width as f64, frame.height as f64);
     // Screen position, then the two quantities that are linear on the screen: 1/w and z/w.
-    let p: [[f64; 4]; 3] = corners.map(|c| {
+    let p: [[f64; 4]; 3] = vertices.map(|c| {
         [
             (c[0] / c[3] * 0.5 + 0.5) * w,
             (0.5 - c[1] / c[3] * 0.5) * h,

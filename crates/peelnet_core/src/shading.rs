@@ -1,4 +1,4 @@
-//! How surfaces answer to light, in 64 bits: the twin of `shaders/scene/shade.wgsl`, which cites the sources.
+//! Shading in 64 bits: the twin of `shaders/scene/shade.wgsl`, which cites the sources.
 
 use std::f64::consts::PI;
 
@@ -153,7 +153,7 @@ pub fn physically_based(
 mod tests {
     use super::*;
 
-    /// White furnace: under light of 1 from everywhere a white surface gives back no more than 1, whatever its roughness and
+    /// White furnace: under light of 1 from everywhere a white surface reflects no more than 1, whatever its roughness and
     /// metal, seen from any angle; and a good part of it: what bounces more than once is not computed.
     ///
     /// Integrated over 400 × 200 directions: highlights of roughness 0.3 and more are ten times as wide as their distance.

@@ -1,4 +1,4 @@
-//! Everything that can go wrong with a dataset, each with the file, the place and the mend.
+//! Everything that can go wrong with a dataset, each with the file, the place and the fix.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ pub enum DatasetError {
     },
     /// A value outside its column's range.
     #[error(
-        "{}: row {row}, column {column}: {value} is not allowed, {allowed}; mend or remove the whole pixel, or write the dataset again",
+        "{}: row {row}, column {column}: {value} is not allowed, {allowed}; fix or remove the whole pixel, or write the dataset again",
         path.display()
     )]
     Value {
@@ -106,7 +106,7 @@ pub enum DatasetError {
     Mixed {
         /// The folder.
         path: PathBuf,
-        /// What is there already.
+        /// The file or folder that exists.
         reason: &'static str,
     },
     /// Another process is writing here.

@@ -84,7 +84,7 @@ pub struct SceneEntry {
     pub sha256: String,
     /// Whether the scene must not be trained on.
     pub held_out: bool,
-    /// Its census: the effects that it calls for, by name. Datasets of earlier versions do not tell.
+    /// Its census: the effects that it needs, by name. Datasets of earlier versions have none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<String>,
 }

@@ -72,7 +72,7 @@ impl Dataset {
             let folder = path.join(shard.folder());
             match Manifest::read(&folder) {
                 Ok(manifest) => manifests.push((folder, manifest)),
-                // Not written yet, or still being written: the same mend.
+                // Not written yet, or still being written: the same fix.
                 Err(DatasetError::NoManifest { .. }) => missing.push(shard.to_string()),
                 Err(_) if !folder.exists() => missing.push(shard.to_string()),
                 Err(other) => return Err(other),

@@ -271,7 +271,7 @@ impl DatasetWriter {
             .map_err(DatasetError::io(&partial_manifest, "write"))?;
 
         // From here on the folder has no manifest until everything is in place: whoever opens it meanwhile, or
-        // after a crash, is told that it is incomplete.
+        // after a crash, learns that it is incomplete.
         remove_old(&self.folder)?;
         for file in manifest.parts.iter().flat_map(|p| &p.files) {
             let target = self.folder.join(&file.name);

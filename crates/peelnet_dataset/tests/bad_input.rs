@@ -1,4 +1,4 @@
-//! Every kind of bad dataset gives one error that names the file, the place and the mend, and nothing half-written
+//! Every kind of bad dataset gives one error that names the file, the place and the fix, and nothing half-written
 //! stays.
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
@@ -164,7 +164,7 @@ fn truncated_files() {
         (Format::Parquet, "fragments-00002-smoke-in-a-box-v0.parquet"),
         (Format::Npy, "fragments-00002-smoke-in-a-box-v0.x.npy"),
     ] {
-        // Cut where no one tells the manifest: found on opening.
+        // Cut without a change of the manifest: found on opening.
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), format, None, 1, 1000).unwrap();
         let path = folder.path().join(file);

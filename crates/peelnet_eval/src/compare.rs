@@ -88,7 +88,7 @@ pub enum Event<'a> {
 /// Compares every method of the plan on every view of a scene except those in `done`, and reports frames and views.
 ///
 /// # Errors
-/// If a method cannot draw or a picture cannot be written, or what `tell` returns; [`EvalError::Interrupted`] once `stop` is
+/// If a method cannot draw or a picture cannot be written, or what `notify` returns; [`EvalError::Interrupted`] once `stop` is
 /// set.
 pub fn compare(
     gpu: &Gpu,
@@ -96,7 +96,7 @@ pub fn compare(
     plan: &Plan<'_>,
     done: &[u32],
     stop: &AtomicBool,
-    tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+    notify: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
 ) -> Result<(), EvalError> {
     let left: Vec<usize> = (0..plan.views_of(scene))
         .filter(|&view| !done.contains(&(view as u32)))
@@ -115,13 +115,13 @@ pub fn compare(
         renderer,
         stop,
     };
-    let mut entries = stage.prepare(tell)?;
+    let mut entries = stage.prepare(notify)?;
     let mut sample = Sample::new(gpu, scene, plan.size)?;
     for view in left {
         let stacks = sample.peel(view)?;
-        let mut rows = stage.draw(view, &mut entries, &stacks, tell)?;
-        stage.time(view, &mut entries, &mut rows, tell)?;
-        tell(Event::View(rows))?;
+        let mut rows = stage.draw(view, &mut entries, &stacks, notify)?;
+        stage.time(view, &mut entries, &mut rows, notify)?;
+        notify(Event::View(rows))?;
     }
     Ok(())
 }
@@ -158,7 +158,7 @@ impl<'a> Stage<'a> {
     /// The exact method first, so that its image is there for all others.
     fn prepare(
         &self,
-        tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+        notify: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
     ) -> Result<Vec<Entry<'a>>, EvalError> {
         let plan = self.plan;
         let exact: MethodSpec = EXACT.parse().map_err(self.failed(EXACT))?;
@@ -175,7 +175,7 @@ impl<'a> Stage<'a> {
                 .method(method, MethodOptions::sized(plan.size).with(learned))
             {
                 Err(e) if plan.lenient && is_too_large(&e) && !entries.is_empty() => {
-                    tell(Event::LeftOut(&name, e.to_string()))?;
+                    notify(Event::LeftOut(&name, e.to_string()))?;
                     continue;
                 }
                 prepared => prepared.map_err(self.failed(&name))?,
@@ -197,7 +197,7 @@ impl<'a> Stage<'a> {
         view: usize,
         entries: &mut Vec<Entry<'a>>,
         stacks: &Stacks,
-        tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+        notify: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
     ) -> Result<Vec<Row>, EvalError> {
         let camera = &self.scene.views[view];
         let mut exact: Option<(Image, Displayed)> = None;
@@ -207,7 +207,7 @@ impl<'a> Stage<'a> {
             let name = &entry.name;
             let frame = match self.renderer.image(&mut entry.prepared, camera) {
                 Err(e) if self.plan.lenient && is_too_large(&e) && !rows.is_empty() => {
-                    tell(Event::LeftOut(name, e.to_string()))?;
+                    notify(Event::LeftOut(name, e.to_string()))?;
                     entries.remove(rows.len());
                     continue;
                 }
@@ -234,7 +234,7 @@ impl<'a> Stage<'a> {
             if exact.is_none() {
                 exact = Some((frame.image, shown));
             }
-            tell(Event::Drawn(name))?;
+            notify(Event::Drawn(name))?;
         }
         Ok(rows)
     }
@@ -246,7 +246,7 @@ impl<'a> Stage<'a> {
         view: usize,
         entries: &mut [Entry<'_>],
         rows: &mut [Row],
-        tell: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
+        notify: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
     ) -> Result<(), EvalError> {
         let camera = &self.scene.views[view];
         let mut frames: Vec<Vec<Timed>> = vec![Vec::new(); entries.len()];
@@ -255,7 +255,7 @@ impl<'a> Stage<'a> {
                 self.check_stop()?;
                 let timed = self.renderer.profile(&mut entry.prepared, camera);
                 frames.push(timed.map_err(self.failed(&entry.name))?);
-                tell(Event::Drawn(&entry.name))?;
+                notify(Event::Drawn(&entry.name))?;
             }
         }
         for (row, frames) in rows.iter_mut().zip(&frames) {

@@ -280,12 +280,12 @@ fn stack(layers: u32, cells: u32) -> Scene {
 fn wall(depth: f32, cells: u32, material: Material) -> Object {
     // The frame is 4:3, and tan 30° is 0.577.
     let half = Vec3::new(0.8 * depth, 0.6 * depth, 0.0);
-    let corner = |x: u32, y: u32| {
+    let vertex = |x: u32, y: u32| {
         let at = |k: u32| 2.0 * k as f32 / cells as f32 - 1.0;
         Vec3::new(at(x) * half.x, at(y) * half.y, -depth)
     };
     let row = cells + 1;
-    let positions: Vec<Vec3> = (0..row * row).map(|i| corner(i % row, i / row)).collect();
+    let positions: Vec<Vec3> = (0..row * row).map(|i| vertex(i % row, i / row)).collect();
     let triangles: Vec<[u32; 3]> = (0..cells * cells)
         .flat_map(|i| {
             let a = i / cells * row + i % cells;

@@ -60,7 +60,7 @@ fn about(model: &Model) -> Vec<String> {
     ];
     lines.extend(meta.inputs.iter().enumerate().map(|(i, input)| {
         format!(
-            "Input {i}: {} in {}, valid range {} .. {} (what training saw).",
+            "Input {i}: {} ({}), {} .. {} in training.",
             identifier(&input.name),
             input.unit,
             float(input.min),

@@ -1,7 +1,7 @@
 //! Bakes a trained network into one self-contained shader function, and proves that it is the same network.
 //!
 //! [`wgsl()`] writes the text: straight-line code on `vec4f` and `mat4x4f` literals, normalisation and guards inside, a
-//! header that tells where it comes from and how to wire it into another engine. [`verify()`] runs exactly that text on
+//! header that names its source and says how to use it in another engine. [`verify()`] runs exactly that text on
 //! the GPU over random, extreme and self-test inputs and compares with the trainer's forward pass. [`export()`] does
 //! both and writes the file only if they agree. The renderer draws with the same text, so that what is measured is
 //! what is shipped.

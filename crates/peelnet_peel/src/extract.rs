@@ -22,7 +22,7 @@ use std::{
     time::Instant,
 };
 
-/// Fragments of one tile unless told otherwise: 100 MB of GPU storage and as much for the copy of it.
+/// Fragments of one tile by default: 100 MB of GPU storage and as much for the copy of it.
 const DEFAULT_BUDGET: u64 = 4 << 20;
 
 /// Rows handed to the writer at a time.
@@ -193,7 +193,7 @@ pub fn extract(
         let written = writing
             .join()
             .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        // Whichever side failed first made the other one stop with `Interrupted`: tell the real reason.
+        // Whichever side failed first made the other one stop with `Interrupted`: report the real reason.
         match (written, peeled) {
             (Err(PeelError::Interrupted) | Ok(_), Err(e)) | (Err(e), _) => Err(e),
             (Ok(counts), Ok(())) => Ok(counts),

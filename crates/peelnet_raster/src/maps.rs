@@ -1,8 +1,8 @@
 //! Textures on surfaces: mip levels, samplers and bindings.
 
+use crate::RasterError;
 #[cfg(feature = "images")]
 use crate::mip_levels::levels;
-use crate::RasterError;
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},

@@ -1,5 +1,5 @@
 //! A scene of unlit transparent meshes without images, drawn by the renderer and by a path written for just that: one buffer of
-//! corners, one shader without a switch, two targets, one resolve. What a census costs where nothing is called for.
+//! vertices, one shader without a switch, two targets, one resolve. Measures what specialisation costs where nothing is needed.
 //!
 //! `cargo bench -p peelnet_render --bench plain`; frames in turn, the median of their ratios is what counts.
 
@@ -64,7 +64,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-struct Corner {
+struct Vertex {
     position: [f32; 3],
     material: u32,
 }
@@ -72,7 +72,7 @@ struct Corner {
 /// The path written for just that.
 struct Plain<'g> {
     gpu: &'g Gpu,
-    corners: wgpu::Buffer,
+    vertices: wgpu::Buffer,
     count: u32,
     camera: wgpu::Buffer,
     scene: peelnet_gpu::bind::Bound,
@@ -120,7 +120,7 @@ fn pipeline(
 
 impl<'g> Plain<'g> {
     fn new(gpu: &'g Gpu, scene: &Scene) -> Self {
-        let (mut corners, mut colors) = (Vec::new(), Vec::new());
+        let (mut vertices, mut colors) = (Vec::new(), Vec::new());
         for object in &scene.objects {
             for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
                 let [r, g, b] = material.color;
@@ -129,7 +129,7 @@ impl<'g> Plain<'g> {
                     .flatten()
                 {
                     let position = object.mesh.positions[*i as usize];
-                    corners.push(Corner {
+                    vertices.push(Vertex {
                         position: object
                             .world_from_object
                             .transform_point3(position)
@@ -179,7 +179,7 @@ impl<'g> Plain<'g> {
             SHADER,
             &bound.layout,
             &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Corner>() as u64,
+                array_stride: size_of::<Vertex>() as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,
                 attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32],
             })],
@@ -193,8 +193,8 @@ impl<'g> Plain<'g> {
         let image_target = [Some(T::Rgba32Float.into())];
         let resolve = pipeline(gpu, RESOLVE, &resolved.layout, &[], &image_target);
         Self {
-            corners: gpu.upload("corners", &corners, wgpu::BufferUsages::VERTEX),
-            count: corners.len() as u32,
+            vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
+            count: vertices.len() as u32,
             camera,
             scene: bound,
             gather,
@@ -245,7 +245,7 @@ impl<'g> Plain<'g> {
             let mut pass = recorder.render("gather", &targets, None);
             pass.set_pipeline(&self.gather);
             pass.set_bind_group(0, &self.scene.group, &[]);
-            pass.set_vertex_buffer(0, self.corners.slice(..));
+            pass.set_vertex_buffer(0, self.vertices.slice(..));
             pass.draw(0..self.count, 0..1);
         }
         {

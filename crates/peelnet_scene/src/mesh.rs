@@ -11,7 +11,7 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Linear RGB and alpha that multiply the material's, one for each position; empty where there are none.
     pub colors: Vec<[f32; 4]>,
-    /// UVs, stored per triangle corner, so that a UV seam does not split smooth normals: u to the right, v down, 0 … 1 over the texture.
+    /// UVs, stored per triangle vertex, so that a UV seam does not split smooth normals: u to the right, v down, 0 … 1 over the texture.
     /// Empty where there are none.
     pub uvs: Vec<[Vec2; 3]>,
     /// Indices of three vertices, counter-clockwise seen from outside.
@@ -218,19 +218,19 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
         3
     }
 
-    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        let i = self.mesh.triangles[self.first + face][corner];
+    fn position(&self, face: usize, vertex: usize) -> [f32; 3] {
+        let i = self.mesh.triangles[self.first + face][vertex];
         self.mesh.positions[i as usize].to_array()
     }
 
-    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        let i = self.mesh.triangles[self.first + face][corner];
+    fn normal(&self, face: usize, vertex: usize) -> [f32; 3] {
+        let i = self.mesh.triangles[self.first + face][vertex];
         self.mesh.normals[i as usize].to_array()
     }
 
-    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
+    fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
         // The second tangent points up the texture, against v.
-        let uv = self.mesh.uvs[self.first + face][corner];
+        let uv = self.mesh.uvs[self.first + face][vertex];
         [uv.x, 1.0 - uv.y]
     }
 
@@ -238,10 +238,10 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
         &mut self,
         tangent: Option<bevy_mikktspace::TangentSpace>,
         face: usize,
-        corner: usize,
+        vertex: usize,
     ) {
         if let Some(tangent) = tangent {
-            self.found[face][corner] = tangent.tangent_encoded();
+            self.found[face][vertex] = tangent.tangent_encoded();
         }
     }
 }

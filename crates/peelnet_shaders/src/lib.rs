@@ -1,7 +1,7 @@
 //! Links the WGSL of `shaders/` into one module, and checks it.
 //!
 //! Shaders are written as modules that `import` one another and switch parts with `@if(feature)`, so that a helper
-//! exists once and a pass contains only what its scene calls for. [`link`] turns a root module into plain WGSL text;
+//! exists once and a pass contains only what its scene needs. [`link`] turns a root module into plain WGSL text;
 //! it is the only place that knows the linker (WESL). Text that is not in the repository — an exported network, a
 //! method's constants — joins as an extra module. [`validate`] runs naga over the result.
 

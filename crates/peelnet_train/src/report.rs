@@ -1,4 +1,4 @@
-//! What a run tells: every epoch, and at the end.
+//! What a run reports: every epoch, and at the end.
 
 use std::path::PathBuf;
 

@@ -34,7 +34,7 @@ pub struct TrainingData {
 pub struct PixelColumns {
     /// First row of each pixel.
     pub first: Vec<u32>,
-    /// Absorbance of which the network tells the share in front, for each row.
+    /// Absorbance whose share in front the network predicts, for each row.
     pub rest: Vec<f32>,
     /// Opacity, times the transmittance of what is known to lie in front, for each row.
     pub alpha: Vec<f32>,

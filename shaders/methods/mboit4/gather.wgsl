@@ -1,4 +1,4 @@
-// mboit4, pass 2: eq 6 with the transmittance that the moments tell.
+// mboit4, pass 2: eq 6 with the transmittance that follows from the moments.
 // Variants: none | own_share_out | tinted
 import package::helpers::absorbance::{absorbance, warped_depth};
 import package::helpers::guards::WEIGHT_FLOOR;

@@ -1,4 +1,4 @@
-// wavelet, pass 2: eq 6 with the transmittance that the wavelets tell, between the averages of two bins.
+// wavelet, pass 2: eq 6 with the transmittance that follows from the wavelets, between the averages of two bins.
 // Variants: none | own_share_out
 import package::helpers::absorbance::absorbance;
 import package::helpers::guards::WEIGHT_FLOOR;

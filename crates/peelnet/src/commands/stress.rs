@@ -53,7 +53,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         let first = k * subjects.len() as u64;
         // A declared flaw must fail with the shipped networks only.
         let strict = args.models.is_empty();
-        let mut tell = |method: &str| {
+        let mut notify = |method: &str| {
             if context.stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
@@ -68,7 +68,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
             &subjects,
             strict,
             images.as_deref(),
-            &mut tell,
+            &mut notify,
         )?);
     }
     drop(bar);

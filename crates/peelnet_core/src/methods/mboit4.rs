@@ -1,7 +1,7 @@
 //! `mboit4`: moment-based order-independent transparency with four power moments (Münstermann, Krumpen, Klein & Peters,
 //! "Moment-Based Order-Independent Transparency", PACMCGIT 1(1), 2018). The shader twin is `methods/mboit4/`.
 //!
-//! Pass 1 sums absorbance `b_i` and its moments `b_k = Σ b_i ζ_i^k` over warped depth ζ. The moments do not tell where the
+//! Pass 1 sums absorbance `b_i` and its moments `b_k = Σ b_i ζ_i^k` over warped depth ζ. The moments do not determine where the
 //! absorbance lies, but they bound how much of it can lie in front of a depth; the bound's ends are met by measures
 //! of three points (the depth itself and two others), and the estimate lies between them.
 

@@ -96,7 +96,7 @@ mod tests {
         assert!((1..=1000).all(|i| at(i) >= at(i - 1) - 1e-12));
     }
 
-    /// Layers two bins and more apart are told apart exactly.
+    /// Layers two bins and more apart are separated exactly.
     #[test]
     fn separate_layers_are_exact() {
         let warp = DepthWarp::new(1.0, 100.0);

@@ -364,7 +364,7 @@ fn csv_error(path: &Path, error: &csv::Error) -> DatasetError {
         } => {
             let line = pos.as_ref().map_or(0, csv::Position::line);
             format!(
-                "line {line}: {len} fields where {expected_len} are expected; mend the line or write the dataset again"
+                "line {line}: {len} fields where {expected_len} are expected; fix the line or write the dataset again"
             )
         }
         _ => error.to_string(),
@@ -395,7 +395,7 @@ impl PartSource for CsvSource {
                     return Err(DatasetError::format(
                         &self.path,
                         format!(
-                            "line {line}, column {column}: {:?} is not a number of type {}; mend the line or write the dataset again",
+                            "line {line}, column {column}: {:?} is not a number of type {}; fix the line or write the dataset again",
                             String::from_utf8_lossy(field),
                             match column.kind() {
                                 crate::ColumnKind::F32 => "f32",

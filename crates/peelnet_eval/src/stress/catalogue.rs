@@ -33,7 +33,7 @@ pub enum Work {
     Network(Examine),
 }
 
-/// Evaluates a network and tells what it finds.
+/// Evaluates a network and returns what it finds.
 pub type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
 
 /// Every hard case, in the order of the specification.
@@ -167,7 +167,7 @@ pub const CASES: &[Case] = &[
         what: "2, 3 and 16 coincident layers, two coincident pairs",
         breaks: "peeling drops layers, flicker",
         work: Work::Frames(|| {
-            // Eight red ones and eight blue ones, with layers before and behind whose transmittance tells what the sixteen
+            // Eight red ones and eight blue ones, with layers before and behind whose transmittance shows what the sixteen
             // count for.
             let among = |name: &str, before: &[(f32, f32)], behind: &[(f32, f32)]| {
                 let one = |i: usize| {
@@ -384,8 +384,8 @@ pub const CASES: &[Case] = &[
                     v(2.0, 2.0, 3.05 + t),
                     v(-2.0, 2.0, 2.95 + t),
                 );
-                let object = |name: &str, corners: &[[Vec3; 3]], color, alpha| {
-                    Object::of_triangles(name, corners, Material::unlit(color, alpha))
+                let object = |name: &str, vertices: &[[Vec3; 3]], color, alpha| {
+                    Object::of_triangles(name, vertices, Material::unlit(color, alpha))
                 };
                 vec![
                     object("near", &upright(2.0), [0.9, 0.9, 0.2], 0.2),
@@ -435,7 +435,7 @@ fn stack(name: &str, layers: Vec<(f32, f32)>) -> Stack {
     Stack::new(name, rainbow(&layers))
 }
 
-/// `n` layers from one depth to another; `alpha` is told how far along each is.
+/// `n` layers from one depth to another; `alpha` gets the position of each, 0 … 1.
 fn even(n: usize, from: f32, to: f32, alpha: impl Fn(f32) -> f32) -> Vec<(f32, f32)> {
     (0..n)
         .map(|i| {
@@ -502,13 +502,13 @@ fn cycle() -> Trial {
         let turn = glam::Quat::from_rotation_z(i as f32 * std::f32::consts::TAU / 3.0);
         // One end in front, the other behind.
         let v = |x: f32, y: f32, z: f32| turn * Vec3::new(x, y, 0.0) - Vec3::Z * z;
-        let corners = [
+        let vertices = [
             v(-1.6, -0.9, 2.6),
             v(1.6, -0.9, 3.4),
             v(1.6, -0.2, 3.4),
             v(-1.6, -0.2, 2.6),
         ];
-        let [a, b, c, d] = corners;
+        let [a, b, c, d] = vertices;
         let color = [[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9]][i];
         Object::of_triangles(
             &format!("bar {i}"),

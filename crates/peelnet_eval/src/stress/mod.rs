@@ -93,7 +93,7 @@ const SCALES: [f32; 2] = [1e-3, 1e3];
 /// What a case found of every subject and property.
 type Findings = BTreeMap<(usize, Property), Finding>;
 
-/// Draws a case with every subject and judges what is seen; `tell` learns of every subject before it is drawn, and may end the
+/// Draws a case with every subject and judges what is seen; `notify` gets the name of every subject before it is drawn, and may end the
 /// run. With `strict`, a flaw that is declared for this adapter and does not occur is a failure: meant for shipped networks, not for
 /// a user's own. Pictures of what fails are
 /// saved in the folder `images`, beside the exact ones.
@@ -106,7 +106,7 @@ pub fn stress(
     subjects: &[Subject],
     strict: bool,
     images: Option<&Path>,
-    tell: &mut dyn FnMut(&str) -> Result<(), EvalError>,
+    notify: &mut dyn FnMut(&str) -> Result<(), EvalError>,
 ) -> Result<Vec<Row>, EvalError> {
     let mut findings = Findings::new();
     // Of every trial its name, the exact image, and every subject's.
@@ -114,7 +114,7 @@ pub fn stress(
     let trials = match case.work {
         Work::Frames(make) => make()?,
         Work::Network(examine) => {
-            examine_networks(gpu, examine, subjects, &mut findings, tell)?;
+            examine_networks(gpu, examine, subjects, &mut findings, notify)?;
             Vec::new()
         }
     };
@@ -125,7 +125,7 @@ pub fn stress(
         let mut frames = vec![exact[0].clone()];
         for (i, subject) in subjects.iter().enumerate() {
             let method = subject.method.to_string();
-            tell(&method)?;
+            notify(&method)?;
             let mut note = |property, value, limit, place: &dyn Fn() -> String| {
                 let finding: &mut Finding = findings.entry((i, property)).or_default();
                 finding.worsen(value, limit, || {
@@ -173,11 +173,11 @@ fn examine_networks(
     examine: Examine,
     subjects: &[Subject],
     findings: &mut Findings,
-    tell: &mut dyn FnMut(&str) -> Result<(), EvalError>,
+    notify: &mut dyn FnMut(&str) -> Result<(), EvalError>,
 ) -> Result<(), EvalError> {
     for (i, subject) in subjects.iter().enumerate() {
         let method = subject.method.to_string();
-        tell(&method)?;
+        notify(&method)?;
         if let Some((text, model)) = &subject.learned {
             let network = Network {
                 method: &method,
@@ -230,7 +230,7 @@ fn rows(
         .collect()
 }
 
-/// Tells a property's value, its limit and where it is.
+/// The text of a property's value, its limit and its place.
 pub type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
 
 /// The exact image of every view.

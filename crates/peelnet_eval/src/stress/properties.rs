@@ -208,7 +208,7 @@ pub(super) fn compare_scales([one, other]: [&Image; 2], exact: [&Image; 2], note
 }
 
 /// How much more a frame's pixels jump than the exact image's, on average over those that hold the same surfaces before and
-/// after: their exact coverage tells. Popping is a jump of many pixels at once, where the exact image changes along a line only.
+/// after: their exact coverage shows it. Popping is a jump of many pixels at once, where the exact image changes along a line only.
 pub(super) fn compare_frames(
     [before, after]: [&Image; 2],
     exact: [&Image; 2],

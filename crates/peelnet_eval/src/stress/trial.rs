@@ -142,7 +142,7 @@ impl Trial {
         let mut objects = Vec::new();
         for (stack, i) in stacks.iter().zip(0..) {
             let (left, top) = (i % columns * pitch + 1, i / columns * pitch + 1);
-            let corners = |z: f32| {
+            let vertices = |z: f32| {
                 // 90° high: half the height at depth z is z.
                 let x = |pixel: u32| (2.0 * pixel as f32 / width - 1.0) * z * width / height;
                 let y = |pixel: u32| (1.0 - 2.0 * pixel as f32 / height) * z;
@@ -159,7 +159,11 @@ impl Trial {
                     triangle: 2 * objects.len() as u32,
                     ..*layer
                 });
-                objects.push(Object::of_triangles(&name, &corners(layer.depth), material));
+                objects.push(Object::of_triangles(
+                    &name,
+                    &vertices(layer.depth),
+                    material,
+                ));
             }
             let mut behind = background;
             if let Some((depth, color)) = stack.opaque {
@@ -167,7 +171,7 @@ impl Trial {
                     blend: false,
                     ..Material::unlit(color, 1.0)
                 };
-                objects.push(Object::of_triangles("opaque", &corners(depth), material));
+                objects.push(Object::of_triangles("opaque", &vertices(depth), material));
                 fragments.retain(|f| f.depth < depth);
                 behind = color;
             }

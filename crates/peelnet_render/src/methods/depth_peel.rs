@@ -23,7 +23,7 @@ pub(super) const PASSES: Count = Count {
 pub(super) const COINCIDENT: Flaw = Flaw::new(
     Property::Order,
     &["coplanar"],
-    "coincident fragments are told apart by a depth test that keeps the first drawn, so that they must be drawn in the order of their numbers",
+    "coincident fragments are separated by a depth test that keeps the first drawn, so that they must be drawn in the order of their numbers",
 );
 
 pub(super) const METHOD: Method = Method {

@@ -128,7 +128,7 @@ impl Passes {
         }
         let needed = (useful + 1).min(self.most);
         let spare = self.recorded - needed;
-        // Statistics tell what a frame of this view takes.
+        // Statistics report what a frame of this view takes.
         stats.geometry_passes = stats.geometry_passes.saturating_sub(spare);
         stats.fullscreen_passes = stats.fullscreen_passes.saturating_sub(spare);
         self.room(needed);

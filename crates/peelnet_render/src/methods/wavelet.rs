@@ -35,7 +35,7 @@ pub(super) const METHOD: Method = Method {
         Flaw::new(
             Property::Transmittance,
             &["two-layers"],
-            "rank 3 tells apart eight depths (Aizenshtein et al. 2022)",
+            "rank 3 separates eight depths (Aizenshtein et al. 2022)",
         )
         .when(own_out),
     ],

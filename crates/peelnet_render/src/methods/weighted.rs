@@ -28,7 +28,7 @@ const PACKED: Target = Target {
     ..SUMS
 };
 
-/// Builds a method of weighted sums and a transmittance in the targets that the scene's colours call for.
+/// Builds a method of weighted sums and a transmittance in the targets that the scene's colours need.
 pub(super) fn build_sums(
     b: &Build<'_>,
     gather: Gather<'_>,

@@ -72,7 +72,7 @@ fn bad_materials_name_their_line() {
     }
 }
 
-/// Corners that a texture seam splits keep one normal: the surface is smooth there.
+/// Vertices that a UV seam splits keep one normal: the surface is smooth there.
 #[test]
 fn physically_based_values_and_emission() {
     let mtl = b"newmtl m\nKd 1 0 0\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
