@@ -2,14 +2,15 @@
 //!
 //! The columns have two types, and a record array would make every reader skip over columns that it does not want.
 //! One array each can be loaded or mapped into memory as it is: `numpy.load("….linear_depth.npy")`. The number of
-//! rows stands in the header but is known only at the end, so the header is padded to a fixed length and written
-//! again when the part is finished.
+//! rows stands in the header but is known only at the end, so the header is written again when the part is finished: padded to a
+//! multiple of 64 bytes, it has one length for all numbers of rows.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use ndarray_npy::npy::header::Header;
+use ndarray_npy::npy::header::{Header, Layout};
+use py_literal::Value;
 
 use super::{PartSink, PartSource, split_range};
 use crate::batch::FragmentBatch;
@@ -18,8 +19,6 @@ use crate::error::DatasetError;
 use crate::hashed_file::hash_file;
 use crate::manifest::FileEntry;
 
-/// Length of the header: a multiple of 64, as the format wants, with room for any number of rows.
-const HEADER: usize = 128;
 /// Bytes that are gathered before they are written.
 const BUFFER: usize = 1 << 18;
 
@@ -31,18 +30,16 @@ const fn descriptor(kind: ColumnKind) -> &'static str {
     }
 }
 
-/// The header for so many rows (format version 1.0).
-fn header(kind: ColumnKind, rows: u64) -> [u8; HEADER] {
-    let mut bytes = [b' '; HEADER];
-    bytes[..8].copy_from_slice(b"\x93NUMPY\x01\x00");
-    bytes[8..10].copy_from_slice(&(HEADER as u16 - 10).to_le_bytes());
-    let text = format!(
-        "{{'descr': '{}', 'fortran_order': False, 'shape': ({rows},), }}",
-        descriptor(kind)
-    );
-    bytes[10..10 + text.len()].copy_from_slice(text.as_bytes());
-    bytes[HEADER - 1] = b'\n';
-    bytes
+/// The header for so many rows.
+fn header(kind: ColumnKind, rows: u64) -> Vec<u8> {
+    let header = Header {
+        type_descriptor: Value::String(descriptor(kind).to_owned()),
+        layout: Layout::Standard,
+        shape: vec![rows as usize],
+    };
+    header
+        .to_bytes()
+        .expect("a type and one number are short and ASCII")
 }
 
 /// Name of a column's file.
@@ -78,7 +75,7 @@ impl NpySink {
                     name,
                     path,
                     file,
-                    buffer: header(column.kind(), 0).to_vec(),
+                    buffer: header(column.kind(), 0),
                 })
             })
             .collect::<Result<_, _>>()?;
@@ -283,11 +280,12 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
-    /// The fixed-length header reads as NumPy's own, at both ends of the row numbers.
+    /// Headers of all numbers of rows have one length, and read back.
     #[test]
-    fn headers_read_back() {
-        for rows in [0, 1, u64::MAX >> 1] {
+    fn headers_have_one_length() {
+        for rows in [0, 1, 999, u64::MAX >> 1, u64::MAX] {
             let bytes = header(ColumnKind::U32, rows);
+            assert_eq!(bytes.len(), 128);
             let parsed = Header::from_reader(&mut bytes.as_slice()).unwrap();
             assert_eq!(parsed.shape, [rows as usize]);
             assert_eq!(parsed.type_descriptor.to_string(), "'<u4'");

@@ -1,6 +1,6 @@
 //! Peeling a `sixteen` scene: the three ways, the sort alone, and turning fragments into rows.
 //!
-//! `cargo bench -p peelnet_peel`; ratios within one run are what counts.
+//! `cargo bench -p peelnet_tests`; ratios within one run are what counts.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use peelnet_dataset::FragmentBatch;
