@@ -2,7 +2,7 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 9-14-9-1 (Relu hidden, Sigmoid last), 285 parameters, 261 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
-// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 22.26442 (what training saw).
+// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 21.597782 (what training saw).
 // Input 1: depth_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
 // Input 2: mean_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
 // Input 3: share_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
@@ -11,15 +11,15 @@
 // Input 6: interval_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
 // Input 7: depth_deviation in half standard deviations, valid range -2.0 .. 2.0 (what training saw).
 // Input 8: skewness in half skewness, valid range -2.0 .. 2.0 (what training saw).
-// Trained on 20038556 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset 0599362acca622793292093ff63ae72863fd302015bdf7c35303dc4c52e527db+f44d32a5ff14ca4bf843253253d7571da2829a9e36c000d5dd700fd1b1454788).
-// Loss: training 0.000180, validation 0.000185, test 0.000186.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01390, cups-held 0.02186, foliage-held 0.00781, panes-held 0.00621, sixteen-held 0.01350, smoke-held 0.02513.
+// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
+// Loss: training 0.000238, validation 0.000242, test 0.000235.
+// Held-out error, mean |T - T_exact|: boxes-held 0.02602, cups-held 0.01926, foliage-held 0.00944, panes-held 0.00660, sixteen-held 0.00982, smoke-held 0.01428.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0, -2.0) = 1.0
-// Self-test: peelnet_weight(11.13221, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0) = 1.960252e-37
-// Self-test: peelnet_weight(22.26442, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0) = 0.0
+// Self-test: peelnet_weight(10.798891, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0) = 1.2856411e-25
+// Self-test: peelnet_weight(21.597782, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
 // 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta);
 //    moments: rgba16float, cleared to 0, blending ADD, from s.moments
 //    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
@@ -32,19 +32,36 @@
 // - z grows with distance, also where depth buffers are reversed.
 // - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
 
-// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. near, far: the nearest and the
-// farthest z that transparent surfaces have in this frame. Where near is not above 0 the scale is linear: with an orthographic
-// camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
-fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+// A range of depths: 1 / near, 0 where depths are on a linear scale; near; 2 / its extent on the scale, 0 for a flat range.
+struct PeelnetRange {
+    inverse_near: f32,
+    near: f32,
+    scale: f32,
+}
+
+// near, far: the nearest and the farthest z that transparent surfaces have in this frame. The same for all fragments: it may be
+// computed once a frame and passed in.
+fn peelnet_range(near: f32, far: f32) -> PeelnetRange {
     let linear = near <= 0.0;
-    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
-    let start = max(near, 1.17549435e-38);
-    let depth = select(log(max(z / start, 1.0)), z - near, linear);
-    let range = select(log(max(far / start, 1.0)), far - near, linear);
+    let inverse_near = select(1.0 / max(near, 1.17549435e-38), 0.0, linear);
+    let extent = select(log(max(far * inverse_near, 1.0)), far - near, linear);
     // Closer than that, depths hardly differ.
-    let flat = range <= select(1e-6, 0.0, linear);
-    let scaled = select(depth * (2.0 / max(range, 1e-30)), 0.0, flat);
-    return clamp(scaled - 1.0, -1.0, 1.0);
+    let flat = extent <= select(1e-6, 0.0, linear);
+    return PeelnetRange(inverse_near, near, select(2.0 / max(extent, 1e-30), 0.0, flat));
+}
+
+// The depth z on the scale of a range, -1 at near and 1 at far.
+fn peelnet_zeta_in(z: f32, range: PeelnetRange) -> f32 {
+    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
+    let logarithmic = log(max(z * range.inverse_near, 1.0));
+    let from_near = select(logarithmic, z - range.near, range.inverse_near == 0.0);
+    return clamp(from_near * range.scale - 1.0, -1.0, 1.0);
+}
+
+// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. Where near is not above 0 the scale is
+// linear: with an orthographic camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
+fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+    return peelnet_zeta_in(z, peelnet_range(near, far));
 }
 
 // -log(1 - alpha), at most 16: opaque, but finite.
@@ -60,6 +77,10 @@ const PEELNET_TOP: f32 = 61439.0;
 const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
 const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
 const PEELNET_OPACITY_STEP: vec2f = 1.0 / (PEELNET_OPACITIES - 1.0);
+
+// Limits of a rest's mean powers. In narrow pixels, the rounding of the ends and of the sums takes the higher powers beyond 1;
+// bounds multiply up to seven of them, which 32 bits hold.
+const PEELNET_MEANS_MAX: vec4f = vec4f(1.0, 65536.0, 65536.0, 65536.0);
 
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3.
@@ -173,7 +194,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
     let scale_square = scale * scale;
     let means = vec4f(
-        clamp((mean.x - middle) * scale, -1.0, 1.0),
+        (mean.x - middle) * scale,
         (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
         (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
         (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
@@ -181,7 +202,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     return PeelnetRest(
         sqrt(absorbance),
         clamp((z.x - middle) * scale, -1.0, 1.0),
-        means,
+        clamp(means, -PEELNET_MEANS_MAX, PEELNET_MEANS_MAX),
         // Moved to a narrow pixel's range, moments lose their last bits.
         min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
     );
@@ -192,7 +213,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let finite_moments = clamp(moments, vec4f(-65504.0), vec4f(65504.0));
-    let finite_extent = clamp(extent, vec4f(-65504.0), vec4f(65504.0));
+    let finite_extent = vec4f(extent.xyz, min(extent.w, 65504.0));
     let place = peelnet_place(alpha, zeta, finite_moments, finite_extent);
     let rest = peelnet_rest(place, finite_moments, finite_extent);
     let share = peelnet_network(rest);
@@ -223,13 +244,8 @@ fn peelnet_resolve(sums: vec4f, ends: vec4f, absorbance: f32, background: vec3f)
 // The least and the most of the rest that can lie in front of the fragment, given its first four moments, as shares
 // (Muenstermann et al. 2018).
 fn peelnet_moment_bounds(rest: PeelnetRest) -> vec2f {
-    let mixed = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
-    // Shares do not depend on the unit of depth. Another one where moments exceed the range, as those of narrow pixels and noise do:
-    // their products would overflow.
-    let unit = 1.0 / sqrt(max(1.0, max(abs(mixed.y), sqrt(abs(mixed.w)))));
-    let square = unit * unit;
-    let x = rest.place * unit;
-    let m = mixed * vec4f(unit, square, square * unit, square * square);
+    let x = rest.place;
+    let m = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
     // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
     // its value at x, which is one over what lies at x itself.
     let variance = m.y - m.x * m.x;
@@ -309,41 +325,41 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, interval_low, interval_high, depth_deviation);
     let input_c = vec4f(skewness, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-0.89093506, 1.8157883, -0.31449613, 1.5014997)
-        + mat4x4f(vec4f(-0.12323093, 0.0018430905, -0.012637873, -0.06969165), vec4f(0.84363085, -0.39626673, -1.5161891, -3.912475), vec4f(2.526658, 0.54497015, 0.774746, 1.0630852), vec4f(4.397354, 0.40269038, 0.9223805, -0.5121709)) * input_a
-        + mat4x4f(vec4f(-2.9508302, -2.9832327, -3.804875, 2.0328605), vec4f(-0.53755885, -0.035161857, 1.7351631, -0.10027233), vec4f(0.32423943, -0.9584745, 1.507115, -1.4228909), vec4f(1.0768129, -0.31840107, -0.15289356, -0.53387135)) * input_b
-        + vec4f(-1.154485, 2.258196, -0.14455865, -0.35175437) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(2.7851763, 2.9470465, -0.10280397, 1.9700223)
-        + mat4x4f(vec4f(-0.14861915, 0.087033816, -0.069306605, 0.21152052), vec4f(2.5681517, -1.5469047, 1.5457364, 0.62206995), vec4f(-4.539191, -5.0847993, 0.26296183, -2.0571132), vec4f(-0.25586545, -0.065651566, 2.4404922, -3.8921525)) * input_a
-        + mat4x4f(vec4f(-2.6435363, 1.6679868, 1.2112563, -0.9783559), vec4f(0.31011182, 1.7710911, -3.5455196, -2.3216102), vec4f(0.6184234, -2.527497, -1.0337429, -0.764203), vec4f(-0.8865599, -0.8579631, 0.66809696, 0.7636052)) * input_b
-        + vec4f(-0.62751615, -0.48774618, 0.52578926, 0.33726043) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(-7.620072, 0.6718131, -2.8479023, 1.4106311)
-        + mat4x4f(vec4f(0.08863558, -0.021929622, 0.13711166, -0.052819286), vec4f(-1.032984, -0.7920694, -1.881591, -0.42707837), vec4f(-0.30496052, 0.685463, 2.9543505, 1.3530465), vec4f(3.8324728, -2.7165563, -2.712868, 2.07208)) * input_a
-        + mat4x4f(vec4f(2.192075, -2.9897816, 0.30047962, -4.5265293), vec4f(0.436618, -0.5025884, -1.5863408, 2.1857657), vec4f(4.605391, 1.6813914, 3.4396899, 0.26057068), vec4f(-0.21235804, 0.82360494, 0.12335592, 2.4147825)) * input_b
-        + vec4f(-2.4302595, -0.28096452, -0.35509256, 0.49069303) * input_c.x, vec4f(0.0));
-    let layer_a_d = max(vec4f(-2.383473, 0.08268092, 0.0, 0.0)
-        + mat4x4f(vec4f(-0.08799581, 0.0035113918, 0.0, 0.0), vec4f(0.6492379, 4.042684, 0.0, 0.0), vec4f(3.9359393, 0.16847877, 0.0, 0.0), vec4f(-2.2907748, -2.984884, 0.0, 0.0)) * input_a
-        + mat4x4f(vec4f(1.8163178, -0.32309484, 0.0, 0.0), vec4f(0.85059834, -0.22918512, 0.0, 0.0), vec4f(-0.7147693, -0.7135528, 0.0, 0.0), vec4f(2.4781156, 0.06297139, 0.0, 0.0)) * input_b
-        + vec4f(0.57381064, 0.34692982, 0.0, 0.0) * input_c.x, vec4f(0.0));
-    let layer_b_a = max(vec4f(-0.63947695, -0.066363975, 0.4969189, -1.391002)
-        + mat4x4f(vec4f(-0.5668303, -0.8485692, -0.46361342, -0.21489951), vec4f(0.10872327, 0.80014825, 0.26593605, 0.61877745), vec4f(-0.51736856, -2.2935348, 0.18743463, -0.43730015), vec4f(-0.4323498, 0.041091945, -0.18476301, 0.586554)) * layer_a_a
-        + mat4x4f(vec4f(0.4433708, -0.31030995, -0.1786144, 0.29837462), vec4f(0.3656961, 0.34822863, 0.06314083, 0.045586094), vec4f(0.65114135, -0.37217852, 0.5102594, -0.23728102), vec4f(0.280315, -0.80226845, -1.8851312, 0.38364726)) * layer_a_b
-        + mat4x4f(vec4f(-0.9361117, 0.04522255, 0.613751, -0.12238284), vec4f(1.9228362, -0.26235867, -0.6523954, 0.6854075), vec4f(-1.0632724, 0.21820164, 0.36047044, 0.08984213), vec4f(-1.6814075, -0.2413455, 1.1932366, -1.3477432)) * layer_a_c
-        + mat4x4f(vec4f(-0.45597082, 0.88505983, 0.5004777, 0.41412193), vec4f(0.50326276, -0.40661916, -0.049472123, 0.6122778), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * layer_a_d, vec4f(0.0));
-    let layer_b_b = max(vec4f(0.14739355, 0.36400864, -0.0876792, -0.08567302)
-        + mat4x4f(vec4f(-0.56268203, -0.8032054, -0.6348575, 0.9113383), vec4f(0.28522977, 0.21909298, 0.30313122, -0.06335604), vec4f(-0.77836794, -1.0159388, -0.56641716, -0.8635317), vec4f(0.22963104, 0.5570624, 0.532258, 0.5633063)) * layer_a_a
-        + mat4x4f(vec4f(0.16748461, 0.8333075, 0.071174875, 0.32688975), vec4f(0.9782136, 0.74208385, -0.20954137, 0.3634777), vec4f(0.21305963, -0.15923576, -0.091780394, 0.0049423245), vec4f(-0.06614502, 0.3437537, 0.0066019227, -0.07900418)) * layer_a_b
-        + mat4x4f(vec4f(0.72658473, 1.0371692, 1.4478635, -1.0427004), vec4f(-2.0747466, -0.35869792, 0.46560964, -0.2615018), vec4f(-0.4880833, 0.023512624, 0.34098, 0.011341497), vec4f(0.26343, 0.08615409, -0.39866453, 0.092497036)) * layer_a_c
-        + mat4x4f(vec4f(-0.05946362, -0.36581075, -0.20993309, -0.28426015), vec4f(0.19381097, 0.2031862, 0.6013997, 0.6168965), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * layer_a_d, vec4f(0.0));
-    let layer_b_c = max(vec4f(-0.34866828, 0.0, 0.0, 0.0)
-        + mat4x4f(vec4f(-0.02030483, 0.0, 0.0, 0.0), vec4f(-0.019286718, 0.0, 0.0, 0.0), vec4f(-2.5914679, 0.0, 0.0, 0.0), vec4f(0.5957656, 0.0, 0.0, 0.0)) * layer_a_a
-        + mat4x4f(vec4f(0.21826716, 0.0, 0.0, 0.0), vec4f(0.1850472, 0.0, 0.0, 0.0), vec4f(0.43043444, 0.0, 0.0, 0.0), vec4f(0.4448314, 0.0, 0.0, 0.0)) * layer_a_b
-        + mat4x4f(vec4f(0.7359675, 0.0, 0.0, 0.0), vec4f(-0.12695557, 0.0, 0.0, 0.0), vec4f(-0.23395598, 0.0, 0.0, 0.0), vec4f(0.0335331, 0.0, 0.0, 0.0)) * layer_a_c
-        + mat4x4f(vec4f(-0.032401867, 0.0, 0.0, 0.0), vec4f(-0.04505425, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * layer_a_d, vec4f(0.0));
-    let layer_c_a = 1.0 / (1.0 + exp(min(-(-0.09174534
-        + dot(vec4f(-1.0923079, 0.8117369, 0.41597024, -0.9515342), layer_b_a)
-        + dot(vec4f(0.5620227, -0.54172164, -0.37775743, -0.40220174), layer_b_b)
-        + 0.6821768 * layer_b_c.x), 80.0)));
+    let layer_a_a = max(vec4f(1.4218637, 1.497242, -1.0135571, 6.265512)
+        + mat4x4f(vec4f(-0.12375341, 0.01480891, -0.045704074, -0.14705095), vec4f(-1.2299263, -1.3029996, -1.0021219, 0.3202242), vec4f(2.6427426, -0.17570564, -0.46052966, -4.5409384), vec4f(-2.377373, -2.2856889, 1.957103, -0.39008337)) * input_a
+        + mat4x4f(vec4f(-1.0428668, 4.072643, 4.092698, -1.2458752), vec4f(-1.3845214, -0.93317324, 2.467784, -1.9949114), vec4f(0.3677222, -3.3272884, -2.3228226, -1.9947208), vec4f(-0.41135645, 0.06688528, -0.65230024, 0.3781513)) * input_b
+        + vec4f(0.9257392, 1.1672411, -0.89299697, -0.84018946) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-0.20843153, -0.5605312, 0.7597694, -1.9654517)
+        + mat4x4f(vec4f(-0.012012318, -0.0403532, -0.02810041, -0.15364559), vec4f(-3.95873, 1.0596263, -1.9351175, -0.19369029), vec4f(3.4052484, -0.111728646, 0.038387746, -0.59392786), vec4f(-0.09993656, 3.400414, 2.2058809, 1.495519)) * input_a
+        + mat4x4f(vec4f(2.392416, -0.6353958, 3.751495, -0.3661025), vec4f(-1.8507526, -3.7552807, -2.1283174, 0.5029743), vec4f(-1.2698814, 1.7834104, -1.899977, 1.9505628), vec4f(2.0639665, 0.17421855, -0.57207495, 0.7645457)) * input_b
+        + vec4f(0.7359862, -0.6934115, -0.15503848, -1.1628014) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(3.150676, -0.42850256, -0.7387701, -0.9626611)
+        + mat4x4f(vec4f(-0.010517636, -0.0058954875, -0.014139445, 0.1212925), vec4f(-1.1848763, 3.5329058, -4.614061, -0.6810778), vec4f(-3.719074, -2.1210005, -0.36439267, 2.2261026), vec4f(1.8061293, 0.645288, 1.1189759, -3.3015184)) * input_a
+        + mat4x4f(vec4f(-1.934884, 0.32241705, -0.19215071, -1.531043), vec4f(-1.1333815, -1.0213689, 2.009894, -0.9591294), vec4f(0.34781623, -0.43289518, 1.771549, 2.3967283), vec4f(-1.6660237, -1.7379413, -0.63738006, 0.80643594)) * input_b
+        + vec4f(-0.4214318, -0.4484848, -0.56059045, -0.18672884) * input_c.x, vec4f(0.0));
+    let layer_a_d = max(vec4f(1.3288896, -4.0276995, 0.0, 0.0)
+        + mat4x4f(vec4f(-0.1842286, -0.042579193, 0.0, 0.0), vec4f(-2.9358006, 0.20249754, 0.0, 0.0), vec4f(0.592495, 2.5805452, 0.0, 0.0), vec4f(1.439776, 2.5477464, 0.0, 0.0)) * input_a
+        + mat4x4f(vec4f(-0.099051185, 1.7968353, 0.0, 0.0), vec4f(1.9637635, 1.2155335, 0.0, 0.0), vec4f(0.32258525, 0.6749366, 0.0, 0.0), vec4f(-0.42864648, 3.3639693, 0.0, 0.0)) * input_b
+        + vec4f(-0.3479457, 0.90482044, 0.0, 0.0) * input_c.x, vec4f(0.0));
+    let layer_b_a = max(vec4f(0.2981236, -0.2654332, -0.3393547, 0.53080636)
+        + mat4x4f(vec4f(0.091175534, -0.036701273, 0.20565617, -0.15648149), vec4f(-0.6717572, -0.9807404, -0.38041773, 0.9341657), vec4f(0.78520006, -3.9566004, 0.36611098, 0.08745639), vec4f(1.1264057, 0.12614141, -0.08058867, 0.10212934)) * layer_a_a
+        + mat4x4f(vec4f(0.042224646, 2.4279957, 0.27423826, 0.5196097), vec4f(0.23274066, -0.60753495, -0.4798599, 0.47894922), vec4f(-0.8289756, -0.70254356, 0.1779817, 0.7955389), vec4f(-0.19595373, -4.593753, -0.4907537, 0.30513635)) * layer_a_b
+        + mat4x4f(vec4f(-0.039059166, 0.20739357, 0.74124503, -0.21445954), vec4f(-0.44850573, 0.07314596, 0.5559929, 0.0007899806), vec4f(-0.24979067, 1.5798135, -1.0252709, 0.15379046), vec4f(-0.1975247, 0.8862944, 0.459399, -0.2700415)) * layer_a_c
+        + mat4x4f(vec4f(-0.667813, 0.5830431, 0.40186593, -0.44889238), vec4f(0.4838349, -2.3239717, -0.2800128, 0.7035653), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * layer_a_d, vec4f(0.0));
+    let layer_b_b = max(vec4f(0.16329621, -0.029194638, 0.17168851, -0.064876765)
+        + mat4x4f(vec4f(-0.19259152, 0.80507976, -0.6907053, 0.84643173), vec4f(0.99729544, -0.23825113, -0.20855914, -0.32679415), vec4f(-0.3480601, -0.88986677, -0.22462171, 0.055718515), vec4f(0.40247115, 0.49630105, -0.2517905, -0.029717691)) * layer_a_a
+        + mat4x4f(vec4f(-0.1754145, 0.97332644, -0.8329969, -0.091231346), vec4f(-0.67187524, -0.6157575, 0.6856043, 0.04651608), vec4f(0.95912164, -0.43948174, 1.1764352, -0.3240836), vec4f(0.6784129, 1.7866945, -0.33637404, 0.19246992)) * layer_a_b
+        + mat4x4f(vec4f(-0.61657053, 0.10712678, -0.35717338, 0.24015039), vec4f(-0.15901542, 0.26117957, 0.37408355, 0.8264959), vec4f(0.53945756, -0.18251492, -1.2044204, -0.30444783), vec4f(0.08765112, 0.225154, -0.34906015, 0.4092581)) * layer_a_c
+        + mat4x4f(vec4f(-0.53580093, 0.674515, 0.48136878, 0.39058247), vec4f(0.0583406, -2.1538682, 0.4467955, -0.24678425), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * layer_a_d, vec4f(0.0));
+    let layer_b_c = max(vec4f(-0.1566506, 0.0, 0.0, 0.0)
+        + mat4x4f(vec4f(-0.11424789, 0.0, 0.0, 0.0), vec4f(0.46465874, 0.0, 0.0, 0.0), vec4f(0.4725201, 0.0, 0.0, 0.0), vec4f(0.30048, 0.0, 0.0, 0.0)) * layer_a_a
+        + mat4x4f(vec4f(0.56025994, 0.0, 0.0, 0.0), vec4f(0.73282194, 0.0, 0.0, 0.0), vec4f(0.93525296, 0.0, 0.0, 0.0), vec4f(0.57831985, 0.0, 0.0, 0.0)) * layer_a_b
+        + mat4x4f(vec4f(0.14928192, 0.0, 0.0, 0.0), vec4f(-0.029718911, 0.0, 0.0, 0.0), vec4f(-2.1334379, 0.0, 0.0, 0.0), vec4f(-0.5539971, 0.0, 0.0, 0.0)) * layer_a_c
+        + mat4x4f(vec4f(0.46599722, 0.0, 0.0, 0.0), vec4f(0.9067254, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.0, 0.0, 0.0, 0.0)) * layer_a_d, vec4f(0.0));
+    let layer_c_a = 1.0 / (1.0 + exp(min(-(0.32009497
+        + dot(vec4f(-0.6132023, -0.85015154, -0.547526, 0.3427606), layer_b_a)
+        + dot(vec4f(-1.1362749, -0.34088093, -1.1359444, -0.43530732), layer_b_b)
+        + 0.812466 * layer_b_c.x), 80.0)));
     return layer_c_a;
 }
 
@@ -351,5 +367,5 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, interval_low: f32, interval_high: f32, depth_deviation: f32, skewness: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     return exp(-root * root * peelnet_share(
-        clamp(root_absorbance, -46191.68, 46204.58), clamp(depth_fraction, -2951.244, 2952.2727), clamp(mean_fraction, -1306.9567, 1307.9891), clamp(share_low, -2996.0144, 2996.6282), clamp(share_high, -3065.472, 3066.8484), clamp(interval_low, -2873.3933, 2873.9612), clamp(interval_high, -2573.1853, 2574.6638), clamp(depth_deviation, -6513.9717, 6513.959), clamp(skewness, -3978.4773, 3978.409)));
+        clamp(root_absorbance, -46989.67, 47003.33), clamp(depth_fraction, -2907.894, 2908.9092), clamp(mean_fraction, -1210.7003, 1211.7108), clamp(share_low, -2969.1758, 2969.7964), clamp(share_high, -2983.7766, 2985.1663), clamp(interval_low, -2851.6882, 2852.2605), clamp(interval_high, -2478.805, 2480.3), clamp(depth_deviation, -6265.006, 6265.0127), clamp(skewness, -3698.2036, 3698.1914)));
 }

@@ -2,20 +2,20 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 5-12-1 (Relu hidden, Sigmoid last), 85 parameters, 72 multiply-adds. Recipe medium, seed 1, 24 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
-// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 22.349512 (what training saw).
+// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 21.672869 (what training saw).
 // Input 1: depth_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
 // Input 2: mean_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
 // Input 3: share_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
 // Input 4: share_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Trained on 20038556 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset 0599362acca622793292093ff63ae72863fd302015bdf7c35303dc4c52e527db+f44d32a5ff14ca4bf843253253d7571da2829a9e36c000d5dd700fd1b1454788).
-// Loss: training 0.000243, validation 0.000245, test 0.000245.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01692, cups-held 0.02395, foliage-held 0.00909, panes-held 0.00888, sixteen-held 0.01835, smoke-held 0.02700.
+// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
+// Loss: training 0.000293, validation 0.000290, test 0.000293.
+// Held-out error, mean |T - T_exact|: boxes-held 0.02600, cups-held 0.02398, foliage-held 0.01116, panes-held 0.00883, sixteen-held 0.01184, smoke-held 0.01722.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(11.174756, 0.5, 0.5, 0.5, 0.5) = 4.6580865e-30
-// Self-test: peelnet_weight(22.349512, 1.0, 1.0, 1.0, 1.0) = 0.0
+// Self-test: peelnet_weight(10.836434, 0.5, 0.5, 0.5, 0.5) = 1.2822665e-25
+// Self-test: peelnet_weight(21.672869, 1.0, 1.0, 1.0, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
 // 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta);
 //    moments: rgba16float, cleared to 0, blending ADD, from s.moments
 //    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
@@ -28,19 +28,36 @@
 // - z grows with distance, also where depth buffers are reversed.
 // - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
 
-// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. near, far: the nearest and the
-// farthest z that transparent surfaces have in this frame. Where near is not above 0 the scale is linear: with an orthographic
-// camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
-fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+// A range of depths: 1 / near, 0 where depths are on a linear scale; near; 2 / its extent on the scale, 0 for a flat range.
+struct PeelnetRange {
+    inverse_near: f32,
+    near: f32,
+    scale: f32,
+}
+
+// near, far: the nearest and the farthest z that transparent surfaces have in this frame. The same for all fragments: it may be
+// computed once a frame and passed in.
+fn peelnet_range(near: f32, far: f32) -> PeelnetRange {
     let linear = near <= 0.0;
-    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
-    let start = max(near, 1.17549435e-38);
-    let depth = select(log(max(z / start, 1.0)), z - near, linear);
-    let range = select(log(max(far / start, 1.0)), far - near, linear);
+    let inverse_near = select(1.0 / max(near, 1.17549435e-38), 0.0, linear);
+    let extent = select(log(max(far * inverse_near, 1.0)), far - near, linear);
     // Closer than that, depths hardly differ.
-    let flat = range <= select(1e-6, 0.0, linear);
-    let scaled = select(depth * (2.0 / max(range, 1e-30)), 0.0, flat);
-    return clamp(scaled - 1.0, -1.0, 1.0);
+    let flat = extent <= select(1e-6, 0.0, linear);
+    return PeelnetRange(inverse_near, near, select(2.0 / max(extent, 1e-30), 0.0, flat));
+}
+
+// The depth z on the scale of a range, -1 at near and 1 at far.
+fn peelnet_zeta_in(z: f32, range: PeelnetRange) -> f32 {
+    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
+    let logarithmic = log(max(z * range.inverse_near, 1.0));
+    let from_near = select(logarithmic, z - range.near, range.inverse_near == 0.0);
+    return clamp(from_near * range.scale - 1.0, -1.0, 1.0);
+}
+
+// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. Where near is not above 0 the scale is
+// linear: with an orthographic camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
+fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+    return peelnet_zeta_in(z, peelnet_range(near, far));
 }
 
 // -log(1 - alpha), at most 16: opaque, but finite.
@@ -56,6 +73,10 @@ const PEELNET_TOP: f32 = 61439.0;
 const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
 const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
 const PEELNET_OPACITY_STEP: vec2f = 1.0 / (PEELNET_OPACITIES - 1.0);
+
+// Limits of a rest's mean powers. In narrow pixels, the rounding of the ends and of the sums takes the higher powers beyond 1;
+// bounds multiply up to seven of them, which 32 bits hold.
+const PEELNET_MEANS_MAX: vec4f = vec4f(1.0, 65536.0, 65536.0, 65536.0);
 
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3.
@@ -169,7 +190,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
     let scale_square = scale * scale;
     let means = vec4f(
-        clamp((mean.x - middle) * scale, -1.0, 1.0),
+        (mean.x - middle) * scale,
         (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
         (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
         (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
@@ -177,7 +198,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     return PeelnetRest(
         sqrt(absorbance),
         clamp((z.x - middle) * scale, -1.0, 1.0),
-        means,
+        clamp(means, -PEELNET_MEANS_MAX, PEELNET_MEANS_MAX),
         // Moved to a narrow pixel's range, moments lose their last bits.
         min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
     );
@@ -188,7 +209,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let finite_moments = clamp(moments, vec4f(-65504.0), vec4f(65504.0));
-    let finite_extent = clamp(extent, vec4f(-65504.0), vec4f(65504.0));
+    let finite_extent = vec4f(extent.xyz, min(extent.w, 65504.0));
     let place = peelnet_place(alpha, zeta, finite_moments, finite_extent);
     let rest = peelnet_rest(place, finite_moments, finite_extent);
     let share = peelnet_network(rest);
@@ -219,13 +240,8 @@ fn peelnet_resolve(sums: vec4f, ends: vec4f, absorbance: f32, background: vec3f)
 // The least and the most of the rest that can lie in front of the fragment, given its first four moments, as shares
 // (Muenstermann et al. 2018).
 fn peelnet_moment_bounds(rest: PeelnetRest) -> vec2f {
-    let mixed = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
-    // Shares do not depend on the unit of depth. Another one where moments exceed the range, as those of narrow pixels and noise do:
-    // their products would overflow.
-    let unit = 1.0 / sqrt(max(1.0, max(abs(mixed.y), sqrt(abs(mixed.w)))));
-    let square = unit * unit;
-    let x = rest.place * unit;
-    let m = mixed * vec4f(unit, square, square * unit, square * square);
+    let x = rest.place;
+    let m = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
     // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
     // its value at x, which is one over what lies at x itself.
     let variance = m.y - m.x * m.x;
@@ -265,19 +281,19 @@ fn peelnet_network(rest: PeelnetRest) -> f32 {
 fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(0.0064429077, 2.757581, -0.91567606, -3.1362236)
-        + mat4x4f(vec4f(-0.044687986, 0.05451059, -0.02197004, -0.052102543), vec4f(0.55463505, -1.1970316, -3.2126877, 1.4467944), vec4f(0.060520004, -2.8668323, 2.9136639, 1.3597925), vec4f(1.928733, -0.8774007, -0.55203456, 0.23607272)) * input_a
-        + vec4f(-0.21587875, -0.9734699, 2.750319, 2.6957428) * input_b.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(2.1244056, 1.8212874, 1.5734991, -2.0360856)
-        + mat4x4f(vec4f(-0.17552981, -0.106620155, -0.039294768, 0.13689682), vec4f(0.10680006, 0.935849, 1.1592289, -1.8902847), vec4f(-0.6518716, 1.5050999, -1.28918, 2.5657918), vec4f(0.9707011, -1.4018471, -4.391987, -3.2538056)) * input_a
-        + vec4f(-0.46242076, -1.6220113, -2.3389316, 1.7946223) * input_b.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(4.012563, 0.59087497, 1.003106, -5.205604)
-        + mat4x4f(vec4f(-0.0013328942, -0.0248155, -0.18422303, 0.13709962), vec4f(-0.96526486, -2.8665822, -0.8064791, -0.039461546), vec4f(-3.6690562, 0.3628977, 2.538449, 0.95850706), vec4f(-2.667454, 2.2706466, -1.3060555, 3.243473)) * input_a
-        + vec4f(-0.69077706, -1.4940597, 0.8954903, 2.9991715) * input_b.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.2900359
-        + dot(vec4f(0.596217, 0.2750064, 0.8734469, 0.34335712), layer_a_a)
-        + dot(vec4f(0.5090762, -0.38885754, -1.5666053, -1.1629968), layer_a_b)
-        + dot(vec4f(-0.614528, -1.2297539, -0.41430968, 1.6992252), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(0.31495693, 1.4358822, -2.4606616, 2.8621514)
+        + mat4x4f(vec4f(-0.018669652, -0.0055379937, 0.044900674, 0.11133571), vec4f(-2.9086955, -0.07160217, -1.4201903, 2.3479066), vec4f(0.110414155, -0.9034423, 3.4468195, -3.9575279), vec4f(0.8983037, -1.8699713, 2.1964686, -7.7519836)) * input_a
+        + vec4f(-0.33506763, -2.387763, -0.60065514, -2.578125) * input_b.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(1.7948326, 2.6903346, 2.2047129, 0.79329836)
+        + mat4x4f(vec4f(-0.03898255, 0.07021558, 0.030222934, 0.028931646), vec4f(1.8838186, -1.8674725, -0.6171307, 0.88323087), vec4f(-1.7958643, -2.8086567, -0.74393666, 1.2550905), vec4f(-1.9590837, -0.9551763, -1.7686378, -4.2338934)) * input_a
+        + vec4f(-0.17009275, -1.1925564, -1.5102532, -1.9397798) * input_b.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(-3.6841972, -3.514034, 0.1026602, 0.7009352)
+        + mat4x4f(vec4f(0.08163847, -0.13446961, 0.00964872, -0.014104374), vec4f(1.361343, 0.11111821, -2.896033, -0.52910024), vec4f(-2.8853202, 0.06052757, -0.14988106, -0.08168463), vec4f(0.060318958, 4.3963366, 0.5410621, -0.34526527)) * input_a
+        + vec4f(4.44795, 4.190972, 0.25395003, -2.6382427) * input_b.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.16289274
+        + dot(vec4f(-1.9031973, -1.0966741, -1.0305048, -0.7244824), layer_a_a)
+        + dot(vec4f(-0.41737148, 0.44167173, -0.381893, -0.58687526), layer_a_b)
+        + dot(vec4f(0.9896929, 0.5081886, -1.7579011, -1.5150088), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -285,5 +301,5 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     return exp(-root * root * peelnet_share(
-        clamp(root_absorbance, -46191.812, 46204.71), clamp(depth_fraction, -2951.244, 2952.2727), clamp(mean_fraction, -1307.498, 1308.5305), clamp(share_low, -2995.824, 2996.4363), clamp(share_high, -3065.6514, 3067.0283)));
+        clamp(root_absorbance, -46960.414, 46974.062), clamp(depth_fraction, -2907.894, 2908.9092), clamp(mean_fraction, -1211.0835, 1212.094), clamp(share_low, -2969.3333, 2969.953), clamp(share_high, -2983.678, 2985.068)));
 }

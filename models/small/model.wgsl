@@ -2,20 +2,20 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 5-8-1 (Relu hidden, Sigmoid last), 57 parameters, 48 multiply-adds. Recipe small, seed 1, 24 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
-// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 22.349512 (what training saw).
+// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 21.672869 (what training saw).
 // Input 1: depth_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
 // Input 2: mean_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
 // Input 3: share_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
 // Input 4: share_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Trained on 20038556 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset 0599362acca622793292093ff63ae72863fd302015bdf7c35303dc4c52e527db+f44d32a5ff14ca4bf843253253d7571da2829a9e36c000d5dd700fd1b1454788).
-// Loss: training 0.000297, validation 0.000302, test 0.000303.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01364, cups-held 0.01712, foliage-held 0.00772, panes-held 0.00506, sixteen-held 0.01457, smoke-held 0.02140.
+// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
+// Loss: training 0.000353, validation 0.000351, test 0.000355.
+// Held-out error, mean |T - T_exact|: boxes-held 0.01883, cups-held 0.01756, foliage-held 0.00970, panes-held 0.00580, sixteen-held 0.01077, smoke-held 0.01563.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(11.174756, 0.5, 0.5, 0.5, 0.5) = 1.7059722e-35
-// Self-test: peelnet_weight(22.349512, 1.0, 1.0, 1.0, 1.0) = 0.0
+// Self-test: peelnet_weight(10.836434, 0.5, 0.5, 0.5, 0.5) = 1.5482108e-29
+// Self-test: peelnet_weight(21.672869, 1.0, 1.0, 1.0, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
 // 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta);
 //    moments: rgba16float, cleared to 0, blending ADD, from s.moments
 //    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
@@ -27,19 +27,36 @@
 // - z grows with distance, also where depth buffers are reversed.
 // - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
 
-// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. near, far: the nearest and the
-// farthest z that transparent surfaces have in this frame. Where near is not above 0 the scale is linear: with an orthographic
-// camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
-fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+// A range of depths: 1 / near, 0 where depths are on a linear scale; near; 2 / its extent on the scale, 0 for a flat range.
+struct PeelnetRange {
+    inverse_near: f32,
+    near: f32,
+    scale: f32,
+}
+
+// near, far: the nearest and the farthest z that transparent surfaces have in this frame. The same for all fragments: it may be
+// computed once a frame and passed in.
+fn peelnet_range(near: f32, far: f32) -> PeelnetRange {
     let linear = near <= 0.0;
-    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
-    let start = max(near, 1.17549435e-38);
-    let depth = select(log(max(z / start, 1.0)), z - near, linear);
-    let range = select(log(max(far / start, 1.0)), far - near, linear);
+    let inverse_near = select(1.0 / max(near, 1.17549435e-38), 0.0, linear);
+    let extent = select(log(max(far * inverse_near, 1.0)), far - near, linear);
     // Closer than that, depths hardly differ.
-    let flat = range <= select(1e-6, 0.0, linear);
-    let scaled = select(depth * (2.0 / max(range, 1e-30)), 0.0, flat);
-    return clamp(scaled - 1.0, -1.0, 1.0);
+    let flat = extent <= select(1e-6, 0.0, linear);
+    return PeelnetRange(inverse_near, near, select(2.0 / max(extent, 1e-30), 0.0, flat));
+}
+
+// The depth z on the scale of a range, -1 at near and 1 at far.
+fn peelnet_zeta_in(z: f32, range: PeelnetRange) -> f32 {
+    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
+    let logarithmic = log(max(z * range.inverse_near, 1.0));
+    let from_near = select(logarithmic, z - range.near, range.inverse_near == 0.0);
+    return clamp(from_near * range.scale - 1.0, -1.0, 1.0);
+}
+
+// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. Where near is not above 0 the scale is
+// linear: with an orthographic camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
+fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+    return peelnet_zeta_in(z, peelnet_range(near, far));
 }
 
 // -log(1 - alpha), at most 16: opaque, but finite.
@@ -55,6 +72,10 @@ const PEELNET_TOP: f32 = 61439.0;
 const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
 const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
 const PEELNET_OPACITY_STEP: vec2f = 1.0 / (PEELNET_OPACITIES - 1.0);
+
+// Limits of a rest's mean powers. In narrow pixels, the rounding of the ends and of the sums takes the higher powers beyond 1;
+// bounds multiply up to seven of them, which 32 bits hold.
+const PEELNET_MEANS_MAX: vec4f = vec4f(1.0, 65536.0, 65536.0, 65536.0);
 
 struct PeelnetStatistics {
     // Absorbance b and b zeta, b zeta^2, b zeta^3.
@@ -168,7 +189,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
     let scale_square = scale * scale;
     let means = vec4f(
-        clamp((mean.x - middle) * scale, -1.0, 1.0),
+        (mean.x - middle) * scale,
         (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
         (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
         (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
@@ -176,7 +197,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
     return PeelnetRest(
         sqrt(absorbance),
         clamp((z.x - middle) * scale, -1.0, 1.0),
-        means,
+        clamp(means, -PEELNET_MEANS_MAX, PEELNET_MEANS_MAX),
         // Moved to a narrow pixel's range, moments lose their last bits.
         min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
     );
@@ -187,7 +208,7 @@ fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRe
 fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let finite_moments = clamp(moments, vec4f(-65504.0), vec4f(65504.0));
-    let finite_extent = clamp(extent, vec4f(-65504.0), vec4f(65504.0));
+    let finite_extent = vec4f(extent.xyz, min(extent.w, 65504.0));
     let place = peelnet_place(alpha, zeta, finite_moments, finite_extent);
     let rest = peelnet_rest(place, finite_moments, finite_extent);
     let share = peelnet_network(rest);
@@ -211,13 +232,8 @@ fn peelnet_composite(sums: vec4f, coverage: f32, transmittance: vec3f, backgroun
 // The least and the most of the rest that can lie in front of the fragment, given its first four moments, as shares
 // (Muenstermann et al. 2018).
 fn peelnet_moment_bounds(rest: PeelnetRest) -> vec2f {
-    let mixed = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
-    // Shares do not depend on the unit of depth. Another one where moments exceed the range, as those of narrow pixels and noise do:
-    // their products would overflow.
-    let unit = 1.0 / sqrt(max(1.0, max(abs(mixed.y), sqrt(abs(mixed.w)))));
-    let square = unit * unit;
-    let x = rest.place * unit;
-    let m = mixed * vec4f(unit, square, square * unit, square * square);
+    let x = rest.place;
+    let m = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
     // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
     // its value at x, which is one over what lies at x itself.
     let variance = m.y - m.x * m.x;
@@ -257,15 +273,15 @@ fn peelnet_network(rest: PeelnetRest) -> f32 {
 fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-3.403848, 5.659858, 1.1971129, -1.9402503)
-        + mat4x4f(vec4f(-0.048261918, -0.049491554, 0.13784179, 0.024843408), vec4f(2.8354657, -4.3898478, -0.009191628, 1.688664), vec4f(1.3774431, -2.432028, -0.322701, 1.0614194), vec4f(0.33418316, -0.86584413, -4.413494, -4.890697)) * input_a
-        + vec4f(1.7644012, -1.7904849, -2.2149596, 4.8002143) * input_b.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(0.5420309, 3.5868983, 1.0010448, -1.3259909)
-        + mat4x4f(vec4f(-0.08698753, -0.17512268, 0.04461627, 0.015495436), vec4f(-0.9744305, -0.86506003, 2.9325352, -0.270699), vec4f(0.27855828, 1.7259756, -3.7425344, 1.9209986), vec4f(2.2361915, -0.05330946, -0.15355836, -4.5470953)) * input_a
-        + vec4f(0.7207937, -3.2857769, -1.9770964, 4.4835553) * input_b.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.33157063
-        + dot(vec4f(0.80303395, -0.44773844, -1.0498732, -1.9469818), layer_a_a)
-        + dot(vec4f(0.8917978, -0.6287421, 1.1671531, 1.7540251), layer_a_b)), 80.0)));
+    let layer_a_a = max(vec4f(-0.53357095, 2.1524456, 1.821166, 1.0768961)
+        + mat4x4f(vec4f(-0.072819896, -0.10810292, -0.18829325, 0.10076601), vec4f(-3.2280767, 1.6981289, 1.620142, 0.6844582), vec4f(3.0365252, -3.0268328, -2.5852125, -0.75773585), vec4f(-0.21029042, 2.9772868, 4.4531345, -3.5282578)) * input_a
+        + vec4f(1.9311299, -1.9002953, -0.39320746, -2.7666652) * input_b.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(2.2587178, 0.24456486, 0.8848213, 3.4403732)
+        + mat4x4f(vec4f(-0.146154, 0.015277164, -0.02485799, -0.16287774), vec4f(-1.9292097, -4.1774673, -2.0078309, -0.31171516), vec4f(2.0168676, -0.04468177, 0.7063617, 0.18585917), vec4f(-1.9184552, 1.1663812, 0.39182687, -1.9911827)) * input_a
+        + vec4f(0.65242666, 0.015926193, -5.364553, -1.123493) * input_b.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.3163442
+        + dot(vec4f(0.93428487, -0.77779454, 0.9809114, -1.42917), layer_a_a)
+        + dot(vec4f(-0.42377168, -2.563112, -2.0558977, -0.43286392), layer_a_b)), 80.0)));
     return layer_b_a;
 }
 
@@ -273,5 +289,5 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     return exp(-root * root * peelnet_share(
-        clamp(root_absorbance, -46260.56, 46273.41), clamp(depth_fraction, -2951.363, 2952.3918), clamp(mean_fraction, -1332.858, 1333.8905), clamp(share_low, -2997.906, 2998.5178), clamp(share_high, -3073.0952, 3074.4712)));
+        clamp(root_absorbance, -47025.832, 47039.44), clamp(depth_fraction, -2908.215, 2909.2307), clamp(mean_fraction, -1233.0591, 1234.0698), clamp(share_low, -2971.1763, 2971.7954), clamp(share_high, -2989.8162, 2991.2053)));
 }

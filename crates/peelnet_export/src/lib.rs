@@ -14,12 +14,18 @@ mod verify;
 mod wgsl;
 
 pub use description::{Blend, Description, Pass, Target};
-pub use verify::{Verification, evaluate, verify};
+pub use verify::{Verification, evaluate_async, verify_async};
+#[cfg(not(target_arch = "wasm32"))]
+pub use verify::{evaluate, verify};
 pub use wgsl::{multiply_adds, wgsl};
 
+#[cfg(not(target_arch = "wasm32"))]
 use peelnet_gpu::Gpu;
+#[cfg(not(target_arch = "wasm32"))]
 use peelnet_model::Model;
-use std::path::{Path, PathBuf};
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::Path;
+use std::path::PathBuf;
 
 /// How to export. Languages and precisions other than WGSL in 32 bits will add fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,6 +72,7 @@ pub enum ExportError {
 ///
 /// # Errors
 /// A model without a shader function, a text that differs from the model, or a file that cannot be written.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn export(
     gpu: &Gpu,
     model: &Model,
@@ -76,6 +83,7 @@ pub fn export(
 }
 
 /// Writes a text if it computes what the model does.
+#[cfg(not(target_arch = "wasm32"))]
 fn write_verified(
     gpu: &Gpu,
     model: &Model,

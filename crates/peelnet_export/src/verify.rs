@@ -72,10 +72,23 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
 ///
 /// # Errors
 /// [`ExportError::Differs`] with the worst input; a text that is not valid; a GPU that fails.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, ExportError> {
+    gpu.block_on(verify_async(gpu, model, wgsl))
+}
+
+/// [`verify()`] where nothing may block, as in a browser.
+///
+/// # Errors
+/// Those of [`verify()`].
+pub async fn verify_async(
+    gpu: &Gpu,
+    model: &Model,
+    wgsl: &str,
+) -> Result<Verification, ExportError> {
     peelnet_shaders::validate("exported network", wgsl, naga::valid::Capabilities::empty())?;
     let samples = samples(model);
-    let outputs = evaluate(gpu, model, wgsl, &samples)?;
+    let outputs = evaluate_async(gpu, model, wgsl, &samples).await?;
     let mut result = Verification {
         samples: samples.len(),
         worst_absolute: 0.0,
@@ -137,7 +150,21 @@ fn samples(model: &Model) -> Vec<Vec<f32>> {
 ///
 /// # Errors
 /// A text that does not link, or a GPU that fails.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn evaluate(
+    gpu: &Gpu,
+    model: &Model,
+    wgsl: &str,
+    samples: &[Vec<f32>],
+) -> Result<Vec<f32>, ExportError> {
+    gpu.block_on(evaluate_async(gpu, model, wgsl, samples))
+}
+
+/// [`evaluate`] where nothing may block, as in a browser.
+///
+/// # Errors
+/// Those of [`evaluate`].
+pub async fn evaluate_async(
     gpu: &Gpu,
     model: &Model,
     wgsl: &str,
@@ -193,7 +220,7 @@ pub fn evaluate(
         &bound,
         (samples.len() as u32).div_ceil(64),
     );
-    Ok(gpu.read(&answers, 0..bytes)?)
+    Ok(gpu.read_async(&answers, 0..bytes).await?)
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ use std::{
     pin::Pin,
     sync::{Arc, Mutex},
     task::{Context, Poll, Waker},
-    time::Duration,
 };
 
 /// Bytes of one staging buffer: larger ones were measured to be slower, see the peak in page faults.
@@ -18,7 +17,7 @@ const CHUNK: u64 = 16 << 20;
 
 /// How long a device may take before it counts as lost. Software rasterisers on busy machines are slow.
 #[cfg(not(target_arch = "wasm32"))]
-const PATIENCE: Duration = Duration::from_secs(300);
+const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
 
 /// What a mapping, or a submission, came to, and who waits for it.
 #[derive(Debug, Default)]

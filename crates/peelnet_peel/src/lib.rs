@@ -3,8 +3,8 @@
 //! A scene, a varied copy of it and a view make a work item ([`items`]); work items are independent, so shards take
 //! them in turn. For each, [`harvest::Harvester`] finds all fragments in one of three ways — S-buffer, dual or single
 //! peeling — which leave the same thing in GPU storage: per pixel a run of fragments, front to back. A second thread
-//! turns runs into rows ([`rows`]) and writes them ([`extract()`]) or hands them to a program ([`batches()`]) while the GPU works on the next tile. Memory is bounded by the
-//! tile's budget, whatever the number of views or fragments.
+//! turns runs into rows ([`rows`]) and writes them ([`extract()`]) or hands them to a program ([`batches()`]) while the GPU
+//! works on the next tile. Memory is bounded by the tile's budget, whatever the number of views or fragments.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod batches;
@@ -16,6 +16,7 @@ mod extract;
 pub mod harvest;
 pub mod items;
 pub mod rows;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod synthetic;
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -124,7 +124,7 @@ impl Learning<'_> {
 }
 
 /// A method made ready for one scene and frame size.
-pub trait Compositor: fmt::Debug + Send {
+pub trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     /// Records the passes that composite the transparent fragments: over `C_0` into the frame's image, or onto the caller's target.
     ///
     /// # Errors
