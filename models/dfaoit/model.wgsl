@@ -2,16 +2,16 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 10-32-16-3 (Relu hidden, Sigmoid last), 931 parameters, 880 multiply-adds. Recipe dfaoit, seed 1, 24 epochs.
 // Answers: linear RGB, kept in 0 .. 1.
-// Input 0: front_r in 1, valid range 0.0 .. 1.0939513 (what training saw).
-// Input 1: front_g in 1, valid range 0.0000023829562 .. 1.1236868 (what training saw).
-// Input 2: front_b in 1, valid range 0.000006549183 .. 1.1081574 (what training saw).
-// Input 3: front_transmittance in 1, valid range 0.00007605034 .. 0.99800104 (what training saw).
-// Input 4: tail_r in 1, valid range 0.000021308402 .. 1.1394634 (what training saw).
-// Input 5: tail_g in 1, valid range 0.00002731681 .. 1.0839648 (what training saw).
-// Input 6: tail_b in 1, valid range 0.000023716591 .. 1.0918568 (what training saw).
-// Input 7: tail_alpha in 1, valid range 0.0009999871 .. 0.99180055 (what training saw).
-// Input 8: tail_transmittance in 1, valid range 0.0 .. 0.99800104 (what training saw).
-// Input 9: tail_count in 1, valid range 2.0 .. 158.0 (what training saw).
+// Input 0: front_r (1), 0.0 .. 1.0939513 in training.
+// Input 1: front_g (1), 0.0000023829562 .. 1.1236868 in training.
+// Input 2: front_b (1), 0.000006549183 .. 1.1081574 in training.
+// Input 3: front_transmittance (1), 0.00007605034 .. 0.99800104 in training.
+// Input 4: tail_r (1), 0.000021308402 .. 1.1394634 in training.
+// Input 5: tail_g (1), 0.00002731681 .. 1.0839648 in training.
+// Input 6: tail_b (1), 0.000023716591 .. 1.0918568 in training.
+// Input 7: tail_alpha (1), 0.0009999871 .. 0.99180055 in training.
+// Input 8: tail_transmittance (1), 0.0 .. 0.99800104 in training.
+// Input 9: tail_count (1), 2.0 .. 158.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.009797, validation 0.010023, test 0.010233.
 // Held-out error: not measured.

@@ -2,15 +2,15 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 9-14-9-1 (Relu hidden, Sigmoid last), 285 parameters, 261 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
-// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 21.597782 (what training saw).
-// Input 1: depth_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
-// Input 2: mean_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
-// Input 3: share_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Input 4: share_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Input 5: interval_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Input 6: interval_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Input 7: depth_deviation in half standard deviations, valid range -2.0 .. 2.0 (what training saw).
-// Input 8: skewness in half skewness, valid range -2.0 .. 2.0 (what training saw).
+// Input 0: root_absorbance (root of the rest's absorbance), 0.0 .. 21.597782 in training.
+// Input 1: depth_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
+// Input 3: share_low (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Input 4: share_high (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Input 5: interval_low (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Input 6: interval_high (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Input 7: depth_deviation (half standard deviations), -2.0 .. 2.0 in training.
+// Input 8: skewness (half skewness), -2.0 .. 2.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.000238, validation 0.000242, test 0.000235.
 // Held-out error, mean |T - T_exact|: boxes-held 0.02602, cups-held 0.01926, foliage-held 0.00944, panes-held 0.00660, sixteen-held 0.00982, smoke-held 0.01428.

@@ -2,13 +2,13 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 7-32-16-1 (Relu hidden, Sigmoid last), 801 parameters, 752 multiply-adds. Recipe nmt, seed 1, 24 epochs.
 // Answers: transmittance in front, kept in 0.000061035156 .. 1.0.
-// Input 0: depth in warped, -1 .. 1 over the frame's transparent depth range, valid range -1.0 .. 1.0 (what training saw).
-// Input 1: fragment_count in 1, valid range 1.0 .. 160.0 (what training saw).
-// Input 2: absorbance in 1, valid range 0.0010004875 .. 470.25098 (what training saw).
-// Input 3: moment_one in 1, valid range -1.0 .. 1.0 (what training saw).
-// Input 4: moment_two in 1, valid range 1.7592255e-10 .. 1.0 (what training saw).
-// Input 5: moment_three in 1, valid range -1.0 .. 1.0 (what training saw).
-// Input 6: moment_four in 1, valid range 3.0948746e-20 .. 1.0 (what training saw).
+// Input 0: depth (warped, -1 .. 1 over the frame's transparent depth range), -1.0 .. 1.0 in training.
+// Input 1: fragment_count (1), 1.0 .. 160.0 in training.
+// Input 2: absorbance (1), 0.0010004875 .. 470.25098 in training.
+// Input 3: moment_one (1), -1.0 .. 1.0 in training.
+// Input 4: moment_two (1), 1.7592255e-10 .. 1.0 in training.
+// Input 5: moment_three (1), -1.0 .. 1.0 in training.
+// Input 6: moment_four (1), 3.0948746e-20 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.007334, validation 0.007230, test 0.007183.
 // Held-out error, mean |T - T_exact|: boxes-held 0.06719, cups-held 0.05741, foliage-held 0.06296, panes-held 0.03324, sixteen-held 0.04243, smoke-held 0.04802.

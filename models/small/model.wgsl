@@ -2,11 +2,11 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 5-8-1 (Relu hidden, Sigmoid last), 57 parameters, 48 multiply-adds. Recipe small, seed 1, 24 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
-// Input 0: root_absorbance in root of the rest's absorbance, valid range 0.0 .. 21.672869 (what training saw).
-// Input 1: depth_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
-// Input 2: mean_fraction in of the pixel's depth range, valid range 0.0 .. 1.0 (what training saw).
-// Input 3: share_low in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
-// Input 4: share_high in of the rest's absorbance, valid range 0.0 .. 1.0 (what training saw).
+// Input 0: root_absorbance (root of the rest's absorbance), 0.0 .. 21.672869 in training.
+// Input 1: depth_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
+// Input 3: share_low (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Input 4: share_high (of the rest's absorbance), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.000353, validation 0.000351, test 0.000355.
 // Held-out error, mean |T - T_exact|: boxes-held 0.01883, cups-held 0.01756, foliage-held 0.00970, panes-held 0.00580, sixteen-held 0.01077, smoke-held 0.01563.

@@ -2,9 +2,9 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 3-10-8-1 (Relu hidden, Identity last), 137 parameters, 118 multiply-adds. Recipe thesis, seed 1, 150 epochs.
 // Answers: transmittance in front, kept in 0.000061035156 .. 1.0.
-// Input 0: linear_depth in scene units, valid range 3.2974603 .. 8.639711 (what training saw).
-// Input 1: alpha_sum in 1, valid range 0.31566986 .. 15.300003 (what training saw).
-// Input 2: fragment_count in 1, valid range 2.0 .. 18.0 (what training saw).
+// Input 0: linear_depth (scene units), 3.2974603 .. 8.639711 in training.
+// Input 1: alpha_sum (1), 0.31566986 .. 15.300003 in training.
+// Input 2: fragment_count (1), 2.0 .. 18.0 in training.
 // Trained on 1486634 rows of sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color (dataset c67399899c9e18435cd5e4030d65e52fcd26bd3f40cfdb81c0ce663fd9a948e7).
 // Loss: training 0.039518, test 0.039575.
 // Held-out error, mean |T - T_exact|: sixteen-held 0.15695.

@@ -348,13 +348,13 @@ mod tests {
 
     /// The header's vectors are what the model answers, to the bit.
     #[test]
-    fn the_header_tells_what_a_user_needs() {
+    fn the_header_says_what_a_user_needs() {
         let model = model(&[10, 8], 5);
         let text = wgsl(&model, &Options::default()).expect("exports");
         for word in [
             "3-10-8-1",
             "118 multiply-adds",
-            "linear_depth in",
+            "linear_depth (",
             "rg16float",
             "MIT OR Apache-2.0",
         ] {

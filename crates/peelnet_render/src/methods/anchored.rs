@@ -7,7 +7,10 @@ use super::{
     learned_transmittances,
     weighted::SUMS,
 };
-use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use crate::{
+    Flaw, Property, RenderError,
+    flaw::{half_statistics, half_sums},
+};
 use peelnet_core::{methods::anchored, statistics::SumPrecision};
 use peelnet_model::{Inputs, Output};
 
@@ -51,8 +54,16 @@ macro_rules! anchored {
 const BEHIND_COINCIDENT: Flaw = Flaw::new(
     Property::Transmittance,
     &["coplanar"],
-    "the network's own error at a layer between sixteen coincident ones and the end: 0.010 and 0.007; where the sixteen stand before one, it is exact",
+    "the network's own error at a layer between sixteen coincident ones and the end, up to 0.010; where the sixteen stand before one, it is exact",
 );
+
+const ROUNDED_OTHERWISE: Flaw = Flaw::new(
+    Property::Scale,
+    &["high-alpha"],
+    "depths are rounded otherwise, and a sum in half floats falls on the other side of a rounding (docs/learned-weights.md)",
+)
+.when(half_sums)
+.seen_on_llvmpipe();
 
 pub(super) const SMALL: Method = Method {
     parameters: &[TARGETS],
@@ -60,13 +71,7 @@ pub(super) const SMALL: Method = Method {
     curve: &["", ":targets=f32"],
     flaws: &[
         Flaw::swallowed(&["deep"]),
-        Flaw::new(
-            Property::Scale,
-            &["high-alpha"],
-            "depths are rounded otherwise, and a sum in half floats falls on the other side of a rounding (docs/learned-weights.md)",
-        )
-        .when(half_sums)
-        .seen_on_llvmpipe(),
+        ROUNDED_OTHERWISE,
         BEHIND_COINCIDENT,
     ],
     ..anchored!(
@@ -79,7 +84,11 @@ pub(super) const MEDIUM: Method = Method {
     parameters: &[TARGETS],
     promises: |_| promises(Precision::Half),
     curve: &["", ":targets=f32", ":scale=0.5"],
-    flaws: &[Flaw::swallowed(&["alpha-tiny", "deep", "near-overflow"])],
+    flaws: &[
+        Flaw::swallowed(&["deep"]),
+        ROUNDED_OTHERWISE,
+        BEHIND_COINCIDENT,
+    ],
     ..anchored!(
         "deep-medium",
         "the same with exact ends, 5-12-1: the one to ship"
@@ -90,7 +99,10 @@ pub(super) const LARGE: Method = Method {
     parameters: &[MOMENT_TARGETS],
     promises: |_| promises(Precision::Full),
     curve: &["", ":targets=f16", ":scale=0.5"],
-    flaws: &[Flaw::swallowed(&["alpha-tiny", "deep"]), BEHIND_COINCIDENT],
+    flaws: &[
+        Flaw::swallowed(&["deep"]).when(half_statistics),
+        BEHIND_COINCIDENT,
+    ],
     ..anchored!(
         "deep-large",
         "the same with more features, 9-14-9-1: the most accurate"

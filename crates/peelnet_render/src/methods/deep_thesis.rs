@@ -42,7 +42,6 @@ pub(super) const METHOD: Method = Method {
                 "moving-camera",
                 "opaque-mix",
                 "passing",
-                "thin-slab",
                 "two-layers",
                 "wide-range",
             ],
