@@ -494,6 +494,11 @@ fn an_applications_own_device() {
     for (found, exact) in image.pixels[5].iter().zip([0.6125, 0.3625, 0.2375]) {
         assert!((found - exact).abs() < 1e-6, "{found}, not {exact}");
     }
+    let view = target(&gpu, wgpu::TextureFormat::Rgba32Float, [4, 4], 1, [0.0; 3]);
+    let over = Target::over(&view);
+    let refused = renderer.draw(&mut gpu.encoder(), &mut method, &scene.views[0], &over);
+    let message = refused.expect_err("a target that blends").to_string();
+    assert!(message.contains("Rgba32Float"), "{message}");
     let refused = renderer.method(&"dual-peel".parse().expect("a name"), options());
     let message = refused.expect_err("blends in 32 bits").to_string();
     assert!(message.contains("float32-blendable"), "{message}");

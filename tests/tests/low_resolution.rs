@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 use peelnet_core::fragment::worked_example;
-use peelnet_render::{Image, MethodSpec};
+use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Material, Object};
 use peelnet_tests::{draw, gpu, scene, wall, walls};
 
@@ -15,6 +15,25 @@ fn furthest(a: &Image, b: &Image) -> f32 {
 
 /// Compositing over black and then over `C_0` rounds a few times more than compositing over `C_0`.
 const ROUNDING: f32 = 1e-5;
+
+/// A quarter of the pixels take a quarter of the bytes, and 36 for each of them: colour, the black behind it, and opaque depth.
+#[test]
+fn half_the_resolution_takes_a_quarter_of_the_bytes() {
+    let gpu = gpu();
+    let walls = walls(&worked_example(), [0.0; 3]);
+    let renderer = Renderer::new(&gpu, &walls).unwrap();
+    let bytes = |spec: &MethodSpec| {
+        let options = MethodOptions::sized([32, 24]);
+        let mut method = renderer.method(spec, options).unwrap();
+        let drawn = renderer.image(&mut method, &walls.views[0]).unwrap();
+        drawn.stats.bytes_per_pixel
+    };
+    for spec in MethodSpec::all() {
+        let (full, low) = (bytes(&spec), bytes(&spec.with("scale", "0.5").unwrap()));
+        let want = 0.25 * (full + 36.0);
+        assert!((low - want).abs() < 1e-9, "{spec}: {low}, not {want}");
+    }
+}
 
 /// Where every pixel holds the same fragments, any scale gives the image of the full resolution, for frames of odd sizes too.
 #[test]

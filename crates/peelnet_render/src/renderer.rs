@@ -297,6 +297,16 @@ impl Renderer {
     fn output(&self, target: &Target<'_>) -> Result<([u32; 2], Output), RenderError> {
         let texture = target.color.texture();
         let size = [texture.width(), texture.height()];
+        let format = texture.format();
+        // What WebGPU guarantees of the format with the device's features: some adapters would blend more.
+        let flags = format
+            .guaranteed_format_features(self.gpu.device.features())
+            .flags;
+        if !self.scene.tinted && !flags.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
+            return Err(RenderError::Target(format!(
+                "its format {format:?} cannot be blended on this device; use Rgba16Float, Rgba8Unorm or another that can"
+            )));
+        }
         if let Some(depth) = target.depth {
             let depth = depth.texture();
             if [depth.width(), depth.height()] != size
@@ -324,7 +334,7 @@ impl Renderer {
         Ok((
             size,
             Output::Target {
-                format: texture.format(),
+                format,
                 samples: texture.sample_count(),
                 over: !self.scene.tinted,
             },

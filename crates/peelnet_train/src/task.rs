@@ -21,7 +21,7 @@ pub enum Part {
 ///
 /// An example is what batches count: a fragment for recipes that learn from rows, a pixel with all of its fragments
 /// for recipes that learn from pixels. A task keeps its tensors in the order of the epoch and hands out ranges of them.
-pub trait Task: Sync {
+pub trait Task: Send + Sync {
     /// Number of examples of a part.
     fn examples(&self, part: Part) -> usize;
 

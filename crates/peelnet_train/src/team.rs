@@ -7,15 +7,13 @@
 use std::ops::Range;
 
 use burn::tensor::Tensor;
-use rayon::ThreadPool;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::network::{Network, Shape};
 use crate::task::{Part, Task};
 
-/// Threads, and what they evaluate.
+/// What the threads of a pool evaluate. Its functions run in the pool: to enter it takes longer than a small batch.
 pub(crate) struct Team<'a> {
-    pub(crate) threads: &'a ThreadPool,
     pub(crate) task: &'a dyn Task,
     pub(crate) shape: &'a Shape,
     /// Examples in a chunk.
@@ -53,14 +51,12 @@ impl Team<'_> {
         range: Range<usize>,
         evaluate: impl Fn(Range<usize>) -> Tensor<1> + Sync,
     ) -> Vec<Tensor<1>> {
-        self.threads.install(|| {
-            (0..range.len().div_ceil(self.chunk))
-                .into_par_iter()
-                .map(|chunk| {
-                    let start = range.start + chunk * self.chunk;
-                    evaluate(start..(start + self.chunk).min(range.end))
-                })
-                .collect()
-        })
+        (0..range.len().div_ceil(self.chunk))
+            .into_par_iter()
+            .map(|chunk| {
+                let start = range.start + chunk * self.chunk;
+                evaluate(start..(start + self.chunk).min(range.end))
+            })
+            .collect()
     }
 }

@@ -194,7 +194,7 @@ impl Run<'_> {
             if epoch > self.config.epochs {
                 break End::Finished;
             }
-            let Some(pass) = self.epoch(epoch, task, &progress) else {
+            let Some(pass) = self.threads.install(|| self.epoch(epoch, task, &progress)) else {
                 break End::Interrupted;
             };
             self.take(pass, epoch, task.examples(Part::Train), &mut progress)?;
@@ -286,7 +286,10 @@ impl Run<'_> {
         if task.examples(Part::Validation) > 0 {
             let losses = &mut model.meta.losses;
             losses.validation = losses.validation.or(losses.test);
-            losses.test = mean_loss(&self.team(task), chosen.1, Part::Test);
+            let team = self.team(task);
+            losses.test = self
+                .threads
+                .install(|| mean_loss(&team, chosen.1, Part::Test));
         }
         if end != End::Interrupted {
             save_model(&model, &self.options.out)?;
@@ -346,7 +349,6 @@ impl Run<'_> {
 
     fn team<'a>(&'a self, task: &'a dyn Task) -> Team<'a> {
         Team {
-            threads: &self.threads,
             task,
             shape: &self.shape,
             chunk: self.config.chunk,

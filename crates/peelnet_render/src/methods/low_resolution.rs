@@ -122,11 +122,16 @@ impl Compositor for LowResolution {
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
+        let samples = f64::from(self.frame.pixels()) / f64::from(cx.frame.pixels());
         let cx = Learning {
             frame: &self.frame,
             ..*cx
         };
-        self.method.learn(&cx, words, stats)
+        // What is known only now is counted by pixels of the low resolution.
+        let drawn = std::mem::take(&mut stats.bytes_per_pixel);
+        let fit = self.method.learn(&cx, words, stats)?;
+        stats.bytes_per_pixel = drawn + stats.bytes_per_pixel * samples;
+        Ok(fit)
     }
 
     fn version(&self) -> u64 {
