@@ -4,51 +4,15 @@ mod csv;
 mod npy;
 mod parquet;
 
-use std::fmt;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
-
-use serde::{Deserialize, Serialize};
 
 use crate::batch::FragmentBatch;
 use crate::column::Column;
 use crate::error::DatasetError;
+use crate::format::Format;
 use crate::manifest::FileEntry;
 
-/// The file format of a dataset's parts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Format {
-    /// Text with a header row; numbers as the shortest text that reads back to the same value.
-    Csv,
-    /// Apache Parquet, snappy, row groups of 2²⁰ rows. Small, fast, and read by column.
-    #[default]
-    Parquet,
-    /// One one-dimensional NumPy array for each column.
-    Npy,
-}
-
 impl Format {
-    /// All formats.
-    pub const ALL: [Self; 3] = [Self::Csv, Self::Parquet, Self::Npy];
-
-    /// The name, which is also the files' ending.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Parquet => "parquet",
-            Self::Npy => "npy",
-        }
-    }
-
-    /// How many files a part has.
-    pub(crate) const fn files_of_a_part(self) -> usize {
-        match self {
-            Self::Csv | Self::Parquet => 1,
-            Self::Npy => Column::ALL.len(),
-        }
-    }
-
     /// Starts a part of which the files' names begin with `stem`.
     pub(crate) fn sink(
         self,
@@ -74,25 +38,6 @@ impl Format {
             Self::Parquet => Box::new(parquet::ParquetSource::open(files, columns)?),
             Self::Npy => Box::new(npy::NpySource::open(files, columns)?),
         })
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Format {
-    type Err = DatasetError;
-
-    fn from_str(text: &str) -> Result<Self, DatasetError> {
-        Self::ALL
-            .into_iter()
-            .find(|f| f.name() == text)
-            .ok_or_else(|| DatasetError::UnknownFormat {
-                text: text.to_owned(),
-            })
     }
 }
 

@@ -39,6 +39,7 @@
 mod batch;
 mod column;
 mod error;
+mod format;
 mod formats;
 mod hashed_file;
 mod manifest;
@@ -52,7 +53,7 @@ mod writer;
 pub use batch::FragmentBatch;
 pub use column::{Column, ColumnData, ColumnKind, ColumnSlice};
 pub use error::DatasetError;
-pub use formats::Format;
+pub use format::{Format, ROW_GROUP_ROWS};
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
@@ -60,4 +61,4 @@ pub use reader::{Batches, Dataset};
 pub use shard::Shard;
 pub use split::{Split, Subset};
 pub use summary::Summary;
-pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter, ROW_GROUP_ROWS};
+pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter};

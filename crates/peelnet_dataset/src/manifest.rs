@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::column::{Column, ColumnKind};
 use crate::error::DatasetError;
-use crate::formats::Format;
+use crate::format::Format;
 use crate::hashed_file::hex;
 use crate::shard::Shard;
 

@@ -10,13 +10,11 @@ use tempfile::TempDir;
 use crate::batch::FragmentBatch;
 use crate::column::Column;
 use crate::error::DatasetError;
-use crate::formats::{Format, PartSink};
+use crate::format::Format;
+use crate::formats::PartSink;
 use crate::manifest::{self, CameraInfo, Manifest, Part, SCHEMA_VERSION, SceneEntry};
 use crate::shard::Shard;
 use crate::validate::check_column;
-
-/// Rows of a full row group.
-pub const ROW_GROUP_ROWS: usize = 1 << 20;
 
 /// Prefix of the hidden folder that holds a dataset while it is written.
 const PARTIAL: &str = ".partial-";

@@ -34,11 +34,15 @@ pub enum RenderError {
     NeedsModel(String),
     /// Coloured transmission, and a method that keeps one transmittance for all channels.
     #[error(
-        "{0} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of {tinted}, \
-         or make transmission_color grey",
-        tinted = crate::methods::tinted()
+        "{method} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of \
+         {tinted}, or make transmission_color grey"
     )]
-    OneTransmittance(String),
+    OneTransmittance {
+        /// The method.
+        method: String,
+        /// The methods that draw coloured transmission.
+        tinted: String,
+    },
     /// A target that a frame cannot be drawn onto.
     #[error("the target cannot be drawn onto: {0}")]
     Target(String),

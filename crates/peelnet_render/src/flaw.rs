@@ -1,6 +1,6 @@
 //! What must hold of every method in the hard cases of `peelnet_eval::stress`, and the flaws that methods declare.
 
-use crate::{MethodSpec, methods::Precision};
+use crate::methods::{parameter::Precision, spec::MethodSpec};
 use peelnet_gpu::{AdapterScope, wgpu};
 use serde::{Deserialize, Serialize};
 use std::fmt;

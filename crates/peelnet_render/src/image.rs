@@ -1,6 +1,6 @@
 //! The drawn frame in memory, and its three file formats.
 
-use crate::RenderError;
+use crate::error::RenderError;
 use peelnet_core::srgb;
 use std::path::Path;
 

@@ -1,8 +1,15 @@
 //! [`Renderer`]: a scene on a device, drawn into a caller's target, into an image, or for its time alone.
 
 use crate::{
-    FrameStatus, Image, LayerView, LearnedWeight, MethodOptions, MethodSpec, RenderError, Target,
-    methods::{self, Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+    error::RenderError,
+    image::Image,
+    methods::{
+        self,
+        compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+        layers::LayerView,
+        spec::MethodSpec,
+    },
+    target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{

@@ -1,10 +1,9 @@
 //! What a method is made ready with, what it draws onto, and what becomes of the frame.
 
-use crate::MethodSpec;
 use peelnet_gpu::wgpu;
 use peelnet_model::Recipe;
 #[cfg(doc)]
-use {crate::Renderer, peelnet_scene::Camera};
+use peelnet_scene::Camera;
 
 /// The exported text that a learned method draws with.
 #[derive(Clone, Debug)]
@@ -15,23 +14,10 @@ pub struct LearnedWeight {
     pub wgsl: String,
 }
 
-impl LearnedWeight {
-    /// The network that ships for a method; `None` for a method that has none.
-    pub fn shipped(spec: &MethodSpec) -> Option<Self> {
-        let mut recipes = Recipe::ALL.into_iter();
-        let recipe = recipes.find(|r| r.method == spec.name())?;
-        let shipped = peelnet_models::find(recipe.name)?;
-        Some(Self {
-            recipe,
-            wgsl: shipped.wgsl.to_owned(),
-        })
-    }
-}
-
 /// What a method is made ready with.
 #[derive(Clone, Debug)]
 pub struct MethodOptions {
-    /// Size of [`Renderer::image`]s, width and height in pixels. [`Renderer::draw`] takes that of its target.
+    /// Size of [`crate::Renderer::image`]s, width and height in pixels. [`crate::Renderer::draw`] takes that of its target.
     pub size: [u32; 2],
     /// The network of a learned method; by default the one that ships for it.
     pub learned: Option<LearnedWeight>,

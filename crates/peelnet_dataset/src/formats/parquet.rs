@@ -27,9 +27,9 @@ use super::{PartSink, PartSource};
 use crate::batch::FragmentBatch;
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice};
 use crate::error::DatasetError;
+use crate::format::ROW_GROUP_ROWS;
 use crate::hashed_file::HashedFile;
 use crate::manifest::FileEntry;
-use crate::writer::ROW_GROUP_ROWS;
 
 /// Rows of a page: 512 KiB of values, small enough for the caches.
 const PAGE_ROWS: usize = 1 << 17;

@@ -3,10 +3,12 @@
 //! A frame's storage has the room that an earlier frame needed. Fragments beyond it are left out and counted, and the next frame has room.
 
 use super::{
-    Build, Compositor, Count, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
-    Role, present::Present,
+    compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+    method::{Method, Promises, Role},
+    parameter::{Count, Parameter},
+    present::Present,
 };
-use crate::RenderError;
+use crate::error::RenderError;
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,

@@ -2,14 +2,17 @@
 //! the exported text itself. The CPU twin is `peelnet_core::methods::anchored`.
 
 use super::{
-    Build, Compositor, MOMENT_TARGETS, Method, MethodSpec, Pixel, Precision, Promises, TARGETS,
     commutative::{self, Blend, Gather, Plan, Target},
-    learned_transmittances,
+    compositor::{Build, Compositor},
+    learned::learned_transmittances,
+    method::{Method, Pixel, Promises},
+    parameter::{MOMENT_TARGETS, Precision, TARGETS},
+    spec::MethodSpec,
     weighted::SUMS,
 };
 use crate::{
-    Flaw, Property, RenderError,
-    flaw::{half_statistics, half_sums},
+    error::RenderError,
+    flaw::{Flaw, Property, half_statistics, half_sums},
 };
 use peelnet_core::{methods::anchored, statistics::SumPrecision};
 use peelnet_model::{Inputs, Output};

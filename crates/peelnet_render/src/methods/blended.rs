@@ -1,10 +1,12 @@
 //! `blended`: the mean colour with the exact coverage (McGuire & Bavoil 2013, eq 5).
 
 use super::{
-    Build, Compositor, Method, Promises, TARGETS,
+    compositor::{Build, Compositor},
+    method::{Method, Promises},
+    parameter::TARGETS,
     weighted::{build_sums, gather},
 };
-use crate::{Flaw, RenderError};
+use crate::{error::RenderError, flaw::Flaw};
 use peelnet_core::methods::blended;
 
 pub(super) const METHOD: Method = Method {

@@ -4,8 +4,11 @@
 //! A method states its targets, its storage, its passes and its resolve; their bindings, bytes and passes follow from that.
 //! All but the painter's methods give the same image whatever the order of drawing.
 
-use super::{Build, Compositor, DrawContext, FrameStats, Precision};
-use crate::RenderError;
+use super::{
+    compositor::{Build, Compositor, DrawContext, FrameStats},
+    parameter::Precision,
+};
+use crate::error::RenderError;
 use peelnet_core::guards::HALF_MAX;
 use peelnet_gpu::{
     bind::{Bind, Bound},

@@ -1,12 +1,17 @@
 //! `deep-thesis`: eq 6 with the weight of the thesis's network (Papakostas 2022), drawn with the exported text itself.
 
 use super::{
-    Build, Compositor, Method, Promises, Role, TARGETS,
     commutative::{self, Blend, Gather, Plan, Target},
-    learned_transmittances,
+    compositor::{Build, Compositor},
+    learned::learned_transmittances,
+    method::{Method, Promises, Role},
+    parameter::TARGETS,
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property, half_sums},
+};
 use peelnet_core::methods::deep;
 
 const IN_SCENE_UNITS: &str = "reads depth in scene units (Papakostas 2022)";

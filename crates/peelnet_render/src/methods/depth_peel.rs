@@ -1,10 +1,15 @@
 //! `depth-peel`: front to back, one layer a pass (Everitt 2001), until a pass peels nothing.
 
 use super::{
-    Build, Compositor, Count, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
+    compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+    method::{Method, Promises},
+    parameter::{Count, Parameter},
     peeling::Passes,
 };
-use crate::{Flaw, Property, RenderError};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::methods::over;
 use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{

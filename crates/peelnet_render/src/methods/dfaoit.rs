@@ -2,12 +2,14 @@
 //! drawn with the exported text itself.
 
 use super::{
-    Build, Compositor, DrawContext, FrameStats, Method, Precision, Promises, TARGETS,
     commutative::{Blend, Target},
+    compositor::{Build, Compositor, DrawContext, FrameStats},
     depth_peel::COINCIDENT,
+    method::{Method, Promises},
+    parameter::{Precision, TARGETS},
     weighted::SUMS,
 };
-use crate::RenderError;
+use crate::error::RenderError;
 use peelnet_core::methods::dfaoit;
 use peelnet_gpu::{
     bind::{Bind, Bound},

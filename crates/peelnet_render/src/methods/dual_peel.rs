@@ -2,10 +2,16 @@
 //! (Bavoil & Myers 2008).
 
 use super::{
-    Build, Compositor, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
-    depth_peel::PASSES, peeling::Passes,
+    compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+    depth_peel::PASSES,
+    method::{Method, Promises},
+    parameter::Parameter,
+    peeling::Passes,
 };
-use crate::{Flaw, Property, RenderError};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::methods::over;
 use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{

@@ -2,11 +2,17 @@
 //! CPU twin is `peelnet_core::methods::kbuffer`.
 
 use super::{
-    Build, Compositor, Method, MethodSpec, Numbered, Parameter, TARGETS, Word,
     commutative::{self, Gather, Plan, Storage},
+    compositor::{Build, Compositor},
+    method::{Method, Numbered},
+    parameter::{Parameter, TARGETS, Word},
+    spec::MethodSpec,
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property, half_sums},
+};
 use peelnet_core::{methods::kbuffer, weights::Weight};
 
 const WEIGHT: Word = Word {

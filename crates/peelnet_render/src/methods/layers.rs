@@ -1,8 +1,8 @@
 //! The view of layers: one layer of a nested object highlighted, the others around it as a veil. It composites by itself, from the
 //! sorted fragments of the S-buffer, and is no method of transparency.
 
-use super::{Compositor, abuffer};
-use crate::RenderError;
+use super::{abuffer, compositor::Compositor};
+use crate::error::RenderError;
 use peelnet_gpu::Gpu;
 use peelnet_raster::{FrameTargets, SceneBuffers};
 

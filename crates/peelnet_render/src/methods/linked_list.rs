@@ -3,10 +3,13 @@
 //! A pool that turns out too small is made larger for the next frame, which counts as too small until then: nothing is dropped silently.
 
 use super::{
-    Build, Compositor, Count, DrawContext, Fit, FrameStats, Learning, Method, Parameter, Promises,
-    abuffer::FIRST_GUESS, present::Present,
+    abuffer::FIRST_GUESS,
+    compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+    method::{Method, Promises},
+    parameter::{Count, Parameter},
+    present::Present,
 };
-use crate::RenderError;
+use crate::error::RenderError;
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,

@@ -3,8 +3,8 @@
 //! The method composites over black, at its own size and against its own opaque depth. The result is normalised,
 //! premultiplied colour with coverage, which may be interpolated; sums and moments may not.
 
-use super::{Build, Compositor, DrawContext, Fit, FrameStats, Learning};
-use crate::RenderError;
+use super::compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning};
+use crate::error::RenderError;
 use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{
     FrameTargets, GeometryPipelines, OpaqueDepth, PixelSample,

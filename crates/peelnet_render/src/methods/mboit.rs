@@ -1,12 +1,17 @@
 //! `mboit4` and `mboit6`: moment-based transparency with four and six power moments (Münstermann et al. 2018).
 
 use super::{
-    Build, Compositor, MOMENT_TARGETS, Method, MethodSpec, Number, Parameter, Precision, Promises,
-    Role, Word,
     commutative::{self, Blend, Gather, Plan, Target},
+    compositor::{Build, Compositor},
+    method::{Method, Promises, Role},
+    parameter::{MOMENT_TARGETS, Number, Parameter, Precision, Word},
+    spec::MethodSpec,
     weighted::SUMS,
 };
-use crate::{Flaw, Property, RenderError, flaw::half_statistics};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property, half_statistics},
+};
 use peelnet_core::methods::{
     mboit4::{self, Settings},
     mboit6,

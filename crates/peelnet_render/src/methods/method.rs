@@ -3,8 +3,12 @@
 //! Lists, help texts, benchmarks, hard cases and tests iterate over [`METHODS`](super::METHODS) and read these fields; none of
 //! them knows a method by its name.
 
-use super::{Build, Compositor, METHODS, MethodSpec, Parameter, Precision};
-use crate::{Flaw, RenderError};
+use super::{
+    compositor::{Build, Compositor},
+    parameter::{Parameter, Precision},
+    spec::MethodSpec,
+};
+use crate::{error::RenderError, flaw::Flaw};
 use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
 use peelnet_model::Model;
 
@@ -154,27 +158,6 @@ impl Role {
         Self::ThesisWeight,
         Self::ThesisNetwork,
     ];
-
-    /// The method that has it, with its parameters: the text of a [`MethodSpec`].
-    ///
-    /// # Panics
-    /// If no method declares the role: then constants made of it do not compile.
-    pub const fn method(self) -> &'static str {
-        let mut i = 0;
-        // Constants are computed with loops.
-        while i < METHODS.len() {
-            let mut k = 0;
-            while k < METHODS[i].roles.len() {
-                let (role, spec) = METHODS[i].roles[k];
-                if role as u8 == self as u8 {
-                    return spec;
-                }
-                k += 1;
-            }
-            i += 1;
-        }
-        panic!("a role that no method declares")
-    }
 }
 
 impl Numbered {

@@ -2,14 +2,16 @@
 //! exported text itself.
 
 use super::{
-    Build, Compositor, MOMENT_TARGETS, Method, Precision, Promises,
     commutative::{self, Blend, Gather, Plan, Target},
-    learned_transmittances,
+    compositor::{Build, Compositor},
+    learned::learned_transmittances,
+    method::{Method, Promises},
+    parameter::{MOMENT_TARGETS, Precision},
     weighted::SUMS,
 };
 use crate::{
-    Flaw, Property, RenderError,
-    flaw::{half_statistics, half_sums},
+    error::RenderError,
+    flaw::{Flaw, Property, half_statistics, half_sums},
 };
 use peelnet_core::methods::deep;
 

@@ -2,10 +2,16 @@
 //! surfaces that intersect, or overlap in a cycle.
 
 use super::{
-    Build, Compositor, Method, MethodSpec, Parameter, Promises, Role, TARGETS, Word,
     commutative::{self, Blend, Gather, Plan, Target},
+    compositor::{Build, Compositor},
+    method::{Method, Promises, Role},
+    parameter::{Parameter, TARGETS, Word},
+    spec::MethodSpec,
 };
-use crate::{Flaw, Property, RenderError};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::{fragment::Fragment, methods::over};
 use peelnet_raster::Order;
 

@@ -1,9 +1,7 @@
 //! Typed parameters of methods: what `name=value` behind a method's name may say.
 //!
-//! A parameter is a constant beside the method that has it. [`MethodSpec`] parses its value once; the constant then reads it
+//! A parameter is a constant beside the method that has it. [`MethodSpec`](super::MethodSpec) parses its value once; the constant then reads it
 //! from the specification, default included, and cannot fail.
-
-use super::MethodSpec;
 
 /// A parameter of a method.
 #[derive(Clone, Copy, Debug)]
@@ -124,19 +122,6 @@ impl Number {
         }
     }
 
-    /// The value that was given.
-    pub fn given(&self, spec: &MethodSpec) -> Option<f64> {
-        match spec.value(self.name) {
-            Some(Value::Number(x)) => Some(x),
-            _ => None,
-        }
-    }
-
-    /// The value, or the default.
-    pub fn of(&self, spec: &MethodSpec) -> f64 {
-        self.given(spec).unwrap_or(self.default)
-    }
-
     fn allowed(&self) -> String {
         let above = (self.above.is_finite()).then(|| format!("above {}", self.above));
         let most = (self.most.is_finite()).then(|| format!("at most {}", self.most));
@@ -144,37 +129,6 @@ impl Number {
         format!("a number {}", limits.join(" and "))
             .trim_end()
             .to_owned()
-    }
-}
-
-impl Whole {
-    /// The value, or the default.
-    pub fn of(&self, spec: &MethodSpec) -> u32 {
-        match spec.value(self.name) {
-            // Parsing checked that it is at most `most`.
-            Some(Value::Whole(n)) => n as u32,
-            _ => self.default,
-        }
-    }
-}
-
-impl Count {
-    /// The value that was given.
-    pub fn given(&self, spec: &MethodSpec) -> Option<u64> {
-        match spec.value(self.name) {
-            Some(Value::Whole(n)) => Some(n),
-            _ => None,
-        }
-    }
-}
-
-impl Word {
-    /// The word, or the default.
-    pub fn of(&self, spec: &MethodSpec) -> &'static str {
-        match spec.value(self.name) {
-            Some(Value::Word(word)) => word,
-            _ => self.words[0],
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! How many passes peeling takes: as many as an earlier frame needed. What a pass found is logged on the GPU and read back with the frame.
 
-use super::{DrawContext, Fit, FrameStats};
-use crate::RenderError;
+use super::compositor::{DrawContext, Fit, FrameStats};
+use crate::error::RenderError;
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_raster::count::CountPass;
 use std::ops::Range;

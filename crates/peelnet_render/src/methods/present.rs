@@ -1,7 +1,7 @@
 //! The last step of methods whose compute shaders write finished pixels: onto the caller's target, where the frame's output is one.
 
-use super::{Build, DrawContext};
-use crate::RenderError;
+use super::compositor::{Build, DrawContext};
+use crate::error::RenderError;
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_raster::{FrameTargets, frame::Output, fullscreen::FullscreenPass};
 

@@ -1,50 +1,25 @@
 //! A method's name with its parameters, parsed once.
 
 use super::{
-    METHODS, Method,
-    method::{Pixel, Promises},
-    parameter::{Parameter, Precision, SCALE, Targets, Value},
+    method::{Method, Pixel, Promises},
+    parameter::{Count, Number, Parameter, Precision, SCALE, Targets, Value, Whole, Word},
 };
-use crate::RenderError;
+use crate::error::RenderError;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_model::Model;
-use std::{cmp::Ordering, collections::BTreeMap, fmt, str::FromStr};
+use std::{cmp::Ordering, collections::BTreeMap, fmt};
 
 /// A method's name with its parameters, such as `wboit-eq10:factor=3e4,targets=f32`. Every value in it is allowed.
 #[derive(Clone, Debug)]
 pub struct MethodSpec {
-    method: &'static Method,
+    pub(super) method: &'static Method,
     /// The number that the name ends in, where it ends in one.
-    number: Option<u32>,
+    pub(super) number: Option<u32>,
     /// By name: the text as it was given, and its value.
-    values: BTreeMap<&'static str, (String, Value)>,
+    pub(super) values: BTreeMap<&'static str, (String, Value)>,
 }
 
 impl MethodSpec {
-    /// Every method that draws without a model, with its default parameters.
-    pub fn all() -> Vec<Self> {
-        METHODS
-            .iter()
-            .filter(|m| !m.learned)
-            .filter_map(|m| Self::points(m).next())
-            .collect()
-    }
-
-    /// Every method with the parameters that belong to its curve of error against time.
-    pub fn curve() -> Vec<Self> {
-        METHODS.iter().flat_map(Self::points).collect()
-    }
-
-    /// The points of one method's curve, the default first.
-    pub fn points(method: &'static Method) -> impl Iterator<Item = Self> {
-        let name = method.name;
-        // A test parses them all.
-        method
-            .curve
-            .iter()
-            .filter_map(move |ending| format!("{name}{ending}").parse().ok())
-    }
-
     /// The method with its parameters' defaults, or with a number in the middle of its curve.
     pub fn representative(method: &'static Method) -> Self {
         // Points of a curve are numbers where the name ends in one; a test parses them.
@@ -138,7 +113,7 @@ impl MethodSpec {
         self.values.get(name).map(|(_, value)| *value)
     }
 
-    fn set(&mut self, name: &str, text: &str) -> Result<(), RenderError> {
+    pub(super) fn set(&mut self, name: &str, text: &str) -> Result<(), RenderError> {
         let all = || self.method.all_parameters();
         let Some(parameter) = all().find(|p| p.name() == name) else {
             let known: Vec<String> = all()
@@ -158,7 +133,7 @@ impl MethodSpec {
         Ok(())
     }
 
-    fn bad(&self, message: String) -> RenderError {
+    pub(super) fn bad(&self, message: String) -> RenderError {
         RenderError::Parameter {
             method: self.name().to_owned(),
             message,
@@ -202,49 +177,6 @@ impl Ord for MethodSpec {
     }
 }
 
-impl FromStr for MethodSpec {
-    type Err = RenderError;
-
-    fn from_str(text: &str) -> Result<Self, RenderError> {
-        let (name, parameters) = text.split_once(':').unwrap_or((text, ""));
-        let of = |name: &str, numbered: bool| {
-            METHODS
-                .iter()
-                .find(|m| m.name == name && m.numbered.is_some() == numbered)
-        };
-        let numbered = || {
-            let (name, number) = name.rsplit_once('-')?;
-            Some((of(name, true)?, number))
-        };
-        let (method, number) = match (of(name, false), numbered()) {
-            (Some(method), _) => (method, None),
-            (None, Some((method, number))) => (method, Some(number)),
-            (None, None) => return Err(unknown(name)),
-        };
-        let mut spec = Self {
-            method,
-            number: None,
-            values: BTreeMap::new(),
-        };
-        if let (Some(numbered), Some(text)) = (method.numbered, number) {
-            spec.number = Some(numbered.parse(method.name, text).map_err(|e| spec.bad(e))?);
-        }
-        for pair in parameters.split(',').filter(|p| !p.is_empty()) {
-            let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
-            spec.set(name, value)?;
-        }
-        Ok(spec)
-    }
-}
-
-fn unknown(name: &str) -> RenderError {
-    let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
-    RenderError::UnknownMethod {
-        name: name.to_owned(),
-        known: known.join(", "),
-    }
-}
-
 impl fmt::Display for MethodSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())?;
@@ -255,6 +187,52 @@ impl fmt::Display for MethodSpec {
             write!(f, "{}{name}={text}", if i == 0 { ':' } else { ',' })?;
         }
         Ok(())
+    }
+}
+
+impl Number {
+    /// The value that was given.
+    pub fn given(&self, spec: &MethodSpec) -> Option<f64> {
+        match spec.value(self.name) {
+            Some(Value::Number(x)) => Some(x),
+            _ => None,
+        }
+    }
+
+    /// The value, or the default.
+    pub fn of(&self, spec: &MethodSpec) -> f64 {
+        self.given(spec).unwrap_or(self.default)
+    }
+}
+
+impl Whole {
+    /// The value, or the default.
+    pub fn of(&self, spec: &MethodSpec) -> u32 {
+        match spec.value(self.name) {
+            // Parsing checked that it is at most `most`.
+            Some(Value::Whole(n)) => n as u32,
+            _ => self.default,
+        }
+    }
+}
+
+impl Count {
+    /// The value that was given.
+    pub fn given(&self, spec: &MethodSpec) -> Option<u64> {
+        match spec.value(self.name) {
+            Some(Value::Whole(n)) => Some(n),
+            _ => None,
+        }
+    }
+}
+
+impl Word {
+    /// The word, or the default.
+    pub fn of(&self, spec: &MethodSpec) -> &'static str {
+        match spec.value(self.name) {
+            Some(Value::Word(word)) => word,
+            _ => self.words[0],
+        }
     }
 }
 
@@ -282,6 +260,7 @@ impl Method {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
+    use crate::methods::METHODS;
 
     #[test]
     fn names_and_parameters_round_trip() {

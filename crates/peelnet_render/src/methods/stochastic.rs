@@ -2,11 +2,16 @@
 //! `peelnet_core::methods::stochastic`.
 
 use super::{
-    Build, Compositor, Method, Numbered, Promises, TARGETS,
     commutative::{self, Gather, Plan, Storage},
+    compositor::{Build, Compositor},
+    method::{Method, Numbered, Promises},
+    parameter::TARGETS,
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property, half_sums},
+};
 use peelnet_core::methods::stochastic;
 
 pub(super) const METHOD: Method = Method {

@@ -2,12 +2,18 @@
 //! `peelnet_core::methods::wavelet`.
 
 use super::{
-    Build, Compositor, Method, MethodSpec, Parameter, Word,
     commutative::{self, Blend, Gather, Plan, Target},
+    compositor::{Build, Compositor},
     mboit::own_share,
+    method::Method,
+    parameter::{Parameter, Word},
+    spec::MethodSpec,
     weighted::{SUMS, TRANSMITTANCE},
 };
-use crate::{Flaw, Property, RenderError};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::methods::wavelet;
 
 const OWN: Word = Word {

@@ -1,11 +1,16 @@
 //! `wboit-*`: the weighted mean colour with the exact coverage (McGuire & Bavoil 2013, eq 6), by a named weight.
 
 use super::{
-    Build, Compositor, Method, Number, Parameter, Promises, Role, TARGETS, Whole,
     commutative::Gather,
+    compositor::{Build, Compositor},
+    method::{Method, Promises, Role},
+    parameter::{Number, Parameter, TARGETS, Whole},
     weighted::{build_sums, gather},
 };
-use crate::{Flaw, Property, RenderError, flaw::half_sums};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property, half_sums},
+};
 use peelnet_core::{methods::wboit, weights::Weight};
 
 const FACTOR: Number = Number::any("factor", 3e3, "largest weight, 3e3 by default");

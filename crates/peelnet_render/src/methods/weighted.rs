@@ -1,10 +1,10 @@
 //! The targets and passes that methods of weighted sums share: one geometry pass each.
 
 use super::{
-    Build, Compositor,
     commutative::{self, Blend, Gather, Plan, TINTED, Target},
+    compositor::{Build, Compositor},
 };
-use crate::RenderError;
+use crate::error::RenderError;
 
 /// `Σ C w` and `Σ α w`.
 pub(super) const SUMS: Target = Target {

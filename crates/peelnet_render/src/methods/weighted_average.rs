@@ -1,11 +1,16 @@
 //! `weighted-average`: the mean colour, covering as so many layers of the mean opacity (Bavoil & Myers 2008).
 
 use super::{
-    Build, Compositor, Method, TARGETS,
     commutative::{self, Blend, Plan, Target},
+    compositor::{Build, Compositor},
+    method::Method,
+    parameter::TARGETS,
     weighted::{SUMS, gather},
 };
-use crate::{Flaw, Property, RenderError};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::methods::weighted_average;
 
 pub(super) const METHOD: Method = Method {

@@ -1,11 +1,16 @@
 //! `weighted-sum`: colours summed as they are (Meshkin 2007).
 
 use super::{
-    Build, Compositor, Method, Promises, TARGETS,
     commutative::{self, Plan},
+    compositor::{Build, Compositor},
+    method::{Method, Promises},
+    parameter::TARGETS,
     weighted::{SUMS, gather},
 };
-use crate::{Flaw, Property, RenderError};
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::methods::weighted_sum;
 
 pub(super) const METHOD: Method = Method {

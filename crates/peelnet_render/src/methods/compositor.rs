@@ -1,0 +1,134 @@
+//! What a method draws behind, and with.
+
+use super::spec::MethodSpec;
+use crate::{error::RenderError, target::LearnedWeight};
+use peelnet_gpu::{Gpu, record::Recorder, wgpu};
+use peelnet_raster::{FrameTargets, SceneBuffers};
+use peelnet_scene::Camera;
+use std::{fmt, ops::Range};
+
+/// What a method reports of one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameStats {
+    /// Transparent fragments of the frame, where the method counts them.
+    pub fragments: Option<u64>,
+    /// Fragments of the fullest pixel, where the method counts them.
+    pub max_layers: Option<u32>,
+    /// Fragments that the method did not composite: coplanar ones in dual peeling, those beyond a cap on passes.
+    pub lost: u64,
+    /// Tiles that the frame was drawn in.
+    pub tiles: u32,
+    /// Passes over the transparent geometry.
+    pub geometry_passes: u32,
+    /// Passes over the pixels.
+    pub fullscreen_passes: u32,
+    /// Bytes that the method allocates a pixel, beyond colour target and `C_0`; storage per fragment included.
+    pub bytes_per_pixel: f64,
+}
+
+/// What a compositor draws with.
+#[derive(Debug)]
+pub struct DrawContext<'a, 'e> {
+    /// Records passes.
+    pub recorder: &'a mut Recorder<'e>,
+    /// The scene.
+    pub scene: &'a SceneBuffers,
+    /// The view.
+    pub camera: &'a Camera,
+    /// `C_0` and where the finished picture goes.
+    pub frame: &'a FrameTargets,
+    /// The caller's target, where the frame's output is one.
+    pub target: Option<&'a wgpu::TextureView>,
+    /// Whether to count what statistics need and compositing does not.
+    pub counting: bool,
+    /// Whether only to count, for a method that does not know yet how much room it needs.
+    pub only_count: bool,
+}
+
+impl<'a> DrawContext<'a, '_> {
+    /// The attachment that the finished picture is written to.
+    pub fn output(&self) -> Option<wgpu::RenderPassColorAttachment<'a>> {
+        self.frame.attachment(self.target)
+    }
+}
+
+/// Whether a frame had room for all of its fragments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fit {
+    /// It had, and took what it needed.
+    Whole,
+    /// It had, and did more than it needed: its time is not the method's.
+    Loose,
+    /// It lacks fragments.
+    TooSmall,
+}
+
+/// What a compositor learns the counts of a frame with.
+#[derive(Debug)]
+pub struct Learning<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// The scene.
+    pub scene: &'a SceneBuffers,
+    /// The frame's targets.
+    pub frame: &'a FrameTargets,
+    /// Whether the same view is drawn again, so that room needs no reserve for movement.
+    pub exact: bool,
+}
+
+impl Learning<'_> {
+    /// Room for what was needed, with a quarter more where views move.
+    pub const fn room(&self, needed: u64) -> u64 {
+        if self.exact {
+            needed
+        } else {
+            needed + needed / 4
+        }
+    }
+}
+
+/// A method made ready for one scene and frame size.
+pub trait Compositor: fmt::Debug + wgpu::WasmNotSend {
+    /// Records the passes that composite the transparent fragments: over `C_0` into the frame's image, or onto the caller's target.
+    ///
+    /// # Errors
+    /// A lost device, or a frame beyond the adapter's limits.
+    fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError>;
+
+    /// Whether it knows how much room a frame needs, or need not know.
+    fn is_ready(&self) -> bool {
+        true
+    }
+
+    /// What to read back of the frame just recorded; empty for methods that need no counts.
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+        Vec::new()
+    }
+
+    /// Takes what was read back, word by word, completes the statistics, and makes room for the next frame.
+    ///
+    /// # Errors
+    /// A pixel or frame beyond what storage can hold, or a lost device.
+    fn learn(
+        &mut self,
+        _cx: &Learning<'_>,
+        _words: &[Vec<u32>],
+        _stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        Ok(Fit::Whole)
+    }
+
+    /// Counts how often the room changed: counts of frames before say nothing of what there is now.
+    fn version(&self) -> u64 {
+        0
+    }
+}
+
+/// What a method is built from.
+pub(crate) struct Build<'a> {
+    pub gpu: &'a Gpu,
+    pub scene: &'a SceneBuffers,
+    pub frame: &'a FrameTargets,
+    pub spec: &'a MethodSpec,
+    pub learned: Option<&'a LearnedWeight>,
+}

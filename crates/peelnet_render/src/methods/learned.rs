@@ -1,0 +1,56 @@
+//! What learned methods have in common.
+
+use super::{compositor::Build, parameter::Precision, spec::MethodSpec};
+use crate::{error::RenderError, target::LearnedWeight};
+use peelnet_core::{absorbance::DepthWarp, statistics::SumPrecision};
+use peelnet_model::{Model, Recipe};
+
+impl LearnedWeight {
+    /// The network that ships for a method; `None` for a method that has none.
+    pub fn shipped(spec: &MethodSpec) -> Option<Self> {
+        let mut recipes = Recipe::ALL.into_iter();
+        let recipe = recipes.find(|r| r.method == spec.name())?;
+        let shipped = peelnet_models::find(recipe.name)?;
+        Some(Self {
+            recipe,
+            wgsl: shipped.wgsl.to_owned(),
+        })
+    }
+}
+
+impl Build<'_> {
+    /// The text that a learned method draws with.
+    ///
+    /// # Errors
+    /// No model, or one that was trained for another method.
+    pub(crate) fn learned_weight(&self) -> Result<&LearnedWeight, RenderError> {
+        let learned = self
+            .learned
+            .ok_or_else(|| RenderError::NeedsModel(self.spec.to_string()))?;
+        let method = learned.recipe.method;
+        if method != self.spec.name() {
+            return Err(RenderError::Parameter {
+                method: self.spec.to_string(),
+                message: format!(
+                    "the model given was trained for method {method}; use that method, or another model"
+                ),
+            });
+        }
+        Ok(learned)
+    }
+}
+
+/// The transmittance that a learned method's network estimates.
+pub(super) fn learned_transmittances(
+    spec: &MethodSpec,
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
+    model: Option<&Model>,
+) -> Option<Vec<f64>> {
+    let precision = match spec.promises().statistics {
+        Precision::Half => SumPrecision::Half,
+        Precision::Full => SumPrecision::Exact,
+    };
+    let all = model?.transmittances(fragments, warp, precision);
+    (!all.is_empty() || fragments.is_empty()).then_some(all)
+}
