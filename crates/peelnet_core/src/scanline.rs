@@ -3,8 +3,8 @@
 //! Deliberately another algorithm than the GPU's (Carpenter's A-buffer over a scan-line walk rather than passes over
 //! the whole frame) and another arithmetic: triangles are clipped in homogeneous coordinates, each is walked row by
 //! row between its edges' crossings, and every pixel keeps all of its fragments. There is no sub-pixel grid, so a
-//! GPU differs where an edge passes within its snapping distance of a pixel centre; [`stable_pixels`] lists those
-//! pixels apart.
+//! GPU differs where an edge passes within its snapping distance of a pixel centre; [`stable_pixels`] are
+//! all others.
 
 /// A triangle in clip space with what its fragments carry.
 #[derive(Clone, Copy, Debug)]

@@ -106,7 +106,7 @@ pub enum DatasetError {
     Mixed {
         /// The folder.
         path: PathBuf,
-        /// The file or folder that exists.
+        /// What the folder holds already.
         reason: &'static str,
     },
     /// Another process is writing here.

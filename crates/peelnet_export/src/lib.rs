@@ -12,19 +12,18 @@ mod literal;
 mod network;
 mod verify;
 mod wgsl;
+// A browser has no files.
+#[cfg(not(target_arch = "wasm32"))]
+mod write;
 
 pub use description::{Blend, Description, Pass, Target};
 pub use verify::{Verification, evaluate_async, verify_async};
 #[cfg(not(target_arch = "wasm32"))]
 pub use verify::{evaluate, verify};
 pub use wgsl::{multiply_adds, wgsl};
+#[cfg(not(target_arch = "wasm32"))]
+pub use write::export;
 
-#[cfg(not(target_arch = "wasm32"))]
-use peelnet_gpu::Gpu;
-#[cfg(not(target_arch = "wasm32"))]
-use peelnet_model::Model;
-#[cfg(not(target_arch = "wasm32"))]
-use std::path::Path;
 use std::path::PathBuf;
 
 /// How to export. Languages and precisions other than WGSL in 32 bits will add fields.
@@ -66,34 +65,4 @@ pub enum ExportError {
         /// The reason.
         source: std::io::Error,
     },
-}
-
-/// Exports a model, verifies the text on the GPU, and only then writes it, whole.
-///
-/// # Errors
-/// A model without a shader function, a text that differs from the model, or a file that cannot be written.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn export(
-    gpu: &Gpu,
-    model: &Model,
-    path: &Path,
-    options: &Options,
-) -> Result<Verification, ExportError> {
-    write_verified(gpu, model, path, &wgsl(model, options)?)
-}
-
-/// Writes a text if it computes what the model does.
-#[cfg(not(target_arch = "wasm32"))]
-fn write_verified(
-    gpu: &Gpu,
-    model: &Model,
-    path: &Path,
-    text: &str,
-) -> Result<Verification, ExportError> {
-    let verification = verify(gpu, model, text)?;
-    peelnet_files::write_whole(path, text.as_bytes()).map_err(|source| ExportError::Write {
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(verification)
 }

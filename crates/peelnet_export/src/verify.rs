@@ -332,7 +332,7 @@ mod tests {
         let mut other = model.clone();
         other.mlp.layers[1].weights[3] += 0.01;
         assert!(matches!(
-            crate::write_verified(&gpu, &other, &path, &text),
+            crate::write::write_verified(&gpu, &other, &path, &text),
             Err(ExportError::Differs { .. })
         ));
         assert!(!path.exists());

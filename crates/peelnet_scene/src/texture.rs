@@ -113,7 +113,7 @@ impl Texture {
     /// What is wrong, and a fix. Without the feature `images` nothing is read.
     #[cfg(not(feature = "images"))]
     pub fn decode(_: &str, _: &[u8]) -> Result<Self, String> {
-        Err("is an image, which this build cannot read; build peelnet_scene with its feature `images`".into())
+        Err("cannot be read by this build; build peelnet_scene with its feature `images`".into())
     }
 
     /// Reads a PNG or JPEG image from memory.

@@ -54,7 +54,8 @@ impl TrainingData {
     }
 
     /// Rows in memory, such as `peelnet_peel::batches` yields: whole pixels, the fragments of each from near to far. Batches that
-    /// follow one another with the same number of the view are one view. `source` names them in messages.
+    /// follow one another with the same number of the view are one view. `source` names them in messages. Held-out scenes are the
+    /// caller's to leave out.
     ///
     /// The shares that are set aside are those of [`TrainingData::from_datasets`], so the same rows train the same network.
     ///

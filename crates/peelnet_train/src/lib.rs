@@ -30,8 +30,8 @@
 //!
 //! # Same seed, same weights
 //!
-//! All randomness comes from [`Config::seed`] through the generator in this crate, so a newer library cannot change
-//! it. Initial weights depend on the seed, the order of rows on the seed and the epoch. A resumed run continues from
+//! All randomness comes from [`Config::seed`] through [`peelnet_core::random`], whose numbers a test
+//! holds. Initial weights depend on the seed, the order of rows on the seed and the epoch. A resumed run continues from
 //! the saved weights, moments and step count and ends with the same bits as a run that was never interrupted. Between
 //! machines, results differ in the last bits, because matrix products use the instructions that a processor has.
 //!

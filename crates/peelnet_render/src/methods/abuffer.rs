@@ -60,7 +60,7 @@ struct ABuffer {
     ends: wgpu::Buffer,
     /// Whether the tiles come from counts, not from a guess.
     is_counted: bool,
-    /// Whether the next frame's offsets come back: the tiles of the frame behind it may be planned by them.
+    /// Whether the next frame's offsets come back: they plan the tiles of the frame that follows.
     wants_offsets: bool,
     version: u64,
 }
