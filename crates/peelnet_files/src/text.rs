@@ -1,0 +1,116 @@
+//! Text from strangers: names in files, paths, arguments.
+
+use std::borrow::Cow;
+
+/// Characters of a foreign name that are shown.
+pub const MAX_SHOWN: usize = 200;
+
+/// A name from a file or from the command line, fit for one line of a terminal, a shader's comment or a page's source:
+/// what could move the cursor, end a line or hide text is escaped as `\u{…}`, and what follows the first
+/// [`MAX_SHOWN`] characters is left out with an ellipsis.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let is_short = text.len() <= MAX_SHOWN || text.chars().nth(MAX_SHOWN).is_none();
+    if is_short && !text.chars().any(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::new();
+    for c in text.chars().take(MAX_SHOWN) {
+        push(&mut shown, c);
+    }
+    if !is_short {
+        shown.push('…');
+    }
+    Cow::Owned(shown)
+}
+
+/// Text of several lines with all that [`printable`] escapes escaped, but line ends: for whole messages, whose length is theirs to choose.
+pub fn printable_lines(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(|c| c != '\n' && is_hidden(c)) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::new();
+    for c in text.chars() {
+        if c == '\n' {
+            shown.push(c);
+        } else {
+            push(&mut shown, c);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// JSON with every such character escaped as JSON does: outside strings it holds none but line ends.
+pub fn printable_json(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(|c| c != '\n' && is_hidden(c)) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::new();
+    for c in text.chars() {
+        if c != '\n' && is_hidden(c) {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                shown.push_str(&format!("\\u{unit:04x}"));
+            }
+        } else {
+            shown.push(c);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+fn push(shown: &mut String, c: char) {
+    if is_hidden(c) {
+        shown.extend(c.escape_unicode());
+    } else {
+        shown.push(c);
+    }
+}
+
+/// Whether a character does something else than show itself: controls, separators of lines, marks of direction, and what has no width.
+fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c,
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_shows_itself_is_untouched() {
+        for text in [
+            "",
+            "cups",
+            "Vase Nº 4 – été 𝛼",
+            "\"quoted\" <b> \\n",
+            &"é".repeat(MAX_SHOWN),
+        ] {
+            assert!(matches!(printable(text), Cow::Borrowed(t) if t == text));
+        }
+    }
+
+    #[test]
+    fn what_acts_is_escaped() {
+        assert_eq!(
+            printable("a\u{1b}[2J\nfn x() {}\r\u{9b}1m\u{202e}b\u{feff}"),
+            r"a\u{1b}[2J\u{a}fn x() {}\u{d}\u{9b}1m\u{202e}b\u{feff}"
+        );
+        assert_eq!(printable_lines("a\tb\nc\u{7f}"), "a\\u{9}b\nc\\u{7f}");
+    }
+
+    #[test]
+    fn length_is_bounded() {
+        let long = "é".repeat(MAX_SHOWN + 1);
+        assert_eq!(printable(&long).chars().count(), MAX_SHOWN + 1);
+        assert!(printable(&long).ends_with('…'));
+        let worst = "\u{e0001}".repeat(1_000_000);
+        assert!(printable(&worst).len() <= MAX_SHOWN * "\\u{e0001}".len() + '…'.len_utf8());
+    }
+
+    #[test]
+    fn json_stays_the_same_value() {
+        let escaped = printable_json("{\n  \"a\": \"\u{9b}\u{202e}\u{e0001}é\"\n}");
+        assert_eq!(escaped, "{\n  \"a\": \"\\u009b\\u202e\\udb40\\udc01é\"\n}");
+    }
+}
