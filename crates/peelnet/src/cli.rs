@@ -27,7 +27,8 @@ use std::path::PathBuf;
   peelnet render sixteen-050 --method deep-thesis --model m.safetensors --out a.png
   peelnet recommend cups --budget-ms 30                 which method to use
 
-Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage.
+Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 interrupted.
+An output replaces only a file of its own kind, any file with --force; - is stdout.
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
@@ -57,6 +58,9 @@ pub struct Global {
     /// The result as JSON
     #[arg(long, global = true)]
     pub json: bool,
+    /// Let outputs replace any file, also what peelnet did not write and what the command reads
+    #[arg(long, global = true)]
+    pub force: bool,
 }
 
 /// Every command.

@@ -1,7 +1,13 @@
-//! Output: results to stdout, messages to stderr.
+//! Output: results to stdout, messages to stderr. Whatever is printed passes through here, so that no text from a file or an argument
+//! reaches a terminal unescaped.
 
 use crate::failure::Failure;
+use peelnet_files::{printable_json, printable_lines};
 use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether a file is written to stdout, so that nothing else may.
+static STDOUT_IS_A_FILE: AtomicBool = AtomicBool::new(false);
 
 /// What the global flags say about output.
 #[derive(Clone, Copy, Debug)]
@@ -19,13 +25,18 @@ impl Console {
     /// A message for people, on stderr; silent with `--quiet`.
     pub fn message(self, text: impl AsRef<str>) {
         if !self.quiet {
-            let _ = writeln!(io::stderr(), "{}", text.as_ref());
+            to_stderr("", text.as_ref());
         }
     }
 
     /// A warning, on stderr; shown even with `--quiet`, because it changes what a result means.
     pub fn warn(self, text: impl AsRef<str>) {
-        let _ = writeln!(io::stderr(), "warning: {}", text.as_ref());
+        to_stderr("warning: ", text.as_ref());
+    }
+
+    /// From now on stdout holds a file, and results go to stderr.
+    pub fn give_stdout_away(self) {
+        STDOUT_IS_A_FILE.store(true, Ordering::Relaxed);
     }
 
     /// The command's result on stdout: JSON with `--json`, else text.
@@ -38,12 +49,18 @@ impl Console {
         json: impl FnOnce() -> serde_json::Value,
     ) -> Result<(), Failure> {
         let text = if self.json {
-            format!("{:#}", json())
+            printable_json(&format!("{:#}", json())).into_owned()
         } else {
-            text()
+            printable_lines(&text()).into_owned()
         };
-        let mut out = io::stdout().lock();
-        match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        let text = text.trim_end();
+        let written = if STDOUT_IS_A_FILE.load(Ordering::Relaxed) {
+            writeln!(io::stderr(), "{text}")
+        } else {
+            let mut out = io::stdout().lock();
+            writeln!(out, "{text}").and_then(|()| out.flush())
+        };
+        match written {
             Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
                 Err(Failure::Failed(format!("cannot write to stdout: {e}")))
             }
@@ -55,4 +72,14 @@ impl Console {
     pub fn shows_progress(self) -> bool {
         !self.quiet && io::stderr().is_terminal()
     }
+}
+
+/// The last line of a command that failed.
+pub fn error(text: &str) {
+    to_stderr("error: ", text);
+}
+
+fn to_stderr(before: &str, text: &str) {
+    // Nobody can be told that stderr is closed.
+    let _ = writeln!(io::stderr(), "{before}{}", printable_lines(text));
 }

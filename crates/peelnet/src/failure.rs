@@ -12,7 +12,7 @@ pub enum Failure {
     Usage(String),
     /// Something went wrong. Exit code 1.
     Failed(String),
-    /// Ctrl-C. Exit code 1.
+    /// A signal, whose number the exit code has.
     Interrupted,
 }
 
@@ -30,7 +30,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Usage(text) | Self::Failed(text) => f.write_str(text),
-            Self::Interrupted => f.write_str("interrupted; files that were not finished are gone"),
+            Self::Interrupted => f.write_str(crate::interrupt::MESSAGE),
         }
     }
 }

@@ -1,22 +1,81 @@
-//! Ctrl-C: the first asks to stop cleanly, the second stops at once.
+//! Signals: SIGINT (Ctrl-C), SIGTERM and SIGHUP end every command within [`GRACE`] and leave whole files or none.
+//!
+//! A signal sets the flag that long loops look at, so that they end by themselves: a training after its epoch, a comparison after its
+//! frame. What has not ended when [`GRACE`] is over, such as a file that is being decoded, is ended, and unfinished files are removed.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::time::Duration;
+
+/// What a command has to end by itself. Two seconds are promised.
+const GRACE: Duration = Duration::from_millis(1500);
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Installs the handler and gives the flag that long loops look at.
-pub fn install() -> &'static AtomicBool {
-    // A failure means that another handler is installed already, which only happens when this is called twice.
-    let _ = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::SeqCst) {
-            std::process::exit(1);
-        }
-        eprintln!("stopping cleanly; press Ctrl-C again to stop at once");
-    });
-    &STOP
+/// The number of the signal that came, 0 for none.
+static SIGNAL: AtomicI32 = AtomicI32::new(0);
+
+/// Installs the handlers and gives the flag that long loops look at.
+///
+/// # Errors
+/// If the system refuses, which it does not when this is called once.
+pub fn install() -> std::io::Result<&'static AtomicBool> {
+    listen()?;
+    Ok(&STOP)
 }
 
-/// Whether Ctrl-C was pressed.
+#[cfg(unix)]
+fn listen() -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
+    std::thread::spawn(move || signals.forever().for_each(on_signal));
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn listen() -> std::io::Result<()> {
+    const SIGINT: i32 = 2;
+    ctrlc::set_handler(|| on_signal(SIGINT)).map_err(std::io::Error::other)
+}
+
+/// The first signal asks, the second one or the end of [`GRACE`] ends.
+fn on_signal(signal: i32) {
+    SIGNAL.store(signal, Ordering::SeqCst);
+    if STOP.swap(true, Ordering::SeqCst) {
+        end();
+    }
+    std::thread::spawn(|| {
+        std::thread::sleep(GRACE);
+        end();
+    });
+}
+
+/// Ends the process while its other threads still work: nothing of theirs is waited for but files that are moving into place.
+fn end() -> ! {
+    peelnet_files::remove_unfinished();
+    let code = code().unwrap_or(1);
+    eprintln!("error: {MESSAGE}");
+    #[cfg(unix)]
+    signal_hook::low_level::exit(code.into());
+    #[cfg(not(unix))]
+    std::process::exit(code.into());
+}
+
+/// What an interrupted command says.
+pub const MESSAGE: &str = "interrupted; files that were not finished are gone";
+
+/// Whether a signal came.
 pub fn requested() -> bool {
     STOP.load(Ordering::Relaxed)
+}
+
+/// 128 and the number of the signal that came: 130 for SIGINT, 143 for SIGTERM.
+fn code() -> Option<u8> {
+    let signal = SIGNAL.load(Ordering::SeqCst);
+    (signal != 0).then(|| 128 + signal as u8)
+}
+
+/// The exit code that a signal demands, otherwise this one.
+pub fn exit_code(otherwise: ExitCode) -> ExitCode {
+    code().map_or(otherwise, ExitCode::from)
 }

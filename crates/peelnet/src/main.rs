@@ -3,7 +3,8 @@
 //! [`cli`] declares the flags; every command is one file of [`commands`], which calls the libraries and prints.
 //! Results go to stdout and messages to stderr, both through [`console`]; progress bars ([`progress`]) show on a
 //! terminal only. Whatever fails becomes a [`failure::Failure`]: one line, and the exit code 1, or 2 for wrong
-//! usage. Ctrl-C sets one flag ([`interrupt`]) that the long loops check, so files are complete or absent.
+//! usage. A signal ends every command within two seconds ([`interrupt`]), and files are complete or absent. What a command writes is
+//! checked before it begins ([`outputs`]).
 
 mod cli;
 mod commands;
@@ -12,6 +13,7 @@ mod failure;
 mod interrupt;
 mod learned;
 mod methods_text;
+mod outputs;
 mod parse;
 mod progress;
 mod summary_text;
@@ -24,15 +26,29 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are asked for and go to stdout; everything else is wrong usage.
-            let _ = error.print();
+            if error.use_stderr() && std::env::args_os().any(|a| is_foreign(&a)) {
+                // Without colours: they would be escaped as well.
+                let text = error.render().to_string();
+                let text = text.trim_end().trim_start_matches("error: ");
+                console::error(text);
+            } else {
+                let _ = error.print();
+            }
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
-    match commands::dispatch(&cli) {
+    let code = match commands::dispatch(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            console::error(&failure.to_string());
             ExitCode::from(failure.exit_code())
         }
-    }
+    };
+    interrupt::exit_code(code)
+}
+
+/// Whether an argument, such as the name of a file, holds what must not reach a terminal.
+fn is_foreign(argument: &std::ffi::OsStr) -> bool {
+    let text = argument.to_string_lossy();
+    peelnet_files::printable_lines(&text) != text
 }

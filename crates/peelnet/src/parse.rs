@@ -1,7 +1,9 @@
 //! Values of flags that have a syntax of their own.
 
+use peelnet_files::one_line;
 use peelnet_render::MethodSpec;
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 /// `WxH`: the size of a frame in pixels.
@@ -90,6 +92,16 @@ pub fn positive(text: &str) -> Result<f64, String> {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
         _ => Err(format!("'{text}' is not a number above 0")),
     }
+}
+
+/// A path for a message: one line, whatever it holds.
+pub fn shown(path: &Path) -> String {
+    one_line(&path.to_string_lossy()).into_owned()
+}
+
+/// A path for JSON, which has no place for bytes that are no UTF-8.
+pub fn json_path(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
 }
 
 /// The command line of this process, for provenance: the program's bare name and its arguments, quoted for a shell.

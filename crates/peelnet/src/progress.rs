@@ -2,6 +2,8 @@
 
 use crate::console::Console;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use peelnet_files::one_line;
+use std::time::Duration;
 
 /// A bar between a name and a text.
 #[derive(Debug)]
@@ -26,10 +28,25 @@ impl Bar {
         )
     }
 
+    /// A sign of life beside what is being done, where nobody knows how long it takes.
+    pub fn spinner(console: Console, text: String) -> Self {
+        let target = if console.shows_progress() {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::hidden()
+        };
+        let style = ProgressStyle::with_template("{spinner} {msg} · {elapsed}")
+            .expect("the template is constant and was tested");
+        let bar = ProgressBar::with_draw_target(None, target).with_style(style);
+        bar.set_message(one_line(&text).into_owned());
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self(bar)
+    }
+
     /// Sets the position, the total and the text.
     pub fn set(&self, done: u64, total: u64, text: String) {
         self.0.set_length(total);
-        self.0.set_message(text);
+        self.0.set_message(one_line(&text).into_owned());
         self.0.set_position(done);
     }
 }
@@ -54,6 +71,8 @@ mod tests {
         let bar = Bar::new(Console::new(true, false), "rows", 10);
         bar.set(3, 12, "x".to_owned());
         assert_eq!((bar.0.position(), bar.0.length()), (3, Some(12)));
+        let spinner = Bar::spinner(Console::new(true, false), "a\u{1b}b".to_owned());
+        assert_eq!(spinner.0.message(), r"a\u{1b}b");
     }
 
     #[test]

@@ -3,10 +3,21 @@
 use crate::progress::thousands;
 use peelnet_dataset::Summary;
 use peelnet_dataset::summary::Bin;
+use peelnet_files::{Kind, printable};
 use std::fmt::Write as _;
 
 /// Characters of the longest bar of a histogram.
 const BAR: f64 = 40.0;
+
+/// By what a file with a summary is known, as text or as JSON.
+pub const KIND: Kind = Kind {
+    name: "a dataset's summary",
+    is: |head| {
+        let head = String::from_utf8_lossy(head);
+        let json = head.starts_with("{\n  \"") && head.contains("\"checks\": [");
+        json || head.starts_with("rows        ")
+    },
+};
 
 /// The whole summary.
 pub fn summary_text(summary: &Summary) -> String {
@@ -30,7 +41,7 @@ pub fn summary_text(summary: &Summary) -> String {
         let _ = writeln!(
             t,
             "  {:<28} {:>14} rows{held_out}",
-            scene.name,
+            printable(&scene.name),
             thousands(scene.rows)
         );
     }

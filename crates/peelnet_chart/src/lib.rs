@@ -24,6 +24,9 @@ const SIZE: (u32, u32) = (960, 600);
 /// Height of a name in a chart, pixels.
 const NAME_HEIGHT: f64 = 12.0;
 
+/// Says in a file who wrote it.
+const MARK: &str = "<metadata>peelnet</metadata>";
+
 /// What can go wrong inside plotters.
 type DrawError = Box<dyn std::error::Error>;
 
@@ -46,10 +49,17 @@ impl Svg {
         &self.0
     }
 
-    /// The text with white paper under it, for a file of its own.
+    /// The text with white paper under it, for a file of its own, which says who wrote it.
     pub fn on_white(&self) -> String {
-        let paper = ">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n<";
-        self.0.replacen(">\n<", paper, 1)
+        let paper = "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>";
+        let start = format!(">\n{MARK}\n{paper}\n<");
+        self.0.replacen(">\n<", &start, 1)
+    }
+
+    /// Whether a file that begins with these bytes is a chart that [`Svg::on_white`] wrote.
+    pub fn is_ours(head: &[u8]) -> bool {
+        let start = String::from_utf8_lossy(&head[..head.len().min(512)]);
+        start.starts_with("<svg") && start.contains(MARK)
     }
 }
 

@@ -6,7 +6,27 @@ use crate::{
     network::function_name,
     wgsl::{multiply_adds, self_test_inputs},
 };
+use peelnet_files::{printable, printable_lines};
 use peelnet_model::{Model, Output};
+use std::borrow::Cow;
+
+/// Says in a text who wrote it.
+pub(crate) const EXPORTED_BY: &str = "Exported by peelnet";
+
+/// Scenes that are named in a header.
+const MAX_NAMES: usize = 24;
+
+/// Names from a file for a line of a comment: each without what could end the line, and of many the first ones.
+fn names<'a>(all: impl ExactSizeIterator<Item = Cow<'a, str>>) -> String {
+    let more = all.len().saturating_sub(MAX_NAMES);
+    let shown: Vec<Cow<'_, str>> = all.take(MAX_NAMES).collect();
+    let shown = shown.join(", ");
+    if more == 0 {
+        shown
+    } else {
+        format!("{shown} and {more} more")
+    }
+}
 
 /// What the text is, where it comes from, how to check it and what a renderer must do around it, as comments.
 pub(crate) fn header(model: &Model) -> String {
@@ -17,6 +37,8 @@ pub(crate) fn header(model: &Model) -> String {
     lines.extend(Description::of(model.meta.recipe).lines());
     let mut text: String = lines
         .iter()
+        // Names were bounded; whatever else a line holds, it must not end it.
+        .map(|line| printable_lines(&line.replace('\n', " ")).into_owned())
         .map(|line| format!("{}\n", format!("// {line}").trim_end()))
         .collect();
     text.push('\n');
@@ -41,7 +63,7 @@ fn about(model: &Model) -> Vec<String> {
     };
     let mut lines = vec![
         format!(
-            "A learned weight for order-independent transparency. Exported by peelnet {}.",
+            "A learned weight for order-independent transparency. {EXPORTED_BY} {}.",
             env!("CARGO_PKG_VERSION")
         ),
         "Licence of this generated text: MIT OR Apache-2.0.".into(),
@@ -62,7 +84,7 @@ fn about(model: &Model) -> Vec<String> {
         format!(
             "Input {i}: {} ({}), {} .. {} in training.",
             identifier(&input.name),
-            input.unit,
+            printable(&input.unit),
             float(input.min),
             float(input.max)
         )
@@ -79,8 +101,8 @@ fn provenance(model: &Model) -> [String; 3] {
             format!(
                 "Trained on {} rows of {} (dataset {}).",
                 d.rows,
-                d.scenes.join(", "),
-                d.hash
+                names(d.scenes.iter().map(|scene| printable(scene))),
+                printable(&d.hash)
             )
         },
     );
@@ -97,14 +119,11 @@ fn provenance(model: &Model) -> [String; 3] {
         [] => "unknown".to_owned(),
         losses => losses.join(", "),
     };
-    let errors: Vec<_> = meta
-        .held_out
-        .iter()
-        .map(|(scene, e)| format!("{scene} {e:.5}"))
-        .collect();
-    let errors = match errors.as_slice() {
-        [] => "Held-out error: not measured.".into(),
-        errors => format!("Held-out error, mean |T - T_exact|: {}.", errors.join(", ")),
+    let errors = meta.held_out.iter();
+    let errors = errors.map(|(scene, e)| format!("{} {e:.5}", printable(scene)).into());
+    let errors = match names(errors).as_str() {
+        "" => "Held-out error: not measured.".into(),
+        errors => format!("Held-out error, mean |T - T_exact|: {errors}."),
     };
     [data, format!("Loss: {losses}."), errors]
 }

@@ -24,7 +24,17 @@ pub use wgsl::{multiply_adds, wgsl};
 #[cfg(not(target_arch = "wasm32"))]
 pub use write::export;
 
+use peelnet_files::Kind;
 use std::path::PathBuf;
+
+/// By what an exported text is known: its first lines.
+pub const KIND: Kind = Kind {
+    name: "an exported shader",
+    is: |head| {
+        let start = String::from_utf8_lossy(&head[..head.len().min(512)]);
+        start.starts_with("// ") && start.contains(header::EXPORTED_BY)
+    },
+};
 
 /// How to export. Languages and precisions other than WGSL in 32 bits will add fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +50,14 @@ pub enum ExportError {
     /// The text is not valid or does not link: a bug here, or an edited text.
     #[error(transparent)]
     Shader(#[from] peelnet_shaders::ShaderError),
+    /// The text declares something else than the functions that are exported with the model: an edited text.
+    #[error(
+        "the exported text holds other declarations than the model's: {found}; nothing was written"
+    )]
+    Declares {
+        /// What it declares.
+        found: String,
+    },
     /// The GPU.
     #[error(transparent)]
     Gpu(#[from] peelnet_gpu::GpuError),

@@ -1,6 +1,10 @@
 //! The exported text, run on the GPU, against the trainer's forward pass.
 
-use crate::{ExportError, network::function_name, wgsl::self_test_inputs};
+use crate::{
+    ExportError,
+    network::function_name,
+    wgsl::{code, self_test_inputs},
+};
 use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, random::Random, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
@@ -86,7 +90,17 @@ pub async fn verify_async(
     model: &Model,
     wgsl: &str,
 ) -> Result<Verification, ExportError> {
-    peelnet_shaders::validate("exported network", wgsl, naga::valid::Capabilities::empty())?;
+    let expected = declarations(&code(model)?)?;
+    let found = declarations(wgsl)?;
+    if found != expected {
+        return Err(ExportError::Declares {
+            found: found
+                .into_iter()
+                .filter(|d| !expected.contains(d))
+                .collect::<Vec<_>>()
+                .join(", "),
+        });
+    }
     let samples = samples(model);
     let outputs = evaluate_async(gpu, model, wgsl, &samples).await?;
     let mut result = Verification {
@@ -120,6 +134,31 @@ pub async fn verify_async(
         }
     }
     Ok(result)
+}
+
+/// Everything that a text declares, in order: nothing may come with the network, such as out of a name in its header.
+fn declarations(wgsl: &str) -> Result<Vec<String>, ExportError> {
+    let none = naga::valid::Capabilities::empty();
+    let (module, _) = peelnet_shaders::validate("exported network", wgsl, none)?;
+    let name = |name: &Option<String>| name.clone().unwrap_or_default();
+    let functions = module.functions.iter();
+    let functions = functions.map(|(_, f)| format!("fn {}", name(&f.name)));
+    let entries = module
+        .entry_points
+        .iter()
+        .map(|e| format!("entry {}", e.name));
+    let variables = module.global_variables.iter();
+    let variables = variables.map(|(_, v)| format!("var {}", name(&v.name)));
+    let constants = module.constants.iter();
+    let constants = constants.map(|(_, c)| format!("const {}", name(&c.name)));
+    let overrides = module.overrides.iter();
+    let overrides = overrides.map(|(_, o)| format!("override {}", name(&o.name)));
+    Ok(functions
+        .chain(entries)
+        .chain(variables)
+        .chain(constants)
+        .chain(overrides)
+        .collect())
 }
 
 fn samples(model: &Model) -> Vec<Vec<f32>> {

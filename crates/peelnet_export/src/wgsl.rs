@@ -33,8 +33,13 @@ pub(crate) fn self_test_inputs(model: &Model) -> [Vec<f32>; 3] {
 /// # Errors
 /// A model that does not hold together, or whose output has no shader function.
 pub fn wgsl(model: &Model, _options: &Options) -> Result<String, ExportError> {
+    Ok(header(model) + &code(model)?)
+}
+
+/// The text without its header.
+pub(crate) fn code(model: &Model) -> Result<String, ExportError> {
     model.check()?;
-    let mut text = header(model);
+    let mut text = String::new();
     for module in modules(model.meta.recipe) {
         text.push_str(peelnet_shaders::source(module)?);
         text.push('\n');

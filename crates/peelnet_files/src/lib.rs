@@ -10,6 +10,6 @@ mod unfinished;
 
 pub use input::{check_size, open, read, read_head};
 pub use kind::{Kind, Standing};
-pub use output::{Destination, STDOUT, destination, folder_of, write_whole};
-pub use text::{MAX_SHOWN, printable, printable_json, printable_lines};
+pub use output::{Destination, STDOUT, check_folder, destination, folder_of, write_whole};
+pub use text::{MAX_SHOWN, one_line, printable, printable_json, printable_lines};
 pub use unfinished::{Moving, Unfinished, remove_unfinished};

@@ -78,6 +78,26 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// Whether files can be created in a folder, or in the nearest of those above it that exists: creates one and removes it.
+///
+/// # Errors
+/// Why not.
+pub fn check_folder(folder: &Path) -> io::Result<()> {
+    let there = |a: &&Path| a.as_os_str().is_empty() || a.exists();
+    let nearest = folder.ancestors().find(there);
+    let nearest = nearest.filter(|a| !a.as_os_str().is_empty());
+    tempfile::tempfile_in(nearest.unwrap_or(Path::new(".")))
+        .map(drop)
+        .map_err(plain)
+}
+
+/// An error without the temporary file's name, which would mislead.
+fn plain(error: io::Error) -> io::Error {
+    error
+        .raw_os_error()
+        .map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
+}
+
 /// Writes a file under a temporary name in its own folder, then renames it. A missing folder is created; a regular file of that
 /// name is replaced. A symbolic link stays one, and what it points to is written; `-` is stdout; a device or a pipe is written as it is.
 ///
@@ -109,13 +129,18 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // Temporary files are private by default; a result has the permissions of any new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder
-        .prefix(".peelnet-")
-        .tempfile_in(folder)
-        // The temporary name would mislead.
-        .map_err(|e| io::Error::from(e.kind()))?;
-    let _unfinished = Unfinished::new(file.path());
-    file.write_all(bytes)?;
+    let (mut file, _unfinished) = {
+        // A process that ends between the two would leave the file behind.
+        let _moving = Moving::begin();
+        let file = builder
+            .prefix(".peelnet-")
+            .tempfile_in(folder)
+            .map_err(plain)?;
+        let unfinished = Unfinished::new(file.path());
+        (file, unfinished)
+    };
+    // The error of a temporary file has its name.
+    file.as_file_mut().write_all(bytes)?;
     let _moving = Moving::begin();
     file.persist(path).map_err(|e| e.error)?;
     Ok(())

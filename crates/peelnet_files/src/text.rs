@@ -23,6 +23,16 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// Text of any length for one line: what [`printable`] escapes is escaped, nothing is left out. For paths, and for cells of a table.
+pub fn one_line(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::new();
+    text.chars().for_each(|c| push(&mut shown, c));
+    Cow::Owned(shown)
+}
+
 /// Text of several lines with all that [`printable`] escapes escaped, but line ends: for whole messages, whose length is theirs to choose.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     if !text.chars().any(|c| c != '\n' && is_hidden(c)) {
@@ -96,6 +106,7 @@ mod tests {
             printable("a\u{1b}[2J\nfn x() {}\r\u{9b}1m\u{202e}b\u{feff}"),
             r"a\u{1b}[2J\u{a}fn x() {}\u{d}\u{9b}1m\u{202e}b\u{feff}"
         );
+        assert_eq!(one_line("a\nb\u{2028}"), r"a\u{a}b\u{2028}");
         assert_eq!(printable_lines("a\tb\nc\u{7f}"), "a\\u{9}b\nc\\u{7f}");
     }
 

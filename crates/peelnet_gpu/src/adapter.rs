@@ -8,6 +8,27 @@ use std::{convert::Infallible, str::FromStr};
 pub const INSTALL_HINT: &str = "on Debian or Ubuntu run: sudo apt-get install -y mesa-vulkan-drivers libvulkan1 \
      (Mesa lavapipe, a software rasteriser); elsewhere install your GPU vendor's Vulkan driver";
 
+/// Where the Vulkan loader of a Linux system looks for drivers.
+const DRIVER_FOLDERS: [&str; 3] = [
+    "/usr/share/vulkan/icd.d",
+    "/usr/local/share/vulkan/icd.d",
+    "/etc/vulkan/icd.d",
+];
+
+/// Why there is no adapter: a driver that is installed and does not start needs another fix than none.
+pub fn why_none() -> String {
+    let installed = DRIVER_FOLDERS
+        .iter()
+        .filter_map(|folder| std::fs::read_dir(folder).ok())
+        .any(|mut folder| folder.next().is_some());
+    if installed {
+        return "a Vulkan driver is installed, but none starts: is memory short or limited (ulimit -v), or does VK_DRIVER_FILES or \
+                VK_ICD_FILENAMES name another one? vulkaninfo says more"
+            .to_owned();
+    }
+    format!("no Vulkan driver is installed; {INSTALL_HINT}")
+}
+
 /// Which adapter to use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterRequest {

@@ -222,6 +222,7 @@ impl Gpu {
                 what: label.to_owned(),
                 needed: size,
                 limit,
+                unit: "bytes",
                 adapter: self.info.name.clone(),
                 hint: "draw a smaller frame or use an adapter with larger storage bindings",
             });
@@ -274,9 +275,10 @@ impl Gpu {
         let limit = self.limits.max_texture_dimension_2d;
         if side > limit {
             return Err(GpuError::TooLarge {
-                what: format!("a frame {width}×{height} pixels large (side given in pixels)"),
+                what: format!("a frame of {width}×{height} pixels"),
                 needed: u64::from(side),
                 limit: u64::from(limit),
+                unit: "pixels a side",
                 adapter: self.info.name.clone(),
                 hint: "draw a smaller frame",
             });
@@ -326,9 +328,10 @@ impl Gpu {
         let limit = self.limits.max_texture_dimension_2d;
         if width.max(height) > limit {
             return Err(GpuError::TooLarge {
-                what: format!("the image {label}, {width}×{height} (side given in texels)"),
+                what: format!("the image {label} of {width}×{height} texels"),
                 needed: width.max(height).into(),
                 limit: limit.into(),
+                unit: "texels a side",
                 adapter: self.info.name.clone(),
                 hint: "make it smaller",
             });

@@ -2,10 +2,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No driver offers any adapter.
-    #[error(
-        "no GPU adapter: no Vulkan driver is installed; {hint}",
-        hint = crate::adapter::INSTALL_HINT
-    )]
+    #[error("no GPU adapter: {}", crate::adapter::why_none())]
     NoAdapter,
     /// The adapter that was asked for is not there.
     #[error("no adapter matches '{wanted}'; the adapters are: {available}")]
@@ -36,14 +33,16 @@ pub enum GpuError {
         hint: &'static str,
     },
     /// A buffer or texture beyond the adapter's limits.
-    #[error("{what} needs {needed} bytes but adapter '{adapter}' allows {limit}; {hint}")]
+    #[error("{what} needs {needed} {unit} but adapter '{adapter}' allows {limit}; {hint}")]
     TooLarge {
         /// What was to be made.
         what: String,
-        /// Bytes it needs.
+        /// What it needs.
         needed: u64,
-        /// Bytes allowed.
+        /// What is allowed.
         limit: u64,
+        /// What both are counted in: bytes, or pixels a side.
+        unit: &'static str,
         /// Adapter name.
         adapter: String,
         /// What to do instead.

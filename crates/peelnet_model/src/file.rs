@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use peelnet_core::mlp::{Activation, Layer, Mlp};
+use peelnet_files::Kind;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,16 @@ use crate::model::Model;
 /// The entry of the safetensors metadata that holds ours. It is the only one, because the format keeps its metadata
 /// in no particular order and the bytes must not vary.
 const KEY: &str = "peelnet";
+
+/// By what a model file is known: a safetensors header, whose metadata has the entry that is ours.
+pub const KIND: Kind = Kind {
+    name: "a model",
+    is: |head| {
+        let json = head.get(8..).unwrap_or_default();
+        let entry = format!("\"{KEY}\":");
+        json.starts_with(b"{") && json.windows(entry.len()).any(|w| w == entry.as_bytes())
+    },
+};
 
 /// The metadata's JSON: [`Metadata`] with the network's activations beside it.
 #[derive(Serialize)]

@@ -56,9 +56,10 @@ impl DualPeel {
         const SAMPLE_BYTES: u32 = 8 + 16 + 16;
         if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
             return Err(RasterError::Gpu(GpuError::TooLarge {
-                what: "dual depth peeling, for its colour targets (bytes a sample),".into(),
+                what: "dual depth peeling with its colour targets".into(),
                 needed: u64::from(SAMPLE_BYTES),
                 limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
+                unit: "bytes a sample",
                 adapter: gpu.info.name.clone(),
                 hint: HINT,
             }));

@@ -80,6 +80,7 @@ impl SceneBuffers {
                 what: format!("scene '{}' with {triangles} triangles", scene.name),
                 needed,
                 limit: gpu.limits.max_buffer_size,
+                unit: "bytes",
                 adapter: gpu.info.name.clone(),
                 hint: "split the scene or simplify its meshes",
             }));

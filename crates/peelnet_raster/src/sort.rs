@@ -53,6 +53,7 @@ impl Sorted {
                 what: format!("the order of {triangles} triangles"),
                 needed: size,
                 limit: gpu.limits.max_buffer_size,
+                unit: "bytes",
                 adapter: gpu.info.name.clone(),
                 hint: "sort objects instead (painter-object)",
             }));

@@ -2,7 +2,76 @@
 
 use crate::error::RenderError;
 use peelnet_core::srgb;
+use peelnet_files::{Destination, Kind};
 use std::path::Path;
+
+/// The formats of image files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageFormat {
+    /// `.png`: opaque sRGB, 8 bits a channel.
+    Png,
+    /// `.exr`: linear RGB and coverage in 32-bit floats.
+    Exr,
+    /// `.npy`: the same as an array `H×W×4`.
+    Npy,
+}
+
+impl ImageFormat {
+    /// The format of a file by its ending. Stdout and devices, whose names say nothing, get PNG.
+    ///
+    /// # Errors
+    /// [`RenderError::Image`] for any other ending, or a folder.
+    pub fn of(path: &Path) -> Result<Self, RenderError> {
+        let ending = path.extension().and_then(|e| e.to_str());
+        match ending.unwrap_or_default().to_lowercase().as_str() {
+            "png" => Ok(Self::Png),
+            "exr" => Ok(Self::Exr),
+            "npy" => Ok(Self::Npy),
+            _ => match peelnet_files::destination(path).map_err(|e| failed(path, &e))? {
+                Destination::File(_) => Err(failed(
+                    path,
+                    &"the ending says the format; use .png (sRGB), .exr or .npy (linear)",
+                )),
+                _ => Ok(Self::Png),
+            },
+        }
+    }
+
+    /// By what a file of this format is known. PNG files say who wrote them, the others have no place for it.
+    pub const fn kind(self) -> Kind {
+        match self {
+            Self::Png => Kind {
+                name: "a PNG image of peelnet",
+                is: is_our_png,
+            },
+            Self::Exr => Kind {
+                name: "an EXR image",
+                is: |head| head.starts_with(b"\x76\x2f\x31\x01"),
+            },
+            Self::Npy => Kind {
+                name: "an NPY image (H x W x 4, 32-bit float)",
+                is: |head| {
+                    let header = String::from_utf8_lossy(&head[..head.len().min(128)]);
+                    head.starts_with(b"\x93NUMPY")
+                        && header.contains("<f4")
+                        && header.contains(", 4)")
+                },
+            },
+        }
+    }
+}
+
+/// Keyword and text of the chunk that says who wrote a PNG file.
+const SOFTWARE: [&str; 2] = ["Software", "peelnet"];
+
+/// The chunk stands before the pixels.
+fn is_our_png(head: &[u8]) -> bool {
+    let mark = [SOFTWARE[0].as_bytes(), b"\0", SOFTWARE[1].as_bytes()].concat();
+    head.starts_with(b"\x89PNG\r\n\x1a\n")
+        && head[..head.len().min(256)]
+            .windows(mark.len())
+            .any(|w| w == mark)
+}
 
 /// Linear RGB and coverage, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,50 +107,39 @@ impl Image {
     /// # Errors
     /// If the encoder fails.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        image::write_buffer_with_format(
-            &mut bytes,
-            &self.to_srgb8(),
-            self.width,
-            self.height,
-            image::ExtendedColorType::Rgb8,
-            image::ImageFormat::Png,
-        )
-        .map_err(|e| failed(Path::new("in memory"), &e))?;
-        Ok(bytes.into_inner())
+        let failed = |e: png::EncodingError| failed(Path::new("in memory"), &e);
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        let [keyword, text] = SOFTWARE.map(str::to_owned);
+        encoder.add_text_chunk(keyword, text).map_err(failed)?;
+        let mut writer = encoder.write_header().map_err(failed)?;
+        writer.write_image_data(&self.to_srgb8()).map_err(failed)?;
+        writer.finish().map_err(failed)?;
+        Ok(bytes)
     }
 
-    /// Writes the image by its ending: `.png` (sRGB, 8 bits), `.exr` (linear, 32-bit float) or `.npy` (linear, 32-bit
-    /// float, `H×W×4` with coverage). The file appears whole or not at all.
+    /// Writes the image in the format that [`ImageFormat::of`] finds. The file appears whole or not at all.
     ///
     /// # Errors
     /// An unknown ending, or a file that cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), RenderError> {
-        let ending = path
-            .extension()
-            .and_then(|e| e.to_str())
-            .unwrap_or_default()
-            .to_lowercase();
         let flat = || -> Vec<f32> { self.pixels.iter().flatten().copied().collect() };
         let mut bytes = std::io::Cursor::new(Vec::new());
-        match ending.as_str() {
-            "png" => bytes = std::io::Cursor::new(self.to_png()?),
-            "exr" => image::Rgba32FImage::from_raw(self.width, self.height, flat())
+        match ImageFormat::of(path)? {
+            ImageFormat::Png => bytes = std::io::Cursor::new(self.to_png()?),
+            ImageFormat::Exr => image::Rgba32FImage::from_raw(self.width, self.height, flat())
                 .ok_or_else(|| failed(path, &"pixels do not fill the frame"))?
                 .write_to(&mut bytes, image::ImageFormat::OpenExr)
                 .map_err(|e| failed(path, &e))?,
-            "npy" => {
+            ImageFormat::Npy => {
                 let shape = (self.height as usize, self.width as usize, 4);
                 let array =
                     ndarray::Array3::from_shape_vec(shape, flat()).map_err(|e| failed(path, &e))?;
                 ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes)
                     .map_err(|e| failed(path, &e))?;
-            }
-            other => {
-                return Err(failed(
-                    path,
-                    &format!("unknown image ending '{other}'; use .png, .exr or .npy"),
-                ));
             }
         }
         peelnet_files::write_whole(path, &bytes.into_inner()).map_err(|e| failed(path, &e))
@@ -128,6 +186,25 @@ mod tests {
         let back = image::open(at("a.png")).expect("reads").to_rgb8();
         assert_eq!(back.get_pixel(0, 0).0, [0, 255, 0]);
         assert!(image.save(&at("a.gif")).is_err());
+        for (name, foreign) in [
+            ("a.png", &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..]),
+            ("a.exr", b"PNG"),
+            (
+                "a.npy",
+                b"\x93NUMPY\x01\0v\0{'descr': '<f4', 'shape': (5,)}",
+            ),
+        ] {
+            let kind = ImageFormat::of(&at(name)).expect("an ending").kind();
+            let standing = |name: &str| kind.standing(&at(name)).expect("stands");
+            assert_eq!(standing(name), peelnet_files::Standing::Replaced, "{name}");
+            std::fs::write(at("foreign"), foreign).expect("writes");
+            assert_eq!(
+                standing("foreign"),
+                peelnet_files::Standing::Foreign,
+                "{name}"
+            );
+            std::fs::remove_file(at("foreign")).expect("removes");
+        }
         assert_eq!(std::fs::read_dir(dir.path()).expect("lists").count(), 3);
     }
 }

@@ -33,7 +33,7 @@ mod target;
 
 pub use error::RenderError;
 pub use flaw::{Flaw, Property};
-pub use image::Image;
+pub use image::{Image, ImageFormat};
 pub use methods::{FrameStats, METHODS, Method, MethodSpec, Role, layers::LayerView};
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
 pub use renderer::{Frame, Prepared, Renderer};

@@ -30,6 +30,14 @@ const FILLS: (&str, &str) = (
 );
 
 impl Results<Effects> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &[
+        "effects.json",
+        "effects.md",
+        "effects-layers.svg",
+        "report.html",
+    ];
+
     /// Costs of the effects.
     pub fn effects_table(&self) -> Table {
         let line = |c: &Cost| {
@@ -271,5 +279,6 @@ mod tests {
         assert!(folder.path().join("effects-layers.svg").exists());
         let read: Results<Effects> = Results::read(&folder.path().join("effects.json")).unwrap();
         assert_eq!(read, results);
+        crate::testing::assert_files(folder.path(), Results::<Effects>::FILES);
     }
 }

@@ -1,8 +1,57 @@
 //! Files appear whole or not at all.
 
-use crate::ReportError;
+use crate::{ReportError, page};
+use peelnet_chart::Svg;
+use peelnet_files::{Kind, printable_json};
 use serde::Serialize;
 use std::path::Path;
+
+/// First columns of the tables that are written as CSV.
+const TABLES: [&str; 4] = [
+    "method,scene,view,",
+    "method,case,property,",
+    "method,series,value,",
+    "varied,topology,parameters,",
+];
+
+/// By what a file of a measurement is known, from its name.
+pub fn kind_of(name: &str) -> Kind {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "html" => Kind {
+            name: "a report of peelnet",
+            is: |head| contains(head, &["<!DOCTYPE html>", page::GENERATOR_TAG]),
+        },
+        "svg" => Kind {
+            name: "a chart of peelnet",
+            is: Svg::is_ours,
+        },
+        "csv" => Kind {
+            name: "a table of peelnet",
+            is: |head| {
+                TABLES
+                    .iter()
+                    .any(|start| head.starts_with(start.as_bytes()))
+            },
+        },
+        "md" => Kind {
+            name: "a table of peelnet",
+            // The sentence under every table.
+            is: |head| contains(head, &["Measured on ", ") with `"]),
+        },
+        _ => Kind {
+            name: "results of peelnet",
+            // The envelope begins with the machine.
+            is: |head| {
+                head.starts_with(b"{\n  \"machine\": {") && contains(head, &["\"command\": "])
+            },
+        },
+    }
+}
+
+fn contains(head: &[u8], texts: &[&str]) -> bool {
+    let head = String::from_utf8_lossy(head);
+    texts.iter().all(|text| head.contains(text))
+}
 
 /// Writes a file whole, creating its folder if need be.
 ///
@@ -18,10 +67,9 @@ pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), ReportErro
 
 /// Writes a value as indented JSON.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), ReportError> {
-    let mut json = serde_json::to_vec_pretty(value)
+    let json = serde_json::to_string_pretty(value)
         .expect("results have string keys only, and floats serialise always");
-    json.push(b'\n');
-    write_file(path, json)
+    write_file(path, printable_json(&format!("{json}\n")).as_ref())
 }
 
 /// Writes rows of flat fields as CSV with a header.

@@ -25,7 +25,7 @@ mod thesis;
 mod training;
 
 pub use error::ReportError;
-pub use files::write_file;
+pub use files::{kind_of, write_file};
 pub use results::Results;
 pub use table::Table;
 pub use thesis::{Attachments, Stage, ThesisRun, findings::findings};

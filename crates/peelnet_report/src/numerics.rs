@@ -5,6 +5,9 @@ use peelnet_eval::numerics::{Added, Blended, Numerics};
 use std::path::Path;
 
 impl Results<Numerics> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &["numerics.json", "numerics.md"];
+
     /// The formats by themselves.
     pub fn blended_table(&self) -> Table {
         let headings = [

@@ -4,6 +4,10 @@ use crate::{Results, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use peelnet_chart::Svg;
 use peelnet_eval::Machine;
+use peelnet_files::printable_lines;
+
+/// Says in a page who wrote it.
+pub(crate) const GENERATOR_TAG: &str = "<meta name=\"generator\" content=\"peelnet\">";
 
 const STYLE: &str = include_str!("page.css");
 
@@ -23,6 +27,7 @@ pub(crate) fn page<T>(
         html lang="en" {
             head {
                 meta charset="utf-8";
+                (PreEscaped(GENERATOR_TAG))
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { "peelnet: " (title) }
                 style { (PreEscaped(STYLE)) }
@@ -39,7 +44,8 @@ pub(crate) fn page<T>(
         }
         "\n"
     };
-    markup.into_string()
+    // maud escapes what a browser would read as markup; this, what acts on a terminal or an editor.
+    printable_lines(&markup.into_string()).into_owned()
 }
 
 /// A chart in a page. `class` is `chart` for one in the page's colours, `curve` for one on white paper.

@@ -10,6 +10,16 @@ use peelnet_eval::scaling::{Exponent, Scaling, Series};
 use std::path::Path;
 
 impl Results<Scaling> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &[
+        "scaling.json",
+        "scaling.csv",
+        "scaling.md",
+        "scaling-fragments.svg",
+        "scaling-pixels.svg",
+        "scaling-triangles.svg",
+    ];
+
     /// The exponents.
     pub fn table(&self) -> Table {
         let exponents = &self.measured.exponents;
@@ -130,5 +140,6 @@ mod tests {
         );
         let json = dir.path().join("scaling.json");
         assert_eq!(Results::<Scaling>::read(&json).unwrap(), results);
+        crate::testing::assert_files(dir.path(), Results::<Scaling>::FILES);
     }
 }

@@ -10,6 +10,9 @@ use peelnet_eval::stress::{CASES, Outcome, Property, Row, Stressed};
 use std::{collections::BTreeMap, path::Path};
 
 impl Results<Stressed> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &["stress.json", "stress.csv", "stress.md", "stress.html"];
+
     /// A row for each method: passes, declared flaws (`d` and their number) and failures (`F`) in each case.
     pub fn matrix(&self) -> Table {
         let rows = &self.measured.rows;
@@ -194,5 +197,6 @@ mod tests {
         assert!(page.contains("1 properties hold, 2 declared flaws, 1 failures"));
         let json = dir.path().join("stress.json");
         assert_eq!(Results::<Stressed>::read(&json).unwrap(), results);
+        crate::testing::assert_files(dir.path(), Results::<Stressed>::FILES);
     }
 }

@@ -1,6 +1,7 @@
 //! Tables as Markdown, as plain text and as HTML.
 
 use maud::{Markup, html};
+use peelnet_files::one_line;
 
 /// Headings, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,7 +27,8 @@ impl Table {
     /// As Markdown: the first column to the left, the others to the right.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| {
-            let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
+            let cells = cells.iter().map(|c| one_line(c).replace('|', "\\|"));
+            let cells: Vec<String> = cells.map(|c| c.replace('<', "&lt;")).collect();
             format!("| {} |\n", cells.join(" | "))
         };
         let right = "---:|".repeat(self.headings.len().saturating_sub(1));
@@ -36,14 +38,22 @@ impl Table {
 
     /// As plain text with aligned columns, for a terminal.
     pub fn plain(&self) -> String {
-        let lines = || std::iter::once(&self.headings).chain(&self.rows);
+        let escaped = |line: &Vec<String>| -> Vec<String> {
+            line.iter()
+                .map(|cell| one_line(cell).into_owned())
+                .collect()
+        };
+        let lines: Vec<Vec<String>> = std::iter::once(&self.headings)
+            .chain(&self.rows)
+            .map(escaped)
+            .collect();
         let width = |k: usize| {
-            let cells = lines().filter_map(|line| line.get(k));
+            let cells = lines.iter().filter_map(|line| line.get(k));
             cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..self.headings.len()).map(width).collect();
         let mut text = String::new();
-        for line in lines() {
+        for line in &lines {
             let cells = line.iter().zip(&widths).enumerate();
             let cells = cells.map(|(k, (cell, w))| match k {
                 0 => format!("{cell:<w$}"),
@@ -90,8 +100,21 @@ mod tests {
     fn markdown_has_one_bar_more_than_columns() {
         assert_eq!(
             table().markdown(),
-            "| name | ms |\n|---|---:|\n| <a\\|b> | 1 |\n"
+            "| name | ms |\n|---|---:|\n| &lt;a\\|b> | 1 |\n"
         );
+    }
+
+    /// A cell cannot end its row, nor move a terminal's cursor.
+    #[test]
+    fn cells_stay_cells() {
+        let table = Table::new(["a\nb"], [vec!["\u{1b}[2J\r\n".to_owned()]]);
+        for text in [table.plain(), table.markdown()] {
+            assert!(
+                text.contains(r"a\u{a}b") && text.contains(r"\u{1b}[2J\u{d}\u{a}"),
+                "{text}"
+            );
+        }
+        assert_eq!(table.plain().lines().count(), 2);
     }
 
     #[test]

@@ -38,3 +38,21 @@ pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
         ..Row::default()
     }
 }
+
+/// Every file in a folder is one of these, and is known again as its kind.
+pub(crate) fn assert_files(folder: &std::path::Path, files: &[&str]) {
+    for entry in std::fs::read_dir(folder).expect("lists") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            continue;
+        }
+        let name = path.file_name().and_then(|n| n.to_str()).expect("a name");
+        assert!(files.contains(&name), "{name}");
+        let kind = crate::kind_of(name);
+        let standing = kind.standing(&path).expect("stands");
+        assert_eq!(standing, peelnet_files::Standing::Replaced, "{name}");
+        std::fs::write(&path, "a user's own").expect("writes");
+        let standing = kind.standing(&path).expect("stands");
+        assert_eq!(standing, peelnet_files::Standing::Foreign, "{name}");
+    }
+}

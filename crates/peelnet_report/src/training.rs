@@ -9,6 +9,17 @@ use peelnet_eval::learning::{Learning, Lesson, Varied};
 use std::path::Path;
 
 impl Results<Learning> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &[
+        "training.json",
+        "training.csv",
+        "training.md",
+        "training-parameters.svg",
+        "training-examples.svg",
+        "training-epochs.svg",
+        "training-seconds.svg",
+    ];
+
     /// A row for each network.
     pub fn table(&self) -> Table {
         let headings = [
@@ -114,5 +125,6 @@ mod tests {
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 7);
         let json = dir.path().join("training.json");
         assert_eq!(Results::<Learning>::read(&json).unwrap(), results);
+        crate::testing::assert_files(dir.path(), Results::<Learning>::FILES);
     }
 }

@@ -30,10 +30,12 @@ pub fn load(name: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// See [`Scene::load_at`].
 pub fn open(path: &Path, time: Option<f32>) -> Result<Scene, SceneError> {
-    if path.exists() {
+    let shipped = path.to_str().and_then(find);
+    // A folder that happens to have a scene's name, such as its dataset, is none.
+    if path.exists() && !(path.is_dir() && shipped.is_some()) {
         return Scene::load_at(path, time);
     }
-    match path.to_str().and_then(find) {
+    match shipped {
         Some(file) => load_file(file, time),
         // A single word without an ending was meant as a name.
         None if path.extension().is_none() && path.components().count() == 1 => {

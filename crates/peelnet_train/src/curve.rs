@@ -4,9 +4,20 @@ use std::path::Path;
 
 use peelnet_chart::{Line, LineChart, Scale, Svg};
 
+use peelnet_files::Kind;
+
 use crate::error::TrainError;
 use crate::files;
 use crate::report::EpochReport;
+
+/// The columns of a curve as a table.
+const HEADINGS: [&str; 5] = [
+    "epoch",
+    "train_loss",
+    "held_out_loss",
+    "seconds",
+    "rows_per_s",
+];
 
 /// The forms of a loss curve, chosen by the file's ending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +36,20 @@ impl CurveFormat {
             Some(e) if e.eq_ignore_ascii_case("csv") => Ok(Self::Csv),
             Some(e) if e.eq_ignore_ascii_case("svg") => Ok(Self::Svg),
             _ => Err(TrainError::CurveFormat(path.to_owned())),
+        }
+    }
+
+    /// By what a loss curve of this form is known.
+    pub const fn kind(self) -> Kind {
+        match self {
+            Self::Csv => Kind {
+                name: "a loss curve (CSV)",
+                is: |head| head.starts_with(HEADINGS.join(",").as_bytes()),
+            },
+            Self::Svg => Kind {
+                name: "a loss curve (SVG)",
+                is: Svg::is_ours,
+            },
         }
     }
 }
@@ -48,13 +73,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 fn csv(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record([
-        "epoch",
-        "train_loss",
-        "held_out_loss",
-        "seconds",
-        "rows_per_s",
-    ])?;
+    table.write_record(HEADINGS)?;
     for row in history {
         table.write_record([
             row.epoch.to_string(),

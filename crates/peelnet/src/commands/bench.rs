@@ -4,7 +4,8 @@ use super::{Context, bench_effects, bench_training};
 use crate::cli::BenchArgs;
 use crate::failure::{Failure, one_line};
 use crate::learned;
-use crate::parse::{MethodList, command_line};
+use crate::outputs::Outputs;
+use crate::parse::{MethodList, command_line, shown};
 use crate::progress::Bar;
 use peelnet_eval::{
     Machine, Partial,
@@ -31,6 +32,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     if args.scaling {
         return scale(context, args);
     }
+    check_outputs(context, args, Results::<Bench>::FILES)?;
     let results = if args.redraw {
         read(&args.out)?
     } else {
@@ -43,8 +45,26 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         .result(|| results.table().plain(), || json!(results))
 }
 
+/// Checks the files and the pictures that a bench writes.
+///
+/// # Errors
+/// A foreign file among them, or a folder that cannot be written.
+pub(super) fn check_outputs(
+    context: &Context<'_>,
+    args: &BenchArgs,
+    files: &[&str],
+) -> Result<(), Failure> {
+    let inputs = args.scenes.iter().chain(&args.models);
+    let mut outputs = Outputs::new(context, inputs.chain(&args.training));
+    outputs.results("--out", &args.out, files)?;
+    outputs.pictures("--out", &args.out.join("images"))?;
+    outputs.announce();
+    Ok(())
+}
+
 /// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    check_outputs(context, args, Results::<Scaling>::FILES)?;
     let gpu = context.gpu()?;
     let Chosen {
         mut methods,
@@ -179,7 +199,7 @@ pub(super) fn chosen(
         if models.iter().any(|m| m.meta.recipe == model.meta.recipe) {
             return Err(Failure::Usage(format!(
                 "--models: {} is a second model of recipe {}; one run compares one of each",
-                path.display(),
+                shown(path),
                 model.meta.recipe
             )));
         }
@@ -217,6 +237,10 @@ pub(super) fn chosen(
         if !wanted.iter().any(|m| m.name() == name) {
             wanted.push(name.parse()?);
         }
+    }
+    for (k, model) in models.iter().enumerate() {
+        let file = named.get(k).map(PathBuf::as_path);
+        context.console.message(learned::about(model, file)?);
     }
     let learned = models
         .iter()

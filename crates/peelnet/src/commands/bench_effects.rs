@@ -1,13 +1,13 @@
 //! `peelnet bench --effects`: what effects cost.
 
-use super::Context;
+use super::{Context, bench::check_outputs};
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::parse::{MethodList, command_line};
 use crate::progress::Bar;
 use peelnet_eval::{
     Machine,
-    effects::{self, Settings},
+    effects::{self, Effects, Settings},
 };
 use peelnet_render::Role;
 use peelnet_report::Results;
@@ -18,6 +18,7 @@ use serde_json::json;
 pub(super) const METHOD: &str = Role::WeightedBlending.method();
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    check_outputs(context, args, Results::<Effects>::FILES)?;
     let scenes = if args.scenes.is_empty() {
         context.shipped(suite::EFFECTS)?
     } else {

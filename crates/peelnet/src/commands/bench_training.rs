@@ -1,6 +1,6 @@
 //! `peelnet bench --training`: what accuracy costs in training.
 
-use super::Context;
+use super::{Context, bench::check_outputs};
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::learned;
@@ -34,6 +34,7 @@ const SHARES: [f64; 5] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 1.0];
 const EPOCHS: [f64; 5] = [1.0 / 24.0, 1.0 / 12.0, 0.25, 0.5, 2.0];
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    check_outputs(context, args, Results::<Learning>::FILES)?;
     let scenes = context.scenes(&args.scenes)?;
     let gpu = context.gpu()?;
     let datasets = args

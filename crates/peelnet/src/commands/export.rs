@@ -3,6 +3,8 @@
 use super::Context;
 use crate::cli::{ExportArgs, Lang, Precision};
 use crate::failure::Failure;
+use crate::outputs::Outputs;
+use crate::parse::{json_path, shown};
 use peelnet_model::Model;
 use serde_json::json;
 
@@ -13,24 +15,26 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     if args.precision != Precision::F32 {
         return Err(not_yet("--precision", &args.precision, "f32"));
     }
+    let mut outputs = Outputs::new(context, [&args.model]);
+    outputs.file("--out", &args.out, peelnet_export::KIND)?;
     let model = Model::load(&args.model)?;
     let gpu = context.gpu()?;
-    super::create_folder_of(&args.out)?;
+    outputs.announce();
     let verification =
         peelnet_export::export(&gpu, &model, &args.out, &peelnet_export::Options::default())?;
     context.console.result(
         || {
             format!(
                 "{}: {} inputs, verified on {}: {verification}",
-                args.out.display(),
+                shown(&args.out),
                 model.meta.inputs.len(),
                 gpu.info.name
             )
         },
         || {
             json!({
-                "out": args.out,
-                "model": args.model,
+                "out": json_path(&args.out),
+                "model": json_path(&args.model),
                 "recipe": model.meta.recipe,
                 "lang": "wgsl",
                 "precision": "f32",

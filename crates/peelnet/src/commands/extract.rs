@@ -3,7 +3,8 @@
 use super::Context;
 use crate::cli::ExtractArgs;
 use crate::failure::Failure;
-use crate::parse::{ViewCount, command_line};
+use crate::outputs::is_folder;
+use crate::parse::{ViewCount, command_line, json_path, shown};
 use crate::progress::{Bar, thousands};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{
@@ -15,6 +16,7 @@ use serde_json::json;
 use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
+    is_folder("--out", &args.out)?;
     let report = if let Some(lists) = args.synthetic {
         make_up(
             context,
@@ -58,7 +60,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
         || {
             let m = &report.manifest;
             json!({
-                "out": folder,
+                "out": json_path(&folder),
                 "rows": m.rows,
                 "pixels": m.pixels,
                 "parts": m.parts.len(),
@@ -135,7 +137,7 @@ pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
     };
     format!(
         "{}: {} rows of {} pixels in {} parts, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {} coplanar pairs{lost}",
-        folder.display(),
+        shown(folder),
         thousands(report.manifest.rows),
         thousands(report.manifest.pixels),
         report.manifest.parts.len(),

@@ -3,10 +3,12 @@
 use super::{Context, bench_effects::METHOD};
 use crate::cli::InspectArgs;
 use crate::failure::{Failure, one_line};
+use crate::parse::{json_path, shown};
 use crate::progress::thousands;
 use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Summary};
 use peelnet_eval::effects::{self, Cost, Settings};
+use peelnet_files::{one_line as escaped, printable};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
 use peelnet_scene::{Census, Effect, Scene, suite};
@@ -23,14 +25,21 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         .extension()
         .and_then(|e| e.to_str())
         .unwrap_or_default();
+    let ships = path.to_str().and_then(suite::find).is_some();
     if path.is_dir() {
+        if ships {
+            context.console.message(format!(
+                "{}: the folder here, not the shipped scene of this name",
+                shown(path)
+            ));
+        }
         dataset(context, path)
-    } else if !path.exists() && path.to_str().and_then(suite::find).is_some() {
+    } else if !path.exists() && ships {
         scene(context, path, args.time)
     } else if !path.exists() {
         Err(Failure::Failed(format!(
             "{}: there is no such file or folder",
-            path.display()
+            shown(path)
         )))
     } else if ["toml", "gltf", "glb"]
         .iter()
@@ -42,7 +51,7 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
     } else {
         Err(Failure::Usage(format!(
             "{}: neither a scene (.toml, .gltf, .glb), a dataset (a folder) nor a model (.safetensors)",
-            path.display()
+            shown(path)
         )))
     }
 }
@@ -55,7 +64,7 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     context.console.result(
         || {
             let called = m.scenes.iter().filter(|s| !s.effects.is_empty());
-            let census = called.map(|s| format!("  {:<33} {}\n", s.name, s.effects.join(", ")));
+            let census = called.map(|s| format!("  {:<33} {}\n", printable(&s.name), escaped(&s.effects.join(", "))));
             let census: String = census.collect();
             let census = if census.is_empty() {
                 census
@@ -64,20 +73,20 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
             };
             format!(
                 "dataset     {}\nwritten by  peelnet {} on {} ({} peeling, {} of the pixels, seed {})\ncommand     {}\n{}{census}",
-                path.display(),
-                m.tool_version,
-                m.adapter,
-                m.peel,
+                shown(path),
+                printable(&m.tool_version),
+                printable(&m.adapter),
+                printable(&m.peel),
                 m.pixels_fraction,
                 m.seed,
-                m.command,
+                escaped(&m.command),
                 summary_text(&summary)
             )
         },
         || {
             let mut value = json!(summary);
             value["kind"] = "dataset".into();
-            value["path"] = json!(path);
+            value["path"] = json_path(path).into();
             value["passes"] = summary.passes().into();
             value["format"] = json!(m.format);
             value["tool_version"] = json!(m.tool_version);
@@ -94,7 +103,7 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     }
     Err(Failure::Failed(format!(
         "{}: rows disagree with one another (see the checks); extract the dataset again",
-        path.display()
+        shown(path)
     )))
 }
 
@@ -167,7 +176,7 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
                 "shader_bytes_brought": brought,
                 "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
                 "costs": costs,
-                "path": path,
+                "path": json_path(path),
                 "name": scene.name,
                 "hash": scene.hash,
                 "held_out": scene.held_out,
@@ -206,8 +215,8 @@ fn scene_text(
     (shader, brought): (usize, &HashMap<&str, i64>),
     costs: &[Cost],
 ) -> String {
-    let mut t = format!("scene       {}\n", scene.name);
-    let _ = writeln!(t, "file        {}", scene.source.display());
+    let mut t = format!("scene       {}\n", printable(&scene.name));
+    let _ = writeln!(t, "file        {}", shown(&scene.source));
     let _ = writeln!(t, "hash        {}", scene.hash);
     let held_out = if scene.held_out {
         "yes: never trained on"
@@ -285,7 +294,8 @@ fn beside(with: f64, without: f64) -> String {
 /// The first names, and how many more there are.
 fn few(names: &[String]) -> String {
     const SHOWN: usize = 4;
-    let shown = names[..names.len().min(SHOWN)].join(", ");
+    let shown = names.iter().take(SHOWN).map(|name| printable(name));
+    let shown = shown.collect::<Vec<_>>().join(", ");
     match names.len().saturating_sub(SHOWN) {
         0 => shown,
         more => format!("{shown} and {more} more"),
@@ -296,13 +306,13 @@ fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     let model = Model::load(path)?;
     let hash = model
         .hash()
-        .map_err(|e| Failure::Failed(format!("{}: {}", path.display(), one_line(&e))))?;
+        .map_err(|e| Failure::Failed(format!("{}: {}", shown(path), one_line(&e))))?;
     context.console.result(
         || model_text(path, &model, &hash),
         || {
             json!({
                 "kind": "model",
-                "path": path,
+                "path": json_path(path),
                 "hash": hash,
                 "method": model.meta.recipe.method,
                 "topology": model.mlp.topology(),
@@ -315,7 +325,7 @@ fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
 
 fn model_text(path: &Path, model: &Model, hash: &str) -> String {
     let meta = &model.meta;
-    let mut t = format!("model       {}\n", path.display());
+    let mut t = format!("model       {}\n", shown(path));
     let _ = writeln!(t, "hash        {hash}");
     let _ = writeln!(
         t,
@@ -332,12 +342,16 @@ fn model_text(path: &Path, model: &Model, hash: &str) -> String {
     let _ = writeln!(
         t,
         "trained by  peelnet {}, seed {}, {} epochs",
-        meta.tool_version, meta.seed, meta.epochs
+        printable(&meta.tool_version),
+        meta.seed,
+        meta.epochs
     );
     match &meta.dataset {
         Some(d) => {
-            let _ = writeln!(t, "dataset     {} rows, hash {}", thousands(d.rows), d.hash);
-            let _ = writeln!(t, "scenes      {}", d.scenes.join(", "));
+            let rows = thousands(d.rows);
+            let _ = writeln!(t, "dataset     {rows} rows, hash {}", printable(&d.hash));
+            let scenes: Vec<_> = d.scenes.iter().map(|scene| printable(scene)).collect();
+            let _ = writeln!(t, "scenes      {}", scenes.join(", "));
         }
         None => t.push_str("dataset     none: made by hand\n"),
     }
@@ -351,6 +365,7 @@ fn model_text(path: &Path, model: &Model, hash: &str) -> String {
         }
     }
     for (scene, error) in &meta.held_out {
+        let scene = printable(scene);
         let _ = writeln!(t, "held out    {scene}: mean error of T {error:.4}");
     }
     t.push_str(
@@ -360,7 +375,12 @@ fn model_text(path: &Path, model: &Model, hash: &str) -> String {
         let _ = writeln!(
             t,
             "  {:<18} {:<14} {:>10.4} {:>12.4}    {} … {}",
-            input.name, input.unit, input.offset, input.scale, input.min, input.max
+            input.name,
+            printable(&input.unit),
+            input.offset,
+            input.scale,
+            input.min,
+            input.max
         );
     }
     t

@@ -17,6 +17,8 @@ use crate::cli::{Cli, Command, Global};
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::parse::shown;
+use crate::progress::Bar;
 use peelnet_gpu::Gpu;
 use peelnet_scene::{
     Scene,
@@ -32,7 +34,7 @@ pub struct Context<'a> {
     pub console: Console,
     /// The global flags.
     pub global: &'a Global,
-    /// Set by Ctrl-C.
+    /// Set by a signal.
     pub stop: &'static AtomicBool,
 }
 
@@ -63,7 +65,15 @@ impl Context<'_> {
 
     /// A scene at a time of its timeline.
     fn scene_at(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
+        if path.is_file() && path.to_str().and_then(suite::find).is_some() {
+            self.console.message(format!(
+                "{}: the file here, not the shipped scene of this name",
+                shown(path)
+            ));
+        }
+        let bar = Bar::spinner(self.console, format!("loading {}", shown(path)));
         let scene = suite::open(path, time)?;
+        drop(bar);
         for warning in &scene.warnings {
             self.console.warn(warning);
         }
@@ -81,27 +91,12 @@ impl Context<'_> {
             .collect()
     }
 
-    /// An error if Ctrl-C was pressed.
+    /// An error if a signal came.
     fn check_interrupt(&self) -> Result<(), Failure> {
         if interrupt::requested() {
             return Err(Failure::Interrupted);
         }
         Ok(())
-    }
-}
-
-/// Creates the folder that a file is to be written into.
-fn create_folder_of(path: &Path) -> Result<(), Failure> {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => {
-            std::fs::create_dir_all(folder).map_err(|e| {
-                Failure::Failed(format!(
-                    "{}: cannot create the folder: {e}",
-                    folder.display()
-                ))
-            })
-        }
-        _ => Ok(()),
     }
 }
 
@@ -113,7 +108,8 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
     let context = Context {
         console: Console::new(cli.global.quiet, cli.global.json),
         global: &cli.global,
-        stop: interrupt::install(),
+        stop: interrupt::install()
+            .map_err(|e| Failure::Failed(format!("cannot listen to signals: {e}")))?,
     };
     match &cli.command {
         Command::Run(args) => run::run(&context, args),

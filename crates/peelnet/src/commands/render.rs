@@ -2,19 +2,22 @@
 
 use super::Context;
 use crate::cli::RenderArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, one_line};
 use crate::learned;
+use crate::outputs::Outputs;
+use crate::parse::{json_path, shown};
 use crate::progress::thousands;
-use peelnet_render::{Frame, LayerView, MethodOptions, Renderer};
+use peelnet_render::{Frame, ImageFormat, LayerView, MethodOptions, Renderer};
 use serde_json::json;
-use std::path::Path;
-
-/// Endings that an image may have.
-const ENDINGS: [&str; 3] = ["png", "exr", "npy"];
 
 pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failure> {
-    check_ending(&args.out)?;
+    let format = ImageFormat::of(&args.out)
+        .map_err(|e| Failure::Usage(format!("--out {}", one_line(&e))))?;
+    let inputs = args.model.iter().chain([&args.scene]);
+    let mut outputs = Outputs::new(context, inputs);
+    outputs.file("--out", &args.out, format.kind())?;
     let mut scene = context.scene_at(&args.scene, args.time)?;
+    outputs.announce();
     let layers = args.highlight.map(|highlight| LayerView {
         highlight,
         increasing: args.increasing,
@@ -26,12 +29,12 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
         Failure::Usage(format!(
             "--view {}: {} has {} views, numbered from 0",
             args.view,
-            args.scene.display(),
+            shown(&args.scene),
             scene.views.len()
         ))
     })?;
     let gpu = context.gpu()?;
-    let learned = learned::weight_of(&gpu, &args.method, args.model.as_deref())?;
+    let learned = learned::weight_of(context.console, &gpu, &args.method, args.model.as_deref())?;
     let renderer = Renderer::new(&gpu, &scene)?;
     let mut prepared = match layers {
         Some(view) => renderer.layers(view, args.size.0)?,
@@ -46,7 +49,6 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     );
     let frame = renderer.image(&mut prepared, camera)?;
     context.check_interrupt()?;
-    super::create_folder_of(&args.out)?;
     frame.image.save(&args.out)?;
     if frame.stats.lost > 0 {
         context.console.warn(format!(
@@ -65,7 +67,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
         || text(args, &method, &gpu.info.name, &frame),
         || {
             json!({
-                "out": args.out,
+                "out": json_path(&args.out),
                 "scene": scene.name,
                 "method": method,
                 "highlight": args.highlight,
@@ -90,20 +92,6 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     )
 }
 
-fn check_ending(path: &Path) -> Result<(), Failure> {
-    let ending = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
-    if ENDINGS.contains(&ending.to_lowercase().as_str()) {
-        return Ok(());
-    }
-    Err(Failure::Usage(format!(
-        "--out {}: the ending says the format; use .png (sRGB), .exr or .npy (linear)",
-        path.display()
-    )))
-}
-
 /// GPU time of all passes, where the adapter measures it.
 fn gpu_ms(frame: &Frame) -> Option<f64> {
     (!frame.times.is_empty()).then(|| frame.times.iter().map(|t| t.micros).sum::<f64>() / 1e3)
@@ -121,27 +109,11 @@ fn text(args: &RenderArgs, method: &str, adapter: &str, frame: &Frame) -> String
     );
     format!(
         "{}: {method} of {}, {}{fragments}; {} geometry and {} full-screen passes, {:.0} bytes a pixel, {time}, on {adapter}",
-        args.out.display(),
-        args.scene.display(),
+        shown(&args.out),
+        shown(&args.scene),
         args.size,
         frame.stats.geometry_passes,
         frame.stats.fullscreen_passes,
         frame.stats.bytes_per_pixel,
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn endings() {
-        for good in ["a.png", "b/c.EXR", "d.npy"] {
-            assert_eq!(check_ending(Path::new(good)), Ok(()));
-        }
-        for bad in ["a", "a.jpg", ".png"] {
-            let failure = check_ending(Path::new(bad));
-            assert!(failure.is_err_and(|f| f.exit_code() == 2), "{bad}");
-        }
-    }
 }

@@ -4,9 +4,10 @@ use super::{Context, extract, train};
 use crate::cli::RunArgs;
 use crate::failure::Failure;
 use crate::learned;
-use crate::parse::{Size, command_line};
+use crate::outputs::Outputs;
+use crate::parse::{Size, command_line, shown};
 use crate::progress::Bar;
-use crate::summary_text::summary_text;
+use crate::summary_text::{self, summary_text};
 use indicatif::HumanCount;
 use peelnet_chart::Svg;
 use peelnet_dataset::{Dataset, Format, Summary};
@@ -20,7 +21,7 @@ use peelnet_peel::{ExtractOptions, Peel, Views};
 use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, Role};
 use peelnet_report::{Attachments, Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
-use peelnet_train::{Config, Outcome, RunOptions, curve_chart};
+use peelnet_train::{Config, CurveFormat, Outcome, RunOptions, curve_chart};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -97,7 +98,28 @@ impl Clock<'_> {
     }
 }
 
+/// The summary of the dataset, for programs and for people.
+const SUMMARY: [&str; 2] = ["dataset-summary.json", "dataset-summary.txt"];
+
+/// Checks everything that a run writes but its dataset, which has its own way.
+fn check_outputs(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
+    let mut outputs = Outputs::new(context, &args.scenes);
+    outputs.results("--out", &args.out, Results::<ThesisRun>::FILES)?;
+    outputs.pictures("--out", &args.out.join("images"))?;
+    let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
+    let networks = [
+        ("model.safetensors", peelnet_model::KIND),
+        ("model.wgsl", peelnet_export::KIND),
+        ("loss.csv", CurveFormat::Csv.kind()),
+        ("loss.svg", CurveFormat::Svg.kind()),
+    ];
+    outputs.folder("--out", &args.out, summaries.into_iter().chain(networks))?;
+    outputs.announce();
+    Ok(())
+}
+
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
+    check_outputs(context, args)?;
     let sizes = Sizes::of(args)?;
     let scenes = scenes(context, args)?;
     if scenes.iter().all(|s| s.held_out) {
@@ -141,7 +163,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     )?;
     context.console.message(format!(
         "the report is {}",
-        args.out.join("report.html").display()
+        shown(&args.out.join("report.html"))
     ));
     context.console.result(|| text(&results), || json!(results))
 }
@@ -204,12 +226,12 @@ impl Run<'_> {
         let summary = Summary::of(&dataset)?;
         let text = summary_text(&summary);
         let json = format!("{:#}\n", json!(summary));
-        write_file(&out.join("dataset-summary.json"), json)?;
-        write_file(&out.join("dataset-summary.txt"), &text)?;
+        write_file(&out.join(SUMMARY[0]), json)?;
+        write_file(&out.join(SUMMARY[1]), &text)?;
         if !summary.passes() {
             return Err(Failure::Failed(format!(
                 "{}: rows of the dataset disagree with one another, see dataset-summary.txt",
-                folder.display()
+                shown(&folder)
             )));
         }
         self.clock
@@ -236,12 +258,12 @@ impl Run<'_> {
         let path = self.args.out.join("model.wgsl");
         let options = peelnet_export::Options::default();
         let verification = peelnet_export::export(&self.gpu, model, &path, &options)?;
-        let note = format!("{}: {verification}", path.display());
+        let note = format!("{}: {verification}", shown(&path));
         self.clock.done("export", note)?;
         Ok(LearnedWeight {
             recipe: model.meta.recipe,
             wgsl: std::fs::read_to_string(&path)
-                .map_err(|e| Failure::Failed(format!("{}: {e}", path.display())))?,
+                .map_err(|e| Failure::Failed(format!("{}: {e}", shown(&path))))?,
         })
     }
 

@@ -3,7 +3,8 @@
 use super::{Context, bench::chosen};
 use crate::cli::StressArgs;
 use crate::failure::Failure;
-use crate::parse::{MethodList, command_line};
+use crate::outputs::Outputs;
+use crate::parse::{MethodList, command_line, shown};
 use crate::progress::Bar;
 use peelnet_eval::{
     EvalError, Machine, numerics,
@@ -19,6 +20,12 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         return formats(context, args);
     }
     let cases = cases(&args.cases)?;
+    if let Some(out) = &args.out {
+        let mut outputs = Outputs::new(context, &args.models);
+        outputs.results("--out", out, Results::<Stressed>::FILES)?;
+        outputs.pictures("--out", &out.join("images"))?;
+        outputs.announce();
+    }
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && matches!(args.methods, MethodList::All);
     let all = || -> Vec<MethodSpec> {
@@ -82,7 +89,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     let failures = results.measured.of(Outcome::Fail).count();
     if failures > 0 {
         let see = match &args.out {
-            Some(out) => format!("pictures of them are in {}", out.join("images").display()),
+            Some(out) => format!("pictures of them are in {}", shown(&out.join("images"))),
             None => "name a folder with --out for pictures of them".to_owned(),
         };
         return Err(Failure::Failed(format!(
@@ -94,6 +101,11 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
 
 /// What target formats cost in accuracy.
 fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
+    if let Some(out) = &args.out {
+        let mut outputs = Outputs::new(context, &args.models);
+        outputs.results("--out", out, Results::<numerics::Numerics>::FILES)?;
+        outputs.announce();
+    }
     let gpu = context.gpu()?;
     let numerics = numerics::measure(&gpu)?;
     let results = Results::new(Machine::of(&gpu), command_line(), numerics);

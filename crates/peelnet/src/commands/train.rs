@@ -3,8 +3,11 @@
 use super::Context;
 use crate::cli::TrainArgs;
 use crate::failure::{Failure, one_line};
+use crate::outputs::Outputs;
+use crate::parse::{json_path, shown};
 use crate::progress::{Bar, thousands};
 use peelnet_dataset::Dataset;
+use peelnet_files::printable;
 use peelnet_train::{
     Config, CurveFormat, End, Outcome, RunOptions, TrainError, TrainingData, held_out_errors, train,
 };
@@ -13,14 +16,18 @@ use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
     let config = config(args)?;
+    let mut outputs = Outputs::new(context, &args.datasets);
+    outputs.file("--out", &args.out, peelnet_model::KIND)?;
     for path in &args.loss_curve {
-        CurveFormat::of(path).map_err(usage)?;
+        let format = CurveFormat::of(path).map_err(usage)?;
+        outputs.file("--loss-curve", path, format.kind())?;
     }
     let datasets = args
         .datasets
         .iter()
         .map(Dataset::open)
         .collect::<Result<Vec<_>, _>>()?;
+    outputs.announce();
     let mut options = RunOptions::new(&args.out, context.stop);
     options.resume = args.resume;
     options.loss_curve = args.loss_curve.clone();
@@ -30,7 +37,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
         || {
             let meta = &outcome.model.meta;
             json!({
-                "out": args.out,
+                "out": json_path(&args.out),
                 "recipe": meta.recipe,
                 "topology": outcome.model.mlp.topology(),
                 "parameters": outcome.model.mlp.parameters(),
@@ -46,7 +53,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
                 "seed": meta.seed,
                 "seconds": seconds(&outcome),
                 "rows_per_s": rows_per_s(&outcome),
-                "checkpoint": outcome.checkpoint,
+                "checkpoint": json_path(&outcome.checkpoint),
             })
         },
     )
@@ -108,7 +115,7 @@ pub(super) fn fit(
             "interrupted after epoch {} of {}; the state is in {}, continue with --resume",
             outcome.history.len(),
             config.epochs,
-            outcome.checkpoint.display()
+            shown(&outcome.checkpoint)
         )));
     }
     if let Some(from) = outcome.resumed_from {
@@ -144,7 +151,7 @@ pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
     };
     let mut t = format!(
         "{}: recipe {}, weights of epoch {} ({}){}{}{}, {:.1} s, {} rows/s",
-        out.display(),
+        shown(out),
         meta.recipe,
         outcome.model_epoch,
         match outcome.end {
@@ -160,7 +167,8 @@ pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
     );
     for (scene, error) in &meta.held_out {
         t.push_str(&format!(
-            "\nheld-out scene {scene}: mean error of T {error:.4}"
+            "\nheld-out scene {}: mean error of T {error:.4}",
+            printable(scene)
         ));
     }
     t

@@ -16,6 +16,16 @@ use peelnet_eval::{
 use std::path::Path;
 
 impl Results<Bench> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &[
+        "pareto.svg",
+        "pareto-mean.svg",
+        "report.html",
+        "results.json",
+        "results.csv",
+        "table.md",
+    ];
+
     /// Writes all files of a bench into a folder; pictures are taken from `images/` in it.
     ///
     /// # Errors

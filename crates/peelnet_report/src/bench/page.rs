@@ -281,6 +281,7 @@ mod tests {
         );
         let read: Results<Bench> = Results::read(&dir.path().join("results.json")).unwrap();
         assert_eq!(read, results);
+        crate::testing::assert_files(dir.path(), Results::<Bench>::FILES);
     }
 
     #[test]

@@ -51,6 +51,9 @@ pub struct Attachments<'a> {
 }
 
 impl Results<ThesisRun> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &["results.json", "table.md", "report.html"];
+
     /// The results of these rows, with their findings, and without stages and settings.
     pub fn of_rows(machine: Machine, command: impl Into<String>, rows: Vec<Row>) -> Self {
         let run = ThesisRun {

@@ -187,5 +187,6 @@ mod tests {
         let table = std::fs::read_to_string(dir.path().join("table.md")).unwrap();
         assert!(table.contains("| sixteen-025 | 10.00 |"), "{table}");
         assert!(table.contains("15.96 → 11.79"), "{table}");
+        crate::testing::assert_files(dir.path(), Results::<ThesisRun>::FILES);
     }
 }

@@ -1,0 +1,260 @@
+//! Outputs never destroy: links and devices are written through, foreign files and inputs are refused, and all of that is known before
+//! work begins.
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// A scene of two triangles that is drawn in no time.
+const SCENE: &str = "name = \"two\"\n[camera]\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y = 45\nnear = 0.1\nfar = 10\n\
+    [[object]]\nmesh = { shape = \"quad\", size = [1, 1] }\n[object.material]\ncolor = [0.8, 0.1, 0.1]\nalpha = 0.5\n";
+
+fn peelnet(folder: &Path, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_peelnet"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+/// What a command said on stderr, which ends with this code.
+fn ends_with(folder: &Path, line: &str, code: i32) -> String {
+    let output = peelnet(folder, line);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{line}: {text}");
+    text
+}
+
+/// A folder with a scene, a shipped network's file, and a small dataset.
+fn folder() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("two.toml"), SCENE).unwrap();
+    let model = peelnet::Model::shipped(peelnet::Recipe::SMALL).unwrap();
+    model.save(&dir.path().join("m.safetensors")).unwrap();
+    dir
+}
+
+/// Names and hashes of everything in a folder.
+fn everything(folder: &Path) -> Vec<(std::path::PathBuf, u64)> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let mut hasher = DefaultHasher::new();
+                std::fs::read(&path).unwrap().hash(&mut hasher);
+                found.push((path, hasher.finish()));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_devices_are_written_through() {
+    let dir = folder();
+    let at = |name: &str| dir.path().join(name);
+    std::os::unix::fs::symlink("far.png", at("link.png")).unwrap();
+    std::os::unix::fs::symlink("/dev/full", at("full.png")).unwrap();
+    let render = "render two.toml --size 8x8 --out";
+    ends_with(dir.path(), &format!("{render} link.png"), 0);
+    assert!(
+        std::fs::symlink_metadata(at("link.png"))
+            .unwrap()
+            .is_symlink()
+    );
+    assert!(image::open(at("far.png")).is_ok());
+    ends_with(dir.path(), &format!("{render} /dev/null"), 0);
+    assert!(!Path::new("/dev/null").is_file());
+    for full in ["/dev/full", "full.png"] {
+        let text = ends_with(dir.path(), &format!("{render} {full}"), 1);
+        assert!(text.contains(full), "{text}");
+    }
+    assert!(
+        std::fs::symlink_metadata(at("full.png"))
+            .unwrap()
+            .is_symlink()
+    );
+}
+
+/// The file alone goes to stdout, the result to stderr; no file is called `-`.
+#[test]
+fn a_hyphen_is_stdout() {
+    let dir = folder();
+    let before = everything(dir.path());
+    for (line, start) in [
+        ("render two.toml --size 8x8 --out -", &b"\x89PNG"[..]),
+        ("render two.toml --size 8x8 --json --out -", b"\x89PNG"),
+        ("export m.safetensors --out -", b"// A learned weight"),
+    ] {
+        let output = peelnet(dir.path(), line);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{line}: {said}");
+        assert!(output.stdout.starts_with(start), "{line}");
+        assert!(!said.is_empty(), "{line}");
+    }
+    for line in [
+        "extract two.toml --out -",
+        "bench two.toml --out -",
+        "stress --out -",
+        "run two.toml --out -",
+    ] {
+        let text = ends_with(dir.path(), line, 2);
+        assert!(text.contains("name a folder"), "{text}");
+    }
+    assert_eq!(everything(dir.path()), before);
+}
+
+#[test]
+fn inputs_and_foreign_files_are_refused_and_forced() {
+    let dir = folder();
+    let at = |name: &str| dir.path().join(name);
+    let extract = "extract two.toml --size 16x12 --format csv --out d";
+    ends_with(dir.path(), extract, 0);
+    std::fs::write(at("notes.png"), "a user's own").unwrap();
+    std::fs::hard_link(at("two.toml"), at("hard.png")).unwrap();
+    let part = std::fs::read_dir(at("d")).unwrap();
+    let names = part.map(|e| e.unwrap().file_name().into_string().unwrap());
+    let part = names.into_iter().find(|n| n.ends_with(".csv")).unwrap();
+    let before = everything(dir.path());
+    for (line, code) in [
+        ("export m.safetensors --out m.safetensors", 2),
+        ("export m.safetensors --out ./d/../m.safetensors", 2),
+        ("export m.safetensors --out two.toml", 1),
+        ("render two.toml --size 8x8 --out notes.png", 1),
+        ("render two.toml --size 8x8 --out hard.png", 2),
+        ("train d --epochs 1 --out d/manifest.json", 2),
+        (
+            &*format!("train d --epochs 1 --out n --loss-curve d/{part}"),
+            2,
+        ),
+        ("train d --epochs 1 --out n.svg --loss-curve n.svg", 2),
+        ("train d --epochs 1 --out two.toml", 1),
+    ] {
+        let text = ends_with(dir.path(), line, code);
+        assert!(
+            text.starts_with("error: --") && text.lines().count() == 1,
+            "{line}: {text}"
+        );
+        assert_eq!(everything(dir.path()), before, "{line}");
+    }
+    ends_with(
+        dir.path(),
+        "render two.toml --size 8x8 --out notes.png --force",
+        0,
+    );
+    let said = ends_with(dir.path(), "render two.toml --size 8x8 --out notes.png", 0);
+    assert!(
+        said.contains("replacing notes.png (a PNG image of peelnet)"),
+        "{said}"
+    );
+}
+
+/// Each of the files of a measurement is looked at, and nothing was measured before.
+#[test]
+fn a_folder_is_ours_by_its_content() {
+    let dir = folder();
+    let out = dir.path().join("out");
+    std::fs::create_dir_all(out.join("images")).unwrap();
+    let bench = "bench two.toml --methods wboit-eq9 --frames 0 --size 8x8 --out out";
+    for name in [
+        "report.html",
+        "results.json",
+        "results.csv",
+        "table.md",
+        "pareto.svg",
+        "images/holiday.png",
+    ] {
+        std::fs::write(out.join(name), "a user's own").unwrap();
+        let text = ends_with(dir.path(), bench, 1);
+        assert!(text.contains(name) && text.contains("--force"), "{text}");
+        assert_eq!(everything(&out).len(), 1, "{name}");
+        std::fs::remove_file(out.join(name)).unwrap();
+    }
+    ends_with(dir.path(), bench, 0);
+    let said = ends_with(dir.path(), bench, 0);
+    assert!(
+        said.contains("replacing out/") && said.contains("more files"),
+        "{said}"
+    );
+}
+
+/// Nothing is trained or drawn for an output that cannot be written.
+#[test]
+fn outputs_are_checked_before_work_begins() {
+    let dir = folder();
+    ends_with(dir.path(), "extract --synthetic 300 --out d", 0);
+    std::fs::write(dir.path().join("file"), "x").unwrap();
+    let before = everything(dir.path());
+    for line in [
+        "train d --epochs 1 --out m2 --loss-curve file/loss.csv",
+        "train d --epochs 1 --out file/m2",
+        "stress --cases deep --methods wboit-eq9 --out file",
+        "stress --numerics --out file",
+        "bench --scaling --out file/out",
+        "bench --effects --out file",
+        "extract two.toml --out file",
+        "run two.toml --out file",
+    ] {
+        let text = ends_with(dir.path(), line, 1);
+        let last = text.lines().last().unwrap_or_default();
+        assert!(
+            last.starts_with("error: --") && last.contains("file"),
+            "{line}: {text}"
+        );
+        assert_eq!(text.lines().count(), 1, "{line}: {text}");
+        assert_eq!(everything(dir.path()), before, "{line}");
+    }
+}
+
+/// Two seconds are promised; the deadline here only ends a test that would hang.
+#[cfg(unix)]
+#[test]
+fn signals_end_every_command() {
+    let dir = folder();
+    ends_with(dir.path(), "extract --synthetic 3000 --out d", 0);
+    let before = everything(dir.path());
+    for (line, signal, code) in [
+        (
+            "render sixteen-050 --size 4096x4096 --out a.png",
+            "INT",
+            130,
+        ),
+        ("inspect vase --time", "TERM", 143),
+        ("stress --numerics --out s", "TERM", 143),
+        ("bench sixteen-050 --out b", "INT", 130),
+        (
+            "train d --epochs 1000000 --recipe small --out n",
+            "INT",
+            130,
+        ),
+    ] {
+        let child = Command::new(env!("CARGO_BIN_EXE_peelnet"))
+            .args(line.split_whitespace())
+            .current_dir(dir.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Long enough that the handler is there, short enough that no command has finished.
+        std::thread::sleep(std::time::Duration::from_millis(400));
+        let id = child.id().to_string();
+        let sent = Command::new("kill").args(["-s", signal, &id]).status();
+        assert!(sent.unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{line}: {text}");
+        assert!(text.contains("interrupted"), "{line}: {text}");
+        let left = everything(dir.path());
+        // What a training resumes from.
+        let ours = |p: &Path| p.starts_with(dir.path().join("n.checkpoint"));
+        let left: Vec<_> = left.into_iter().filter(|(p, _)| !ours(p)).collect();
+        assert_eq!(left, before, "{line}");
+    }
+}

@@ -1,0 +1,71 @@
+//! Names in a model's file are a stranger's: none of them becomes code of the exported text.
+
+use peelnet_export::{Options, verify, wgsl};
+use peelnet_gpu::{AdapterRequest, Gpu};
+use peelnet_model::{DatasetRef, Model, Recipe};
+use std::collections::BTreeSet;
+
+/// Ends a line in every way that WGSL knows, and in some that terminals know.
+const HOSTILE: &str = "x\nfn stolen() -> f32 { return 1.0; }\r\u{b}\u{c}\u{85}\u{2028}\u{2029}const a = 1;\n*/ \u{1b}[2J\u{202e}\\";
+
+/// A model whose every free text is this one.
+fn hostile(recipe: Recipe, text: &str) -> Model {
+    let mut model = Model::shipped(recipe).expect("ships");
+    let meta = &mut model.meta;
+    meta.tool_version = text.to_owned();
+    for input in &mut meta.inputs {
+        input.unit = text.to_owned();
+    }
+    meta.dataset = Some(DatasetRef {
+        hash: text.to_owned(),
+        rows: 1,
+        scenes: vec![text.to_owned(); 1000],
+    });
+    meta.held_out = (0..1000).map(|k| (format!("{text}{k}"), 0.5)).collect();
+    meta.config = serde_json::json!({ text: text });
+    model
+}
+
+fn functions(text: &str) -> BTreeSet<String> {
+    let module = naga::front::wgsl::parse_str(text).expect("parses");
+    assert!(module.entry_points.is_empty() && module.global_variables.is_empty());
+    let functions = module.functions.iter();
+    functions.filter_map(|(_, f)| f.name.clone()).collect()
+}
+
+#[test]
+fn names_of_a_model_never_become_code() {
+    for recipe in Recipe::ALL {
+        let Ok(shipped) = Model::shipped(recipe) else {
+            continue;
+        };
+        let clean = wgsl(&shipped, &Options::default()).expect("exports");
+        let text = wgsl(&hostile(recipe, HOSTILE), &Options::default()).expect("exports");
+        assert_eq!(functions(&text), functions(&clean), "{recipe}");
+        let header = |text: &str| text.lines().take_while(|l| l.starts_with("//")).count();
+        assert_eq!(header(&text), header(&clean), "{recipe}");
+        let hidden = text.chars().find(|c| c.is_control() && *c != '\n');
+        assert_eq!(hidden, None, "{recipe}");
+        // Twenty-four names of two hundred characters, escaped, twice.
+        assert!(text.len() < clean.len() + 2 * 24 * 200 * 10, "{recipe}");
+        assert!(text.contains("and 976 more"), "{recipe}");
+    }
+}
+
+/// A text that has one more function than the model's is not the model's.
+#[test]
+fn a_text_with_more_declarations_is_refused() {
+    let gpu = Gpu::open(&AdapterRequest::Auto).expect("an adapter");
+    let model = Model::shipped(Recipe::SMALL).expect("ships");
+    let text = wgsl(&model, &Options::default()).expect("exports");
+    assert!(verify(&gpu, &model, &text).is_ok());
+    for more in [
+        "fn stolen() -> f32 { return 1.0; }",
+        "const stolen: f32 = 1.0;",
+        "var<private> stolen: f32;",
+        "@compute @workgroup_size(1) fn stolen() {}",
+    ] {
+        let error = verify(&gpu, &model, &format!("{text}\n{more}\n")).expect_err(more);
+        assert!(error.to_string().contains("stolen"), "{error}");
+    }
+}
