@@ -9,7 +9,7 @@ mod primitives;
 
 use crate::{
     error::SceneError,
-    files::{FileKind, Files, read_file},
+    files::{FileKind, Files},
     mesh::Mesh,
     scene::Light,
 };
@@ -66,7 +66,7 @@ const KNOWN: [&str; 5] = [
 /// A file that cannot be read, is no glTF 2.0, needs an extension that is not known here, or holds numbers or indices that make no
 /// sense.
 pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
-    load_gltf_from(path, read_file)
+    load(path, &mut Files::new(&peelnet_files::read))
 }
 
 /// The same with a function that reads files: from an archive, or from memory.
@@ -77,7 +77,7 @@ pub fn load_gltf_from(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<LoadedGltf, SceneError> {
-    load(path, &mut Files::new(&read))
+    load(path, &mut Files::new(&|path, _| read(path)))
 }
 
 /// Reads a glTF or GLB file.

@@ -24,7 +24,7 @@ mod camera;
 pub mod census;
 mod error;
 pub mod file;
-pub mod files;
+mod files;
 pub mod gltf;
 mod material;
 mod mesh;

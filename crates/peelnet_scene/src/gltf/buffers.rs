@@ -9,6 +9,7 @@ use base64::{
     alphabet::STANDARD,
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
 };
+use peelnet_files::printable;
 use std::path::{Path, PathBuf};
 
 /// Base64 with or without padding, as exporters write it.
@@ -26,10 +27,14 @@ fn uri_path(uri: &str, folder: &Path) -> Result<PathBuf, String> {
         return Ok(path.into());
     }
     if uri.contains(':') {
-        return Err(format!("'{uri}' has a scheme that is not read"));
+        return Err(format!(
+            "'{}' has a scheme that is not read",
+            printable(uri)
+        ));
     }
     let name = urlencoding::decode(uri);
-    let name = name.map_err(|_| format!("'{uri}' is no name of a file; rename the file"))?;
+    let name =
+        name.map_err(|_| format!("'{}' is no name of a file; rename the file", printable(uri)))?;
     Ok(folder.join(&*name))
 }
 
@@ -44,11 +49,14 @@ pub(super) fn read_uri(
         let (_, text) = data
             .split_once(";base64,")
             .ok_or("a data URI is not base64")?;
+        // Four letters are three bytes.
+        let bytes = text.len() as u64 / 4 * 3;
+        peelnet_files::check_size(bytes, kind.max_bytes()).map_err(|e| e.to_string())?;
         return BASE64.decode(text).map_err(|e| e.to_string());
     }
     let path = uri_path(uri, folder)?;
     let bytes = files.read(&path, kind).map_err(|e| match e {
-        SceneError::Read { source, .. } => source.to_string(),
+        SceneError::Read { source, .. } => format!("'{}': {source}", printable(uri)),
         e => e.to_string(),
     })?;
     files.record(&path, &bytes);
