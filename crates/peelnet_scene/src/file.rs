@@ -14,6 +14,7 @@ mod views;
 pub use references::{MapRef, MeshRef};
 
 use crate::{
+    budget,
     error::SceneError,
     files::{FileKind, Files},
     material::Lighting,
@@ -156,6 +157,8 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         let eye = views[0].position;
         objects.extend(objects::scatter(&mut loader, scatter, i, eye)?);
     }
+    let all = objects.iter().map(|o| o.mesh.triangles.len() as u64);
+    budget::check_instances(all.sum()).map_err(|e| loader.value("object", e))?;
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());
     }

@@ -1,7 +1,7 @@
 //! The files of a scene. All of them are read through one function, so that a folder, an archive, a web page or a test can be the file
 //! system.
 
-use crate::error::SceneError;
+use crate::{budget::Budget, error::SceneError};
 use peelnet_files::check_size;
 use sha2::{Digest as _, Sha256};
 use std::{
@@ -44,6 +44,8 @@ pub(crate) struct Files<'a> {
     read: &'a Read<'a>,
     hasher: Sha256,
     used: Vec<PathBuf>,
+    /// What the scene may take that these files make.
+    pub budget: Budget,
 }
 
 impl<'a> Files<'a> {
@@ -53,6 +55,7 @@ impl<'a> Files<'a> {
             read,
             hasher: Sha256::new(),
             used: Vec::new(),
+            budget: Budget::default(),
         }
     }
 

@@ -20,6 +20,7 @@
 //!
 //! [`Scene::varied`] draws variations for training; [`suite`] finds the scenes that ship.
 
+mod budget;
 mod camera;
 pub mod census;
 mod error;
