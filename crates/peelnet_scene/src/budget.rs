@@ -59,6 +59,11 @@ impl Budget {
     }
 }
 
+/// Checks the number of parts of one mesh.
+pub(crate) fn check_parts(parts: u64) -> Result<(), String> {
+    take(&mut 0, parts, MAX_PARTS, "parts")
+}
+
 fn take(taken: &mut u64, more: u64, limit: u64, what: &str) -> Result<(), String> {
     let all = taken.saturating_add(more);
     if all > limit {
