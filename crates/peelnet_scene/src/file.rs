@@ -14,8 +14,9 @@ mod views;
 pub use references::{MapRef, MeshRef};
 
 use crate::{
+    budget,
     error::SceneError,
-    files::{FileKind, Files, read_file},
+    files::{FileKind, Files},
     material::Lighting,
     scene::{Scene, State},
 };
@@ -39,7 +40,7 @@ impl Scene {
     /// # Errors
     /// See [`Scene::load`]; a time outside of the timeline, or of a scene without one.
     pub fn load_at(path: impl AsRef<Path>, time: Option<f32>) -> Result<Self, SceneError> {
-        Self::from_bytes_at(path, time, read_file)
+        load(path.as_ref(), Files::new(&peelnet_files::read), time)
     }
 
     /// Reads the scene file `name` and everything it names through a function that returns a file's bytes, so that an archive, a web page
@@ -84,31 +85,34 @@ impl Scene {
         time: Option<f32>,
         read: impl Fn(&Path) -> io::Result<Vec<u8>>,
     ) -> Result<Self, SceneError> {
-        let path = name.as_ref();
-        let mut files = Files::new(&read);
-        let ending = path.extension().and_then(|e| e.to_str());
-        if matches!(
-            ending.map(str::to_lowercase).as_deref(),
-            Some("gltf" | "glb")
-        ) {
-            return match time {
-                None => gltf_scene::load(path, files),
-                Some(_) => Err(SceneError::Value {
-                    path: path.to_owned(),
-                    field: "timeline".into(),
-                    message: NO_TIMELINE.into(),
-                }),
-            };
-        }
-        let raw = parse(path, &mut files)?;
-        let lighting = if raw.light.is_empty() {
-            Lighting::Unlit
-        } else {
-            Lighting::Phong
-        };
-        let loader = Loader::new(path, lighting, files);
-        assemble(raw, loader, time)
+        load(name.as_ref(), Files::new(&|path, _| read(path)), time)
     }
+}
+
+/// Reads a scene file, or a glTF file as a scene.
+fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, SceneError> {
+    let ending = path.extension().and_then(|e| e.to_str());
+    if matches!(
+        ending.map(str::to_lowercase).as_deref(),
+        Some("gltf" | "glb")
+    ) {
+        return match time {
+            None => gltf_scene::load(path, files),
+            Some(_) => Err(SceneError::Value {
+                path: path.to_owned(),
+                field: "timeline".into(),
+                message: NO_TIMELINE.into(),
+            }),
+        };
+    }
+    let raw = parse(path, &mut files)?;
+    let lighting = if raw.light.is_empty() {
+        Lighting::Unlit
+    } else {
+        Lighting::Phong
+    };
+    let loader = Loader::new(path, lighting, files);
+    assemble(raw, loader, time)
 }
 
 /// Reads a scene file's tables and keys.
@@ -153,6 +157,8 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         let eye = views[0].position;
         objects.extend(objects::scatter(&mut loader, scatter, i, eye)?);
     }
+    let all = objects.iter().map(|o| o.mesh.triangles.len() as u64);
+    budget::check_instances(all.sum()).map_err(|e| loader.value("object", e))?;
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());
     }

@@ -1,11 +1,11 @@
 //! The files of a scene. All of them are read through one function, so that a folder, an archive, a web page or a test can be the file
 //! system.
 
-use crate::error::SceneError;
+use crate::{budget::Budget, error::SceneError};
+use peelnet_files::check_size;
 use sha2::{Digest as _, Sha256};
 use std::{
-    fs,
-    io::{self, Read as _},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -24,7 +24,7 @@ pub(crate) enum FileKind {
 
 impl FileKind {
     /// Largest size, bytes. In 64 bits: the largest does not fit a 32-bit `usize`.
-    const fn max_bytes(self) -> u64 {
+    pub const fn max_bytes(self) -> u64 {
         match self {
             Self::Scene | Self::Materials => 64 << 20,
             Self::Image => 512 << 20,
@@ -34,62 +34,37 @@ impl FileKind {
 }
 
 /// Size of the largest file of any kind that is read, bytes.
-pub const MAX_FILE_BYTES: u64 = 4 << 30;
+pub(crate) const MAX_FILE_BYTES: u64 = 4 << 30;
 
-/// Reads a regular file of at most [`MAX_FILE_BYTES`]. A device or a pipe is refused before it is opened: it could block, or never end.
-///
-/// # Errors
-/// A file that is not regular, is too large, or cannot be read.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    let metadata = fs::metadata(path)?;
-    if metadata.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if !metadata.is_file() {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "not a regular file",
-        ));
-    }
-    check_size(metadata.len(), MAX_FILE_BYTES)?;
-    let mut bytes = Vec::new();
-    // A file can grow while it is read.
-    let mut bounded = fs::File::open(path)?.take(MAX_FILE_BYTES + 1);
-    bounded.read_to_end(&mut bytes)?;
-    check_size(bytes.len() as u64, MAX_FILE_BYTES)?;
-    Ok(bytes)
-}
-
-fn check_size(bytes: u64, limit: u64) -> io::Result<()> {
-    if bytes <= limit {
-        return Ok(());
-    }
-    Err(io::Error::new(
-        io::ErrorKind::FileTooLarge,
-        format!("{bytes} bytes, and at most {limit} are read"),
-    ))
-}
+/// Reads the file at a path, if it is not larger than so many bytes.
+type Read<'a> = dyn Fn(&Path, u64) -> io::Result<Vec<u8>> + 'a;
 
 /// Reads files and hashes those that become part of a scene.
 pub(crate) struct Files<'a> {
-    read: &'a dyn Fn(&Path) -> io::Result<Vec<u8>>,
+    read: &'a Read<'a>,
     hasher: Sha256,
     used: Vec<PathBuf>,
+    /// What the scene may take that these files make.
+    pub budget: Budget,
 }
 
 impl<'a> Files<'a> {
-    pub fn new(read: &'a dyn Fn(&Path) -> io::Result<Vec<u8>>) -> Self {
+    /// Files that `read` returns, such as [`peelnet_files::read`].
+    pub fn new(read: &'a Read<'a>) -> Self {
         Self {
             read,
             hasher: Sha256::new(),
             used: Vec::new(),
+            budget: Budget::default(),
         }
     }
 
     /// A file's bytes.
     pub fn read(&self, path: &Path, kind: FileKind) -> Result<Vec<u8>, SceneError> {
-        (self.read)(path)
-            .and_then(|bytes| check_size(bytes.len() as u64, kind.max_bytes()).map(|()| bytes))
+        let limit = kind.max_bytes();
+        (self.read)(path, limit)
+            // A caller's function knows no limit.
+            .and_then(|bytes| check_size(bytes.len() as u64, limit).map(|()| bytes))
             .map_err(|source| SceneError::Read {
                 path: path.to_owned(),
                 source,
@@ -123,28 +98,13 @@ impl<'a> Files<'a> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn only_regular_files_of_a_bounded_size_are_read() {
-        let folder = tempfile::tempdir().expect("temporary folder");
-        let e = read_file(folder.path()).expect_err("a folder");
-        assert_eq!(e.kind(), io::ErrorKind::IsADirectory);
-        let large = folder.path().join("large");
-        let file = fs::File::create(&large).expect("creates");
-        // Sparse: takes no space.
-        file.set_len(MAX_FILE_BYTES + 1).expect("grows");
-        let e = read_file(&large).expect_err("too large");
-        assert_eq!(e.kind(), io::ErrorKind::FileTooLarge);
-        #[cfg(unix)]
-        {
-            let e = read_file(Path::new("/dev/zero")).expect_err("a device");
-            assert!(e.to_string().contains("regular"), "{e}");
-        }
-    }
-
-    /// The limit of a kind holds whatever the function is that reads.
+    /// The limit of a kind holds whatever the function is that reads, and that function knows it.
     #[test]
     fn each_kind_has_a_limit() {
-        let read = |_: &Path| Ok(vec![0; (64 << 20) + 1]);
+        let read = |_: &Path, limit: u64| {
+            assert!(limit == 64 << 20 || limit == 512 << 20);
+            Ok(vec![0; (64 << 20) + 1])
+        };
         let files = Files::new(&read);
         let path = Path::new("s.toml");
         assert!(files.read(path, FileKind::Image).is_ok());

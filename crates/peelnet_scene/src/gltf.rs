@@ -3,19 +3,23 @@
 
 mod buffers;
 mod checks;
+mod graph;
 mod materials;
 mod nodes;
 mod primitives;
+mod repair;
 
 use crate::{
     error::SceneError,
-    files::{FileKind, Files, read_file},
+    files::{FileKind, Files},
     mesh::Mesh,
     scene::Light,
 };
 use glam::Mat4;
 use nodes::Reader;
+use serde_json::Value;
 use std::{
+    borrow::Cow,
     io,
     path::{Path, PathBuf},
 };
@@ -48,8 +52,8 @@ pub struct GltfCamera {
     pub far: Option<f32>,
 }
 
-/// Largest number of triangles of all instances together, so that a small file cannot ask for endless memory.
-const MAX_TRIANGLES: usize = 50_000_000;
+/// Size of the largest JSON that is read, bytes: in memory it takes up to 16 times as much. Buffers can lie outside of it.
+const MAX_JSON_BYTES: usize = 256 << 20;
 
 /// Extensions that are drawn.
 const KNOWN: [&str; 5] = [
@@ -66,7 +70,7 @@ const KNOWN: [&str; 5] = [
 /// A file that cannot be read, is no glTF 2.0, needs an extension that is not known here, or holds numbers or indices that make no
 /// sense.
 pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
-    load_gltf_from(path, read_file)
+    load(path, &mut Files::new(&peelnet_files::read))
 }
 
 /// The same with a function that reads files: from an archive, or from memory.
@@ -77,7 +81,34 @@ pub fn load_gltf_from(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<LoadedGltf, SceneError> {
-    load(path, &mut Files::new(&read))
+    load(path, &mut Files::new(&|path, _| read(path)))
+}
+
+/// The document of a glTF or GLB file, checked, and its binary chunk.
+fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
+    let bad = |e: &dyn std::fmt::Display| format!("is no glTF 2.0 file: {e}; export it again");
+    let glb;
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        glb = gltf::binary::Glb::from_slice(bytes).map_err(|e| bad(&e))?;
+        (&*glb.json, glb.bin.map(Cow::into_owned))
+    } else {
+        (bytes, None)
+    };
+    if text.len() > MAX_JSON_BYTES {
+        return Err(format!(
+            "its JSON has {} bytes, and at most {MAX_JSON_BYTES} are read; export it as .glb, or with buffers of their own",
+            text.len()
+        ));
+    }
+    // A byte order mark is no JSON, but some editors write one.
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    // The crate skips unknown names without checking that they are text.
+    let mut document = serde_json::from_slice::<Value>(text).map_err(|e| bad(&e))?;
+    checks::check_references(&document)?;
+    repair::repair(&mut document);
+    let root = serde_json::from_value(document).map_err(|e| bad(&e))?;
+    let document = gltf::Document::from_json(root).map_err(|e| bad(&e))?;
+    Ok((document, blob))
 }
 
 /// Reads a glTF or GLB file.
@@ -90,24 +121,24 @@ pub(crate) fn load(path: &Path, files: &mut Files<'_>) -> Result<LoadedGltf, Sce
     let first = files.used().len();
     let bytes = files.read(path, FileKind::Mesh)?;
     files.record(path, &bytes);
-    checks::check_references(&bytes).map_err(&fail)?;
-    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes)
-        .map_err(|e| fail(format!("is no glTF 2.0 file: {e}; export it again")))?;
+    let (document, blob) = parse(&bytes).map_err(&fail)?;
     drop(bytes);
+    graph::check_nodes(&document).map_err(&fail)?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    let buffers = buffers::read_buffers(&document, folder, blob, files).map_err(|e| {
-        fail(format!(
-            "a buffer cannot be read: {e}; keep the .bin files beside it"
-        ))
-    })?;
+    let buffers = buffers::read_buffers(&document, folder, blob, files)
+        .map_err(|e| fail(format!("its buffer {e}; keep the .bin files beside it")))?;
     let mut reader = Reader::new(path, files, buffers);
     let scene = document
         .default_scene()
         .or_else(|| document.scenes().next())
         .ok_or_else(|| fail("holds no scene; export one".into()))?;
-    for node in scene.nodes() {
-        reader.node(&node, Mat4::IDENTITY, 0)?;
+    if document.scenes().len() > 1 {
+        let drawn = scene.index();
+        let all = document.scenes().len();
+        let others = format!("scenes other than number {drawn} of {all}");
+        reader.missing.insert(others);
     }
+    reader.scene(&scene)?;
     if document.animations().len() > 0 {
         reader
             .missing

@@ -20,11 +20,12 @@
 //!
 //! [`Scene::varied`] draws variations for training; [`suite`] finds the scenes that ship.
 
+mod budget;
 mod camera;
 pub mod census;
 mod error;
 pub mod file;
-pub mod files;
+mod files;
 pub mod gltf;
 mod material;
 mod mesh;

@@ -14,7 +14,7 @@ mod textures;
 
 use crate::{
     error::SceneError,
-    files::{FileKind, Files, read_file},
+    files::{FileKind, Files},
     material::{Lighting, Material},
     mesh::{Mesh, Part, PartGeometry},
     polygons::Triangulator,
@@ -47,7 +47,7 @@ pub struct LoadedObj {
 /// # Errors
 /// A file that cannot be read, is empty or cut off, or holds numbers or indices that make no sense: with its line.
 pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError> {
-    load_obj_from(path, lighting, read_file)
+    load(path, lighting, &mut Files::new(&peelnet_files::read))
 }
 
 /// The same with a function that reads files: from an archive, or from memory.
@@ -59,7 +59,7 @@ pub fn load_obj_from(
     lighting: Lighting,
     read: impl Fn(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<LoadedObj, SceneError> {
-    load(path, lighting, &mut Files::new(&read))
+    load(path, lighting, &mut Files::new(&|path, _| read(path)))
 }
 
 /// Whether a position or normal is written with other letters than those of an exponent, as `nan` and `inf` are.

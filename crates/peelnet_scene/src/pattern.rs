@@ -74,7 +74,8 @@ fn black_and_white() -> [Vec<f32>; 2] {
 }
 
 impl Pattern {
-    fn check(&self) -> Result<(), String> {
+    /// Checks the values; an error names the one that is out of range.
+    pub(crate) fn check(&self) -> Result<(), String> {
         let unit = |x: f32| (0.0..=1.0).contains(&x);
         if !(4..=4096).contains(&self.size) {
             return Err(format!("size {} must lie in 4 … 4096", self.size));

@@ -155,6 +155,20 @@ impl Shape {
         }
     }
 
+    /// About how many triangles it has.
+    pub(crate) const fn triangles(&self) -> usize {
+        match self {
+            Self::Box { .. } => 12,
+            Self::Quad { .. } => 2,
+            Self::Sphere { triangles, .. }
+            | Self::Torus { triangles, .. }
+            | Self::Capsule { triangles, .. }
+            | Self::Bumpy { triangles, .. }
+            | Self::Cup { triangles, .. }
+            | Self::Lathe { triangles, .. } => *triangles,
+        }
+    }
+
     /// Makes the mesh, with UVs where `has_uvs` asks for them: u once around, v from the top down along the profile.
     ///
     /// # Errors

@@ -243,7 +243,7 @@ fn what_is_not_drawn_is_reported() {
         .warnings
         .join("\n");
     for word in [
-        "image 0, which cannot be read",
+        "image 0, which 'a.png' cannot be read",
         "KHR_materials_clearcoat",
         "Lines",
         "spot lights",
@@ -368,4 +368,144 @@ fn accessors_have_the_type_that_their_use_needs() {
             e.contains(&format!("accessor {accessor}")) || e.contains("is no glTF 2.0 file");
         assert!(named, "{key} {value}: {e}");
     }
+}
+
+/// The document as a file of its own, with its buffer in a data URI.
+fn text(document: &Value, prefix: &str) -> Vec<u8> {
+    let mut document = document.clone();
+    let hex = |b: &u8| format!("%{b:02x}");
+    let data: String = square().iter().map(hex).collect();
+    document["buffers"] =
+        json!([{"byteLength": 60, "uri": format!("data:application/octet-stream,{data}")}]);
+    format!("{prefix}{document}").into_bytes()
+}
+
+fn load_text(bytes: &[u8]) -> Result<Scene, String> {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("thing.gltf");
+    std::fs::write(&path, bytes).unwrap();
+    Scene::load(&path).map_err(|e| e.to_string())
+}
+
+/// Thirty levels of nodes that each name the next twice are a billion instances, and a circle has no end.
+#[test]
+fn nodes_have_one_parent() {
+    let bad = |change: &dyn Fn(&mut Value), words: &[&str]| {
+        let mut d = document();
+        change(&mut d);
+        let e = load(&glb(&d, &square())).expect_err("is no tree");
+        assert!(words.iter().all(|w| e.contains(w)), "{e}");
+    };
+    let twice = |d: &mut Value| {
+        let mut nodes: Vec<Value> = (1..30).map(|i| json!({"children": [i, i]})).collect();
+        nodes.push(json!({"mesh": 0}));
+        d["nodes"] = nodes.into();
+    };
+    bad(
+        &twice,
+        &["node 1 is a child of nodes 0 and 0", "one parent"],
+    );
+    let shared = |d: &mut Value| d["nodes"][1]["children"] = json!([2]);
+    bad(&shared, &["node 2 is a child of nodes", "one parent"]);
+    let circle =
+        |d: &mut Value| d["nodes"] = json!([{"mesh": 0}, {"children": [2]}, {"children": [1]}]);
+    bad(&circle, &["node 1 is among its own descendants", "circle"]);
+    let own = |d: &mut Value| d["nodes"][1]["children"] = json!([1]);
+    bad(&own, &["node 1 is", "one parent"]);
+    let root = |d: &mut Value| d["scenes"][0]["nodes"] = json!([0, 1]);
+    bad(&root, &["node 1 is a child of scene 0 and node 0"]);
+    let again = |d: &mut Value| d["scenes"][0]["nodes"] = json!([0, 0]);
+    bad(&again, &["node 0 is a child of scene 0 twice"]);
+}
+
+/// A thousand nodes of a mesh with many primitives are counted, not made; a long chain of nodes is no circle.
+#[test]
+fn instances_are_counted_before_they_are_made() {
+    let mut d = document();
+    let primitive = d["meshes"][0]["primitives"][0].clone();
+    d["meshes"][0]["primitives"] = vec![primitive; 2000].into();
+    d["nodes"] = vec![json!({"mesh": 0}); 2000].into();
+    d["scenes"][0]["nodes"] = (0..2000).collect();
+    let e = load(&glb(&d, &square())).expect_err("too many");
+    for word in ["4000000 primitives", "1000000"] {
+        assert!(e.contains(word), "{e}");
+    }
+    // A strip of 70 million indices without data, which are zeros.
+    let mut d = document();
+    let accessors = d["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"componentType": 5125, "count": 70_000_000, "type": "SCALAR"}));
+    let primitive = &mut d["meshes"][0]["primitives"][0];
+    primitive["indices"] = json!(2);
+    primitive["mode"] = json!(5);
+    let e = load(&glb(&d, &square())).expect_err("too many");
+    for word in ["triangles", "50000000"] {
+        assert!(e.contains(word), "{e}");
+    }
+    let mut d = document();
+    let chain = (1..3000).map(|i| json!({"children": [i]}));
+    d["nodes"] = chain.chain([json!({"mesh": 0})]).collect();
+    assert_eq!(load(&glb(&d, &square())).unwrap().triangles(), 8);
+}
+
+/// What other programs leave out or put before a file: nothing of it is needed.
+#[test]
+fn common_files_that_are_not_strict() {
+    let whole = load(&glb(&document(), &square())).unwrap();
+    let same = |loaded: Scene| {
+        assert_eq!(loaded.objects[0].mesh, whole.objects[0].mesh);
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    };
+    same(load_text(&text(&document(), "\u{feff}")).unwrap());
+    let mut d = document();
+    d["accessors"][0].as_object_mut().unwrap().remove("min");
+    d["accessors"][0]["max"] = json!([null, 0]);
+    same(load(&glb(&d, &square())).unwrap());
+    // The roots are the nodes that are no one's child.
+    let mut d = document();
+    d.as_object_mut().unwrap().remove("scenes");
+    d.as_object_mut().unwrap().remove("scene");
+    same(load(&glb(&d, &square())).unwrap());
+    d["scenes"] = json!([{"nodes": [0]}, {"nodes": [0]}]);
+    let warnings = load(&glb(&d, &square())).unwrap().warnings;
+    assert!(
+        warnings[0].contains("scenes other than number 0 of 2"),
+        "{warnings:?}"
+    );
+    // Names are percent-encoded, or not.
+    for (name, uri) in [("a b%.bin", "a%20b%25.bin"), ("a%20b.bin", "a%20b.bin")] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut d = document();
+        d["buffers"][0]["uri"] = uri.into();
+        let path = folder.path().join("thing.gltf");
+        std::fs::write(&path, d.to_string()).unwrap();
+        std::fs::write(folder.path().join(name), square()).unwrap();
+        same(Scene::load(&path).unwrap());
+    }
+}
+
+/// Accessors without a buffer view are zeros, of which a sparse one replaces some.
+#[test]
+fn accessors_without_data_are_zeros() {
+    let mut d = document();
+    let accessors = d["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"componentType": 5126, "count": 4, "type": "VEC4"}));
+    accessors.push(json!({
+        "componentType": 5126, "count": 4, "type": "VEC3",
+        "sparse": {"count": 2, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 3}},
+    }));
+    d["bufferViews"].as_array_mut().unwrap().extend([
+        json!({"buffer": 0, "byteOffset": 50, "byteLength": 4}),
+        json!({"buffer": 0, "byteOffset": 12, "byteLength": 24}),
+    ]);
+    d["meshes"][0]["primitives"] =
+        json!([{"attributes": {"POSITION": 3, "COLOR_0": 2}, "indices": 1, "material": 0}]);
+    let scene = load(&glb(&d, &square())).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    // Indices 1 and 2 become the square's second and third vertices.
+    let at = |i: usize| mesh.positions[i] + Vec3::new(0.0, 0.0, 2.0);
+    assert_eq!(
+        [at(0), at(1), at(2), at(3)],
+        [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::ZERO]
+    );
+    assert_eq!(mesh.colors[0], [0.0; 4]);
 }

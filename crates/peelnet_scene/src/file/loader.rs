@@ -8,6 +8,7 @@ use crate::{
     material::{Lighting, Material},
     mesh::Mesh,
     obj,
+    pattern::Pattern,
     shapes::Shape,
     texture::Texture,
 };
@@ -27,7 +28,9 @@ pub(super) struct Loader<'a> {
     pub warnings: Vec<String>,
     meshes: HashMap<PathBuf, Arc<Mesh>>,
     /// Generated meshes, by shape and whether they have UVs.
-    shapes: Vec<(Shape, bool, Arc<Mesh>)>,
+    shapes: HashMap<(String, bool), Arc<Mesh>>,
+    /// Generated textures, by pattern and key.
+    patterns: HashMap<(String, &'static str), Arc<Texture>>,
     textures: HashMap<PathBuf, Arc<Texture>>,
 }
 
@@ -39,7 +42,8 @@ impl<'a> Loader<'a> {
             files,
             warnings: Vec::new(),
             meshes: HashMap::new(),
-            shapes: Vec::new(),
+            shapes: HashMap::new(),
+            patterns: HashMap::new(),
             textures: HashMap::new(),
         }
     }
@@ -67,16 +71,13 @@ impl<'a> Loader<'a> {
     ) -> Result<Arc<Mesh>, SceneError> {
         match mesh {
             MeshRef::Shape(shape) => {
-                let mut known = self.shapes.iter();
-                if let Some((_, _, mesh)) = known.find(|(s, u, _)| s == shape && *u == has_uvs) {
+                let key = (format!("{shape:?}"), has_uvs);
+                if let Some(mesh) = self.shapes.get(&key) {
                     return Ok(Arc::clone(mesh));
                 }
-                let built = shape
-                    .build(&Material::default_with(self.lighting), has_uvs)
-                    .map_err(|e| self.value(field, e))?;
-                let built = Arc::new(built);
-                self.shapes
-                    .push((shape.clone(), has_uvs, Arc::clone(&built)));
+                let built = self.shape(shape, has_uvs);
+                let built = Arc::new(built.map_err(|e| self.value(field, e))?);
+                self.shapes.insert(key, Arc::clone(&built));
                 Ok(built)
             }
             MeshRef::File(name) => {
@@ -89,6 +90,32 @@ impl<'a> Loader<'a> {
                 Ok(mesh)
             }
         }
+    }
+
+    fn shape(&mut self, shape: &Shape, has_uvs: bool) -> Result<Mesh, String> {
+        let triangles = shape.triangles() as u64;
+        // No shape has more than two vertices for each triangle.
+        let vertices = triangles.saturating_mul(2);
+        self.files.budget.take_mesh(triangles, vertices)?;
+        shape.build(&Material::default_with(self.lighting), has_uvs)
+    }
+
+    /// A generated texture, made once for each pattern and key of a material.
+    pub fn pattern(
+        &mut self,
+        pattern: &Pattern,
+        make: fn(&Pattern) -> Result<Texture, String>,
+        key: &'static str,
+    ) -> Result<Arc<Texture>, String> {
+        let name = (format!("{pattern:?}"), key);
+        if let Some(known) = self.patterns.get(&name) {
+            return Ok(Arc::clone(known));
+        }
+        pattern.check()?;
+        self.files.budget.take_texels([pattern.size; 2])?;
+        let made = Arc::new(make(pattern)?);
+        self.patterns.insert(name, Arc::clone(&made));
+        Ok(made)
     }
 
     fn mesh_file(&mut self, file: &Path, field: &str) -> Result<Mesh, SceneError> {

@@ -40,13 +40,16 @@ impl Loader<'_> {
         &mut self,
         map: Option<&MapRef>,
         of_pattern: fn(&Pattern) -> Result<Texture, String>,
+        key: &'static str,
         field: &str,
     ) -> Result<Option<Arc<Texture>>, SceneError> {
         match map {
             None => Ok(None),
             Some(MapRef::Pattern(pattern)) => {
-                let texture = of_pattern(pattern).map_err(|e| self.value(field, e))?;
-                Ok(Some(Arc::new(texture)))
+                let texture = self.pattern(pattern, of_pattern, key);
+                texture
+                    .map(Some)
+                    .map_err(|e| self.value(&format!("{field}.material.{key}"), e))
             }
             Some(MapRef::File(name)) => self.texture(name).map(Some),
         }
@@ -69,8 +72,8 @@ impl Loader<'_> {
         if let Some(x) = strength {
             return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
         }
-        let mut map = |map: &Option<MapRef>, of_pattern, key: &str, base: &Option<Arc<Texture>>| {
-            let own = self.map(map.as_ref().filter(|_| read), of_pattern, &at(key))?;
+        let mut map = |map: &Option<MapRef>, of_pattern, key, base: &Option<Arc<Texture>>| {
+            let own = self.map(map.as_ref().filter(|_| read), of_pattern, key, field)?;
             Ok::<_, SceneError>(own.or_else(|| base.clone()))
         };
         let metal = &raw.metallic_roughness_map;

@@ -32,6 +32,8 @@ pub(super) fn place(
     let mesh = match raw.vertex_colors {
         None => mesh,
         Some(ends) if ends.iter().flatten().all(|x| (0.0..=1.0).contains(x)) => {
+            let copied = loader.files.budget.take_copy(&mesh);
+            copied.map_err(|e| loader.value(&format!("{field}.vertex_colors"), e))?;
             Arc::new(mesh.colored_by_height(ends))
         }
         Some(_) => {
@@ -43,6 +45,8 @@ pub(super) fn place(
     };
     let world_from_object = transform(raw, &mesh)
         .map_err(|(key, message)| loader.value(&format!("{field}{key}"), message))?;
+    let taken = loader.files.budget.take_parts(1, mesh.parts.len());
+    taken.map_err(|e| loader.value(&format!("{field}.mesh"), e))?;
     let mut materials = Vec::with_capacity(mesh.parts.len());
     for part in &mesh.parts {
         let mut shown = loader.material(&part.material, &material, true, &field)?;
@@ -107,6 +111,9 @@ pub(super) fn scatter(
     for mesh in scatter.mesh_list() {
         meshes.push(loader.mesh(mesh, false, &format!("{field}.mesh"))?);
     }
+    let parts = meshes.iter().map(|m| m.parts.len()).max().unwrap_or(0);
+    let taken = loader.files.budget.take_parts(scatter.count, parts);
+    taken.map_err(|e| loader.value(&format!("{field}.count"), e))?;
     let placed = scatter.place(eye).into_iter().enumerate();
     let objects = placed.map(|(i, placed)| {
         let mesh = Arc::clone(&meshes[placed.mesh]);

@@ -90,7 +90,10 @@ fn a_scene_ages() {
 
 /// A bad scene gives one error that names the file, the line or key, and a hint.
 fn refuses(text: &str, words: &[&str]) {
-    let e = load(text).expect_err(text).to_string();
+    let Err(e) = load(text) else {
+        panic!("loads: {text}");
+    };
+    let e = e.to_string();
     for word in words {
         assert!(e.contains(word), "{text}\ngives: {e}\nwithout: {word}");
     }
@@ -222,4 +225,42 @@ fn bad_scatters() {
         let bounds = "min = [0, 0, 0]\nmax = [1, 1, 1]\n";
         refuses(&format!("{CAMERA}[scatter]\n{bounds}{text}"), &words);
     }
+}
+
+/// What a small file multiplies is counted before it is made: each of these would take gigabytes.
+#[test]
+fn small_files_cannot_ask_for_endless_memory() {
+    let bounds = "min = [0, 0, 0]\nmax = [1, 1, 1]\n";
+    let scatter = |count: usize| {
+        format!("[[scatter]]\n{bounds}count = {count}\nmesh = {{ shape = 'quad' }}\n")
+    };
+    let scatter = scatter(1000) + &scatter(999_500);
+    let huge = "[[object]]\nmesh = { shape = 'quad' }\n[[object]]\nmesh = { shape = 'sphere', triangles = 60_000_000 }\n";
+    let points = "[0.5, 0.5], ".repeat(10_000);
+    let lathe =
+        format!("[[object]]\nmesh = {{ shape = 'lathe', profile = [[0, 0], {points} [0, 1]] }}\n");
+    let instances = format!(
+        "[[scatter]]\n{bounds}count = 100_000\nmesh = {{ shape = 'sphere', triangles = 20_000 }}\n"
+    );
+    for (text, words) in [
+        (
+            scatter.as_str(),
+            &["scatter 2.count", "999500", "1000 before", "1000000"][..],
+        ),
+        (huge, &["object 2.mesh", "60000000", "50000000"]),
+        (&lathe, &["object 1.mesh", "10002", "10000"]),
+        (&instances, &["object", "triangles", "1431655765"]),
+    ] {
+        refuses(&format!("{CAMERA}{text}"), words);
+    }
+}
+
+/// A pattern is made once, however many parts and objects show it.
+#[test]
+fn patterns_are_shared() {
+    let object = "[[object]]\nmesh = { shape = 'quad' }\nmaterial = { color_map = { pattern = 'checker', size = 8 } }\n";
+    let scene = load(&format!("{CAMERA}{object}{object}")).expect("loads");
+    let map = |i: usize| scene.objects[i].materials[0].maps.color.clone();
+    let (first, second) = (map(0).expect("a map"), map(1).expect("a map"));
+    assert!(std::sync::Arc::ptr_eq(&first, &second));
 }

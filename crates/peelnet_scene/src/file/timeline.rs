@@ -81,6 +81,12 @@ impl Snapshot {
 /// Checks all states, whichever is shown.
 fn check(loader: &mut Loader<'_>, raw: &RawScene) -> Result<(), SceneError> {
     let states = &raw.timeline;
+    let mut objects: HashMap<&str, &RawObject> = HashMap::new();
+    for object in &raw.object {
+        if let Some(name) = &object.name {
+            objects.entry(name).or_insert(object);
+        }
+    }
     for (i, state) in states.iter().enumerate() {
         let field = format!("timeline {}", i + 1);
         let is_later = i == 0 || states[i - 1].time < state.time;
@@ -91,8 +97,7 @@ fn check(loader: &mut Loader<'_>, raw: &RawScene) -> Result<(), SceneError> {
             ));
         }
         for change in &state.object {
-            let has_name = |o: &&RawObject| o.name.as_ref() == Some(&change.name);
-            let Some(object) = raw.object.iter().find(has_name) else {
+            let Some(object) = objects.get(change.name.as_str()) else {
                 let message = format!("no [[object]] is named '{}'", change.name);
                 return Err(loader.value(&format!("{field}.object.name"), message));
             };

@@ -9,7 +9,8 @@ use base64::{
     alphabet::STANDARD,
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
 };
-use std::path::{Path, PathBuf};
+use peelnet_files::printable;
+use std::path::Path;
 
 /// Base64 with or without padding, as exporters write it.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -17,23 +18,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// The file that a URI names. The `gltf` crate reads from the file system only, so it is not asked.
-fn uri_path(uri: &str, folder: &Path) -> Result<PathBuf, String> {
-    let absolute = uri
-        .strip_prefix("file://")
-        .or_else(|| uri.strip_prefix("file:"));
-    if let Some(path) = absolute {
-        return Ok(path.into());
-    }
-    if uri.contains(':') {
-        return Err(format!("'{uri}' has a scheme that is not read"));
-    }
-    let name = urlencoding::decode(uri);
-    let name = name.map_err(|_| format!("'{uri}' is no name of a file; rename the file"))?;
-    Ok(folder.join(&*name))
-}
-
-/// The bytes that a URI names or holds.
+/// The bytes that a URI names or holds. The `gltf` crate reads from the file system only, so it is not asked.
 pub(super) fn read_uri(
     uri: &str,
     folder: &Path,
@@ -41,18 +26,44 @@ pub(super) fn read_uri(
     files: &mut Files<'_>,
 ) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let (_, text) = data
-            .split_once(";base64,")
-            .ok_or("a data URI is not base64")?;
-        return BASE64.decode(text).map_err(|e| e.to_string());
+        return read_data(data, kind);
     }
-    let path = uri_path(uri, folder)?;
-    let bytes = files.read(&path, kind).map_err(|e| match e {
-        SceneError::Read { source, .. } => source.to_string(),
+    let fail = |what: &dyn std::fmt::Display| format!("'{}' {what}", printable(uri));
+    let absolute = uri
+        .strip_prefix("file://")
+        .or_else(|| uri.strip_prefix("file:"));
+    if absolute.is_none() && uri.contains(':') {
+        return Err(fail(&"has a scheme that is not read"));
+    }
+    let name = absolute.unwrap_or(uri);
+    let decoded = urlencoding::decode(name);
+    let read = |name: &str| {
+        let path = folder.join(name);
+        files.read(&path, kind).map(|bytes| (path, bytes))
+    };
+    // Some exporters write names as they are, with percent signs that encode nothing.
+    let found = match decoded {
+        Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
+        _ => read(name),
+    };
+    let (path, bytes) = found.map_err(|e| match e {
+        SceneError::Read { source, .. } => fail(&format!("cannot be read: {source}")),
         e => e.to_string(),
     })?;
     files.record(&path, &bytes);
     Ok(bytes)
+}
+
+/// The bytes of a data URI, behind its scheme.
+fn read_data(data: &str, kind: FileKind) -> Result<Vec<u8>, String> {
+    let (head, text) = data.split_once(',').ok_or("a data URI holds no data")?;
+    let Some(_) = head.strip_suffix(";base64") else {
+        return Ok(urlencoding::decode_binary(text.as_bytes()).into_owned());
+    };
+    // Four letters are three bytes.
+    let bytes = text.len() as u64 / 4 * 3;
+    peelnet_files::check_size(bytes, kind.max_bytes()).map_err(|e| e.to_string())?;
+    BASE64.decode(text).map_err(|e| e.to_string())
 }
 
 /// The buffers of a document; `blob` is the binary chunk of a GLB file.

@@ -1,37 +1,26 @@
 //! Checks that the `gltf` crate does not do: it panics on an index out of range, and on an accessor of the wrong type.
 
-use super::{KNOWN, MAX_TRIANGLES};
-use crate::files::MAX_FILE_BYTES;
+use super::KNOWN;
+use crate::{budget::MAX_TRIANGLES, files::MAX_FILE_BYTES};
 use gltf::{
     Semantic,
     accessor::{DataType, Dimensions},
 };
+use peelnet_files::printable;
 use serde_json::Value;
 
 /// Checks that every index into a list of the file is within that list.
-pub(super) fn check_references(bytes: &[u8]) -> Result<(), String> {
-    // The first chunk of a GLB file is the JSON.
-    let text = match bytes.strip_prefix(b"glTF") {
-        None => bytes,
-        Some(rest) => {
-            let length = rest.get(8..12).and_then(|b| b.try_into().ok());
-            let length = length.map_or(0, u32::from_le_bytes) as usize;
-            rest.get(16..16usize.saturating_add(length))
-                .unwrap_or_default()
-        }
-    };
-    // The crate skips unknown names without checking that they are text.
-    let document = serde_json::from_slice::<Value>(text)
-        .map_err(|e| format!("is no glTF 2.0 file: {e}; export it again"))?;
+pub(super) fn check_references(document: &Value) -> Result<(), String> {
     // The crate would look for elements that such an extension leaves out.
     let required = document["extensionsRequired"].as_array();
     let unknown = required.into_iter().flatten().filter_map(Value::as_str);
     if let Some(name) = unknown.into_iter().find(|name| !KNOWN.contains(name)) {
         return Err(format!(
-            "needs the extension {name}, which is not read; export it without"
+            "needs the extension {}, which is not read; export it without",
+            printable(name)
         ));
     }
-    check_value(&document, &document, "", "")
+    check_value(document, document, "", "")
 }
 
 /// The list that a field's number points into.
@@ -110,7 +99,9 @@ pub(super) fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Seman
             && is_addressable(&indices.view(), indices.offset(), index_size, n)
             && is_addressable(&values.view(), values.offset(), size, n)
     });
-    fits && is_dense_readable && is_sparse_readable && (1..=3 * MAX_TRIANGLES).contains(&count)
+    fits && is_dense_readable
+        && is_sparse_readable
+        && (1..=3 * MAX_TRIANGLES as usize).contains(&count)
 }
 
 /// Whether `count` elements do not overlap, can be in a file, and the crate's sums of offsets and lengths fit a `usize`, on 32-bit

@@ -106,7 +106,6 @@ impl Reader<'_, '_> {
             gltf::image::Source::Uri { uri, .. } => {
                 let folder = self.path.parent().unwrap_or(Path::new("."));
                 read_uri(uri, folder, FileKind::Image, self.files)
-                    .map_err(|e| format!("cannot be read: {e}"))
                     .and_then(|bytes| Texture::decode(&name, &bytes))
             }
         };

@@ -2,6 +2,7 @@
 
 use super::{GltfCamera, LoadedGltf};
 use crate::{
+    budget::check_parts,
     error::SceneError,
     files::Files,
     mesh::Mesh,
@@ -9,7 +10,7 @@ use crate::{
     texture::Texture,
 };
 use glam::{Mat4, Vec3};
-use gltf::{camera::Projection, khr_lights_punctual::Kind};
+use gltf::{Semantic, camera::Projection, khr_lights_punctual::Kind, mesh::Mode};
 use std::{
     collections::{BTreeSet, HashMap},
     path::Path,
@@ -35,6 +36,22 @@ pub(super) fn finite(x: f32, low: f32, high: f32) -> f32 {
     } else {
         low
     }
+}
+
+/// How many primitives, triangles and vertices a mesh has.
+fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
+    mesh.primitives().fold([0; 3], |all, primitive| {
+        let vertices = primitive.get(&Semantic::Positions);
+        let vertices = vertices.map_or(0, |a| a.count() as u64);
+        let indices = primitive.indices().map_or(vertices, |a| a.count() as u64);
+        let triangles = match primitive.mode() {
+            Mode::Triangles => indices / 3,
+            Mode::TriangleStrip | Mode::TriangleFan => indices.saturating_sub(2),
+            _ => return all,
+        };
+        let own = [1, triangles, vertices];
+        [0, 1, 2].map(|k| all[k] + own[k])
+    })
 }
 
 impl<'a, 'f> Reader<'a, 'f> {
@@ -63,20 +80,43 @@ impl<'a, 'f> Reader<'a, 'f> {
         }
     }
 
-    /// Adds a node and its children.
-    pub fn node(
-        &mut self,
-        node: &gltf::Node<'_>,
-        parent: Mat4,
-        depth: usize,
-    ) -> Result<(), SceneError> {
-        // A node that is its own descendant would recurse forever.
-        if depth > 256 {
-            return Err(self.fail(format!(
-                "node {} lies more than 256 levels deep; is it its own child?",
-                node.index()
-            )));
+    /// Adds a scene's nodes.
+    pub fn scene(&mut self, scene: &gltf::Scene<'_>) -> Result<(), SceneError> {
+        self.count(scene)?;
+        // Children come before siblings, in the file's order. Not by recursion: trees may be deep.
+        let mut open: Vec<(gltf::Node<'_>, Mat4)> = Vec::new();
+        open.extend(scene.nodes().map(|node| (node, Mat4::IDENTITY)));
+        open.reverse();
+        while let Some((node, parent)) = open.pop() {
+            let world = self.node(&node, parent)?;
+            let before = open.len();
+            open.extend(node.children().map(|child| (child, world)));
+            open[before..].reverse();
         }
+        Ok(())
+    }
+
+    /// Counts what a scene's nodes instance, before any of it is made.
+    fn count(&mut self, scene: &gltf::Scene<'_>) -> Result<(), SceneError> {
+        let mut meshes: HashMap<usize, [u64; 3]> = HashMap::new();
+        let mut all = [0; 3];
+        let mut open: Vec<gltf::Node<'_>> = scene.nodes().collect();
+        while let Some(node) = open.pop() {
+            if let Some(mesh) = node.mesh() {
+                let of = meshes.entry(mesh.index()).or_insert_with(|| size(&mesh));
+                all = [0, 1, 2].map(|k| all[k] + of[k]);
+            }
+            open.extend(node.children());
+        }
+        let [primitives, triangles, vertices] = all;
+        let budget = &mut self.files.budget;
+        check_parts(primitives)
+            .and_then(|()| budget.take_mesh(triangles, vertices))
+            .map_err(|e| self.fail(format!("its nodes show {primitives} primitives with {e}")))
+    }
+
+    /// Adds a node without its children; returns its place in the world.
+    fn node(&mut self, node: &gltf::Node<'_>, parent: Mat4) -> Result<Mat4, SceneError> {
         let world = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
         if !world.is_finite() {
             return Err(self.fail(format!(
@@ -105,10 +145,7 @@ impl<'a, 'f> Reader<'a, 'f> {
                 }
             }
         }
-        for child in node.children() {
-            self.node(&child, world, depth + 1)?;
-        }
-        Ok(())
+        Ok(world)
     }
 
     fn light(&mut self, light: &gltf::khr_lights_punctual::Light<'_>, world: Mat4) {

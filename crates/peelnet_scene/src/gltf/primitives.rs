@@ -1,7 +1,6 @@
 //! Triangles of a mesh's primitives.
 
 use super::{
-    MAX_TRIANGLES,
     checks::is_readable,
     nodes::{Reader, finite},
 };
@@ -56,12 +55,6 @@ impl Reader<'_, '_> {
         // A mirrored node turns its triangles inside out: turn them back.
         let is_mirrored = Mat3::from_mat4(world).determinant() < 0.0;
         let triangles = triangles(mode, &indices, is_mirrored);
-        let total = self.loaded.mesh.triangles.len() + triangles.len();
-        if total > MAX_TRIANGLES {
-            return Err(self.fail(format!(
-                "its instances have more than {MAX_TRIANGLES} triangles; split the scene"
-            )));
-        }
         let smooth = smooth_normals(&positions, &triangles);
         let normal_matrix = Mat3::from_mat4(world).inverse().transpose();
         let normals: Vec<Vec3> = match reader.read_normals() {

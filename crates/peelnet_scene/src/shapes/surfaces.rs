@@ -152,6 +152,9 @@ impl Waves {
     }
 }
 
+/// Most points of a profile.
+const MAX_POINTS: usize = 10_000;
+
 /// The smooth profile of a lathe: a Catmull–Rom curve (1974) through its points, moved outwards, in even steps.
 pub(super) fn lathe(
     points: &[[f32; 2]],
@@ -163,6 +166,11 @@ pub(super) fn lathe(
         return Err(
             "profile must have three points or more, the first and the last with radius 0".into(),
         );
+    }
+    if n > MAX_POINTS {
+        return Err(format!(
+            "profile has {n} points; it has at most {MAX_POINTS}"
+        ));
     }
     if points[1..n - 1].iter().any(|p| p[0] <= 0.0)
         || points.iter().flatten().any(|x| !x.is_finite())

@@ -1,0 +1,100 @@
+//! What a scene may take in all, so that a small file cannot ask for endless memory. It is counted before the memory is taken.
+
+use crate::mesh::Mesh;
+
+/// Most triangles of the meshes that are generated, copied or instanced.
+pub(crate) const MAX_TRIANGLES: u64 = 50_000_000;
+
+/// Most vertices of these meshes.
+const MAX_VERTICES: u64 = 2 * MAX_TRIANGLES;
+
+/// Most parts of all objects: each has a material, and is a draw.
+const MAX_PARTS: u64 = 1_000_000;
+
+/// Most texels of all textures: 4 GiB.
+const MAX_TEXELS: u64 = 1 << 30;
+
+/// Checks the triangles of all objects, which share meshes: they are numbered by their vertices, in 32 bits.
+pub(crate) fn check_instances(triangles: u64) -> Result<(), String> {
+    const MOST: u64 = u32::MAX as u64 / 3;
+    if triangles <= MOST {
+        return Ok(());
+    }
+    Err(format!(
+        "all objects together have {triangles} triangles: a scene has at most {MOST}; give it fewer or smaller ones"
+    ))
+}
+
+/// What a scene has taken.
+#[derive(Default)]
+pub(crate) struct Budget {
+    triangles: u64,
+    vertices: u64,
+    parts: u64,
+    texels: u64,
+}
+
+impl Budget {
+    /// Takes the triangles and vertices of meshes; an error holds the counts and the limit.
+    pub fn take_mesh(&mut self, triangles: u64, vertices: u64) -> Result<(), String> {
+        take(&mut self.triangles, triangles, MAX_TRIANGLES, "triangles")?;
+        take(&mut self.vertices, vertices, MAX_VERTICES, "vertices")
+    }
+
+    /// Takes a copy of a mesh.
+    pub fn take_copy(&mut self, mesh: &Mesh) -> Result<(), String> {
+        self.take_mesh(mesh.triangles.len() as u64, mesh.positions.len() as u64)
+    }
+
+    /// Takes `parts` of each of so many objects.
+    pub fn take_parts(&mut self, objects: usize, parts: usize) -> Result<(), String> {
+        let parts = (objects as u64).saturating_mul(parts as u64);
+        take(&mut self.parts, parts, MAX_PARTS, "parts of objects")
+    }
+
+    /// Takes a texture of this size.
+    pub fn take_texels(&mut self, [width, height]: [u32; 2]) -> Result<(), String> {
+        let texels = u64::from(width) * u64::from(height);
+        take(&mut self.texels, texels, MAX_TEXELS, "texels")
+    }
+}
+
+/// Checks the number of parts of one mesh.
+pub(crate) fn check_parts(parts: u64) -> Result<(), String> {
+    take(&mut 0, parts, MAX_PARTS, "parts")
+}
+
+fn take(taken: &mut u64, more: u64, limit: u64, what: &str) -> Result<(), String> {
+    let all = taken.saturating_add(more);
+    if all > limit {
+        let before = match *taken {
+            0 => String::new(),
+            n => format!(" beside {n} before"),
+        };
+        return Err(format!(
+            "{more} {what}{before}: a scene has at most {limit}; make it smaller"
+        ));
+    }
+    *taken = all;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is refused is not taken.
+    #[test]
+    fn limits_hold_for_the_sum() {
+        let mut budget = Budget::default();
+        budget.take_parts(1000, 999).expect("fits");
+        let e = budget.take_parts(1001, 1).expect_err("too many");
+        assert!(e.contains("1001 parts") && e.contains("999000"), "{e}");
+        assert!(e.contains("1000000"), "{e}");
+        budget.take_parts(1000, 1).expect("fits");
+        let e = budget.take_texels([u32::MAX; 2]).expect_err("too many");
+        assert!(e.contains("1073741824"), "{e}");
+        assert!(budget.take_parts(usize::MAX, usize::MAX).is_err());
+        assert!(budget.take_mesh(MAX_TRIANGLES, MAX_VERTICES + 1).is_err());
+    }
+}
