@@ -183,7 +183,7 @@ pub struct TrainArgs {
     /// Dataset folders
     #[arg(value_name = "DATASET", required = true)]
     pub datasets: Vec<PathBuf>,
-    /// The model file to write; checkpoints are written next to it
+    /// The model file to write; its checkpoint is the folder MODEL.checkpoint
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
     /// What to train: thesis, small, medium, large, nmt or dfaoit
@@ -207,7 +207,7 @@ pub struct TrainArgs {
     /// Seed of initial weights, order and split
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Continue from the checkpoint next to MODEL
+    /// Continue from MODEL.checkpoint
     #[arg(long)]
     pub resume: bool,
     /// Also write the loss of every epoch: .csv or .svg; may be repeated

@@ -86,7 +86,25 @@ fn is_default(loss: &PixelLoss) -> bool {
     *loss == PixelLoss::default()
 }
 
+/// Passes of one run: the loss of each is kept.
+pub(crate) const MAX_EPOCHS: u32 = 1_000_000;
+/// Examples of a step.
+const MAX_BATCH: usize = 1 << 24;
+/// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
+const MAX_PARAMETERS: u64 = 1 << 22;
+
 impl Config {
+    /// Weights and biases of the network; widths are checked.
+    fn parameters(&self) -> u64 {
+        let inputs = self.recipe.inputs.about().len();
+        let widths = std::iter::once(inputs).chain(self.hidden.iter().copied());
+        let after = self.hidden.iter().copied();
+        widths
+            .zip(after.chain([self.recipe.output.count()]))
+            .map(|(from, to)| (from as u64 + 1) * to as u64)
+            .sum()
+    }
+
     /// The settings that a recipe declares, and the defaults of Adam.
     pub fn for_recipe(recipe: Recipe) -> Self {
         let (network, budget) = (recipe.network, recipe.budget);
@@ -123,17 +141,24 @@ impl Config {
                 hint,
             })
         };
-        if self.epochs == 0 {
-            return bad("epochs", "0".into(), "give at least 1");
+        if !(1..=MAX_EPOCHS).contains(&self.epochs) {
+            return bad("epochs", self.epochs.to_string(), "give 1 to 1,000,000");
         }
-        if self.batch == 0 {
-            return bad("batch", "0".into(), "give at least 1");
+        if !(1..=MAX_BATCH).contains(&self.batch) {
+            return bad("batch", self.batch.to_string(), "give 1 to 16,777,216");
         }
         if self.chunk == 0 {
             return bad("chunk", "0".into(), "give at least 1");
         }
         if let Some(width) = self.hidden.iter().find(|&&w| w == 0 || w > 4096) {
             return bad("hidden", width.to_string(), "give widths from 1 to 4096");
+        }
+        if self.parameters() > MAX_PARAMETERS {
+            return bad(
+                "hidden",
+                format!("{:?}", self.hidden),
+                "give widths with at most 4,194,304 weights in all",
+            );
         }
         if !(self.learning_rate.is_finite() && self.learning_rate > 0.0) {
             return bad(
@@ -210,9 +235,13 @@ mod tests {
         let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 9] = [
+        let spoiled: [(&str, Spoil); 13] = [
             ("epochs", |c| c.epochs = 0),
+            ("1,000,000", |c| c.epochs = u32::MAX),
             ("batch", |c| c.batch = 0),
+            ("16,777,216", |c| c.batch = u32::MAX as usize),
+            ("1 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
+            ("4,194,304", |c| c.hidden = vec![4096; 1000]),
             ("chunk", |c| c.chunk = 0),
             ("hidden", |c| c.hidden = vec![3, 0]),
             ("learning_rate", |c| c.learning_rate = f64::NAN),

@@ -50,9 +50,10 @@
 //!
 //! # Files
 //!
-//! For `out/net.safetensors` the folder `out/net.checkpoint/` holds `state.safetensors` (everything a resumed run
+//! For `out/net.safetensors` the folder `out/net.safetensors.checkpoint/` holds `state.safetensors` (everything a resumed run
 //! needs) and two model files, `last.safetensors` and `best.safetensors` (lowest held-out error so far). It stays after
-//! a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole.
+//! a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole. As long as a run
+//! lasts, `out/net.safetensors.lock` is locked, so that a second run cannot write to the same files; see [`OutputLock`].
 
 mod adam;
 mod checkpoint;
@@ -63,6 +64,7 @@ mod device;
 mod error;
 mod files;
 mod fragment_mse;
+mod lock;
 mod network;
 mod normalise;
 mod pixel_share;
@@ -81,6 +83,7 @@ pub use curve::{CurveFormat, curve_chart, write_curve};
 pub use data::held_out_errors;
 pub use device::Compute;
 pub use error::TrainError;
+pub use lock::OutputLock;
 pub use network::{Network, Shape};
 pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};

@@ -2,11 +2,11 @@
 
 use super::Context;
 use crate::cli::TrainArgs;
-use crate::failure::{Failure, one_line};
+use crate::failure::Failure;
 use crate::progress::{Bar, thousands};
 use peelnet_dataset::Dataset;
 use peelnet_train::{
-    Config, CurveFormat, End, Outcome, RunOptions, TrainError, TrainingData, held_out_errors, train,
+    Config, CurveFormat, End, Outcome, OutputLock, RunOptions, TrainingData, held_out_errors, train,
 };
 use serde_json::json;
 use std::path::Path;
@@ -14,7 +14,7 @@ use std::path::Path;
 pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
     let config = config(args)?;
     for path in &args.loss_curve {
-        CurveFormat::of(path).map_err(usage)?;
+        CurveFormat::of(path)?;
     }
     let datasets = args
         .datasets
@@ -52,11 +52,6 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     )
 }
 
-/// An error that the flags cause.
-fn usage(error: TrainError) -> Failure {
-    Failure::Usage(one_line(&error))
-}
-
 /// The recipe's settings with those of the flags.
 fn config(args: &TrainArgs) -> Result<Config, Failure> {
     let mut config = Config::for_recipe(args.recipe);
@@ -67,7 +62,7 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.hidden = args.hidden.clone().unwrap_or(config.hidden);
     config.patience = args.patience.or(config.patience);
     config.loss = args.loss;
-    config.check().map_err(usage)?;
+    config.check()?;
     Ok(config)
 }
 
@@ -78,6 +73,12 @@ pub(super) fn fit(
     datasets: &[Dataset],
     options: &RunOptions<'_>,
 ) -> Result<Outcome, Failure> {
+    // Until the model has all of its metadata; before the rows are read, because that can take minutes.
+    let lock = OutputLock::take(&options.out)?;
+    let options = &RunOptions {
+        lock: Some(&lock),
+        ..options.clone()
+    };
     let data = TrainingData::from_datasets(config, datasets)?;
     context.console.message(format!(
         "training recipe {} on {} rows of {}, {} epochs",
@@ -114,7 +115,13 @@ pub(super) fn fit(
     if let Some(from) = outcome.resumed_from {
         context
             .console
-            .message(format!("continued after epoch {from}"));
+            .message(if outcome.history.len() as u32 == from {
+                format!(
+                    "the training had already finished after epoch {from}: nothing was left to do"
+                )
+            } else {
+                format!("continued after epoch {from}")
+            });
     }
     let held_out = held_out_errors(&outcome.model, datasets)?;
     if !held_out.is_empty() {
