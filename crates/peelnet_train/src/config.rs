@@ -44,6 +44,14 @@ pub struct Config {
     pub validation: f64,
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
+    /// Rows of the datasets that are used at most: of more, whole pixels are drawn, see [`TrainingData::used`].
+    ///
+    /// [`TrainingData::used`]: crate::TrainingData::used
+    #[serde(
+        default = "default_max_rows",
+        skip_serializing_if = "is_default_max_rows"
+    )]
+    pub max_rows: u64,
     /// What recipes that learn from whole pixels minimise.
     #[serde(default, skip_serializing_if = "is_default")]
     pub loss: PixelLoss,
@@ -81,6 +89,22 @@ impl Schedule {
     }
 }
 
+/// Rows that take about 4 GiB while the largest recipe trains.
+pub const DEFAULT_MAX_ROWS: u64 = 1 << 25;
+
+const fn default_max_rows() -> u64 {
+    DEFAULT_MAX_ROWS
+}
+
+/// Left out of saved configurations, as the choice of loss.
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+const fn is_default_max_rows(rows: &u64) -> bool {
+    *rows == DEFAULT_MAX_ROWS
+}
+
 /// Left out of saved configurations: those of versions without a choice of loss read the same.
 fn is_default(loss: &PixelLoss) -> bool {
     *loss == PixelLoss::default()
@@ -90,6 +114,10 @@ fn is_default(loss: &PixelLoss) -> bool {
 pub(crate) const MAX_EPOCHS: u32 = 1_000_000;
 /// Examples of a step.
 const MAX_BATCH: usize = 1 << 24;
+/// Numbers of the gradients of all chunks of a batch.
+const MAX_GRADIENTS: u64 = 1 << 28;
+/// Indices of rows have 31 bits.
+const MAX_ROWS: u64 = i32::MAX as u64;
 /// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
 const MAX_PARAMETERS: u64 = 1 << 22;
 
@@ -127,6 +155,7 @@ impl Config {
             held_out: budget.held_out,
             validation: budget.validation,
             patience: None,
+            max_rows: DEFAULT_MAX_ROWS,
             loss: recipe.loss.unwrap_or_default(),
         }
     }
@@ -158,6 +187,21 @@ impl Config {
                 "hidden",
                 format!("{:?}", self.hidden),
                 "give widths with at most 4,194,304 weights in all",
+            );
+        }
+        let chunks = self.batch.div_ceil(self.chunk) as u64;
+        if chunks * self.parameters() > MAX_GRADIENTS {
+            return bad(
+                "batch",
+                self.batch.to_string(),
+                "give less for this network: every chunk of a batch has a gradient, 1 GiB in all at most",
+            );
+        }
+        if !(1..=MAX_ROWS).contains(&self.max_rows) {
+            return bad(
+                "max_rows",
+                self.max_rows.to_string(),
+                "give 1 to 2147483647",
             );
         }
         if !(self.learning_rate.is_finite() && self.learning_rate > 0.0) {
@@ -235,11 +279,17 @@ mod tests {
         let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 13] = [
+        let spoiled: [(&str, Spoil); 16] = [
             ("epochs", |c| c.epochs = 0),
             ("1,000,000", |c| c.epochs = u32::MAX),
             ("batch", |c| c.batch = 0),
             ("16,777,216", |c| c.batch = u32::MAX as usize),
+            ("1 GiB", |c| {
+                c.hidden = vec![1024, 1024];
+                c.batch = 1 << 24;
+            }),
+            ("max_rows", |c| c.max_rows = 0),
+            ("2147483647", |c| c.max_rows = u64::MAX),
             ("1 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
             ("4,194,304", |c| c.hidden = vec![4096; 1000]),
             ("chunk", |c| c.chunk = 0),

@@ -28,6 +28,12 @@
 //!   a single bit of the result.
 //! - The loss stays on the device until the epoch ends.
 //!
+//! # Memory
+//!
+//! Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
+//! epoch. Of a dataset with more than [`Config::max_rows`] rows, whole pixels are drawn from the seed, the same share of every view, and
+//! [`TrainingData::used`] says how many rows are used. With the default, a training takes about 4 GiB at most, however large the dataset.
+//!
 //! # Same seed, same weights
 //!
 //! All randomness comes from [`Config::seed`] through [`peelnet_core::random`], whose numbers a test
@@ -70,6 +76,7 @@ mod normalise;
 mod pixel_share;
 mod pixels;
 mod report;
+mod sample;
 mod split;
 mod streams;
 mod task;
@@ -78,7 +85,7 @@ mod train;
 mod training_data;
 
 pub use checkpoint::folder as checkpoint_folder;
-pub use config::{Config, Schedule};
+pub use config::{Config, DEFAULT_MAX_ROWS, Schedule};
 pub use curve::{CurveFormat, curve_chart, write_curve};
 pub use data::held_out_errors;
 pub use device::Compute;
@@ -89,4 +96,4 @@ pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};
 pub use task::{Part, Task};
 pub use train::{RunOptions, train};
-pub use training_data::{PixelColumns, PixelFixed, TrainingData};
+pub use training_data::{PixelColumns, PixelFixed, TrainingData, UsedRows};

@@ -98,20 +98,9 @@ pub fn train(
         Some(subsets) => Split::of(subsets),
         None => Split::random(data.examples() as u32, config.held_out, config.seed),
     };
-    let pixel_rows: Option<Vec<u32>> = data.pixels.as_ref().map(|pixels| {
-        let examples = split.train.iter();
-        examples
-            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
-            .collect()
-    });
-    let training_rows = pixel_rows.as_ref().unwrap_or(&split.train);
-    let normalisation: Vec<Normalisation> = data
-        .inputs
-        .iter()
-        .map(|values| Normalisation::over(values, training_rows))
-        .collect();
+    let normalisation = normalisation(data, &split);
     let device = options.compute.device();
-    let mut task: Box<dyn Task> = match &data.pixels {
+    let mut task: Box<dyn Task + '_> = match &data.pixels {
         Some(pixels) => Box::new(PixelShare::new(
             data,
             pixels,
@@ -137,6 +126,19 @@ pub fn train(
         folder: checkpoint::folder(&options.out),
     };
     run.go(task.as_mut(), on_epoch)
+}
+
+/// Over the training rows.
+fn normalisation(data: &TrainingData, split: &Split) -> Vec<Normalisation> {
+    let pixel_rows: Option<Vec<u32>> = data.pixels.as_ref().map(|pixels| {
+        let examples = split.train.iter();
+        examples
+            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
+            .collect()
+    });
+    let rows = pixel_rows.as_ref().unwrap_or(&split.train);
+    let over = |values: &Vec<f32>| Normalisation::over(values, rows);
+    data.inputs.iter().map(over).collect()
 }
 
 fn shape(config: &Config) -> Shape {

@@ -22,6 +22,7 @@ fn rows(n: usize) -> TrainingData {
         weights: None,
         pixels: None,
         subsets: None,
+        used: None,
         dataset: None,
     };
     for i in 0..n {

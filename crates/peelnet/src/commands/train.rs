@@ -6,7 +6,8 @@ use crate::failure::Failure;
 use crate::progress::{Bar, thousands};
 use peelnet_dataset::Dataset;
 use peelnet_train::{
-    Config, CurveFormat, End, Outcome, OutputLock, RunOptions, TrainingData, held_out_errors, train,
+    Config, CurveFormat, End, Outcome, OutputLock, RunOptions, TrainingData, UsedRows,
+    held_out_errors, train,
 };
 use serde_json::json;
 use std::path::Path;
@@ -41,6 +42,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
                 "resumed_from": outcome.resumed_from,
                 "losses": meta.losses,
                 "held_out": meta.held_out,
+                "max_rows": args.max_rows,
                 "rows": meta.dataset.as_ref().map(|d| d.rows),
                 "dataset": meta.dataset.as_ref().map(|d| &d.hash),
                 "seed": meta.seed,
@@ -62,6 +64,7 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.hidden = args.hidden.clone().unwrap_or(config.hidden);
     config.patience = args.patience.or(config.patience);
     config.loss = args.loss;
+    config.max_rows = args.max_rows;
     config.check()?;
     Ok(config)
 }
@@ -80,6 +83,14 @@ pub(super) fn fit(
         ..options.clone()
     };
     let data = TrainingData::from_datasets(config, datasets)?;
+    if let Some(UsedRows { used, of }) = data.used.filter(|rows| rows.used < rows.of) {
+        context.console.warn(format!(
+            "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows)",
+            thousands(used),
+            thousands(of),
+            thousands(config.max_rows)
+        ));
+    }
     context.console.message(format!(
         "training recipe {} on {} rows of {}, {} epochs",
         config.recipe,
