@@ -187,7 +187,7 @@ pub struct TrainArgs {
     /// Dataset folders
     #[arg(value_name = "DATASET", required = true)]
     pub datasets: Vec<PathBuf>,
-    /// The model file to write; checkpoints are written next to it
+    /// The model file to write; its checkpoint is the folder MODEL.checkpoint
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
     /// What to train: thesis, small, medium, large, nmt or dfaoit
@@ -211,12 +211,15 @@ pub struct TrainArgs {
     /// Seed of initial weights, order and split
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Continue from the checkpoint next to MODEL
+    /// Continue from MODEL.checkpoint
     #[arg(long)]
     pub resume: bool,
     /// Also write the loss of every epoch: .csv or .svg; may be repeated
     #[arg(long, value_name = "FILE")]
     pub loss_curve: Vec<PathBuf>,
+    /// Rows of the datasets that are used at most; of more, whole pixels are drawn from the seed
+    #[arg(long, value_name = "N", default_value_t = peelnet_train::DEFAULT_MAX_ROWS)]
+    pub max_rows: u64,
     /// Stop after N epochs without a lower held-out loss and keep the best
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub patience: Option<u32>,
@@ -488,7 +491,7 @@ mod tests {
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
             "extract --synthetic 1000 --out d --seed 3",
-            "train d e --out m --recipe thesis --hidden 4,3 --loss image --epochs 3 --batch 64 --lr 1e-3 --seed 2 --resume --loss-curve a.csv --loss-curve a.svg",
+            "train d e --out m --recipe thesis --hidden 4,3 --loss image --epochs 3 --batch 64 --lr 1e-3 --seed 2 --max-rows 1000 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
             "bench s --out d --methods mboit4,wboit-eq9 --models m,n --frames 2 --size 8x8 --views 1",

@@ -87,17 +87,22 @@ fn links_and_devices_are_written_through() {
 #[test]
 fn a_hyphen_is_stdout() {
     let dir = folder();
+    ends_with(dir.path(), "extract --synthetic 300 --out d", 0);
     let before = everything(dir.path());
     for (line, start) in [
         ("render two.toml --size 8x8 --out -", &b"\x89PNG"[..]),
         ("render two.toml --size 8x8 --json --out -", b"\x89PNG"),
         ("export m.safetensors --out -", b"// A learned weight"),
+        ("train d --epochs 1 --recipe small --out -", b""),
     ] {
         let output = peelnet(dir.path(), line);
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(0), "{line}: {said}");
         assert!(output.stdout.starts_with(start), "{line}");
         assert!(!said.is_empty(), "{line}");
+        if line.starts_with("train") {
+            assert!(peelnet::Model::from_bytes(&output.stdout, "stdout").is_ok());
+        }
     }
     for line in [
         "extract two.toml --out -",
@@ -191,7 +196,22 @@ fn outputs_are_checked_before_work_begins() {
     let dir = folder();
     ends_with(dir.path(), "extract --synthetic 300 --out d", 0);
     std::fs::write(dir.path().join("file"), "x").unwrap();
+    std::fs::create_dir(dir.path().join("old.checkpoint")).unwrap();
+    for (name, text) in [
+        ("old.checkpoint/last.safetensors", "a user's own"),
+        ("Cargo.lock", "version = 4"),
+    ] {
+        std::fs::write(dir.path().join(name), text).unwrap();
+    }
     let before = everything(dir.path());
+    for (line, named) in [
+        ("train d --epochs 1 --out old", "last.safetensors"),
+        ("train d --epochs 1 --out Cargo", "Cargo.lock"),
+    ] {
+        let text = ends_with(dir.path(), line, 1);
+        assert!(text.contains(named), "{line}: {text}");
+        assert_eq!(everything(dir.path()), before, "{line}");
+    }
     for line in [
         "train d --epochs 1 --out m2 --loss-curve file/loss.csv",
         "train d --epochs 1 --out file/m2",

@@ -92,7 +92,7 @@ pub enum DatasetError {
     },
     /// The output folder holds something else.
     #[error(
-        "{}: the folder is not empty and not a dataset (it holds {found:?}); choose another folder or empty this one",
+        "{}: the folder is not empty, and {found:?} in it is not a file of a dataset as its manifest lists it; choose another folder, or move that file away",
         path.display()
     )]
     NotOurs {
@@ -100,6 +100,29 @@ pub enum DatasetError {
         path: PathBuf,
         /// A file or folder in it.
         found: String,
+        /// Why a manifest is not one.
+        source: Option<Box<DatasetError>>,
+    },
+    /// More parts than a dataset can have.
+    #[error(
+        "{items} work items (scenes × copies × views) are too many: at most {}",
+        crate::MAX_WORK_ITEMS
+    )]
+    TooManyItems {
+        /// How many there would be.
+        items: u64,
+    },
+    /// A pixel that does not fit into memory.
+    #[error("{}: pixel ({x}, {y}) has more than {most} fragments; leave it out, or write the dataset again", path.display())]
+    LargePixel {
+        /// The part's first file.
+        path: PathBuf,
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+        /// The limit.
+        most: usize,
     },
     /// A whole dataset and shards would mix.
     #[error("{}: {reason}; choose another folder or delete this one", path.display())]
@@ -116,7 +139,7 @@ pub enum DatasetError {
         path: PathBuf,
     },
     /// Some shards have not been written.
-    #[error("{}: {} of {of} shards are missing ({}); extract these as well", path.display(), missing.len(), missing.join(", "))]
+    #[error("{}: {} of {of} shards are missing ({}); extract these as well", path.display(), missing.len(), list(missing))]
     MissingShards {
         /// The folder that holds the shards.
         path: PathBuf,
@@ -137,7 +160,8 @@ pub enum DatasetError {
     },
     /// A shard that is not one.
     #[error(
-        "shard {text:?}: expected I/N with whole numbers N ≥ 1 and I from 1 to N, for example 2/4"
+        "shard {text:?}: expected I/N with whole numbers N from 1 to {} and I from 1 to N, for example 2/4",
+        crate::MAX_WORK_ITEMS
     )]
     Shard {
         /// What was given.
@@ -167,6 +191,13 @@ pub enum DatasetError {
         /// What is wrong.
         reason: String,
     },
+}
+
+/// The first few of some names.
+fn list(names: &[String]) -> String {
+    const SHOWN: usize = 10;
+    let more = if names.len() > SHOWN { ", …" } else { "" };
+    format!("{}{more}", names[..names.len().min(SHOWN)].join(", "))
 }
 
 impl DatasetError {

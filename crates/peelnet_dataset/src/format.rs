@@ -37,6 +37,16 @@ impl Format {
         }
     }
 
+    /// Bytes that a row takes at least in each file of a part; 0 where rows are compressed.
+    pub(crate) const fn least_row_bytes(self) -> u64 {
+        match self {
+            // A digit and a separator for each column.
+            Self::Csv => 2 * Column::ALL.len() as u64,
+            Self::Parquet => 0,
+            Self::Npy => 4,
+        }
+    }
+
     /// How many files a part has.
     pub(crate) const fn files_of_a_part(self) -> usize {
         match self {

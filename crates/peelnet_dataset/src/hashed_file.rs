@@ -43,7 +43,7 @@ impl Write for HashedFile {
 
 /// Length and hexadecimal sha256 of an existing file.
 pub(crate) fn hash_file(path: &Path) -> io::Result<(u64, String)> {
-    let mut file = File::open(path)?;
+    let mut file = peelnet_files::open(path)?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 18];
     let mut bytes = 0;

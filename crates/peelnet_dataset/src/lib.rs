@@ -17,7 +17,7 @@
 //!
 //! **Writing** is streamed. [`DatasetWriter::create`] opens a hidden folder inside the dataset's, parts are written
 //! there through [`PartWriter`], and [`DatasetWriter::finish`] moves everything into place; a writer that is dropped
-//! before that leaves nothing behind. Memory holds one row group (2²⁰ rows, about 60 MB) at most, whatever the
+//! before that leaves nothing behind. An older dataset is replaced, but never a file that its manifest does not list. Memory holds one row group (2²⁰ rows, about 60 MB) at most, whatever the
 //! number of fragments. The bytes depend on the rows alone: neither the number of threads nor the way the rows were
 //! cut into batches changes them.
 //!
@@ -25,8 +25,8 @@
 //! row, Parquet (PLAIN pages, snappy), and NPY as one one-dimensional array per column
 //! (`fragments-00000-cups-v0.linear_depth.npy`), which `numpy.load` opens or maps into memory directly.
 //!
-//! **Reading.** [`Dataset::open`] checks the manifest and the sizes of all files; [`Dataset::verify`] recomputes the
-//! hashes. [`Dataset::batches`] streams whole pixels, [`Dataset::read_columns`] loads chosen columns. Every value is
+//! **Reading.** [`Dataset::open`] checks the manifest and the sizes of all files; the hash of a file is checked before its
+//! first row is read. [`Dataset::batches`] streams whole pixels, [`Dataset::read_columns`] loads chosen columns. Every value is
 //! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network.
 //!
 //! **Shards.** `--shard I/N` writes the work items k with k ≡ I (mod N) into `DIR/shard-I-of-N/`, a dataset of its
@@ -39,6 +39,7 @@
 mod batch;
 mod column;
 mod error;
+mod folder;
 mod format;
 mod formats;
 mod hashed_file;
@@ -55,7 +56,7 @@ pub use column::{Column, ColumnData, ColumnKind, ColumnSlice};
 pub use error::DatasetError;
 pub use format::{Format, ROW_GROUP_ROWS};
 pub use manifest::{
-    CameraInfo, ColumnEntry, FileEntry, Manifest, Part, SCHEMA_VERSION, SceneEntry,
+    CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
 pub use reader::{Batches, Dataset};
 pub use shard::Shard;

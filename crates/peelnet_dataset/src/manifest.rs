@@ -1,6 +1,6 @@
 //! `manifest.json`: what a dataset is made of and where it comes from.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +17,21 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// The manifest's file name.
 pub(crate) const FILE_NAME: &str = "manifest.json";
+
+/// Prefix of all parts' file names.
+pub(crate) const FRAGMENTS: &str = "fragments-";
+
+/// Work items (scene × copy × view) of one dataset.
+pub const MAX_WORK_ITEMS: u32 = 1 << 16;
+
+/// Bytes of a manifest that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// File names come from outside: they must not lead out of the folder on any system.
+fn is_part_name(name: &str) -> bool {
+    name.starts_with(FRAGMENTS)
+        && !name.contains(|c: char| c.is_control() || matches!(c, '/' | '\\' | ':'))
+}
 
 /// The whole manifest. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -151,27 +166,41 @@ pub struct FileEntry {
 impl Manifest {
     /// Reads and checks the manifest of a folder.
     pub(crate) fn read(folder: &Path) -> Result<Self, DatasetError> {
-        let path = folder.join(FILE_NAME);
-        let bytes = std::fs::read(&path).map_err(|source| {
-            if source.kind() == std::io::ErrorKind::NotFound && folder.is_dir() {
+        Self::read_file(&folder.join(FILE_NAME)).map_err(|error| match error {
+            DatasetError::Io { source, .. }
+                if source.kind() == std::io::ErrorKind::NotFound && folder.is_dir() =>
+            {
                 DatasetError::NoManifest {
                     path: folder.to_owned(),
                 }
-            } else {
-                DatasetError::io(&path, "read")(source)
             }
-        })?;
+            other => other,
+        })
+    }
+
+    /// Reads and checks a manifest.
+    pub(crate) fn read_file(path: &Path) -> Result<Self, DatasetError> {
+        /// The version alone; everything else is skipped.
+        #[derive(Deserialize)]
+        struct Version {
+            #[serde(default)]
+            schema: serde_json::Value,
+        }
+        let bytes = peelnet_files::read(path, MAX_BYTES).map_err(DatasetError::io(path, "read"))?;
         let wrong = |reason: String| DatasetError::Manifest {
-            path: path.clone(),
+            path: path.to_owned(),
             reason,
         };
         // The version first: another version's fields are bound to look wrong.
-        let value: serde_json::Value =
+        let version: Version =
             serde_json::from_slice(&bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
-        match value.get("schema").and_then(serde_json::Value::as_u64) {
+        match version.schema.as_u64() {
             None => return Err(wrong("the field `schema` is missing".to_owned())),
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
-                return Err(DatasetError::Schema { path, found });
+                return Err(DatasetError::Schema {
+                    path: path.to_owned(),
+                    found,
+                });
             }
             Some(_) => {}
         }
@@ -191,8 +220,18 @@ impl Manifest {
                 Column::ALL.map(Column::name)
             ));
         }
+        if self.work_items > MAX_WORK_ITEMS {
+            return Err(format!(
+                "{} work items, and at most {MAX_WORK_ITEMS} are read",
+                self.work_items
+            ));
+        }
+        if let Some(shard) = self.shard {
+            Shard::new(shard.index, shard.of).map_err(|e| e.to_string())?;
+        }
         let files_expected = self.format.files_of_a_part();
         let mut rows = 0u64;
+        let mut names = BTreeSet::new();
         for (k, part) in self.parts.iter().enumerate() {
             if k > 0 && self.parts[k - 1].index >= part.index {
                 return Err(format!("parts[{k}]: the indices do not ascend"));
@@ -213,16 +252,24 @@ impl Manifest {
                     self.format
                 ));
             }
-            // File names come from outside: they must not lead out of the folder.
-            if let Some(file) = part
-                .files
-                .iter()
-                .find(|f| f.name.is_empty() || f.name.contains(['/', '\\']) || f.name == "..")
-            {
-                return Err(format!(
-                    "parts[{k}]: {:?} is not a plain file name",
-                    file.name
-                ));
+            for file in &part.files {
+                if !is_part_name(&file.name) {
+                    return Err(format!(
+                        "parts[{k}]: {:?} is not a plain file name that begins with {FRAGMENTS}",
+                        file.name
+                    ));
+                }
+                if !names.insert(file.name.as_str()) {
+                    return Err(format!("parts[{k}]: {:?} is listed twice", file.name));
+                }
+                // Of Parquet's compressed rows, only the file itself can say it.
+                let least = self.format.least_row_bytes().saturating_mul(part.rows);
+                if file.bytes < least {
+                    return Err(format!(
+                        "parts[{k}]: {} rows cannot be in {} bytes of {:?}",
+                        part.rows, file.bytes, file.name
+                    ));
+                }
             }
             let grouped = part
                 .row_groups
@@ -254,7 +301,7 @@ impl Manifest {
 
     /// Work items that should have a part here but have none.
     pub(crate) fn missing_items(&self) -> Vec<u32> {
-        let present: std::collections::BTreeSet<u32> = self.parts.iter().map(|p| p.index).collect();
+        let present: BTreeSet<u32> = self.parts.iter().map(|p| p.index).collect();
         (0..self.work_items)
             .filter(|&k| self.shard.is_none_or(|s| s.contains(k)) && !present.contains(&k))
             .collect()
@@ -263,11 +310,25 @@ impl Manifest {
     /// Recomputes the totals and the hash from the parts.
     pub(crate) fn total(&mut self) {
         self.parts.sort_by_key(|p| p.index);
-        self.rows = self.parts.iter().map(|p| p.rows).sum();
-        self.pixels = self.parts.iter().map(|p| p.pixels).sum();
-        self.lost_fragments = self.parts.iter().map(|p| p.lost_fragments).sum();
-        self.coplanar_ties = self.parts.iter().map(|p| p.coplanar_ties).sum();
+        // Manifests of shards come from outside, with any numbers in them.
+        let sum = |of: fn(&Part) -> u64| self.parts.iter().map(of).fold(0, u64::saturating_add);
+        self.rows = sum(|p| p.rows);
+        self.pixels = sum(|p| p.pixels);
+        self.lost_fragments = sum(|p| p.lost_fragments);
+        self.coplanar_ties = sum(|p| p.coplanar_ties);
         self.hash = hash_of_parts(&self.parts);
+    }
+
+    /// Names of all files, by part.
+    pub(crate) fn file_names(&self) -> impl Iterator<Item = &str> {
+        let files = self.parts.iter().flat_map(|p| &p.files);
+        files.map(|f| f.name.as_str())
+    }
+
+    /// The length of each file, by name.
+    pub(crate) fn lengths(&self) -> BTreeMap<String, u64> {
+        let files = self.parts.iter().flat_map(|p| &p.files);
+        files.map(|f| (f.name.clone(), f.bytes)).collect()
     }
 
     /// The JSON text of the file.

@@ -3,6 +3,8 @@
 use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::batch::FragmentBatch;
 use crate::column::{Column, ColumnData, ColumnMut, ColumnSlice};
@@ -17,6 +19,9 @@ use crate::validate::check_column;
 /// Rows that are read and checked at once.
 const CHUNK_ROWS: usize = 1 << 16;
 
+/// Rows of one pixel that are read: a batch holds whole pixels, so this bounds its memory.
+const MAX_PIXEL_ROWS: usize = 1 << 22;
+
 /// A dataset that was opened: one folder, or all shards of one.
 #[derive(Clone, Debug)]
 pub struct Dataset {
@@ -24,11 +29,14 @@ pub struct Dataset {
     manifest: Manifest,
     /// Folder of each part, parallel to `manifest.parts`.
     folders: Vec<PathBuf>,
+    /// For each part, by file: whether its hash was compared with the manifest's.
+    verified: Arc<Vec<Vec<AtomicBool>>>,
 }
 
 impl Dataset {
     /// Opens a dataset's folder, or a folder that holds all `shard-I-of-N` folders of one. Checks the manifest and
-    /// that every file is there with its right length; [`Dataset::verify`] checks the contents.
+    /// that every file is there with its right length. A file's contents are checked when its rows are read, or all at once
+    /// by [`Dataset::verify`].
     ///
     /// # Errors
     /// If the manifest is missing or wrong, a file is missing or has another length, shards are missing, or shards
@@ -37,11 +45,8 @@ impl Dataset {
         let path = path.as_ref();
         let dataset = if path.join(manifest::FILE_NAME).exists() {
             let manifest = Manifest::read(path)?;
-            Self {
-                path: path.to_owned(),
-                folders: vec![path.to_owned(); manifest.parts.len()],
-                manifest,
-            }
+            let folders = vec![path.to_owned(); manifest.parts.len()];
+            Self::new(path, manifest, folders)
         } else {
             Self::open_shards(path)?
         };
@@ -130,11 +135,17 @@ impl Dataset {
         (whole.parts, folders) = parts.into_iter().unzip();
         whole.shard = None;
         whole.total();
-        Ok(Self {
+        Ok(Self::new(path, whole, folders))
+    }
+
+    fn new(path: &Path, manifest: Manifest, folders: Vec<PathBuf>) -> Self {
+        let files = |part: &Part| part.files.iter().map(|_| AtomicBool::new(false)).collect();
+        Self {
             path: path.to_owned(),
-            manifest: whole,
+            verified: Arc::new(manifest.parts.iter().map(files).collect()),
+            manifest,
             folders,
-        })
+        }
     }
 
     fn check_sizes(&self) -> Result<(), DatasetError> {
@@ -160,16 +171,39 @@ impl Dataset {
     /// # Errors
     /// [`DatasetError::Changed`] names the first file that differs from the manifest.
     pub fn verify(&self) -> Result<(), DatasetError> {
-        for (part, folder) in self.manifest.parts.iter().zip(&self.folders) {
-            for file in &part.files {
-                let path = folder.join(&file.name);
-                let (_, found) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
-                if found != file.sha256 {
-                    return Err(DatasetError::changed(
-                        &path,
-                        format!("sha256 {found} where the manifest says {}", file.sha256),
-                    ));
-                }
+        for (k, part) in self.manifest.parts.iter().enumerate() {
+            (0..part.files.len()).try_for_each(|file| self.verify_file(k, file))?;
+        }
+        Ok(())
+    }
+
+    /// Compares the hash of a part's file with the manifest's.
+    fn verify_file(&self, part: usize, file: usize) -> Result<(), DatasetError> {
+        let entry = &self.manifest.parts[part].files[file];
+        let path = self.folders[part].join(&entry.name);
+        let (_, found) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
+        if found != entry.sha256 {
+            return Err(DatasetError::changed(
+                &path,
+                format!(
+                    "sha256 {found} where the manifest says {}",
+                    peelnet_files::printable(&entry.sha256)
+                ),
+            ));
+        }
+        self.verified[part][file].store(true, Ordering::Relaxed);
+        Ok(())
+    }
+
+    /// Compares the hashes of what a part's columns lie in, once for all readers.
+    fn verify_columns(&self, part: usize, columns: &[Column]) -> Result<(), DatasetError> {
+        for (file, verified) in self.verified[part].iter().enumerate() {
+            let is_read = match self.manifest.format {
+                Format::Npy => columns.iter().any(|c| c.index() == file),
+                Format::Csv | Format::Parquet => true,
+            };
+            if is_read && !verified.load(Ordering::Relaxed) {
+                self.verify_file(part, file)?;
             }
         }
         Ok(())
@@ -225,7 +259,35 @@ impl Dataset {
         }
     }
 
-    /// Reads columns into memory, in the order asked for. Parquet and NPY read these columns only.
+    /// Calls `each` with pieces of columns, in order; the other columns are empty. Parquet and NPY read these columns only, and memory does
+    /// not grow with the dataset.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a value is out of its column's range.
+    pub fn read_pieces(
+        &self,
+        columns: &[Column],
+        mut keep: impl FnMut(&Part) -> bool,
+        mut each: impl FnMut(&FragmentBatch),
+    ) -> Result<(), DatasetError> {
+        let mut columns = columns.to_vec();
+        columns.sort();
+        columns.dedup();
+        let mut table = FragmentBatch::default();
+        for k in 0..self.manifest.parts.len() {
+            if !keep(&self.manifest.parts[k]) {
+                continue;
+            }
+            let mut part = OpenPart::open(self, k, &columns)?;
+            while part.read(CHUNK_ROWS, &mut table)? > 0 {
+                each(&table);
+                table.clear();
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads columns into memory, in the order asked for. Parquet and NPY read these columns only; memory grows with the rows.
     ///
     /// # Errors
     /// If a file cannot be read, or a value is out of its column's range.
@@ -248,21 +310,11 @@ impl Dataset {
         let parts: Vec<usize> = (0..self.manifest.parts.len())
             .filter(|&k| keep(&self.manifest.parts[k]))
             .collect();
-        let rows: u64 = parts.iter().map(|&k| self.manifest.parts[k].rows).sum();
-        let rows = usize::try_from(rows).map_err(|_| DatasetError::Usage {
-            path: self.path.clone(),
-            reason: format!("{rows} rows do not fit into memory"),
-        })?;
         let mut sorted = columns.to_vec();
         sorted.sort();
         sorted.dedup();
+        // No room is taken ahead: the manifest can promise any number of rows.
         let mut table = FragmentBatch::default();
-        for &column in &sorted {
-            match table.column_mut(column) {
-                ColumnMut::F32(v) => v.reserve_exact(rows),
-                ColumnMut::U32(v) => v.reserve_exact(rows),
-            }
-        }
         for k in parts {
             let mut part = OpenPart::open(self, k, &sorted)?;
             while part.read(CHUNK_ROWS, &mut table)? > 0 {}
@@ -296,6 +348,24 @@ struct OpenPart {
 
 impl OpenPart {
     fn open(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
+        dataset
+            .verify_columns(k, columns)
+            // The place of what is wrong says more than a hash.
+            .map_err(|changed| Self::damage(dataset, k, columns).err().unwrap_or(changed))?;
+        Self::unverified(dataset, k, columns)
+    }
+
+    /// The first place in a part where something is wrong.
+    fn damage(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<(), DatasetError> {
+        let mut part = Self::unverified(dataset, k, columns)?;
+        let mut table = FragmentBatch::default();
+        while part.read(CHUNK_ROWS, &mut table)? > 0 {
+            table.clear();
+        }
+        Ok(())
+    }
+
+    fn unverified(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
         let part = &dataset.manifest.parts[k];
         let files: Vec<PathBuf> = part
             .files
@@ -394,6 +464,14 @@ impl Batches<'_> {
                 return Ok(Some(batch));
             }
             // A single pixel fills the batch: read on until it ends.
+            if batch.len() > MAX_PIXEL_ROWS {
+                return Err(DatasetError::LargePixel {
+                    path: part.path.clone(),
+                    x: batch.x[0],
+                    y: batch.y[0],
+                    most: MAX_PIXEL_ROWS,
+                });
+            }
         }
     }
 }

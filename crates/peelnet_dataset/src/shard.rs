@@ -6,11 +6,11 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
+use crate::manifest::MAX_WORK_ITEMS;
 
 /// One of N independent pieces of a dataset: the work items k with k ≡ I (mod N).
 ///
-/// Shards count from 1 to N. Schedulers that count from 0 work too: 0 means the same residue as N, so that either
-/// way of counting covers everything once.
+/// Shards count from 1 to N.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shard {
     /// I, from 1 to `of`.
@@ -20,20 +20,17 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Shard `index` of `of`; index 0 is read as `of`.
+    /// Shard `index` of `of`.
     ///
     /// # Errors
-    /// [`DatasetError::Shard`] if `of` is zero or `index` beyond it.
+    /// [`DatasetError::Shard`] if `index` is not from 1 to `of`, or `of` is above [`MAX_WORK_ITEMS`].
     pub fn new(index: u32, of: u32) -> Result<Self, DatasetError> {
-        if of == 0 || index > of {
+        if !(1..=of).contains(&index) || of > MAX_WORK_ITEMS {
             return Err(DatasetError::Shard {
                 text: format!("{index}/{of}"),
             });
         }
-        Ok(Self {
-            index: if index == 0 { of } else { index },
-            of,
-        })
+        Ok(Self { index, of })
     }
 
     /// Whether this shard writes work item `item`.
@@ -82,23 +79,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_item_is_in_one_shard_however_one_counts() {
+    fn every_item_is_in_one_shard() {
         for item in 0..20 {
-            let from_one = (1..=3).filter(|&i| Shard::new(i, 3).unwrap().contains(item));
-            let from_zero = (0..3).filter(|&i| Shard::new(i, 3).unwrap().contains(item));
-            assert_eq!((from_one.count(), from_zero.count()), (1, 1));
+            let shards = (1..=3).filter(|&i| Shard::new(i, 3).unwrap().contains(item));
+            assert_eq!(shards.count(), 1);
         }
     }
 
     #[test]
     fn texts() {
         assert_eq!("2/4".parse::<Shard>().unwrap().folder(), "shard-2-of-4");
-        assert_eq!("0/4".parse::<Shard>().unwrap().to_string(), "4/4");
         assert_eq!(
             Shard::from_folder("shard-2-of-4"),
             Some(Shard { index: 2, of: 4 })
         );
-        for bad in ["", "1", "5/4", "1/0", "a/2", "-1/2", "1/2/3"] {
+        // Shards count from 1: a scheduler that counts from 0 would write the last one twice with `0` for it.
+        for bad in [
+            "",
+            "1",
+            "0/4",
+            "5/4",
+            "1/0",
+            "a/2",
+            "-1/2",
+            "1/2/3",
+            "1/4294967295",
+        ] {
             let message = bad.parse::<Shard>().unwrap_err().to_string();
             assert!(message.contains("I/N"), "{message}");
         }

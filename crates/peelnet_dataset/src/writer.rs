@@ -1,27 +1,21 @@
 //! Writing a dataset: parts in a hidden folder, everything moved into place at the end.
 
-use std::fs::{self, File};
+use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use tempfile::TempDir;
-
 use crate::batch::FragmentBatch;
 use crate::column::Column;
 use crate::error::DatasetError;
+use crate::folder::{self, Partial, check_not_mixed, create_folders, remove_empty};
 use crate::format::Format;
 use crate::formats::PartSink;
-use crate::manifest::{self, CameraInfo, Manifest, Part, SCHEMA_VERSION, SceneEntry};
+use crate::manifest::{
+    self, CameraInfo, FRAGMENTS, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
+};
 use crate::shard::Shard;
 use crate::validate::check_column;
-
-/// Prefix of the hidden folder that holds a dataset while it is written.
-const PARTIAL: &str = ".partial-";
-/// A file in it that its writer holds locked.
-const LOCK: &str = "lock";
-/// Prefix of all parts' file names.
-const FRAGMENTS: &str = "fragments-";
 
 /// What is known about a dataset before its first row.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,8 +102,7 @@ pub struct DatasetWriter {
     /// Folders that did not exist before, outermost first.
     created: Vec<PathBuf>,
     /// `None` only once it has been closed.
-    partial: Option<TempDir>,
-    _lock: File,
+    partial: Option<Partial>,
     header: Header,
     threads: usize,
     parts: Mutex<Vec<Part>>,
@@ -131,6 +124,11 @@ impl DatasetWriter {
         if header.scenes.is_empty() || header.work_items == 0 {
             return Err(usage("a dataset needs at least one scene and one view"));
         }
+        if header.work_items > MAX_WORK_ITEMS {
+            return Err(DatasetError::TooManyItems {
+                items: header.work_items.into(),
+            });
+        }
         if !(header.pixels_fraction > 0.0 && header.pixels_fraction <= 1.0) {
             return Err(usage(
                 "the fraction of pixels must be above 0 and at most 1",
@@ -145,21 +143,12 @@ impl DatasetWriter {
         let mut undo = Undo {
             created: Some(created),
         };
-        check_ours(&folder)?;
-        remove_abandoned(&folder)?;
-        let partial = tempfile::Builder::new()
-            .prefix(PARTIAL)
-            .tempdir_in(&folder)
-            .map_err(DatasetError::io(&folder, "write into"))?;
-        let lock_path = partial.path().join(LOCK);
-        let lock = File::create_new(&lock_path)
-            .and_then(|lock| lock.lock().map(|()| lock))
-            .map_err(DatasetError::io(&lock_path, "lock"))?;
+        folder::prepare(&folder)?;
+        let partial = Partial::create(&folder)?;
         Ok(Self {
             folder,
             created: undo.created.take().unwrap_or_default(),
             partial: Some(partial),
-            _lock: lock,
             header,
             threads: std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
             parts: Mutex::new(Vec::new()),
@@ -268,23 +257,11 @@ impl DatasetWriter {
         fs::write(&partial_manifest, manifest.to_json())
             .map_err(DatasetError::io(&partial_manifest, "write"))?;
 
-        // From here on the folder has no manifest until everything is in place: whoever opens it meanwhile, or
-        // after a crash, learns that it is incomplete.
-        remove_old(&self.folder)?;
-        for file in manifest.parts.iter().flat_map(|p| &p.files) {
-            let target = self.folder.join(&file.name);
-            fs::rename(partial.join(&file.name), &target)
-                .map_err(DatasetError::io(&target, "move into place"))?;
-        }
-        let target = self.folder.join(manifest::FILE_NAME);
-        fs::rename(&partial_manifest, &target)
-            .map_err(DatasetError::io(&target, "move into place"))?;
-        self.created.clear();
+        let _moving = peelnet_files::Moving::begin();
         if let Some(partial) = self.partial.take() {
-            partial
-                .close()
-                .map_err(DatasetError::io(&self.folder, "tidy up"))?;
+            partial.move_into(&self.folder, &manifest)?;
         }
+        self.created.clear();
         Ok(manifest)
     }
 
@@ -376,31 +353,6 @@ impl PartWriter<'_> {
     }
 }
 
-/// Creates a folder and says which of its ancestors and itself are new, outermost first.
-fn create_folders(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
-    let mut new: Vec<PathBuf> = folder
-        .ancestors()
-        .take_while(|a| !a.as_os_str().is_empty() && !a.exists())
-        .map(Path::to_owned)
-        .collect();
-    new.reverse();
-    fs::create_dir_all(folder).map_err(|source| {
-        remove_empty(&new);
-        DatasetError::io(folder, "create the folder")(source)
-    })?;
-    Ok(new)
-}
-
-/// Removes folders, innermost first, as long as they are empty.
-fn remove_empty(outermost_first: &[PathBuf]) {
-    for folder in outermost_first.iter().rev() {
-        // Not empty or gone: both are as they should be.
-        if fs::remove_dir(folder).is_err() {
-            break;
-        }
-    }
-}
-
 /// Removes the folders that were made when `create` fails half-way.
 struct Undo {
     created: Option<Vec<PathBuf>>,
@@ -412,99 +364,4 @@ impl Drop for Undo {
             remove_empty(created);
         }
     }
-}
-
-fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
-    let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(DatasetError::io(folder, "list"))? {
-        let entry = entry.map_err(DatasetError::io(folder, "list"))?;
-        names.push(entry.file_name().to_string_lossy().into_owned());
-    }
-    names.sort();
-    Ok(names)
-}
-
-/// Whether a name in a dataset's folder can only be from a dataset.
-fn is_ours(name: &str) -> bool {
-    name == manifest::FILE_NAME || name.starts_with(PARTIAL) || name.starts_with(FRAGMENTS)
-}
-
-/// Refuses a folder that holds something else.
-fn check_ours(folder: &Path) -> Result<(), DatasetError> {
-    if Manifest::read(folder).is_ok() {
-        return Ok(());
-    }
-    match names_in(folder)?.into_iter().find(|n| !is_ours(n)) {
-        Some(found) => Err(DatasetError::NotOurs {
-            path: folder.to_owned(),
-            found,
-        }),
-        None => Ok(()),
-    }
-}
-
-/// Refuses to put shards beside a whole dataset, a whole dataset beside shards, or shards of different N together.
-fn check_not_mixed(folder: &Path, shard: Option<Shard>) -> Result<(), DatasetError> {
-    if !folder.is_dir() {
-        return Ok(());
-    }
-    let mixed = |reason| {
-        Err(DatasetError::Mixed {
-            path: folder.to_owned(),
-            reason,
-        })
-    };
-    let names = names_in(folder)?;
-    let present: Vec<Shard> = names.iter().filter_map(|n| Shard::from_folder(n)).collect();
-    match shard {
-        None if !present.is_empty() => mixed("it holds the shards of a dataset"),
-        Some(_) if names.iter().any(|n| n == manifest::FILE_NAME) => {
-            mixed("it holds a whole dataset, not shards")
-        }
-        Some(shard) if present.iter().any(|s| s.of != shard.of) => {
-            mixed("it holds shards of a dataset with another number of shards")
-        }
-        Some(_) => match names.into_iter().find(|n| Shard::from_folder(n).is_none()) {
-            Some(found) => Err(DatasetError::NotOurs {
-                path: folder.to_owned(),
-                found,
-            }),
-            None => Ok(()),
-        },
-        None => Ok(()),
-    }
-}
-
-/// Removes the hidden folders of writers that died; refuses if one is alive.
-fn remove_abandoned(folder: &Path) -> Result<(), DatasetError> {
-    for name in names_in(folder)? {
-        if !name.starts_with(PARTIAL) {
-            continue;
-        }
-        let abandoned = folder.join(name);
-        let alive = File::open(abandoned.join(LOCK))
-            .is_ok_and(|lock| matches!(lock.try_lock(), Err(fs::TryLockError::WouldBlock)));
-        if alive {
-            return Err(DatasetError::Busy {
-                path: folder.to_owned(),
-            });
-        }
-        fs::remove_dir_all(&abandoned).map_err(DatasetError::io(&abandoned, "remove"))?;
-    }
-    Ok(())
-}
-
-/// Removes an older dataset's files, the manifest first.
-fn remove_old(folder: &Path) -> Result<(), DatasetError> {
-    let manifest = folder.join(manifest::FILE_NAME);
-    if manifest.exists() {
-        fs::remove_file(&manifest).map_err(DatasetError::io(&manifest, "replace"))?;
-    }
-    for name in names_in(folder)? {
-        if name.starts_with(FRAGMENTS) {
-            let path = folder.join(name);
-            fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
-        }
-    }
-    Ok(())
 }

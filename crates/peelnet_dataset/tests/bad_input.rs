@@ -234,6 +234,21 @@ fn manifests() {
             ["1 work items have no part", "4"],
         ),
         (CSV, "../secret.csv", ["parts[0]", "plain file name"]),
+        (CSV, "/etc/passwd", ["parts[0]", "plain file name"]),
+        (CSV, "fragments-/../../x", ["parts[0]", "plain file name"]),
+        (
+            CSV,
+            "fragments-\\\\..\\\\x",
+            ["parts[0]", "plain file name"],
+        ),
+        (CSV, "C:fragments-x", ["parts[0]", "plain file name"]),
+        (CSV, "fragments-x:stream", ["parts[0]", "plain file name"]),
+        (CSV, "manifest.json", ["parts[0]", "plain file name"]),
+        (
+            CSV,
+            "fragments-00001-cups-v1.csv",
+            ["listed twice", "v1.csv"],
+        ),
         ("\"rows\"", "rows", ["not JSON", "line"]),
     ] {
         fs::write(&path, good.replace(from, to)).unwrap();
@@ -346,9 +361,10 @@ fn only_datasets_are_overwritten() {
     drop(writer);
     assert_eq!(contents(folder.path()), old);
     // A writer that was killed left its hidden folder.
-    fs::create_dir(folder.path().join(".partial-dead")).unwrap();
-    fs::write(folder.path().join(".partial-dead/fragments-00000"), "x").unwrap();
-    fs::write(&notes, "mine").unwrap();
+    let dead = folder.path().join(".partial-dead");
+    fs::create_dir(&dead).unwrap();
+    fs::write(dead.join("lock"), "").unwrap();
+    fs::write(dead.join("fragments-00000"), "x").unwrap();
     write(folder.path(), Format::Csv, None, 1, 1000).unwrap();
     let names: Vec<String> = contents(folder.path()).into_iter().map(|c| c.0).collect();
     assert_eq!(
@@ -359,7 +375,201 @@ fn only_datasets_are_overwritten() {
             "fragments-00002-smoke-in-a-box-v0.csv",
             "fragments-00003-smoke-in-a-box-v1.csv",
             "manifest.json",
-            "notes.txt"
         ]
     );
+}
+
+/// A name says nothing: what a manifest of ours does not list, with its length, is somebody else's.
+#[test]
+fn files_that_no_manifest_lists_are_never_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str| {
+        let before = contents(folder.path());
+        let message = write(folder.path(), Format::Csv, None, 1, 1000).unwrap_err();
+        has(&message.to_string(), &[name, "move that file away"]);
+        assert_eq!(contents(folder.path()), before);
+    };
+    for (name, text) in [
+        ("manifest.json", r#"{"name": "an app", "icons": []}"#),
+        ("manifest.json", "not even JSON"),
+        ("fragments-x.csv", "mine"),
+        (".partial-notes", "mine"),
+    ] {
+        let path = folder.path().join(name);
+        if name.starts_with('.') {
+            fs::create_dir(&path).unwrap();
+            fs::write(path.join("fragments-mine"), text).unwrap();
+        } else {
+            fs::write(&path, text).unwrap();
+        }
+        refused(name);
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+    }
+    // Beside a dataset of ours, and in place of one of its files.
+    write(folder.path(), Format::Csv, None, 1, 1000).unwrap();
+    for name in ["fragments-x.csv", "notes.txt"] {
+        fs::write(folder.path().join(name), "mine").unwrap();
+        refused(name);
+        fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    fs::write(folder.path().join(CSV), "mine").unwrap();
+    refused(CSV);
+    fs::remove_file(folder.path().join(CSV)).unwrap();
+    write(folder.path(), Format::Npy, None, 1, 1000).unwrap();
+}
+
+/// Killed while the files moved: the hidden folder's manifests say which files are a dataset's.
+#[test]
+fn a_writer_killed_while_it_moved_files_is_not_in_the_way() {
+    let folder = tempfile::tempdir().unwrap();
+    let (old, new) = (folder.path().join("old"), folder.path().join("new"));
+    write(&old, Format::Npy, None, 1, 1000).unwrap();
+    write(&new, Format::Csv, None, 1, 1000).unwrap();
+    let whole = contents(&new);
+    let dead = old.join(".partial-dead");
+    fs::create_dir(&dead).unwrap();
+    fs::write(dead.join("lock"), "").unwrap();
+    // The old manifest is away, some old files are gone, and one new file is there.
+    fs::rename(old.join("manifest.json"), dead.join("replaced.json")).unwrap();
+    fs::remove_file(old.join("fragments-00000-cups-v0.x.npy")).unwrap();
+    fs::copy(new.join(CSV), old.join(CSV)).unwrap();
+    fs::copy(new.join("manifest.json"), dead.join("manifest.json")).unwrap();
+    fs::copy(new.join(CSV), dead.join("fragments-00001-cups-v1.csv")).unwrap();
+    fs::write(old.join("fragments-mine"), "mine").unwrap();
+    let message = write(&old, Format::Csv, None, 1, 1000).unwrap_err();
+    has(&message.to_string(), &["fragments-mine"]);
+    fs::remove_file(old.join("fragments-mine")).unwrap();
+    write(&old, Format::Csv, None, 1, 1000).unwrap();
+    assert_eq!(contents(&old), whole);
+}
+
+/// Files are read by nobody whose hash was not compared before.
+#[test]
+fn every_reader_checks_the_hashes() {
+    for format in [Format::Csv, Format::Npy] {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = write(folder.path(), format, None, 1, 1000).unwrap();
+        // A value that its column allows.
+        let name = match format {
+            Format::Npy => &manifest.parts[2].files[Column::LinearDepth.index()].name,
+            _ => &manifest.parts[2].files[0].name,
+        };
+        let path = folder.path().join(name);
+        let mut bytes = fs::read(&path).unwrap();
+        let last = bytes.len() - if format == Format::Csv { 2 } else { 3 };
+        bytes[last] ^= 1;
+        fs::write(&path, bytes).unwrap();
+        let dataset = Dataset::open(folder.path()).unwrap();
+        let error = dataset.batches(100).find_map(Result::err).unwrap();
+        has(&error.to_string(), &[name, "sha256"]);
+        let error = dataset.read_columns(&[Column::LinearDepth]).unwrap_err();
+        has(&error.to_string(), &[name, "sha256"]);
+        let error = dataset.clone().batches_where(9, |p| p.index == 2).next();
+        assert!(error.unwrap().is_err());
+        // The other parts are whole.
+        let others = dataset.batches_where(100, |p| p.index != 2);
+        assert!({ others }.all(|batch| batch.is_ok()));
+    }
+}
+
+/// Numbers in files are promises: memory is taken for what is there. The old code asked for terabytes.
+#[test]
+fn absurd_counts_are_refused_before_memory_is_taken() {
+    let trillion = 1_000_000_000_000u64;
+    for format in Format::ALL {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = write(folder.path(), format, None, 1, 1000).unwrap();
+        let path = folder.path().join("manifest.json");
+        let mut more = manifest.clone();
+        more.rows += trillion - more.parts[0].rows;
+        more.parts[0].rows = trillion;
+        more.parts[0].row_groups = vec![trillion];
+        fs::write(&path, serde_json::to_vec(&more).unwrap()).unwrap();
+        let message = Dataset::open(folder.path())
+            .and_then(|dataset| dataset.read_columns(&Column::ALL).map(drop))
+            .unwrap_err()
+            .to_string();
+        has(&message, &["1000000000000"]);
+        let mut items = manifest.clone();
+        items.work_items = u32::MAX;
+        fs::write(&path, serde_json::to_vec(&items).unwrap()).unwrap();
+        let message = Dataset::open(folder.path()).unwrap_err().to_string();
+        has(
+            &message,
+            &["manifest.json", "4294967295 work items", "65536"],
+        );
+    }
+    let npy = "fragments-00000-cups-v0.x.npy";
+    let shape = changed(Format::Npy, npy, |mut bytes| {
+        let at = bytes.iter().position(|b| *b == b'(').unwrap();
+        bytes[at..at + 17].copy_from_slice(b"(1000000000000,)}");
+        bytes
+    });
+    has(&reading_fails(shape.path()), &[npy, "1000000000000 rows"]);
+    let length = changed(Format::Npy, npy, |mut bytes| {
+        bytes[6] = 3;
+        bytes[8..12].copy_from_slice(&u32::MAX.to_le_bytes());
+        bytes
+    });
+    has(
+        &reading_fails(length.path()),
+        &[npy, "4294967295 bytes", "4096"],
+    );
+    let line = changed(Format::Csv, CSV, |mut bytes| {
+        bytes.resize(1 << 20, b'1');
+        bytes
+    });
+    has(
+        &reading_fails(line.path()),
+        &[CSV, "a line has more than 65536"],
+    );
+    let parquet = "fragments-00000-cups-v0.parquet";
+    let footer = changed(Format::Parquet, parquet, |mut bytes| {
+        let end = bytes.len() - 8;
+        bytes[end..end + 4].copy_from_slice(&0x7fff_ffffu32.to_le_bytes());
+        bytes
+    });
+    has(
+        &reading_fails(footer.path()),
+        &[parquet, "2147483647 bytes"],
+    );
+    let writer = Header {
+        work_items: u32::MAX,
+        ..header(Format::Csv, None)
+    };
+    let out = tempfile::tempdir().unwrap();
+    let message = DatasetWriter::create(out.path(), writer).unwrap_err();
+    has(&message.to_string(), &["4294967295", "65536"]);
+}
+
+/// A pipe would wait for ever, a device never end.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_no_files_of_a_dataset() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("manifest.json");
+    std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+    has(
+        &Dataset::open(folder.path()).unwrap_err().to_string(),
+        &["manifest.json", "regular"],
+    );
+    fs::remove_file(&path).unwrap();
+    write(folder.path(), Format::Csv, None, 1, 1000).unwrap();
+    let mut manifest: Manifest = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    let empty = manifest.parts[3].files[0].clone();
+    let part = folder.path().join(&empty.name);
+    fs::remove_file(&part).unwrap();
+    let made = std::process::Command::new("mkfifo").arg(&part).status();
+    assert!(made.unwrap().success());
+    // The length of a pipe is 0, and no rows need no bytes.
+    manifest.format = Format::Parquet;
+    for part in &mut manifest.parts {
+        part.files[0].bytes = fs::metadata(folder.path().join(&part.files[0].name))
+            .unwrap()
+            .len();
+    }
+    fs::write(&path, serde_json::to_vec(&manifest).unwrap()).unwrap();
+    let dataset = Dataset::open(folder.path()).unwrap();
+    let error = dataset.batches_where(9, |p| p.index == 3).next().unwrap();
+    has(&error.unwrap_err().to_string(), &[&empty.name, "regular"]);
 }

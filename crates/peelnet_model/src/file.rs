@@ -14,6 +14,9 @@ use crate::error::{ModelError, Problem};
 use crate::metadata::{FORMAT_VERSION, Metadata};
 use crate::model::Model;
 
+/// Bytes of a model file that are read: the largest network that training makes has 16 MiB of weights.
+const MAX_BYTES: u64 = 1 << 26;
+
 /// The entry of the safetensors metadata that holds ours. It is the only one, because the format keeps its metadata
 /// in no particular order and the bytes must not vary.
 const KEY: &str = "peelnet";
@@ -203,7 +206,7 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
 }
 
 pub(crate) fn load(path: &Path) -> Result<Model, ModelError> {
-    let bytes = std::fs::read(path).map_err(|source| ModelError::Io {
+    let bytes = peelnet_files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
         path: path.to_owned(),
         action: "read the model",
         source,

@@ -366,3 +366,29 @@ fn nothing_is_written_that_could_not_be_read() {
     assert!(model().save(&taken).is_err());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
+
+/// A device never ends, a pipe would wait for ever, and no model is so large.
+#[cfg(unix)]
+#[test]
+fn only_regular_files_of_a_bounded_size_are_models() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let large = folder.path().join("large");
+    let file = std::fs::File::create(&large).unwrap();
+    // Sparse: takes no space.
+    file.set_len(1 << 40).unwrap();
+    for (path, word) in [
+        (std::path::Path::new("/dev/zero"), "regular"),
+        (&pipe, "regular"),
+        (&large, "at most 67108864"),
+    ] {
+        let error = Model::load(path).unwrap_err();
+        let source = std::error::Error::source(&error).map_or(String::new(), |e| e.to_string());
+        assert!(
+            format!("{error} {source}").contains(word),
+            "{error} {source}"
+        );
+    }
+}

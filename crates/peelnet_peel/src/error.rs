@@ -44,7 +44,7 @@ pub enum PeelError {
     #[error("{0} is not a fraction of the pixels: it must be above 0 and at most 1")]
     Fraction(f64),
     /// More synthetic lists than can be counted.
-    #[error("{0} synthetic lists are too many")]
+    #[error("{0} synthetic lists are too many: at most {most}", most = crate::synthetic::MAX_LISTS)]
     TooManyLists(u64),
     /// Stopped from outside before the end; nothing was left behind.
     #[error("interrupted: nothing was written; run the command again")]

@@ -1,6 +1,7 @@
 //! Work items: which views of which scenes are peeled, and in which order they are numbered.
 
 use crate::PeelError;
+use peelnet_dataset::{DatasetError, MAX_WORK_ITEMS};
 use peelnet_scene::Scene;
 
 /// How many views of each scene are taken.
@@ -29,9 +30,10 @@ pub struct Item {
 /// All items of a dataset: scene by scene, copy by copy, view by view.
 ///
 /// # Errors
-/// A scene without views, or with fewer than asked for; two scenes of one name.
+/// A scene without views, or with fewer than asked for; two scenes of one name; more items than a dataset can have.
 pub fn items(scenes: &[Scene], views: Views, augment: u32) -> Result<Vec<Item>, PeelError> {
     let mut all = Vec::new();
+    let mut count = 0;
     for (i, scene) in scenes.iter().enumerate() {
         if let Some(other) = scenes[..i].iter().find(|s| s.name == scene.name) {
             return Err(PeelError::SameName {
@@ -52,6 +54,11 @@ pub fn items(scenes: &[Scene], views: Views, augment: u32) -> Result<Vec<Item>, 
                 });
             }
         };
+        // Before memory is taken for them.
+        count += (u64::from(augment) + 1) * u64::from(taken);
+        if count > u64::from(MAX_WORK_ITEMS) {
+            return Err(DatasetError::TooManyItems { items: count }.into());
+        }
         for copy in 0..=augment {
             for view in 0..taken {
                 all.push(Item {
@@ -64,4 +71,23 @@ pub fn items(scenes: &[Scene], views: Views, augment: u32) -> Result<Vec<Item>, 
         }
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    /// The old code took memory for 4,294,967,296 items, or wrapped their number around.
+    #[test]
+    fn more_items_than_a_dataset_can_have_are_refused_with_the_limit() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/cups.toml");
+        let scene = Scene::load(file).unwrap();
+        let all = items(std::slice::from_ref(&scene), Views::All, 9).unwrap();
+        assert_eq!(all.len(), 10 * scene.views.len());
+        let error = items(&[scene], Views::All, u32::MAX)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("at most 65536"), "{error}");
+    }
 }

@@ -12,7 +12,8 @@ use crate::{
 };
 use peelnet_core::random::Random;
 use peelnet_dataset::{
-    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo, SceneEntry,
+    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, MAX_WORK_ITEMS, PartCounts, PartInfo,
+    SceneEntry,
 };
 use std::{
     path::PathBuf,
@@ -22,6 +23,8 @@ use std::{
 
 /// Lists of one world.
 pub const PIXELS: u64 = 32 * 32;
+/// Lists of one dataset.
+pub const MAX_LISTS: u64 = PIXELS * MAX_WORK_ITEMS as u64;
 /// Most fragments of one list.
 const MOST: usize = 160;
 /// The scene's name in the dataset.
@@ -185,8 +188,10 @@ pub fn synthetic(
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
     let start = Instant::now();
-    let worlds = u32::try_from(options.lists.div_ceil(PIXELS))
-        .map_err(|_| PeelError::TooManyLists(options.lists))?;
+    if options.lists > MAX_LISTS {
+        return Err(PeelError::TooManyLists(options.lists));
+    }
+    let worlds = options.lists.div_ceil(PIXELS) as u32;
     let writer = DatasetWriter::create(
         &options.out,
         Header {
@@ -292,7 +297,27 @@ fn tile(world: &World, lists: u64, random: &mut Random) -> (RawTile, [f32; 2]) {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
+
+    #[test]
+    fn more_lists_than_a_dataset_can_hold_are_refused_with_the_limit() {
+        let folder = std::env::temp_dir().join("peelnet-never-made");
+        let options = SyntheticOptions {
+            out: folder.clone(),
+            lists: MAX_LISTS + 1,
+            format: Format::Csv,
+            seed: 1,
+            command: String::new(),
+        };
+        let refused = synthetic(&options, &AtomicBool::new(false), &mut |_| {});
+        let text = refused.map(drop).unwrap_err().to_string();
+        assert!(
+            text.contains("67108865") && text.contains("at most 67108864"),
+            "{text}"
+        );
+        assert!(!folder.exists());
+    }
 
     /// Worlds differ widely, and each of their lists is a valid pixel.
     #[test]

@@ -3,6 +3,9 @@ use peelnet_eval::Machine;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::Path;
 
+/// Bytes of a results file that are read: a hundred thousand rows have half of it.
+const MAX_BYTES: u64 = 1 << 28;
+
 /// A finished measurement: what was measured, with which command, and on which machine, which names the version of peelnet as well.
 ///
 /// Its JSON is one object: `machine`, `command`, and the fields of `measured` beside them.
@@ -62,7 +65,7 @@ impl<T: DeserializeOwned> Results<T> {
     /// # Errors
     /// A file that cannot be read, or that holds something else.
     pub fn read(path: &Path) -> Result<Self, ReportError> {
-        let bytes = std::fs::read(path).map_err(|source| ReportError::Io {
+        let bytes = peelnet_files::read(path, MAX_BYTES).map_err(|source| ReportError::Io {
             path: path.to_owned(),
             action: "read",
             source,

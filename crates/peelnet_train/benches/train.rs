@@ -19,6 +19,7 @@ fn rows() -> TrainingData {
         weights: None,
         pixels: None,
         subsets: None,
+        used: None,
         dataset: None,
     }
 }

@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         weights: None,
         pixels: None,
         subsets: None,
+        used: None,
         dataset: None,
     };
     let config = Config {

@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use peelnet_files::Kind;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 
-use crate::config::{Config, Schedule};
+use crate::config::{Config, MAX_EPOCHS, Schedule};
 use crate::error::TrainError;
 use crate::files;
 use crate::report::EpochReport;
@@ -15,9 +16,22 @@ use crate::report::EpochReport;
 const VERSION: u32 = 2;
 const KEY: &str = "peelnet_training_state";
 
-/// `out/net.safetensors` → `out/net.checkpoint`.
+/// The files of a checkpoint's folder, and by what they are known.
+pub const FILES: [(&str, Kind); 3] = [
+    (
+        "state.safetensors",
+        Kind {
+            name: "the state of a training",
+            is: |head| head.windows(KEY.len()).any(|w| w == KEY.as_bytes()),
+        },
+    ),
+    ("best.safetensors", peelnet_model::KIND),
+    ("last.safetensors", peelnet_model::KIND),
+];
+
+/// `out/net.safetensors` → `out/net.safetensors.checkpoint`.
 pub fn folder(out: &Path) -> PathBuf {
-    out.with_extension("checkpoint")
+    files::beside(out, "checkpoint")
 }
 
 /// The file of a folder that holds the state.
@@ -49,6 +63,11 @@ struct Header {
 
 /// Columns of the history tensor; losses as 64-bit floats, because text would round them.
 const HISTORY: usize = 4;
+
+/// No state of a network with so many parameters has more bytes: four tensors of them, the history, and a header.
+const fn most_bytes(parameters: usize) -> u64 {
+    16 * parameters as u64 + 8 * HISTORY as u64 * MAX_EPOCHS as u64 + (1 << 20)
+}
 
 impl State {
     pub(crate) fn save(
@@ -135,7 +154,7 @@ impl State {
         files::write(&path, &bytes)
     }
 
-    /// Loads the state of a run with this configuration and these rows; none when the folder has no state.
+    /// Loads the state of a run with this configuration and these rows.
     ///
     /// `epochs` and `patience` may differ from the saved ones when the schedule does not depend on the number of epochs.
     pub(crate) fn load(
@@ -143,15 +162,17 @@ impl State {
         config: &Config,
         data: &str,
         parameters: usize,
-    ) -> Result<Option<Self>, TrainError> {
+    ) -> Result<Self, TrainError> {
         let path = state_file(folder);
-        let bytes = match std::fs::read(&path) {
+        let bytes = match peelnet_files::read(&path, most_bytes(parameters)) {
             Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+                let problem = "there is no such file, so there is nothing to resume".to_owned();
+                return Err(TrainError::Checkpoint { path, problem });
+            }
             Err(error) => return Err(TrainError::Io { path, error }),
         };
         Self::parse(&bytes, config, data, parameters)
-            .map(Some)
             .map_err(|problem| TrainError::Checkpoint { path, problem })
     }
 
@@ -199,7 +220,7 @@ impl State {
                 .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
                 .collect())
         };
-        let mut history = Vec::with_capacity(header.epochs);
+        let mut history = Vec::new();
         if header.epochs > 0 {
             let tensor = tensors.tensor("history").map_err(|e| damaged(&e))?;
             if tensor.dtype() != Dtype::F64 || tensor.shape() != [header.epochs, HISTORY] {

@@ -44,6 +44,14 @@ pub struct Config {
     pub validation: f64,
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
+    /// Rows of the datasets that are used at most: of more, whole pixels are drawn, see [`TrainingData::used`].
+    ///
+    /// [`TrainingData::used`]: crate::TrainingData::used
+    #[serde(
+        default = "default_max_rows",
+        skip_serializing_if = "is_default_max_rows"
+    )]
+    pub max_rows: u64,
     /// What recipes that learn from whole pixels minimise.
     #[serde(default, skip_serializing_if = "is_default")]
     pub loss: PixelLoss,
@@ -81,12 +89,50 @@ impl Schedule {
     }
 }
 
+/// Rows that take about 4 GiB while the largest recipe trains.
+pub const DEFAULT_MAX_ROWS: u64 = 1 << 25;
+
+const fn default_max_rows() -> u64 {
+    DEFAULT_MAX_ROWS
+}
+
+/// Left out of saved configurations, as the choice of loss.
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+const fn is_default_max_rows(rows: &u64) -> bool {
+    *rows == DEFAULT_MAX_ROWS
+}
+
 /// Left out of saved configurations: those of versions without a choice of loss read the same.
 fn is_default(loss: &PixelLoss) -> bool {
     *loss == PixelLoss::default()
 }
 
+/// Passes of one run: the loss of each is kept.
+pub(crate) const MAX_EPOCHS: u32 = 1_000_000;
+/// Examples of a step.
+const MAX_BATCH: usize = 1 << 24;
+/// Numbers of the gradients of all chunks of a batch.
+const MAX_GRADIENTS: u64 = 1 << 28;
+/// Indices of rows have 31 bits.
+const MAX_ROWS: u64 = i32::MAX as u64;
+/// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
+const MAX_PARAMETERS: u64 = 1 << 22;
+
 impl Config {
+    /// Weights and biases of the network; widths are checked.
+    fn parameters(&self) -> u64 {
+        let inputs = self.recipe.inputs.about().len();
+        let widths = std::iter::once(inputs).chain(self.hidden.iter().copied());
+        let after = self.hidden.iter().copied();
+        widths
+            .zip(after.chain([self.recipe.output.count()]))
+            .map(|(from, to)| (from as u64 + 1) * to as u64)
+            .sum()
+    }
+
     /// The settings that a recipe declares, and the defaults of Adam.
     pub fn for_recipe(recipe: Recipe) -> Self {
         let (network, budget) = (recipe.network, recipe.budget);
@@ -109,6 +155,7 @@ impl Config {
             held_out: budget.held_out,
             validation: budget.validation,
             patience: None,
+            max_rows: DEFAULT_MAX_ROWS,
             loss: recipe.loss.unwrap_or_default(),
         }
     }
@@ -123,17 +170,39 @@ impl Config {
                 hint,
             })
         };
-        if self.epochs == 0 {
-            return bad("epochs", "0".into(), "give at least 1");
+        if !(1..=MAX_EPOCHS).contains(&self.epochs) {
+            return bad("epochs", self.epochs.to_string(), "give 1 to 1,000,000");
         }
-        if self.batch == 0 {
-            return bad("batch", "0".into(), "give at least 1");
+        if !(1..=MAX_BATCH).contains(&self.batch) {
+            return bad("batch", self.batch.to_string(), "give 1 to 16,777,216");
         }
         if self.chunk == 0 {
             return bad("chunk", "0".into(), "give at least 1");
         }
         if let Some(width) = self.hidden.iter().find(|&&w| w == 0 || w > 4096) {
             return bad("hidden", width.to_string(), "give widths from 1 to 4096");
+        }
+        if self.parameters() > MAX_PARAMETERS {
+            return bad(
+                "hidden",
+                format!("{:?}", self.hidden),
+                "give widths with at most 4,194,304 weights in all",
+            );
+        }
+        let chunks = self.batch.div_ceil(self.chunk) as u64;
+        if chunks * self.parameters() > MAX_GRADIENTS {
+            return bad(
+                "batch",
+                self.batch.to_string(),
+                "give less for this network: every chunk of a batch has a gradient, 1 GiB in all at most",
+            );
+        }
+        if !(1..=MAX_ROWS).contains(&self.max_rows) {
+            return bad(
+                "max_rows",
+                self.max_rows.to_string(),
+                "give 1 to 2147483647",
+            );
         }
         if !(self.learning_rate.is_finite() && self.learning_rate > 0.0) {
             return bad(
@@ -210,9 +279,19 @@ mod tests {
         let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 9] = [
+        let spoiled: [(&str, Spoil); 16] = [
             ("epochs", |c| c.epochs = 0),
+            ("1,000,000", |c| c.epochs = u32::MAX),
             ("batch", |c| c.batch = 0),
+            ("16,777,216", |c| c.batch = u32::MAX as usize),
+            ("1 GiB", |c| {
+                c.hidden = vec![1024, 1024];
+                c.batch = 1 << 24;
+            }),
+            ("max_rows", |c| c.max_rows = 0),
+            ("2147483647", |c| c.max_rows = u64::MAX),
+            ("1 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
+            ("4,194,304", |c| c.hidden = vec![4096; 1000]),
             ("chunk", |c| c.chunk = 0),
             ("hidden", |c| c.hidden = vec![3, 0]),
             ("learning_rate", |c| c.learning_rate = f64::NAN),

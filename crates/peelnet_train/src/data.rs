@@ -1,16 +1,18 @@
 //! From datasets to columns.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use peelnet_core::features::Feature;
 use peelnet_core::methods::deep::Row;
-use peelnet_dataset::{Column, Dataset, FragmentBatch, Split, Subset};
+use peelnet_dataset::{Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{DatasetRef, Inputs, Model};
 
 use crate::config::Config;
 use crate::error::TrainError;
 use crate::pixels::{self, View};
-use crate::training_data::TrainingData;
+use crate::sample::Sample;
+use crate::training_data::{TrainingData, UsedRows};
 
 impl TrainingData {
     /// The rows of all scenes that are not held out, dataset after dataset.
@@ -22,31 +24,35 @@ impl TrainingData {
     /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
         let split = Split::new(config.seed, config.validation, config.held_out)?;
+        let parts: Vec<(&Dataset, &Part)> = datasets
+            .iter()
+            .flat_map(|dataset| dataset.manifest().parts.iter().map(move |p| (dataset, p)))
+            .filter(|(dataset, part)| !dataset.is_held_out(part))
+            .collect();
+        let total = parts
+            .iter()
+            .map(|(_, p)| p.rows)
+            .fold(0, u64::saturating_add);
+        let mut sample = Sample::new(config.seed, config.max_rows, total);
+        let views = parts.iter().filter(|(_, part)| part.rows > 0);
+        let views = views.map(|&(dataset, part)| View::Stored(dataset, part));
         let mut data = match config.recipe.inputs {
-            Inputs::Row(features) => rows(features, &split, datasets)?,
-            _ => pixels::gather(
-                config.recipe,
-                &split,
-                datasets.iter().flat_map(|dataset| {
-                    let ours = dataset.manifest().parts.iter();
-                    ours.filter(|part| !dataset.is_held_out(part) && part.rows > 0)
-                        .map(|part| View::Stored(dataset, part))
-                }),
-            )?,
+            Inputs::Row(features) => rows(features, &split, &mut sample, views)?,
+            _ => pixels::gather(config.recipe, &split, &mut sample, views)?,
         };
+        data.used = Some(UsedRows {
+            used: sample.kept()?,
+            of: total,
+        });
         let paths: Vec<String> = datasets
             .iter()
             .map(|d| d.path().display().to_string())
             .collect();
         data.source = paths.join(", ");
         let hashes: Vec<&str> = datasets.iter().map(Dataset::hash).collect();
-        let rows = datasets.iter().flat_map(|d| {
-            let ours = d.manifest().parts.iter();
-            ours.filter(|part| !d.is_held_out(part)).map(|p| p.rows)
-        });
         data.dataset = Some(DatasetRef {
             hash: hashes.join("+"),
-            rows: rows.sum(),
+            rows: total,
             scenes: pixels::training_scenes(datasets).into_iter().collect(),
         });
         data.check_split(config);
@@ -70,26 +76,11 @@ impl TrainingData {
         for batch in batches {
             batch.check()?;
         }
+        let views = batches.chunk_by(|a, b| a.view.first() == b.view.first());
+        let views = views.map(View::Held);
         let mut data = match config.recipe.inputs {
-            Inputs::Row(features) => {
-                let mut data = Self::of_rows(features);
-                for b in batches {
-                    let floats = [&b.linear_depth, &b.alpha_sum, &b.transmittance];
-                    let integers = [&b.fragment_count, &b.view, &b.x, &b.y];
-                    append(
-                        &mut data,
-                        features,
-                        &split,
-                        floats.map(Vec::as_slice),
-                        integers.map(Vec::as_slice),
-                    );
-                }
-                data
-            }
-            _ => {
-                let views = batches.chunk_by(|a, b| a.view.first() == b.view.first());
-                pixels::gather(config.recipe, &split, views.map(View::Held))?
-            }
+            Inputs::Row(features) => rows(features, &split, &mut Sample::all(), views)?,
+            _ => pixels::gather(config.recipe, &split, &mut Sample::all(), views)?,
         };
         data.source = source.to_owned();
         data.check_split(config);
@@ -116,62 +107,59 @@ impl TrainingData {
             weights: None,
             pixels: None,
             subsets: Some(Vec::new()),
+            used: None,
             dataset: None,
         }
     }
 }
 
 /// Every row is an example with its transmittance as the target.
-fn rows(
+fn rows<'a>(
     features: &[&Feature<Row>],
     split: &Split,
-    datasets: &[Dataset],
+    sample: &mut Sample,
+    views: impl IntoIterator<Item = View<'a>>,
 ) -> Result<TrainingData, TrainError> {
-    const COLUMNS: [Column; 7] = [
-        Column::LinearDepth,
-        Column::AlphaSum,
-        Column::Transmittance,
-        Column::FragmentCount,
-        Column::View,
-        Column::X,
-        Column::Y,
-    ];
-    let mut all = TrainingData::of_rows(features);
-    for dataset in datasets {
-        let data = dataset.read_columns_where(&COLUMNS, |part| !dataset.is_held_out(part))?;
-        append(
-            &mut all,
-            features,
-            split,
-            [0, 1, 2].map(|k| data[k].as_f32().unwrap_or_default()),
-            [3, 4, 5, 6].map(|k| data[k].as_u32().unwrap_or_default()),
-        );
+    let mut data = TrainingData::of_rows(features);
+    for view in views {
+        sample.begin(view.rows());
+        view.for_each_batch(|batch| {
+            for pixel in batch.pixels() {
+                let (view, x, y) = (
+                    batch.view[pixel.start],
+                    batch.x[pixel.start],
+                    batch.y[pixel.start],
+                );
+                if sample.keep([x, y], pixel.len()) {
+                    append(&mut data, features, split.pixel(view, x, y), batch, pixel);
+                }
+            }
+        })?;
     }
-    Ok(all)
+    Ok(data)
 }
 
-/// Appends rows as examples.
+/// Appends the rows of a pixel as examples.
 fn append(
     data: &mut TrainingData,
     features: &[&Feature<Row>],
-    split: &Split,
-    [linear_depth, alpha_sum, transmittance]: [&[f32]; 3],
-    [count, view, x, y]: [&[u32]; 4],
+    subset: Subset,
+    batch: &FragmentBatch,
+    pixel: Range<usize>,
 ) {
-    for i in 0..transmittance.len() {
+    for i in pixel.clone() {
         let row = Row {
-            linear_depth: linear_depth[i],
-            alpha_sum: alpha_sum[i],
+            linear_depth: batch.linear_depth[i],
+            alpha_sum: batch.alpha_sum[i],
             // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
-            fragment_count: count[i] as f32,
+            fragment_count: batch.fragment_count[i] as f32,
         };
         for (column, feature) in data.inputs.iter_mut().zip(features) {
             column.push((feature.value)(&row) as f32);
         }
-        let subset = split.pixel(view[i], x[i], y[i]);
         data.subsets.iter_mut().for_each(|all| all.push(subset));
     }
-    data.targets[0].extend_from_slice(transmittance);
+    data.targets[0].extend_from_slice(&batch.transmittance[pixel]);
 }
 
 /// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records. Empty for a

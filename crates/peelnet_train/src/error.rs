@@ -51,6 +51,12 @@ pub enum TrainError {
         /// What the system says.
         error: std::io::Error,
     },
+    /// Another training has the lock of the same model file.
+    #[error("{}: another training writes to this file and its checkpoint; wait for it to end, or write to another file", out.display())]
+    Busy {
+        /// The model file.
+        out: PathBuf,
+    },
     /// Threads could not be started.
     #[error("threads could not be started: {0}")]
     Threads(String),

@@ -1,6 +1,6 @@
-//! Whole files or none.
+//! Whole files or none, and the names of a run's files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::TrainError;
 
@@ -10,4 +10,12 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), TrainError> {
         path: path.to_owned(),
         error,
     })
+}
+
+/// `<out>.<ending>`. The ending is appended: `exp-0.5` and `exp-0.7` must not share a name.
+pub(crate) fn beside(out: &Path, ending: &str) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push(".");
+    name.push(ending);
+    name.into()
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use burn::tensor::{Device, Int, Tensor, TensorData};
+use burn::tensor::{Device, Tensor, TensorData};
 
 use crate::network::Network;
 use crate::normalise::Normalisation;
@@ -29,53 +29,55 @@ impl Columns {
         device: &Device,
     ) -> Self {
         let n = rows.len();
-        let inputs: Vec<f32> = normalisation
-            .iter()
-            .zip(&data.inputs)
-            .flat_map(|(normalisation, values)| normalisation.apply(values, rows))
-            .collect();
-        let pick = |values: &Vec<f32>| -> Vec<f32> {
-            rows.iter().map(|&row| values[row as usize]).collect()
+        let mut inputs = Vec::with_capacity(n * normalisation.len());
+        for (normalisation, values) in normalisation.iter().zip(&data.inputs) {
+            normalisation.append(values, rows, &mut inputs);
+        }
+        let mut target = Vec::with_capacity(n * data.targets.len());
+        let at = |values: &[f32], to: &mut Vec<f32>| {
+            to.extend(rows.iter().map(|&row| values[row as usize]));
         };
-        let target: Vec<f32> = data.targets.iter().flat_map(pick).collect();
+        data.targets.iter().for_each(|t| at(t, &mut target));
+        let weight = data.weights.as_ref().map(|w| {
+            let mut picked = Vec::with_capacity(n);
+            at(w, &mut picked);
+            picked
+        });
         let upload = |values: Vec<f32>, columns: usize| {
             Tensor::from_data(TensorData::new(values, [columns, n]), device)
         };
         Self {
             inputs: upload(inputs, normalisation.len()),
             target: upload(target, data.targets.len()),
-            weight: data.weights.as_ref().map(|w| upload(pick(w), 1)),
+            weight: weight.map(|w| upload(w, 1)),
             rows: n,
         }
     }
 }
 
-/// Rows as examples, squared error as loss.
-pub(crate) struct FragmentMse {
-    original: Columns,
+/// Rows as examples, squared error as loss. The training rows are on the device in the order of the epoch only.
+pub(crate) struct FragmentMse<'a> {
+    data: &'a TrainingData,
+    normalisation: &'a [Normalisation],
+    train: &'a [u32],
     shuffled: Columns,
     validation: Columns,
     test: Columns,
     device: Device,
 }
 
-impl FragmentMse {
+impl<'a> FragmentMse<'a> {
     pub(crate) fn new(
-        data: &TrainingData,
-        normalisation: &[Normalisation],
-        split: &Split,
+        data: &'a TrainingData,
+        normalisation: &'a [Normalisation],
+        split: &'a Split,
         device: &Device,
     ) -> Self {
-        let original = Columns::new(data, normalisation, &split.train, device);
-        let shuffled = Columns {
-            inputs: original.inputs.clone(),
-            target: original.target.clone(),
-            weight: original.weight.clone(),
-            rows: original.rows,
-        };
         Self {
-            original,
-            shuffled,
+            data,
+            normalisation,
+            train: &split.train,
+            shuffled: Columns::new(data, normalisation, &[], device),
             validation: Columns::new(data, normalisation, &split.validation, device),
             test: Columns::new(data, normalisation, &split.test, device),
             device: device.clone(),
@@ -83,23 +85,22 @@ impl FragmentMse {
     }
 }
 
-impl Task for FragmentMse {
+impl Task for FragmentMse<'_> {
     fn examples(&self, part: Part) -> usize {
         match part {
-            Part::Train => self.original.rows,
+            Part::Train => self.train.len(),
             Part::Validation => self.validation.rows,
             Part::Test => self.test.rows,
         }
     }
 
     fn shuffle(&mut self, order: &[u32]) {
-        // Row counts fit in 31 bits: checked with the data.
-        let indices: Vec<i32> = order.iter().map(|&i| i as i32).collect();
-        let indices =
-            Tensor::<1, Int>::from_data(TensorData::new(indices, [order.len()]), &self.device);
-        self.shuffled.inputs = self.original.inputs.clone().select(1, indices.clone());
-        self.shuffled.weight = (self.original.weight.clone()).map(|w| w.select(1, indices.clone()));
-        self.shuffled.target = self.original.target.clone().select(1, indices);
+        let columns =
+            |rows: &[u32]| Columns::new(self.data, self.normalisation, rows, &self.device);
+        // The old order's tensors go before the new one's come.
+        self.shuffled = columns(&[]);
+        let rows: Vec<u32> = order.iter().map(|&i| self.train[i as usize]).collect();
+        self.shuffled = columns(&rows);
     }
 
     fn loss_sum(&self, network: &Network, part: Part, range: Range<usize>) -> Tensor<1> {

@@ -28,6 +28,12 @@
 //!   a single bit of the result.
 //! - The loss stays on the device until the epoch ends.
 //!
+//! # Memory
+//!
+//! Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
+//! epoch. Of a dataset with more than [`Config::max_rows`] rows, whole pixels are drawn from the seed, the same share of every view, and
+//! [`TrainingData::used`] says how many rows are used. With the default, a training takes about 4 GiB at most, however large the dataset.
+//!
 //! # Same seed, same weights
 //!
 //! All randomness comes from [`Config::seed`] through [`peelnet_core::random`], whose numbers a test
@@ -50,9 +56,10 @@
 //!
 //! # Files
 //!
-//! For `out/net.safetensors` the folder `out/net.checkpoint/` holds `state.safetensors` (everything a resumed run
+//! For `out/net.safetensors` the folder `out/net.safetensors.checkpoint/` holds `state.safetensors` (everything a resumed run
 //! needs) and two model files, `last.safetensors` and `best.safetensors` (lowest held-out error so far). It stays after
-//! a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole.
+//! a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole. As long as a run
+//! lasts, `out/net.safetensors.lock` is locked, so that a second run cannot write to the same files; see [`OutputLock`].
 
 mod adam;
 mod checkpoint;
@@ -63,11 +70,13 @@ mod device;
 mod error;
 mod files;
 mod fragment_mse;
+mod lock;
 mod network;
 mod normalise;
 mod pixel_share;
 mod pixels;
 mod report;
+mod sample;
 mod split;
 mod streams;
 mod task;
@@ -75,15 +84,16 @@ mod team;
 mod train;
 mod training_data;
 
-pub use checkpoint::folder as checkpoint_folder;
-pub use config::{Config, Schedule};
+pub use checkpoint::{FILES as CHECKPOINT_FILES, folder as checkpoint_folder};
+pub use config::{Config, DEFAULT_MAX_ROWS, Schedule};
 pub use curve::{CurveFormat, curve_chart, write_curve};
 pub use data::held_out_errors;
 pub use device::Compute;
 pub use error::TrainError;
+pub use lock::OutputLock;
 pub use network::{Network, Shape};
 pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};
 pub use task::{Part, Task};
 pub use train::{RunOptions, train};
-pub use training_data::{PixelColumns, PixelFixed, TrainingData};
+pub use training_data::{PixelColumns, PixelFixed, TrainingData, UsedRows};

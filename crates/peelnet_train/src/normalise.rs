@@ -38,14 +38,22 @@ impl Normalisation {
         }
     }
 
-    /// The values at `rows`, normalised exactly as evaluation does it; zero for a constant column.
-    pub(crate) fn apply(self, values: &[f32], rows: &[u32]) -> Vec<f32> {
+    /// Appends the values at `rows`, normalised exactly as evaluation does it; zero for a constant column.
+    pub(crate) fn append(self, values: &[f32], rows: &[u32], to: &mut Vec<f32>) {
+        let normalised = |&row: &u32| (values[row as usize] - self.offset) * self.scale;
         if self.constant {
-            return vec![0.0; rows.len()];
+            to.resize(to.len() + rows.len(), 0.0);
+        } else {
+            to.extend(rows.iter().map(normalised));
         }
-        rows.iter()
-            .map(|&row| (values[row as usize] - self.offset) * self.scale)
-            .collect()
+    }
+
+    /// The values at `rows`, normalised.
+    #[cfg(test)]
+    fn apply(self, values: &[f32], rows: &[u32]) -> Vec<f32> {
+        let mut to = Vec::new();
+        self.append(values, rows, &mut to);
+        to
     }
 }
 

@@ -21,188 +21,159 @@ use peelnet_model::PixelLoss;
 /// Columns of a pixel: [`PixelFixed`], then its weight.
 const FIXED: usize = 9;
 
-/// Some pixels, on the device and as the numbers that they are made from.
-struct Pixels {
-    /// First row of each pixel, and the number of rows.
-    first: Vec<u32>,
-    /// `[inputs, absorbance of the rest, α, exact contribution, colour][rows]`
-    columns: Vec<Vec<f32>>,
-    /// `[FIXED][pixels]`
-    fixed: Vec<Vec<f32>>,
-    tensors: Tensors,
+/// What the numbers of pixels are made from.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    data: &'a TrainingData,
+    pixels: &'a PixelColumns,
+    normalisation: &'a [Normalisation],
 }
 
+/// Some pixels on the device.
 struct Tensors {
-    /// `[columns, rows]`
+    /// `[inputs, absorbance of the rest, α, exact contribution, colour][rows]`
     rows: Tensor<2>,
     /// `[FIXED, pixels]`
     fixed: Tensor<2>,
     /// The pixel of each row, `[rows]`.
     pixel: Tensor<1, Int>,
+    /// First row of each pixel, and the number of rows.
     first: Vec<u32>,
 }
 
-fn upload(columns: &[Vec<f32>], device: &Device) -> Tensor<2> {
-    let n = columns.first().map_or(0, Vec::len);
-    Tensor::from_data(
-        TensorData::new(columns.concat(), [columns.len(), n]),
-        device,
-    )
-}
-
-impl Pixels {
-    fn new(
-        data: &TrainingData,
-        pixels: &PixelColumns,
-        normalisation: &[Normalisation],
-        examples: &[u32],
-        device: &Device,
-    ) -> Self {
-        let rows: Vec<u32> = examples
-            .iter()
-            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
-            .collect();
-        let at =
-            |values: &[f32]| -> Vec<f32> { rows.iter().map(|&r| values[r as usize]).collect() };
-        let weights = data.weights.as_deref();
-        let weight = |p: u32| weights.map_or(1.0, |w| w[p as usize]);
-        let mut columns: Vec<Vec<f32>> = normalisation
-            .iter()
-            .zip(&data.inputs)
-            .map(|(n, values)| n.apply(values, &rows))
-            .collect();
-        columns.push(at(&pixels.rest));
-        columns.push(at(&pixels.alpha));
-        columns.push(at(&data.targets[0]));
-        columns.extend(pixels.color.iter().map(|c| at(c)));
-        let mut first = Vec::with_capacity(examples.len() + 1);
-        let mut row = 0;
-        for &p in examples {
-            first.push(row);
-            row += pixels.rows(p as usize, data.rows()).len() as u32;
+impl Tensors {
+    /// These pixels of the source, in this order.
+    fn new(source: Source<'_>, order: &[u32], device: &Device) -> Self {
+        let Source {
+            data,
+            pixels,
+            normalisation,
+        } = source;
+        let of = |p: u32| pixels.rows(p as usize, data.rows());
+        let n: usize = order.iter().map(|&p| of(p).len()).sum();
+        let mut first = Vec::with_capacity(order.len() + 1);
+        let mut pixel = Vec::with_capacity(n);
+        let mut rows = Vec::with_capacity(n);
+        for (i, &p) in order.iter().enumerate() {
+            first.push(rows.len() as u32);
+            rows.extend(of(p));
+            pixel.resize(rows.len(), i as i32);
         }
-        first.push(row);
-        let mut fixed = vec![Vec::new(); FIXED];
-        for &p in examples {
-            let f = &pixels.fixed[p as usize];
+        first.push(rows.len() as u32);
+        let [red, green, blue] = &pixels.color;
+        let known = [
+            &pixels.rest,
+            &pixels.alpha,
+            &data.targets[0],
+            red,
+            green,
+            blue,
+        ];
+        let count = normalisation.len() + known.len();
+        let mut columns = Vec::with_capacity(count * n);
+        for (normalisation, values) in normalisation.iter().zip(&data.inputs) {
+            normalisation.append(values, &rows, &mut columns);
+        }
+        for values in known {
+            columns.extend(rows.iter().map(|&row| values[row as usize]));
+        }
+        drop(rows);
+        Self {
+            rows: Tensor::from_data(TensorData::new(columns, [count, n]), device),
+            fixed: Self::fixed(source, order, device),
+            pixel: Tensor::from_data(TensorData::new(pixel, [n]), device),
+            first,
+        }
+    }
+
+    /// [`PixelFixed`](crate::PixelFixed) and the weight of each pixel.
+    fn fixed(source: Source<'_>, order: &[u32], device: &Device) -> Tensor<2> {
+        let n = order.len();
+        let weights = source.data.weights.as_deref();
+        let mut fixed = vec![0.0; FIXED * n];
+        for (i, &p) in order.iter().enumerate() {
+            let f = &source.pixels.fixed[p as usize];
             let [r, g, b] = f.color;
             let [er, eg, eb] = f.exact;
-            let values = [f.left, f.sum, r, g, b, er, eg, eb, weight(p)];
-            for (column, value) in fixed.iter_mut().zip(values) {
-                column.push(value);
+            let weight = weights.map_or(1.0, |w| w[p as usize]);
+            let values = [f.left, f.sum, r, g, b, er, eg, eb, weight];
+            for (column, value) in values.into_iter().enumerate() {
+                fixed[column * n + i] = value;
             }
         }
-        let order: Vec<u32> = (0..examples.len() as u32).collect();
-        let tensors = Tensors::new(&first, &columns, &fixed, &order, device);
-        Self {
-            first,
-            columns,
-            fixed,
-            tensors,
-        }
+        Tensor::from_data(TensorData::new(fixed, [FIXED, n]), device)
     }
 }
 
-impl Tensors {
-    /// The pixels in the given order.
-    fn new(
-        first: &[u32],
-        columns: &[Vec<f32>],
-        fixed: &[Vec<f32>],
-        order: &[u32],
-        device: &Device,
-    ) -> Self {
-        let rows = columns.first().map_or(0, Vec::len);
-        let mut starts = Vec::with_capacity(order.len() + 1);
-        let mut pixel = Vec::with_capacity(rows);
-        let mut from = Vec::with_capacity(rows);
-        for (i, &p) in order.iter().enumerate() {
-            starts.push(from.len() as u32);
-            let range = first[p as usize]..first[p as usize + 1];
-            pixel.resize(pixel.len() + range.len(), i as i32);
-            from.extend(range);
-        }
-        starts.push(from.len() as u32);
-        let pick = |values: &Vec<f32>, at: &[u32]| -> Vec<f32> {
-            at.iter().map(|&i| values[i as usize]).collect()
-        };
-        let columns: Vec<Vec<f32>> = columns.iter().map(|c| pick(c, &from)).collect();
-        let fixed: Vec<Vec<f32>> = fixed.iter().map(|c| pick(c, order)).collect();
-        Self {
-            rows: upload(&columns, device),
-            fixed: upload(&fixed, device),
-            pixel: Tensor::from_data(TensorData::new(pixel, [rows]), device),
-            first: starts,
-        }
-    }
-}
-
-/// Pixels as examples.
-pub(crate) struct PixelShare {
-    train: Pixels,
-    validation: Pixels,
-    test: Pixels,
-    inputs: usize,
+/// Pixels as examples. Those of a part are on the device only, the training ones in the order of the epoch.
+pub(crate) struct PixelShare<'a> {
+    source: Source<'a>,
+    examples: [&'a [u32]; 3],
+    /// By part.
+    tensors: [Tensors; 3],
     loss: PixelLoss,
     device: Device,
 }
 
-impl PixelShare {
-    /// `parts`: the examples of each part.
+impl<'a> PixelShare<'a> {
+    /// `examples`: those of each part.
     pub(crate) fn new(
-        data: &TrainingData,
-        pixels: &PixelColumns,
-        normalisation: &[Normalisation],
-        parts: [&[u32]; 3],
+        data: &'a TrainingData,
+        pixels: &'a PixelColumns,
+        normalisation: &'a [Normalisation],
+        examples: [&'a [u32]; 3],
         loss: PixelLoss,
         device: &Device,
     ) -> Self {
-        let [train, validation, test] =
-            parts.map(|part| Pixels::new(data, pixels, normalisation, part, device));
+        let source = Source {
+            data,
+            pixels,
+            normalisation,
+        };
+        let [_, validation, test] = examples;
         Self {
-            train,
-            validation,
-            test,
-            inputs: normalisation.len(),
+            source,
+            examples,
+            // The training pixels come with the first order.
+            tensors: [&[], validation, test].map(|part| Tensors::new(source, part, device)),
             loss,
             device: device.clone(),
         }
     }
+}
 
-    fn part(&self, part: Part) -> &Pixels {
-        match part {
-            Part::Train => &self.train,
-            Part::Validation => &self.validation,
-            Part::Test => &self.test,
-        }
+const fn index(part: Part) -> usize {
+    match part {
+        Part::Train => 0,
+        Part::Validation => 1,
+        Part::Test => 2,
     }
 }
 
-impl Task for PixelShare {
+impl Task for PixelShare<'_> {
     fn examples(&self, part: Part) -> usize {
-        self.part(part).first.len() - 1
+        self.examples[index(part)].len()
     }
 
     fn shuffle(&mut self, order: &[u32]) {
-        let Pixels {
-            first,
-            columns,
-            fixed,
-            ..
-        } = &self.train;
-        self.train.tensors = Tensors::new(first, columns, fixed, order, &self.device);
+        // The old order's tensors go before the new one's come.
+        self.tensors[0] = Tensors::new(self.source, &[], &self.device);
+        let train = self.examples[0];
+        let order: Vec<u32> = order.iter().map(|&i| train[i as usize]).collect();
+        self.tensors[0] = Tensors::new(self.source, &order, &self.device);
     }
 
     fn loss_sum(&self, network: &Network, part: Part, range: Range<usize>) -> Tensor<1> {
-        let t = &self.part(part).tensors;
+        let t = &self.tensors[index(part)];
+        let inputs = self.source.normalisation.len();
         let (from, to) = (t.first[range.start] as usize, t.first[range.end] as usize);
         let rows = t.rows.clone().narrow(1, from, to - from);
-        let row = |k: usize| rows.clone().narrow(0, self.inputs + k, 1);
+        let row = |k: usize| rows.clone().narrow(0, inputs + k, 1);
         let fixed = t.fixed.clone().narrow(1, range.start, range.len());
         let column = |k: usize| fixed.clone().narrow(0, k, 1);
         let pixel = t.pixel.clone().narrow(0, from, to - from) - range.start as i32;
 
-        let share = network.forward(rows.clone().narrow(0, 0, self.inputs));
+        let share = network.forward(rows.clone().narrow(0, 0, inputs));
         let through = (row(0) * share).neg().exp();
         let contribution = row(1) * through.clone();
         let squares =
@@ -231,7 +202,7 @@ impl Task for PixelShare {
             .select_assign(
                 1,
                 pixel,
-                rows.narrow(0, self.inputs + 3, 3) * error.clone(),
+                rows.narrow(0, inputs + 3, 3) * error.clone(),
                 IndexingUpdateOp::Add,
             );
         (column(8) * (image.clone() * image)).sum() * (1.0 / 3.0)

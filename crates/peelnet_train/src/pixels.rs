@@ -12,6 +12,7 @@ use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
 
 use crate::error::TrainError;
+use crate::sample::Sample;
 use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
 
 /// Rows that are read at once.
@@ -68,12 +69,13 @@ impl View<'_> {
         let none = [f32::MAX, f32::MIN_POSITIVE];
         let [near, far] = match self {
             Self::Stored(dataset, part) => {
-                let columns = dataset
-                    .read_columns_where(&[Column::LinearDepth], |p| p.index == part.index)?;
-                range(
-                    none,
-                    columns.first().and_then(|c| c.as_f32()).unwrap_or_default(),
-                )
+                let mut known = none;
+                dataset.read_pieces(
+                    &[Column::LinearDepth],
+                    |p| p.index == part.index,
+                    |piece| known = range(known, &piece.linear_depth),
+                )?;
+                known
             }
             Self::Held(batches) => batches
                 .iter()
@@ -87,19 +89,31 @@ impl View<'_> {
         self,
         mut each: impl FnMut([u32; 3], &Pixel<'_>),
     ) -> Result<(), TrainError> {
+        self.for_each_batch(|batch| pixels_of(batch, &mut each))
+    }
+
+    /// Calls `each` with batches of whole pixels.
+    pub(crate) fn for_each_batch(
+        self,
+        mut each: impl FnMut(&FragmentBatch),
+    ) -> Result<(), TrainError> {
         match self {
             Self::Stored(dataset, part) => {
                 for batch in dataset.batches_where(ROWS_AT_A_TIME, |p| p.index == part.index) {
-                    pixels_of(&batch?, &mut each);
+                    each(&batch?);
                 }
             }
-            Self::Held(batches) => {
-                for batch in batches {
-                    pixels_of(batch, &mut each);
-                }
-            }
+            Self::Held(batches) => batches.iter().for_each(each),
         }
         Ok(())
+    }
+
+    /// Number of rows.
+    pub(crate) fn rows(self) -> u64 {
+        match self {
+            Self::Stored(_, part) => part.rows,
+            Self::Held(batches) => batches.iter().map(|b| b.len() as u64).sum(),
+        }
     }
 }
 
@@ -171,6 +185,7 @@ struct Gathered {
 pub(crate) fn gather<'a>(
     recipe: Recipe,
     split: &Split,
+    sample: &mut Sample,
     views: impl IntoIterator<Item = View<'a>>,
 ) -> Result<TrainingData, TrainError> {
     let mut data = TrainingData {
@@ -180,6 +195,7 @@ pub(crate) fn gather<'a>(
         weights: Some(Vec::new()),
         pixels: recipe.loss.map(|_| PixelColumns::default()),
         subsets: Some(Vec::new()),
+        used: None,
         dataset: None,
     };
     let mut all = Vec::new();
@@ -189,7 +205,11 @@ pub(crate) fn gather<'a>(
             first: data.weights.as_ref().map_or(0, Vec::len),
             ..Default::default()
         };
+        sample.begin(view.rows());
         view.for_each_pixel(|[view, x, y], pixel| {
+            if !sample.keep([x, y], pixel.points.len()) {
+                return;
+            }
             gathered.hardness += hardness(pixel, &warp);
             gathered.pixels += 1;
             let subset = split.pixel(view, x, y);

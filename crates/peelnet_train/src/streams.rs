@@ -9,6 +9,8 @@ pub(crate) enum Stream {
     Split,
     /// The order of rows in an epoch.
     Order(u32),
+    /// Whether a pixel is used: its view, and its place in it.
+    Sample(u64, u64),
 }
 
 impl Stream {
@@ -18,6 +20,7 @@ impl Stream {
             Self::Weights => (1, 0),
             Self::Split => (2, 0),
             Self::Order(epoch) => (3, u64::from(epoch)),
+            Self::Sample(view, place) => return Random::new(seed, &[4, view, place]),
         };
         Random::new(seed, &[kind, index])
     }

@@ -15,6 +15,7 @@ use crate::curve::{CurveFormat, write_curve};
 use crate::device::Compute;
 use crate::error::TrainError;
 use crate::fragment_mse::FragmentMse;
+use crate::lock::OutputLock;
 use crate::network::Shape;
 use crate::normalise::Normalisation;
 use crate::pixel_share::PixelShare;
@@ -30,8 +31,7 @@ use crate::training_data::TrainingData;
 pub struct RunOptions<'a> {
     /// The model file to write. The checkpoint folder lies beside it.
     pub out: PathBuf,
-    /// Continue from the checkpoint folder. Without a checkpoint the run starts from the beginning, so that a script
-    /// can always ask for it.
+    /// Continue from the checkpoint folder, which must be there.
     pub resume: bool,
     /// Loss curves to write, by ending .csv or .svg.
     pub loss_curve: Vec<PathBuf>,
@@ -41,6 +41,8 @@ pub struct RunOptions<'a> {
     pub threads: Option<NonZeroUsize>,
     /// Where to compute.
     pub compute: Compute,
+    /// The lock of [`RunOptions::out`], where the caller holds it longer than the run. Without it the run takes it.
+    pub lock: Option<&'a OutputLock>,
 }
 
 impl<'a> RunOptions<'a> {
@@ -53,6 +55,7 @@ impl<'a> RunOptions<'a> {
             stop,
             threads: None,
             compute: Compute::default(),
+            lock: None,
         }
     }
 }
@@ -65,8 +68,8 @@ const SAVE_EVERY: Duration = Duration::from_secs(5);
 /// `on_epoch` is called after every epoch.
 ///
 /// # Errors
-/// Settings out of range, columns that do not fit, files that cannot be written, a checkpoint that belongs to another
-/// run, or [`TrainError::Diverged`] when a loss or a weight is no longer finite. Being asked to stop is not an error:
+/// Settings out of range, columns that do not fit, files that cannot be written or that another run writes, a checkpoint that belongs to
+/// another run, or [`TrainError::Diverged`] when a loss or a weight is no longer finite. Being asked to stop is not an error:
 /// see [`End::Interrupted`].
 pub fn train(
     config: &Config,
@@ -87,24 +90,17 @@ pub fn train(
         }
     }
     data.check(config.recipe)?;
+    let _lock = match options.lock {
+        Some(_) => None,
+        None => Some(OutputLock::take(&options.out)?),
+    };
     let split = match &data.subsets {
         Some(subsets) => Split::of(subsets),
         None => Split::random(data.examples() as u32, config.held_out, config.seed),
     };
-    let pixel_rows: Option<Vec<u32>> = data.pixels.as_ref().map(|pixels| {
-        let examples = split.train.iter();
-        examples
-            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
-            .collect()
-    });
-    let training_rows = pixel_rows.as_ref().unwrap_or(&split.train);
-    let normalisation: Vec<Normalisation> = data
-        .inputs
-        .iter()
-        .map(|values| Normalisation::over(values, training_rows))
-        .collect();
+    let normalisation = normalisation(data, &split);
     let device = options.compute.device();
-    let mut task: Box<dyn Task> = match &data.pixels {
+    let mut task: Box<dyn Task + '_> = match &data.pixels {
         Some(pixels) => Box::new(PixelShare::new(
             data,
             pixels,
@@ -130,6 +126,19 @@ pub fn train(
         folder: checkpoint::folder(&options.out),
     };
     run.go(task.as_mut(), on_epoch)
+}
+
+/// Over the training rows.
+fn normalisation(data: &TrainingData, split: &Split) -> Vec<Normalisation> {
+    let pixel_rows: Option<Vec<u32>> = data.pixels.as_ref().map(|pixels| {
+        let examples = split.train.iter();
+        examples
+            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
+            .collect()
+    });
+    let rows = pixel_rows.as_ref().unwrap_or(&split.train);
+    let over = |values: &Vec<f32>| Normalisation::over(values, rows);
+    data.inputs.iter().map(over).collect()
 }
 
 fn shape(config: &Config) -> Shape {
@@ -215,14 +224,13 @@ impl Run<'_> {
 
     /// The state that a run starts from: the checkpoint's, with the epoch that it was saved after, or a new one.
     fn start(&self) -> Result<(Progress, Option<u32>), TrainError> {
-        if self.options.resume
-            && let Some(state) = State::load(
+        if self.options.resume {
+            let state = State::load(
                 &self.folder,
                 self.config,
                 &self.fingerprint,
                 self.shape.parameters(),
-            )?
-        {
+            )?;
             let epoch = state.history.len() as u32;
             return Ok((self.restore(state), Some(epoch)));
         }

@@ -25,8 +25,19 @@ pub struct TrainingData {
     /// The subset of each example. Without it, [`Config::held_out`](crate::Config::held_out) of them are drawn from the
     /// seed for testing.
     pub subsets: Option<Vec<Subset>>,
+    /// How many of a dataset's rows these examples are made of; none where they were in memory before.
+    pub used: Option<UsedRows>,
     /// Recorded in the model file.
     pub dataset: Option<DatasetRef>,
+}
+
+/// How many rows of datasets a training uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UsedRows {
+    /// Rows of the pixels that are used.
+    pub used: u64,
+    /// Rows of all scenes that may be trained on.
+    pub of: u64,
 }
 
 /// What whole pixels have beside their rows. A row is a fragment that the network is asked about.
@@ -124,7 +135,7 @@ impl TrainingData {
         }
         if self.rows() > i32::MAX as usize {
             return columns(format!(
-                "{} rows are more than the {} that one training run can hold; extract a smaller fraction of the pixels",
+                "{} rows are more than the {} that one training run can hold; use fewer",
                 self.rows(),
                 i32::MAX
             ));

@@ -227,3 +227,75 @@ fn batches_in_memory_train_as_their_dataset() {
     let config = Config::for_recipe(Recipe::MEDIUM);
     assert!(TrainingData::from_batches(&config, "rows", &[broken]).is_err());
 }
+
+/// Of more rows than may be held, whole pixels are drawn: of every view its share, and the same ones for the same seed.
+#[test]
+fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = (0..8).map(|k| scene(&format!("s{k}"), k == 3)).collect();
+    let dataset = write_views(&folder.path().join("rows"), scenes, |index| {
+        stacks(index, 6)
+    });
+    let datasets = std::slice::from_ref(&dataset);
+    let of = 7 * 6 * u64::from(SIDE * SIDE);
+    for recipe in [Recipe::THESIS, Recipe::LARGE, Recipe::NMT, Recipe::DFAOIT] {
+        let draw = |seed, max_rows| {
+            let config = Config {
+                seed,
+                max_rows,
+                ..Config::for_recipe(recipe)
+            };
+            TrainingData::from_datasets(&config, datasets)
+        };
+        let whole = draw(1, of).unwrap();
+        let used = whole.used.unwrap();
+        assert_eq!((used.used, used.of), (of, of), "{recipe}");
+        let part = draw(1, of / 4).unwrap();
+        let used = part.used.unwrap();
+        assert!(
+            used.used <= of / 4 && used.used > of / 5 && used.of == of,
+            "{used:?}"
+        );
+        assert_eq!(used.used % 6, 0, "whole pixels");
+        let share = part.examples() as f64 / whole.examples() as f64;
+        assert!(
+            (share - used.used as f64 / of as f64).abs() < 1e-9,
+            "{recipe}: {share}"
+        );
+        assert_eq!(part.inputs, draw(1, of / 4).unwrap().inputs);
+        assert_ne!(part.inputs, draw(2, of / 4).unwrap().inputs);
+        let none = draw(1, 5).unwrap_err().to_string();
+        assert!(
+            none.contains("max_rows") && none.contains("whole pixel"),
+            "{none}"
+        );
+    }
+}
+
+/// Values that are allowed but were changed after the dataset was written neither train nor judge.
+#[test]
+fn files_that_were_changed_are_refused_in_training_and_judging() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rows");
+    let scenes = vec![scene("cups", false), scene("panes", true)];
+    let dataset = write(&path, scenes);
+    let model = peelnet_model::Model::shipped(Recipe::THESIS).unwrap();
+    held_out_errors(&model, std::slice::from_ref(&dataset)).unwrap();
+    for part in [0, 1] {
+        let name = &dataset.manifest().parts[part].files[1].name;
+        let mut bytes = std::fs::read(path.join(name)).unwrap();
+        // The lowest bit of the last depth.
+        let at = bytes.len() - 4;
+        bytes[at] ^= 1;
+        std::fs::write(path.join(name), bytes).unwrap();
+        let changed = [Dataset::open(&path).unwrap()];
+        let error = if part == 0 {
+            let config = Config::for_recipe(Recipe::THESIS);
+            TrainingData::from_datasets(&config, &changed).unwrap_err()
+        } else {
+            held_out_errors(&model, &changed).unwrap_err()
+        };
+        let text = error.to_string();
+        assert!(text.contains("sha256") && text.contains(name), "{text}");
+    }
+}

@@ -9,7 +9,8 @@ use std::time::Duration;
 use peelnet_dataset::Subset;
 use peelnet_model::{Model, Recipe};
 use peelnet_train::{
-    Config, End, RunOptions, Schedule, TrainError, TrainingData, checkpoint_folder, train,
+    Config, End, OutputLock, RunOptions, Schedule, TrainError, TrainingData, checkpoint_folder,
+    train,
 };
 
 /// Rows like those of a scene with one α for all: T falls with depth and with the sum of alphas.
@@ -21,6 +22,7 @@ fn rows(n: usize) -> TrainingData {
         weights: None,
         pixels: None,
         subsets: None,
+        used: None,
         dataset: None,
     };
     for i in 0..n {
@@ -229,7 +231,7 @@ fn a_run_interrupted_within_an_epoch_resumes_to_the_same_bytes() {
     for attempt in 0..1000 {
         let stop = AtomicBool::new(false);
         let options = RunOptions {
-            resume: true,
+            resume: checkpoint_folder(&out).exists(),
             ..RunOptions::new(&out, &stop)
         };
         let outcome = std::thread::scope(|scope| {
@@ -333,15 +335,23 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
 }
 
 #[test]
-fn resuming_without_a_checkpoint_starts_from_the_beginning() {
+fn resuming_without_a_checkpoint_is_an_error_that_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let stop = AtomicBool::new(false);
     let options = RunOptions {
         resume: true,
         ..RunOptions::new(folder.path().join("net.safetensors"), &stop)
     };
-    let outcome = train(&config(), &rows(200), &options, |_| {}).unwrap();
-    assert_eq!((outcome.end, outcome.resumed_from), (End::Finished, None));
+    let refused = train(&config(), &rows(200), &options, |_| {
+        panic!("no epoch may run")
+    });
+    let text = refused.unwrap_err().to_string();
+    let file = "net.safetensors.checkpoint";
+    assert!(
+        text.contains(file) && text.contains("no such file"),
+        "{text}"
+    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]
@@ -509,6 +519,56 @@ fn few_equal_and_constant_rows_train_to_something_finite() {
     assert!((near - far).abs() < 1e-4 * near, "{near} against {far}");
 }
 
+/// Endings are appended to the whole name: what follows the last dot of `exp-0.5` is part of it.
+#[test]
+fn models_with_dots_in_their_names_have_checkpoints_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let outs = ["exp-0.5", "exp-0.7"].map(|name| folder.path().join(name));
+    let models = outs.each_ref().map(|out| {
+        let outcome = run(&config(), &rows(200), out).unwrap();
+        assert_eq!(outcome.checkpoint, checkpoint_folder(out));
+        std::fs::read(outcome.checkpoint.join("last.safetensors")).unwrap()
+    });
+    assert_eq!(models[0], models[1]);
+    assert!(
+        folder
+            .path()
+            .join("exp-0.5.checkpoint/state.safetensors")
+            .is_file()
+    );
+    assert!(
+        folder
+            .path()
+            .join("exp-0.7.checkpoint/state.safetensors")
+            .is_file()
+    );
+    // Locks are gone.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
+}
+
+#[test]
+fn two_trainings_of_one_output_exclude_one_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("net.safetensors");
+    let stop = AtomicBool::new(false);
+    let mut refused = 0;
+    train(&config(), &rows(200), &RunOptions::new(&out, &stop), |_| {
+        let e = run(&config(), &rows(200), &out).unwrap_err();
+        assert!(matches!(&e, TrainError::Busy { .. }), "{e}");
+        refused += 1;
+    })
+    .unwrap();
+    assert_eq!(refused, config().epochs);
+    run(&config(), &rows(200), &out).unwrap();
+    // A caller that holds the lock longer than the run.
+    let lock = OutputLock::take(&out).unwrap();
+    let options = RunOptions {
+        lock: Some(&lock),
+        ..RunOptions::new(&out, &stop)
+    };
+    train(&config(), &rows(200), &options, |_| {}).unwrap();
+}
+
 #[test]
 fn places_that_cannot_be_written_are_refused_before_training() {
     let folder = tempfile::tempdir().unwrap();
@@ -525,7 +585,7 @@ fn places_that_cannot_be_written_are_refused_before_training() {
     };
     refuse(
         RunOptions::new(file.join("net.safetensors"), &stop),
-        "file/net.checkpoint",
+        "file/net.safetensors.lock",
     );
     refuse(
         RunOptions::new(folder.path(), &stop),

@@ -2,14 +2,15 @@
 
 use super::Context;
 use crate::cli::TrainArgs;
-use crate::failure::{Failure, one_line};
+use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use crate::progress::{Bar, thousands};
 use peelnet_dataset::Dataset;
-use peelnet_files::printable;
+use peelnet_files::{Destination, Unfinished, destination, printable};
 use peelnet_train::{
-    Config, CurveFormat, End, Outcome, RunOptions, TrainError, TrainingData, held_out_errors, train,
+    CHECKPOINT_FILES, Config, CurveFormat, End, Outcome, OutputLock, RunOptions, TrainingData,
+    UsedRows, checkpoint_folder, held_out_errors, train,
 };
 use serde_json::json;
 use std::path::Path;
@@ -18,8 +19,29 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     let config = config(args)?;
     let mut outputs = Outputs::new(context, &args.datasets);
     outputs.file("--out", &args.out, peelnet_model::KIND)?;
+    // A training needs a file beside which its state lies, also where the model goes to stdout or a device.
+    let is_file = matches!(destination(&args.out), Ok(Destination::File(_)));
+    if args.resume && !is_file {
+        return Err(Failure::Usage(format!(
+            "--resume: {} is no file, so no state lies beside it",
+            shown(&args.out)
+        )));
+    }
+    let scratch = if is_file {
+        outputs.folder("--out", &checkpoint_folder(&args.out), CHECKPOINT_FILES)?;
+        None
+    } else {
+        let folder = tempfile::tempdir()
+            .map_err(|e| Failure::Failed(format!("cannot create a temporary folder: {e}")))?;
+        let unfinished = Unfinished::new(folder.path());
+        Some((folder, unfinished))
+    };
+    let out = scratch
+        .as_ref()
+        .map(|(folder, _)| folder.path().join("model.safetensors"));
+    let out = out.as_deref().unwrap_or(&args.out);
     for path in &args.loss_curve {
-        let format = CurveFormat::of(path).map_err(usage)?;
+        let format = CurveFormat::of(path)?;
         outputs.file("--loss-curve", path, format.kind())?;
     }
     let datasets = args
@@ -28,10 +50,13 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
         .map(Dataset::open)
         .collect::<Result<Vec<_>, _>>()?;
     outputs.announce();
-    let mut options = RunOptions::new(&args.out, context.stop);
+    let mut options = RunOptions::new(out, context.stop);
     options.resume = args.resume;
     options.loss_curve = args.loss_curve.clone();
     let outcome = fit(context, &config, &datasets, &options)?;
+    if !is_file {
+        outcome.model.save(&args.out)?;
+    }
     context.console.result(
         || text(&args.out, &outcome),
         || {
@@ -48,6 +73,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
                 "resumed_from": outcome.resumed_from,
                 "losses": meta.losses,
                 "held_out": meta.held_out,
+                "max_rows": args.max_rows,
                 "rows": meta.dataset.as_ref().map(|d| d.rows),
                 "dataset": meta.dataset.as_ref().map(|d| &d.hash),
                 "seed": meta.seed,
@@ -57,11 +83,6 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
             })
         },
     )
-}
-
-/// An error that the flags cause.
-fn usage(error: TrainError) -> Failure {
-    Failure::Usage(one_line(&error))
 }
 
 /// The recipe's settings with those of the flags.
@@ -74,7 +95,8 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.hidden = args.hidden.clone().unwrap_or(config.hidden);
     config.patience = args.patience.or(config.patience);
     config.loss = args.loss;
-    config.check().map_err(usage)?;
+    config.max_rows = args.max_rows;
+    config.check()?;
     Ok(config)
 }
 
@@ -85,7 +107,21 @@ pub(super) fn fit(
     datasets: &[Dataset],
     options: &RunOptions<'_>,
 ) -> Result<Outcome, Failure> {
+    // Until the model has all of its metadata; before the rows are read, because that can take minutes.
+    let lock = OutputLock::take(&options.out)?;
+    let options = &RunOptions {
+        lock: Some(&lock),
+        ..options.clone()
+    };
     let data = TrainingData::from_datasets(config, datasets)?;
+    if let Some(UsedRows { used, of }) = data.used.filter(|rows| rows.used < rows.of) {
+        context.console.warn(format!(
+            "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows)",
+            thousands(used),
+            thousands(of),
+            thousands(config.max_rows)
+        ));
+    }
     context.console.message(format!(
         "training recipe {} on {} rows of {}, {} epochs",
         config.recipe,
@@ -121,7 +157,13 @@ pub(super) fn fit(
     if let Some(from) = outcome.resumed_from {
         context
             .console
-            .message(format!("continued after epoch {from}"));
+            .message(if outcome.history.len() as u32 == from {
+                format!(
+                    "the training had already finished after epoch {from}: nothing was left to do"
+                )
+            } else {
+                format!("continued after epoch {from}")
+            });
     }
     let held_out = held_out_errors(&outcome.model, datasets)?;
     if !held_out.is_empty() {

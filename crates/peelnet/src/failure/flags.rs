@@ -31,6 +31,10 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<&'static str> {
 
 /// Whether the cause is a wrong value on the command line.
 pub(super) fn are_wrong(error: &(dyn Error + 'static)) -> bool {
+    let setting = |error: &TrainError| match error {
+        TrainError::Config { .. } | TrainError::CurveFormat(_) => Some(()),
+        _ => None,
+    };
     let wrong = |error: &PeelError| match error {
         PeelError::NoScene
         | PeelError::SameName { .. }
@@ -39,7 +43,9 @@ pub(super) fn are_wrong(error: &(dyn Error + 'static)) -> bool {
         | PeelError::TooManyLists(_) => Some(()),
         _ => None,
     };
-    find(error, wrong).is_some()
+    find(error, wrong)
+        .or_else(|| find(error, setting))
+        .is_some()
 }
 
 /// What `of` finds in an error of its type. Sources in a box are seen as the box.
@@ -96,6 +102,15 @@ fn train(error: &TrainError) -> Option<&'static str> {
     match error {
         TrainError::Checkpoint { .. } => Some("leave out --resume to start again"),
         TrainError::Dataset(error) => dataset(error),
+        TrainError::Config { setting, .. } => match *setting {
+            "epochs" => Some("set it with --epochs"),
+            "batch" => Some("set it with --batch"),
+            "hidden" => Some("set it with --hidden"),
+            "learning_rate" => Some("set it with --lr"),
+            "patience" => Some("set it with --patience"),
+            "loss" => Some("set it with --loss"),
+            _ => None,
+        },
         _ => None,
     }
 }

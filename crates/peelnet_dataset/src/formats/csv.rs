@@ -5,7 +5,7 @@
 //! small table from bits to text, and the groups of columns that change together keep their whole text.
 
 use std::fs::File;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -294,20 +294,52 @@ impl PixelTexts {
     }
 }
 
+/// Bytes that are read at once.
+const BUFFER: usize = 1 << 18;
+
 /// Reads a part from CSV.
 pub(super) struct CsvSource {
     path: PathBuf,
-    reader: csv::Reader<File>,
+    reader: csv::Reader<Lines>,
     record: csv::ByteRecord,
     columns: Vec<Column>,
+}
+
+/// Bytes of a line that are read: the reader keeps a whole line in memory.
+const MAX_LINE: usize = 1 << 16;
+
+/// A file that ends with an error where a line does not end.
+struct Lines {
+    file: File,
+    /// Bytes since the last line's end.
+    line: usize,
+}
+
+impl Read for Lines {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        let n = self.file.read(bytes)?;
+        self.line = match bytes[..n].iter().rposition(|b| *b == b'\n') {
+            Some(end) => n - 1 - end,
+            None => self.line + n,
+        };
+        // A piece that is read can hold the end of a line that is allowed.
+        if self.line > MAX_LINE + BUFFER {
+            return Err(std::io::Error::new(
+                std::io::ErrorKind::InvalidData,
+                format!("a line has more than {MAX_LINE} bytes"),
+            ));
+        }
+        Ok(n)
+    }
 }
 
 impl CsvSource {
     pub(super) fn open(files: &[PathBuf], columns: &[Column]) -> Result<Self, DatasetError> {
         let path = files[0].clone();
-        let file = File::open(&path).map_err(DatasetError::io(&path, "open"))?;
+        let file = peelnet_files::open(&path).map_err(DatasetError::io(&path, "open"))?;
+        let file = Lines { file, line: 0 };
         let mut reader = csv::ReaderBuilder::new()
-            .buffer_capacity(1 << 18)
+            .buffer_capacity(BUFFER)
             .from_reader(file);
         let header: Vec<String> = reader
             .byte_headers()
@@ -396,7 +428,7 @@ impl PartSource for CsvSource {
                         &self.path,
                         format!(
                             "line {line}, column {column}: {:?} is not a number of type {}; fix the line or write the dataset again",
-                            String::from_utf8_lossy(field),
+                            peelnet_files::printable(&String::from_utf8_lossy(field)),
                             match column.kind() {
                                 crate::ColumnKind::F32 => "f32",
                                 crate::ColumnKind::U32 => "u32",

@@ -6,7 +6,7 @@
 //! multiple of 64 bytes, it has one length for all numbers of rows.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead as _, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use ndarray_npy::npy::header::{Header, Layout};
@@ -21,6 +21,9 @@ use crate::manifest::FileEntry;
 
 /// Bytes that are gathered before they are written.
 const BUFFER: usize = 1 << 18;
+
+/// Bytes of a header that are read. NumPy's and ours have 128.
+const MAX_HEADER: u32 = 1 << 12;
 
 /// The type descriptor of a column: little-endian on every machine, so that the bytes are the same.
 const fn descriptor(kind: ColumnKind) -> &'static str {
@@ -215,10 +218,35 @@ impl NpySource {
     }
 }
 
+/// Refuses a header of an absurd length before memory is taken for it.
+fn check_header(path: &Path, file: &mut BufReader<File>) -> Result<(), DatasetError> {
+    let start = file.fill_buf().map_err(DatasetError::io(path, "read"))?;
+    let length = match start {
+        // Magic string, version, length: of 16 bits in version 1, of 32 in later ones.
+        [_, _, _, _, _, _, 1, _, a, b, ..] => u32::from(u16::from_le_bytes([*a, *b])),
+        [_, _, _, _, _, _, _, _, a, b, c, d, ..] => u32::from_le_bytes([*a, *b, *c, *d]),
+        _ => 0,
+    };
+    if length > MAX_HEADER {
+        return Err(DatasetError::format(
+            path,
+            format!(
+                "not an NPY file: a header of {length} bytes, and at most {MAX_HEADER} are read"
+            ),
+        ));
+    }
+    Ok(())
+}
+
 impl OpenColumn {
     fn open(path: &Path, column: Column) -> Result<Self, DatasetError> {
-        let file = File::open(path).map_err(DatasetError::io(path, "open"))?;
+        let file = peelnet_files::open(path).map_err(DatasetError::io(path, "open"))?;
+        let length = file
+            .metadata()
+            .map_err(DatasetError::io(path, "read"))?
+            .len();
         let mut file = BufReader::with_capacity(BUFFER, file);
+        check_header(path, &mut file)?;
         let header = Header::from_reader(&mut file)
             .map_err(|e| DatasetError::format(path, format!("not an NPY file: {e}")))?;
         let found = header.type_descriptor.to_string();
@@ -238,6 +266,15 @@ impl OpenColumn {
                 ),
             ));
         };
+        let promised = (rows as u64).checked_mul(4);
+        if promised.is_none_or(|bytes| bytes > length) {
+            return Err(DatasetError::format(
+                path,
+                format!(
+                    "the header says {rows} rows, which {length} bytes cannot hold; write the dataset again"
+                ),
+            ));
+        }
         Ok(Self {
             column,
             path: path.to_owned(),

@@ -5,6 +5,7 @@
 //! several threads, and appended in order, so that the threads do not change the bytes.
 
 use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -247,7 +248,8 @@ pub(super) struct ParquetSource {
 impl ParquetSource {
     pub(super) fn open(files: &[PathBuf], columns: &[Column]) -> Result<Self, DatasetError> {
         let path = files[0].clone();
-        let file = File::open(&path).map_err(DatasetError::io(&path, "open"))?;
+        let mut file = peelnet_files::open(&path).map_err(DatasetError::io(&path, "open"))?;
+        check_footer(&path, &mut file)?;
         let file = SerializedFileReader::new(file).map_err(|e| read_error(&path, &e))?;
         let found = file.metadata().file_metadata().schema_descr().columns();
         let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
@@ -301,6 +303,29 @@ impl ParquetSource {
         self.next_group += 1;
         Ok(true)
     }
+}
+
+/// Bytes of a footer that are read: enough for 10¹⁰ rows. Its lists take a hundred times that in memory.
+const MAX_FOOTER: u32 = 1 << 24;
+
+/// Refuses a footer of an absurd length before memory is taken for it.
+fn check_footer(path: &Path, file: &mut File) -> Result<(), DatasetError> {
+    let mut end = [0; 8];
+    let read = file
+        .seek(SeekFrom::End(-8))
+        .and_then(|_| file.read_exact(&mut end))
+        .and_then(|()| file.rewind());
+    // A file without the eight bytes is the reader's to refuse.
+    let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]);
+    if read.is_ok() && length > MAX_FOOTER {
+        return Err(DatasetError::format(
+            path,
+            format!(
+                "not a readable Parquet file: a footer of {length} bytes, and at most {MAX_FOOTER} are read; write the dataset again"
+            ),
+        ));
+    }
+    Ok(())
 }
 
 /// Every column's pages must lie inside the file: the reader takes their places from the footer, and panics where they are negative.

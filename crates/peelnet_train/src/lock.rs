@@ -1,0 +1,147 @@
+//! One training at a time writes to a model file and its checkpoint folder.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use peelnet_files::Unfinished;
+
+use crate::error::TrainError;
+use crate::files::beside;
+
+/// Held by a training as long as it may write to its model file: a second one with the same file is refused.
+///
+/// It is a lock of the operating system on `<out>.lock`, so it ends with the process, however that ends. The file is removed when this
+/// is dropped; one that was left behind is not locked and not in the way.
+#[derive(Debug)]
+pub struct OutputLock {
+    path: PathBuf,
+    _file: File,
+    _unfinished: Unfinished,
+}
+
+impl OutputLock {
+    /// Takes the lock of a model file.
+    ///
+    /// # Errors
+    /// [`TrainError::Busy`] where another training holds it, or a folder that cannot be written.
+    pub fn take(out: &Path) -> Result<Self, TrainError> {
+        let path = beside(out, "lock");
+        let failed = |error| TrainError::Io {
+            path: path.clone(),
+            error,
+        };
+        std::fs::create_dir_all(peelnet_files::folder_of(&path)).map_err(failed)?;
+        loop {
+            let file = OpenOptions::new()
+                .write(true)
+                .create(true)
+                .truncate(false)
+                .open(&path)
+                .map_err(failed)?;
+            // Ours are empty, and would be removed.
+            if file.metadata().map_err(failed)?.len() > 0 {
+                return Err(failed(io::Error::new(
+                    io::ErrorKind::AlreadyExists,
+                    "a file that is not peelnet's has the name of the lock; choose another name for the model",
+                )));
+            }
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    return Err(TrainError::Busy {
+                        out: out.to_owned(),
+                    });
+                }
+                Err(TryLockError::Error(error)) => return Err(failed(error)),
+            }
+            // Between opening and locking, its owner can have removed the file: then the name is free for others.
+            if is_at(&file, &path).map_err(failed)? {
+                return Ok(Self {
+                    _unfinished: Unfinished::new(&path),
+                    path,
+                    _file: file,
+                });
+            }
+        }
+    }
+}
+
+impl Drop for OutputLock {
+    fn drop(&mut self) {
+        // While it is still locked. A file that stays is not in the way.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+/// Whether an open file is the one of this name.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt as _;
+    let open = file.metadata()?;
+    match std::fs::symlink_metadata(path) {
+        Ok(named) => Ok((open.dev(), open.ino()) == (named.dev(), named.ino())),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(e) => Err(e),
+    }
+}
+
+/// Elsewhere a file that is open keeps its name.
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> io::Result<bool> {
+    path.try_exists()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    #[test]
+    fn a_lock_left_by_a_killed_process_is_not_in_the_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("new/net-0.5");
+        std::fs::create_dir(folder.path().join("new")).unwrap();
+        std::fs::write(folder.path().join("new/net-0.5.lock"), "").unwrap();
+        let first = OutputLock::take(&out).unwrap();
+        let e = OutputLock::take(&out).unwrap_err().to_string();
+        assert!(
+            e.contains("another training writes") && e.contains("net-0.5"),
+            "{e}"
+        );
+        // Another output is free.
+        drop(OutputLock::take(&folder.path().join("new/net-0.7")).unwrap());
+        drop(first);
+        drop(OutputLock::take(&out).unwrap());
+        assert_eq!(
+            std::fs::read_dir(folder.path().join("new"))
+                .unwrap()
+                .count(),
+            0
+        );
+    }
+
+    /// Many threads take and drop one lock: never two hold it at once, though each removes the file.
+    #[test]
+    fn removing_the_lock_lets_no_two_in() {
+        use std::sync::atomic::{AtomicU32, Ordering};
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("net");
+        let (inside, taken) = (AtomicU32::new(0), AtomicU32::new(0));
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..2000 {
+                        if let Ok(lock) = OutputLock::take(&out) {
+                            assert_eq!(inside.fetch_add(1, Ordering::SeqCst), 0);
+                            taken.fetch_add(1, Ordering::SeqCst);
+                            inside.fetch_sub(1, Ordering::SeqCst);
+                            drop(lock);
+                        }
+                    }
+                });
+            }
+        });
+        assert!(taken.into_inner() > 0);
+    }
+}
