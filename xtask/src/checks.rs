@@ -133,8 +133,11 @@ fn again(variable: &str, value: &str, package: &str, test: &str) -> Result<(), S
 /// One for each reader of files that users hand over.
 const FUZZ_TARGETS: [&str; 5] = ["scene", "obj", "gltf", "dataset", "model"];
 
-/// Every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
+/// Commands as a whole and every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
 pub fn fuzz(seconds: &str) -> Result<(), String> {
+    ensure_driver()?;
+    println!("\n== commands, {seconds} s");
+    again("PEELNET_FUZZ_SECONDS", seconds, "peelnet", "fuzzed_commands")?;
     ensure_subcommand("fuzz")?;
     let seeds = "run --package peelnet_tests --example write_seeds";
     run(cargo().args(seeds.split(' ')), "seeds")?;
