@@ -307,7 +307,7 @@ mod tests {
             let bytes = written.map(|()| bytes.into_inner()).expect("encodes");
             let texture = Texture::decode("x", &bytes).expect("decodes");
             assert_eq!(texture.texels.as_flattened(), image.to_rgba8().as_raw());
-            assert_eq!(texture.opaque().has_alpha(), false);
+            assert!(!texture.opaque().has_alpha());
         }
     }
 }
