@@ -158,7 +158,29 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
 "bufferViews""#,
         )
         .replace("IMAGE", IMAGE);
-    vec![text.into_bytes(), mapped.into_bytes()]
+    // Nodes that share a child, an accessor without data and a sparse one, a byte order mark, no scene, data without base 64.
+    let shared = text.replace(r#""children":[1],"#, r#""children":[1,1],"#);
+    let sparse = text.replace(
+        r#"}],
+"bufferViews""#,
+        r#"},{"componentType":5126,"count":3,"type":"VEC3"},
+{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5123},"values":{"bufferView":0,"byteOffset":12}}}],
+"bufferViews""#,
+    );
+    let sparse = sparse.replace(r#""POSITION":0"#, r#""POSITION":2,"NORMAL":1"#);
+    let rootless = text.replace(r#""scene":0,"scenes":[{"nodes":[0]}],"#, "");
+    let zeros = "%00".repeat(36);
+    let encoded = text.replace(&format!(";base64,{buffer}"), &format!(",{zeros}"));
+    [
+        text,
+        mapped,
+        shared,
+        sparse,
+        format!("\u{feff}{rootless}"),
+        encoded,
+    ]
+    .map(String::into_bytes)
+    .to_vec()
 }
 
 fn scene_seeds() -> Vec<Vec<u8>> {

@@ -1,10 +1,12 @@
-use std::path::PathBuf;
+use crate::warnings::one_line;
+use peelnet_files::printable;
+use std::path::{Path, PathBuf};
 
 /// Why a scene cannot be loaded. Every message names the file, the place in it, and a fix.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be read.
-    #[error("cannot read {path}: {source}")]
+    #[error("cannot read {}: {source}", shown(path))]
     Read {
         /// The file.
         path: PathBuf,
@@ -12,7 +14,7 @@ pub enum SceneError {
         source: std::io::Error,
     },
     /// A scene file that is not TOML, or has an unknown key or a value of the wrong type.
-    #[error("{path}:{line}: {message}")]
+    #[error("{}:{line}: {}", shown(path), one_line(message))]
     Syntax {
         /// The scene file.
         path: PathBuf,
@@ -22,7 +24,7 @@ pub enum SceneError {
         message: String,
     },
     /// A value that a scene cannot have.
-    #[error("{path}: {field}: {message}")]
+    #[error("{}: {}: {}", shown(path), one_line(field), one_line(message))]
     Value {
         /// The scene file.
         path: PathBuf,
@@ -32,7 +34,7 @@ pub enum SceneError {
         message: String,
     },
     /// A mesh file that cannot be used.
-    #[error("{path}{at}: {message}", at = line.map(|l| format!(":{l}")).unwrap_or_default())]
+    #[error("{}{at}: {}", shown(path), one_line(message), at = line.map(|l| format!(":{l}")).unwrap_or_default())]
     Mesh {
         /// The mesh or material file.
         path: PathBuf,
@@ -42,7 +44,7 @@ pub enum SceneError {
         message: String,
     },
     /// A name that no shipped scene has.
-    #[error("there is no scene '{name}'; name a file, or a shipped scene: {known}", known = shipped())]
+    #[error("there is no scene '{}'; name a file, or a shipped scene: {known}", printable(name), known = shipped())]
     NotShipped {
         /// The name.
         name: String,
@@ -52,4 +54,9 @@ pub enum SceneError {
 fn shipped() -> String {
     let all = peelnet_data::SCENES.iter().chain(peelnet_data::EFFECTS);
     all.map(|s| s.name).collect::<Vec<_>>().join(", ")
+}
+
+/// A path in a message.
+pub(crate) fn shown(path: &Path) -> String {
+    one_line(&path.display().to_string())
 }

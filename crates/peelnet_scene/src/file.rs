@@ -2,7 +2,7 @@
 
 mod gltf_scene;
 mod loader;
-mod materials;
+pub(crate) mod materials;
 mod objects;
 mod raw;
 pub(crate) mod references;
@@ -15,7 +15,7 @@ pub use references::{MapRef, MeshRef};
 
 use crate::{
     budget,
-    error::SceneError,
+    error::{SceneError, shown},
     files::{FileKind, Files},
     material::Lighting,
     scene::{Scene, State},
@@ -115,6 +115,12 @@ fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, S
     assemble(raw, loader, time)
 }
 
+/// Characters of the longest name of a scene.
+const MAX_NAME: usize = peelnet_files::MAX_SHOWN;
+
+/// A background as bright as this was hardly meant.
+const MUCH_BRIGHTER: f32 = 16.0;
+
 /// Reads a scene file's tables and keys.
 fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
     let bytes = files.read(path, FileKind::Scene)?;
@@ -123,7 +129,9 @@ fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
         path: path.to_owned(),
         source: io::Error::new(io::ErrorKind::InvalidData, e.utf8_error()),
     })?;
-    toml::from_str(&text).map_err(|e| {
+    // A byte order mark is no TOML, but some editors write one.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    toml::from_str(text).map_err(|e| {
         let line = e.span().map_or(1, |s| {
             1 + text[..s.start.min(text.len())].matches('\n').count()
         });
@@ -148,6 +156,20 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     }
     if raw.background.iter().any(|c| !c.is_finite() || *c < 0.0) {
         return Err(loader.value("background", "must be finite and not negative"));
+    }
+    // It is radiance, so it may be brighter than white, as emission may.
+    if raw.background.iter().any(|c| *c > MUCH_BRIGHTER) {
+        loader.warnings.push(format!(
+            "{}: background: is brighter than {MUCH_BRIGHTER} times white: divide numbers of 0 … 255 by 255",
+            shown(loader.path)
+        ));
+    }
+    if let Some(name) = &raw.name {
+        let length = name.chars().count();
+        if length > MAX_NAME {
+            let message = format!("has {length} characters; give it at most {MAX_NAME}");
+            return Err(loader.value("name", message));
+        }
     }
     let mut objects = Vec::new();
     for (i, object) in raw.object.iter().enumerate() {

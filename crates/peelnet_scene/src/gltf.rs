@@ -10,13 +10,14 @@ mod primitives;
 mod repair;
 
 use crate::{
-    error::SceneError,
+    error::{SceneError, shown},
     files::{FileKind, Files},
     mesh::Mesh,
     scene::Light,
 };
 use glam::Mat4;
 use nodes::Reader;
+use peelnet_files::printable;
 use serde_json::Value;
 use std::{
     borrow::Cow,
@@ -136,21 +137,19 @@ pub(crate) fn load(path: &Path, files: &mut Files<'_>) -> Result<LoadedGltf, Sce
         let drawn = scene.index();
         let all = document.scenes().len();
         let others = format!("scenes other than number {drawn} of {all}");
-        reader.missing.insert(others);
+        reader.missing.add(others);
     }
     reader.scene(&scene)?;
     if document.animations().len() > 0 {
-        reader
-            .missing
-            .insert("animations (the first pose is drawn)".into());
+        reader.missing.add("animations (the first pose is drawn)");
     }
     if document.skins().len() > 0 {
-        reader
-            .missing
-            .insert("skins (the bind pose is drawn)".into());
+        reader.missing.add("skins (the bind pose is drawn)");
     }
     for extension in document.extensions_used().filter(|e| !KNOWN.contains(e)) {
-        reader.missing.insert(format!("extension {extension}"));
+        reader
+            .missing
+            .about("extensions: ", &printable(extension), "");
     }
     let Reader {
         mut loaded,
@@ -159,8 +158,9 @@ pub(crate) fn load(path: &Path, files: &mut Files<'_>) -> Result<LoadedGltf, Sce
         ..
     } = reader;
     loaded.files = files.used()[first..].to_vec();
+    let missing = missing.texts();
     let missing = missing.iter();
-    let warnings = missing.map(|what| format!("{}: not drawn: {what}", path.display()));
+    let warnings = missing.map(|what| format!("{}: not drawn: {what}", shown(path)));
     loaded.warnings.extend(warnings);
     if loaded.mesh.triangles.is_empty() {
         let instead: Vec<&str> = loaded.warnings.iter().map(String::as_str).collect();

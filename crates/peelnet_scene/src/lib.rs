@@ -38,6 +38,7 @@ pub mod shapes;
 pub mod suite;
 mod texture;
 mod vary;
+mod warnings;
 
 pub use camera::Camera;
 pub use census::{Census, Effect, Setting, Variant};

@@ -2,6 +2,9 @@ use crate::{material::Material, texture::Maps};
 use glam::{Vec2, Vec3};
 use std::{collections::HashMap, ops::Range};
 
+/// Stands behind the name of a part whose maps cannot be drawn.
+pub(crate) const NO_UVS: &str = " with textures and no texture coordinates: plain values are drawn";
+
 /// Triangles with a normal at every vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
@@ -66,9 +69,10 @@ impl Mesh {
         }
     }
 
-    /// Appends a part; indices of its triangles count from its own first vertex. Where it has maps and no UVs, its maps are dropped, with a
-    /// warning.
-    pub(crate) fn push(&mut self, geometry: PartGeometry, mut part: Part) -> Option<String> {
+    /// Appends a part; indices of its triangles count from its own first vertex. Where it has maps and no UVs, its maps are dropped: the
+    /// warning [`NO_UVS`] is about it.
+    #[must_use]
+    pub(crate) fn push(&mut self, geometry: PartGeometry, mut part: Part) -> bool {
         let (base, first) = (self.positions.len(), self.triangles.len());
         let PartGeometry {
             positions,
@@ -81,23 +85,25 @@ impl Mesh {
             self.colors.resize(base, [1.0; 4]);
             self.colors.extend(colors);
         }
-        let mut lost = None;
+        let mut lost = false;
         if let Some(uvs) = uvs {
             self.uvs.resize(first, [Vec2::ZERO; 3]);
             self.uvs
                 .extend(triangles.iter().map(|t| t.map(|i| uvs[i as usize])));
         } else if part.material.maps.all().iter().any(Option::is_some) {
             part.material.maps = Maps::NONE;
-            lost = Some(format!(
-                "'{}' has textures and no texture coordinates: plain values are drawn",
-                part.name
-            ));
+            lost = true;
         }
-        self.positions.extend(positions);
-        self.normals.extend(normals);
-        let base = base as u32;
-        self.triangles
-            .extend(triangles.iter().map(|t| t.map(|i| i + base)));
+        if base == 0 {
+            // Not copied: most large files are one part.
+            (self.positions, self.normals, self.triangles) = (positions, normals, triangles);
+        } else {
+            self.positions.extend(positions);
+            self.normals.extend(normals);
+            let base = base as u32;
+            self.triangles
+                .extend(triangles.iter().map(|t| t.map(|i| i + base)));
+        }
         if !self.colors.is_empty() {
             self.colors.resize(self.positions.len(), [1.0; 4]);
         }
@@ -319,7 +325,7 @@ mod tests {
                 triangles: 0..0,
                 material: Material::unlit([1.0; 3], 0.5),
             };
-            assert_eq!(mesh.push(geometry, part), None);
+            assert!(!mesh.push(geometry, part));
             let tangents = mesh.tangents(0..2).expect("has UVs");
             for [x, y, z, sign] in tangents.into_iter().flatten() {
                 let tangent = Vec3::new(x, y, z);

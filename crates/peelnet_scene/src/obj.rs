@@ -13,16 +13,18 @@ mod text;
 mod textures;
 
 use crate::{
-    error::SceneError,
+    error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
-    mesh::{Mesh, Part, PartGeometry},
+    mesh::{Mesh, NO_UVS, Part, PartGeometry},
     polygons::Triangulator,
+    warnings::Warnings,
 };
 use glam::{DVec3, Vec2, Vec3};
+use peelnet_files::printable;
 use std::{
     cell::RefCell,
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     io,
     path::{Path, PathBuf},
 };
@@ -60,6 +62,14 @@ pub fn load_obj_from(
     read: impl Fn(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<LoadedObj, SceneError> {
     load(path, lighting, &mut Files::new(&|path, _| read(path)))
+}
+
+fn warnings_of(first: Option<String>) -> Warnings {
+    let mut warnings = Warnings::default();
+    if let Some(first) = first {
+        warnings.add(first);
+    }
+    warnings
 }
 
 /// Whether a position or normal is written with other letters than those of an exponent, as `nan` and `inf` are.
@@ -100,7 +110,7 @@ pub(crate) fn load(
         path,
         files,
         owners: Vec::new(),
-        warnings: warning.into_iter().collect(),
+        warnings: warnings_of(warning),
         is_incomplete: false,
         error: None,
     });
@@ -132,16 +142,17 @@ pub(crate) fn load(
     let materials = materials.unwrap_or_default();
     let mut warnings = libraries.warnings;
     if !libraries.is_incomplete {
-        let is_known = |name: &String| materials.iter().any(|m| m.name == *name);
-        let unknown = repaired.materials.iter().filter(|name| !is_known(name));
-        warnings.extend(unknown.map(|name| {
-            format!(
-                "{}: no material '{name}' in its MTL files; default material used",
-                path.display()
-            )
-        }));
+        let known: HashSet<&str> = materials.iter().map(|m| m.name.as_str()).collect();
+        let all = repaired.materials.iter();
+        for name in all.filter(|name| !known.contains(name.as_str())) {
+            warnings.about(
+                format!("{}: no material ", shown(path)),
+                &format!("'{}'", printable(name)),
+                " in its MTL files; default material used",
+            );
+        }
     }
-    let mut textures = Textures::default();
+    let mut textures = Textures::new(&mut warnings);
     let materials: Vec<Material> = materials
         .iter()
         .zip(&libraries.owners)
@@ -149,24 +160,19 @@ pub(crate) fn load(
             textures.put_on(libraries.files, owner, m, library::material(m, lighting))
         })
         .collect();
-    warnings.append(&mut textures.warnings);
     let material = |model: &tobj::Model| {
         let id = model.mesh.material_id;
         id.and_then(|i| materials.get(i).cloned())
             .unwrap_or_else(|| Material::default_with(lighting))
     };
-    let (mesh, more) = assemble(&models, material);
-    warnings.extend(
-        more.iter()
-            .map(|warning| format!("{}: {warning}", path.display())),
-    );
+    let mesh = assemble(&models, material, &shown(path), &mut warnings);
     if mesh.triangles.is_empty() {
         let message = "holds no triangle with an area; export the mesh again";
         return Err(fail(None, message.into()));
     }
     Ok(LoadedObj {
         mesh,
-        warnings,
+        warnings: warnings.texts(),
         files: libraries.files.used()[first..].to_vec(),
     })
 }
@@ -178,7 +184,7 @@ struct Libraries<'a, 'f> {
     files: &'a mut Files<'f>,
     /// The library of each material, in `tobj`'s order.
     owners: Vec<PathBuf>,
-    warnings: Vec<String>,
+    warnings: Warnings,
     /// Whether a library is missing.
     is_incomplete: bool,
     /// The first error. `tobj` continues after an error of a library, and its own errors hold no message.
@@ -198,24 +204,24 @@ impl Libraries<'_, '_> {
         let bytes = match self.files.read(&file, FileKind::Materials) {
             Err(SceneError::Read { source, .. }) => {
                 self.is_incomplete = true;
-                self.warnings.push(format!(
-                    "{}: cannot read material file {} ({source}); default material used",
-                    self.path.display(),
-                    file.display()
-                ));
+                self.warnings.about(
+                    format!("{}: cannot read material file ", shown(self.path)),
+                    &shown(&file),
+                    format!(" ({source}); default material used"),
+                );
                 return Ok(library::Library::default());
             }
             bytes => bytes?,
         };
         self.files.record(&file, &bytes);
         let (text, warning) = text::decode(&file, &bytes)?;
-        self.warnings.extend(warning);
-        let library = library::read(&file, &text::statements(&text))?;
-        let not_drawn: Vec<&str> = library::not_drawn(&library.0).into_iter().collect();
-        if !not_drawn.is_empty() {
-            let names = not_drawn.join(", ");
-            let warning = format!("{}: not drawn: {names}", file.display());
-            self.warnings.push(warning);
+        if let Some(warning) = warning {
+            self.warnings.add(warning);
+        }
+        let library = library::read(&file, &text::statements(&text), &mut self.warnings)?;
+        for name in library::not_drawn(&library.0) {
+            let before = format!("{}: not drawn: ", shown(&file));
+            self.warnings.about(before, &printable(name), "");
         }
         let owners = std::iter::repeat_n(file, library.0.len());
         self.owners.extend(owners);
@@ -230,11 +236,13 @@ fn is_sound(mesh: &tobj::Mesh) -> bool {
         && numbers.into_iter().flatten().all(|x| x.is_finite())
 }
 
-/// The mesh of all models, and warnings.
+/// The mesh of all models of a file.
 fn assemble(
     models: &[tobj::Model],
     material: impl Fn(&tobj::Model) -> Material,
-) -> (Mesh, Vec<String>) {
+    file: &str,
+    warnings: &mut Warnings,
+) -> Mesh {
     let mut triangulator = Triangulator::new();
     let triangles: Vec<Vec<[u32; 3]>> = models
         .iter()
@@ -242,7 +250,6 @@ fn assemble(
         .collect();
     let areas = area_sums(models, &triangles);
     let mut mesh = Mesh::empty();
-    let mut warnings = Vec::new();
     let mut lost = Lost::default();
     for (model, triangles) in models.iter().zip(triangles) {
         let geometry = part_geometry(&model.mesh, triangles, &areas, &mut lost);
@@ -254,7 +261,10 @@ fn assemble(
             triangles: 0..0,
             material: material(model),
         };
-        warnings.extend(mesh.push(geometry, part));
+        if mesh.push(geometry, part) {
+            let name = format!("'{}'", printable(&model.name));
+            warnings.about(format!("{file}: "), &name, NO_UVS);
+        }
     }
     for (count, what) in [
         (
@@ -268,10 +278,10 @@ fn assemble(
         ),
     ] {
         if count > 0 {
-            warnings.push(format!("{count} {what}"));
+            warnings.add(format!("{file}: {count} {what}"));
         }
     }
-    (mesh, warnings)
+    mesh
 }
 
 /// How many elements of a file could not be used.

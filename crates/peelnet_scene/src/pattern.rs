@@ -3,6 +3,7 @@
 use crate::texture::{Texture, normals_of};
 use glam::{IVec2, Vec2};
 use peelnet_core::{hash::pixel_hash, srgb};
+use rayon::prelude::*;
 use serde::Deserialize;
 
 /// What the field is.
@@ -132,10 +133,14 @@ impl Pattern {
             };
             ((raw - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0)
         };
-        (0..n)
-            .flat_map(|y| (0..n).map(move |x| (x, y)))
-            .map(|(x, y)| at(x, y))
-            .collect()
+        let mut values = vec![0.0; n as usize * n as usize];
+        let rows = values.par_chunks_mut(n as usize);
+        rows.zip(0..n).for_each(|(row, y)| {
+            for (value, x) in row.iter_mut().zip(0..) {
+                *value = at(x, y);
+            }
+        });
+        values
     }
 
     /// A random number of 0 … 1 for each node of the grid. By a hash, not by a generator: a node's number must not depend on the order.
@@ -190,7 +195,11 @@ impl Pattern {
         ((a + b) * 0.5 - place).dot(apart).abs()
     }
 
-    fn texture(&self, name: &str, texel: impl Fn(f32) -> [u8; 4]) -> Result<Texture, String> {
+    fn texture(
+        &self,
+        name: &str,
+        texel: impl Fn(f32) -> [u8; 4] + Sync,
+    ) -> Result<Texture, String> {
         self.check()?;
         let values = self.values();
         let n = self.size;

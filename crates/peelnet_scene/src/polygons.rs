@@ -1,7 +1,15 @@
 //! Triangulation of polygons.
 
+mod sweep;
+
 use earcut::{Earcut, utils3d::project3d_to_2d};
 use glam::DVec3;
+
+/// Corners from which on a polygon is swept: `earcut` needs time by their square.
+const SWEPT: usize = 1000;
+
+/// Corners of the largest polygon that `earcut` gets, as it copes with most that meet themselves.
+const LARGEST_EARCUT: usize = 20_000;
 
 /// Cuts polygons into triangles; keeps its buffers from polygon to polygon.
 pub(crate) struct Triangulator {
@@ -41,6 +49,14 @@ impl Triangulator {
             (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
         };
         if (0..n).all(|i| turn([i, (i + 1) % n, (i + 2) % n]) >= 0.0) {
+            return fan();
+        }
+        if n > SWEPT
+            && let Some(triangles) = sweep::triangulate(flat)
+        {
+            return triangles;
+        }
+        if n > LARGEST_EARCUT {
             return fan();
         }
         let mut indices: Vec<usize> = Vec::new();
@@ -104,6 +120,35 @@ mod tests {
                 assert!((areas.iter().sum::<f64>() - exact).abs() < 1e-12);
             }
         }
+    }
+
+    /// A star of half a million corners, which takes minutes where every corner is compared with every other, a large one that meets
+    /// itself, and large ones without area.
+    #[test]
+    fn large_polygons_take_no_longer_for_each_corner() {
+        let star = |n: usize| {
+            let at = |i: usize| {
+                let r = if i.is_multiple_of(2) { 1.0 } else { 0.5 };
+                let (sin, cos) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+                DVec3::new(r * cos, r * sin, 2.0)
+            };
+            (0..n).map(at).collect::<Vec<_>>()
+        };
+        let n = 500_000;
+        let mut vertices = star(n);
+        let triangles = triangulate(&vertices);
+        assert_eq!(triangles.len(), n - 2);
+        let areas = areas(&vertices, &triangles);
+        assert!(areas.iter().all(|a| *a >= -1e-12));
+        // Every second corner is a triangle of two radii around the middle.
+        let angle = std::f64::consts::TAU / n as f64;
+        let exact = n as f64 * 0.5 * 0.5 * angle.sin();
+        assert!((areas.iter().sum::<f64>() - exact).abs() < 1e-9);
+        vertices.swap(3, n / 2);
+        assert_eq!(triangulate(&vertices).len(), n - 2);
+        assert_eq!(triangulate(&vec![DVec3::ONE; n]).len(), n - 2);
+        let line: Vec<DVec3> = (0..n).map(|i| DVec3::X * i as f64).collect();
+        assert_eq!(triangulate(&line).len(), n - 2);
     }
 
     /// Polygons without area, and one that meets itself, lose no vertex and do not panic.

@@ -19,7 +19,7 @@
 //!
 //! Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
 
-use crate::file::references::MeshRef;
+use crate::file::{materials::check_color, references::MeshRef};
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::random::Random;
 use serde::Deserialize;
@@ -185,10 +185,8 @@ impl Scatter {
         if !(0.0..=1.0).contains(&self.jitter) {
             return Err(("jitter", format!("{} must lie in 0 … 1", self.jitter)));
         }
-        if let Some(ColorChoice::Color(c)) = self.color
-            && !(finite(&c) && c.iter().all(|x| *x >= 0.0))
-        {
-            return Err(("color", "must be finite and not negative".into()));
+        if let Some(ColorChoice::Color(c)) = self.color {
+            check_color(c).map_err(|e| ("color", e))?;
         }
         if let Rotate::Degrees(d) = &self.rotate
             && !finite(d)

@@ -5,6 +5,7 @@ use crate::{
     mesh::{Mesh, Part},
 };
 use glam::{Mat4, Vec3};
+use peelnet_files::printable;
 use std::{path::PathBuf, sync::Arc};
 
 /// Where light comes from.
@@ -187,7 +188,10 @@ impl Scene {
                 if object.materials.iter().all(Material::is_opaque) {
                     continue;
                 }
-                let message = format!("of '{}' is missing: it is transparent", object.name);
+                let message = format!(
+                    "of '{}' is missing: it is transparent",
+                    printable(&object.name)
+                );
                 return Err(value("layer", message));
             };
             for material in &mut object.materials {

@@ -1,7 +1,12 @@
 //! Textures: read from PNG and JPEG files, or generated ([`crate::pattern`]).
 
+#[cfg(feature = "images")]
+mod decode;
+
+use crate::budget::Budget;
+use rayon::prelude::*;
 use serde::Deserialize;
-use std::sync::Arc;
+use std::{borrow::Cow, sync::Arc};
 
 /// A texture of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
@@ -91,18 +96,14 @@ impl Default for Maps {
     }
 }
 
-/// Longest side of a texture that is read: WebGPU guarantees no longer one.
-#[cfg(feature = "images")]
-const LONGEST: u32 = 8192;
-
 impl Texture {
     /// A texture of `size[0] * size[1]` texels.
     fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
         Self {
             name: name.to_owned(),
             size,
-            clear: texels.iter().any(|t| t[3] < 255),
-            grey: texels.iter().all(|[r, g, b, _]| r == g && g == b),
+            clear: texels.par_iter().any(|t| t[3] < 255),
+            grey: texels.par_iter().all(|[r, g, b, _]| r == g && g == b),
             texels,
         }
     }
@@ -111,40 +112,44 @@ impl Texture {
     ///
     /// # Errors
     /// What is wrong, and a fix. Without the feature `images` nothing is read.
+    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, String> {
+        Self::decode_within(name, bytes, &mut Budget::default())
+    }
+
+    /// The same for a scene that has taken other textures.
     #[cfg(not(feature = "images"))]
-    pub fn decode(_: &str, _: &[u8]) -> Result<Self, String> {
+    pub(crate) fn decode_within(_: &str, _: &[u8], _: &mut Budget) -> Result<Self, String> {
         Err("cannot be read by this build; build peelnet_scene with its feature `images`".into())
     }
 
-    /// Reads a PNG or JPEG image from memory.
-    ///
-    /// # Errors
-    /// What is wrong, and a fix.
+    /// The same for a scene that has taken other textures.
     #[cfg(feature = "images")]
-    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, String> {
-        let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|e| format!("cannot be read: {e}"))?;
-        let known = [image::ImageFormat::Png, image::ImageFormat::Jpeg];
-        if !reader.format().is_some_and(|f| known.contains(&f)) {
-            return Err("is neither a PNG nor a JPEG image; save it as one of them".into());
-        }
-        let mut limits = image::Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
-        reader.limits(limits);
-        let image = reader.decode().map_err(|e| {
-            format!("cannot be decoded: {e}; save it again, at most {LONGEST} texels wide and high")
-        })?;
-        let image = image.to_rgba8();
-        let size = [image.width(), image.height()];
-        Ok(Self::new(name, size, image.pixels().map(|p| p.0).collect()))
+    pub(crate) fn decode_within(
+        name: &str,
+        bytes: &[u8],
+        budget: &mut Budget,
+    ) -> Result<Self, String> {
+        let (size, texels) = decode::decode(bytes, budget)?;
+        Ok(Self::new(name, size, texels))
     }
 
     /// A texture from a function of column and row.
-    pub fn of(name: &str, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
+    pub fn of(name: &str, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4] + Sync) -> Self {
         let [width, height] = size;
-        let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        Self::new(name, size, texels.map(|(x, y)| texel(x, y)).collect())
+        let mut texels = vec![[0; 4]; width as usize * height as usize];
+        let rows = texels.par_chunks_mut(width.max(1) as usize);
+        rows.zip(0..height).for_each(|(row, y)| {
+            for (t, x) in row.iter_mut().zip(0..) {
+                *t = texel(x, y);
+            }
+        });
+        Self::new(name, size, texels)
+    }
+
+    /// The same texture without holes.
+    pub(crate) fn opaque(&self) -> Self {
+        let texels = self.texels.par_iter().map(|[r, g, b, _]| [*r, *g, *b, 255]);
+        Self::new(&self.name, self.size, texels.collect())
     }
 
     /// Whether any texel is not wholly opaque.
@@ -159,10 +164,15 @@ impl Texture {
 
     /// The same texture at another size: of the nearest texels without the feature `images`.
     pub fn resized(&self, size: [u32; 2]) -> Self {
+        self.at_size(size).into_owned()
+    }
+
+    fn at_size(&self, size: [u32; 2]) -> Cow<'_, Self> {
         if size == self.size {
-            return self.clone();
+            Cow::Borrowed(self)
+        } else {
+            Cow::Owned(self.resampled(size))
         }
-        self.resampled(size)
     }
 
     #[cfg(feature = "images")]
@@ -188,10 +198,10 @@ impl Texture {
     }
 
     /// Two textures joined texel by texel, at the larger size of each side.
-    pub fn joined(a: &Self, b: &Self, texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4]) -> Self {
+    pub fn joined(a: &Self, b: &Self, texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync) -> Self {
         let size = [a.size[0].max(b.size[0]), a.size[1].max(b.size[1])];
-        let [left, right] = [a.resized(size), b.resized(size)];
-        let pairs = left.texels.iter().zip(&right.texels);
+        let (left, right) = (a.at_size(size), b.at_size(size));
+        let pairs = left.texels.par_iter().zip(&right.texels);
         let name = format!("{} and {}", a.name, b.name);
         Self::new(&name, size, pairs.map(|(a, b)| texel(*a, *b)).collect())
     }
@@ -215,7 +225,7 @@ pub(crate) fn normals_of(
     name: &str,
     size: [u32; 2],
     slope: f32,
-    height: impl Fn(u32, u32) -> f32,
+    height: impl Fn(u32, u32) -> f32 + Sync,
 ) -> Texture {
     let [w, h] = size;
     Texture::of(name, size, |x, y| {
@@ -258,5 +268,46 @@ mod tests {
         assert!(e.contains("PNG"), "{e}");
         let e = Texture::decode("x", b"\x89PNG\r\n\x1a\n\0\0").expect_err("cut off");
         assert!(e.contains("save it again"), "{e}");
+    }
+
+    /// Decoders' errors show their inner state; ours are sentences. A damaged chunk, and sides beyond the limit.
+    #[cfg(feature = "images")]
+    #[test]
+    fn errors_of_images_are_sentences() {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = image::RgbImage::new(8193, 1);
+        let written = image.write_to(&mut bytes, image::ImageFormat::Png);
+        let wide = written.map(|()| bytes.into_inner()).expect("encodes");
+        let mut damaged = wide.clone();
+        damaged[20] ^= 0x11;
+        for (bytes, word) in [(&wide, "8192"), (&damaged, "damaged")] {
+            let e = Texture::decode("x", bytes).expect_err("is not read");
+            assert!(e.contains(word) && !e.contains(['{', '(', ':']), "{e}");
+        }
+    }
+
+    /// Every kind of pixel becomes the same texels as by the decoder's own conversion.
+    #[cfg(feature = "images")]
+    #[test]
+    fn all_kinds_of_pixels_are_decoded() {
+        use image::DynamicImage as D;
+        let rgba = image::RgbaImage::from_fn(5, 3, |x, y| {
+            image::Rgba([50 * x as u8, 80 * y as u8, 7, 255 - x as u8])
+        });
+        let rgba = D::ImageRgba8(rgba);
+        for image in [
+            D::ImageLuma8(rgba.to_luma8()),
+            D::ImageLumaA8(rgba.to_luma_alpha8()),
+            D::ImageRgb8(rgba.to_rgb8()),
+            D::ImageRgba16(rgba.to_rgba16()),
+            rgba,
+        ] {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            let written = image.write_to(&mut bytes, image::ImageFormat::Png);
+            let bytes = written.map(|()| bytes.into_inner()).expect("encodes");
+            let texture = Texture::decode("x", &bytes).expect("decodes");
+            assert_eq!(texture.texels.as_flattened(), image.to_rgba8().as_raw());
+            assert!(!texture.opaque().has_alpha());
+        }
     }
 }

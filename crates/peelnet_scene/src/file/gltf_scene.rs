@@ -2,7 +2,7 @@
 
 use crate::{
     camera::Camera,
-    error::SceneError,
+    error::{SceneError, shown},
     files::Files,
     gltf::{self, GltfCamera},
     material::Lighting,
@@ -31,7 +31,7 @@ pub(super) fn load(path: &Path, mut files: Files<'_>) -> Result<Scene, SceneErro
     if lights.is_empty() && loaded.mesh.parts.iter().any(is_lit) {
         warnings.push(format!(
             "{}: has no point light: two are added; put it into a scene file with lights of your own, or none",
-            path.display()
+            shown(path)
         ));
         lights.extend(default_lights(bounds));
     }

@@ -2,7 +2,7 @@
 
 use super::references::MeshRef;
 use crate::{
-    error::SceneError,
+    error::{SceneError, shown},
     files::{FileKind, Files},
     gltf,
     material::{Lighting, Material},
@@ -135,7 +135,7 @@ impl<'a> Loader<'a> {
                     field,
                     format!(
                         "{} is neither .obj, .gltf nor .glb; export the mesh as one of them",
-                        file.display()
+                        shown(file)
                     ),
                 ));
             }
@@ -151,7 +151,8 @@ impl<'a> Loader<'a> {
             return Ok(Arc::clone(known));
         }
         let bytes = self.files.read(&file, FileKind::Image)?;
-        let texture = Texture::decode(&file.display().to_string(), &bytes);
+        let name = file.display().to_string();
+        let texture = Texture::decode_within(&name, &bytes, &mut self.files.budget);
         let texture = Arc::new(texture.map_err(|message| SceneError::Mesh {
             path: file.clone(),
             line: None,

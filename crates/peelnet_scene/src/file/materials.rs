@@ -11,6 +11,7 @@ use crate::{
     pattern::Pattern,
     texture::{Maps, Texture},
 };
+use peelnet_files::printable;
 use std::sync::Arc;
 
 /// glTF's default.
@@ -30,7 +31,10 @@ impl Loader<'_> {
             Some("pbr") => Ok(Some(Lighting::Pbr)),
             Some(other) => Err(self.value(
                 field,
-                format!("\"{other}\" is not one of \"unlit\", \"phong\", \"pbr\""),
+                format!(
+                    "\"{}\" is not one of \"unlit\", \"phong\", \"pbr\"",
+                    printable(other)
+                ),
             )),
         }
     }
@@ -169,6 +173,16 @@ fn in_unit(key: &'static str, x: f32) -> Result<f32, Fault> {
     }
 }
 
+/// Checks the colour of a surface or a light.
+pub(crate) fn check_color(color: [f32; 3]) -> Result<(), String> {
+    match color.into_iter().find(|x| !(0.0..=1.0).contains(x)) {
+        None => Ok(()),
+        Some(x) => Err(format!(
+            "{x} must lie in 0 … 1: divide numbers of 0 … 255 by 255; what is brighter than white has an emission or an intensity"
+        )),
+    }
+}
+
 /// Checks the ranges of a material's numbers.
 fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
     for x in raw.transmission_color.into_iter().flatten() {
@@ -181,7 +195,10 @@ fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
     ] {
         x.map_or(Ok(0.0), |x| in_unit(key, x))?;
     }
-    let colors = [("color", raw.color), ("emission", raw.emission)];
+    if let Some(color) = raw.color {
+        check_color(color).map_err(|e| ("color", e))?;
+    }
+    let colors = [("emission", raw.emission)];
     let colors = colors.map(|(key, color)| (key, color.map_or(Vec::new(), Vec::from)));
     let specular = ("specular", raw.specular.into_iter().collect());
     for (key, numbers) in colors.into_iter().chain([specular]) {

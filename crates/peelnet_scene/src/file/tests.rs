@@ -264,3 +264,51 @@ fn patterns_are_shared() {
     let (first, second) = (map(0).expect("a map"), map(1).expect("a map"));
     assert!(std::sync::Arc::ptr_eq(&first, &second));
 }
+
+/// Colours reflect at most all light; emission and background are radiance, lights have an intensity.
+#[test]
+fn colours_are_no_bytes() {
+    let bytes = "color = [255, 0, 0]\n";
+    let object = "[[object]]\nmesh = { shape = 'box' }\n";
+    let scatter =
+        "[[scatter]]\ncount = 1\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nmesh = { shape = 'box' }\n";
+    for (text, place) in [
+        (
+            format!("{object}[object.material]\n{bytes}"),
+            "object 1.material.color",
+        ),
+        (format!("{scatter}{bytes}"), "scatter 1.color"),
+        (
+            format!("[[light]]\nposition = [1, 1, 1]\n{bytes}"),
+            "light 1: color",
+        ),
+    ] {
+        refuses(
+            &format!("{CAMERA}{text}"),
+            &[place, "255", "0 … 1", "divide"],
+        );
+    }
+    let bright = format!(
+        "background = [2, 2, 2]\n{CAMERA}[[light]]\nposition = [1, 1, 1]\nintensity = 30\n{object}[object.material]\nemission = [9, 0, 0]\n"
+    );
+    assert!(load(&bright).expect("loads").warnings.is_empty());
+    let scene = load(&format!("background = [255, 255, 255]\n{CAMERA}{object}")).expect("loads");
+    assert!(
+        scene.warnings[0].contains("background"),
+        "{:?}",
+        scene.warnings
+    );
+}
+
+/// A byte order mark before the first key; a name that is too long, and one that would clear a terminal.
+#[test]
+fn names_and_marks() {
+    let named = |name: &str| format!("\u{feff}name = \"{name}\"\n{CAMERA}");
+    assert_eq!(load(&named("a")).expect("loads").name, "a");
+    refuses(&named(&"é".repeat(201)), &["name", "201", "200"]);
+    let text = format!(
+        "{CAMERA}[[object]]\nmesh = {{ shape = 'box' }}\nmaterial = {{ \"\\u001b[2J\\nx\" = 1 }}\n"
+    );
+    let Err(e) = load(&text) else { panic!("loads") };
+    assert!(!e.to_string().contains(char::is_control), "{e:?}");
+}

@@ -6,6 +6,7 @@ use super::{
     references::MeshRef,
 };
 use crate::{error::SceneError, material::Material};
+use peelnet_files::printable;
 use std::collections::HashMap;
 
 pub(super) const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";
@@ -98,7 +99,7 @@ fn check(loader: &mut Loader<'_>, raw: &RawScene) -> Result<(), SceneError> {
         }
         for change in &state.object {
             let Some(object) = objects.get(change.name.as_str()) else {
-                let message = format!("no [[object]] is named '{}'", change.name);
+                let message = format!("no [[object]] is named '{}'", printable(&change.name));
                 return Err(loader.value(&format!("{field}.object.name"), message));
             };
             let any = Material::default_with(loader.lighting);

@@ -2,6 +2,7 @@
 
 use super::{
     loader::Loader,
+    materials::check_color,
     raw::{RawCamera, RawLight, RawScene},
 };
 use crate::{
@@ -105,7 +106,7 @@ pub(super) fn lights(loader: &Loader<'_>, raw: &[RawLight]) -> Result<Vec<Light>
         .collect()
 }
 
-fn light(raw: &RawLight) -> Result<Light, &'static str> {
+fn light(raw: &RawLight) -> Result<Light, String> {
     let source = match (raw.position, raw.direction) {
         (Some(position), None) => Source::Point(position.into()),
         // The file gives the direction of the light, `Source` the direction towards it.
@@ -113,20 +114,13 @@ fn light(raw: &RawLight) -> Result<Light, &'static str> {
             let toward = (-Vec3::from(direction)).try_normalize();
             Source::Toward(toward.unwrap_or(Vec3::NAN))
         }
-        _ => return Err("needs either a position or a direction"),
+        _ => return Err("needs either a position or a direction".into()),
     };
     let (Source::Point(place) | Source::Toward(place)) = source;
-    let numbers = place
-        .as_ref()
-        .iter()
-        .chain(&raw.color)
-        .chain([&raw.intensity]);
-    if numbers.into_iter().any(|x| !x.is_finite())
-        || raw.color.iter().any(|c| *c < 0.0)
-        || raw.intensity < 0.0
-    {
-        return Err("must be finite, colour and intensity not negative, a direction not zero");
+    if !place.is_finite() || !raw.intensity.is_finite() || raw.intensity < 0.0 {
+        return Err("must be finite, its intensity not negative, its direction not zero".into());
     }
+    check_color(raw.color).map_err(|e| format!("color: {e}"))?;
     Ok(Light {
         source,
         color: raw.color,

@@ -14,6 +14,7 @@ use gltf::{
     material::AlphaMode,
     texture::{MagFilter, WrappingMode},
 };
+use peelnet_files::printable;
 use std::{path::Path, sync::Arc};
 
 /// The UV set of a texture, and the transform of its UVs.
@@ -85,8 +86,7 @@ impl Reader<'_, '_> {
                 if !whole.has_alpha() {
                     return whole;
                 }
-                let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
-                Arc::new(Texture::joined(&whole, &whole, opaque))
+                Arc::new(whole.opaque())
             });
             self.images.insert(key, found.clone());
             return found;
@@ -96,23 +96,25 @@ impl Reader<'_, '_> {
             .map_or_else(|| format!("image {}", image.index()), str::to_owned);
         let decoded = match image.source() {
             gltf::image::Source::View { view, .. } => {
+                let budget = &mut self.files.budget;
                 let bytes = self.buffers.get(view.buffer().index());
                 let end = view.offset().saturating_add(view.length());
                 bytes
                     .and_then(|b| b.get(view.offset()..end))
                     .ok_or_else(|| "lies beyond its buffer".to_owned())
-                    .and_then(|bytes| Texture::decode(&name, bytes))
+                    .and_then(|bytes| Texture::decode_within(&name, bytes, budget))
             }
             gltf::image::Source::Uri { uri, .. } => {
                 let folder = self.path.parent().unwrap_or(Path::new("."));
                 read_uri(uri, folder, FileKind::Image, self.files)
-                    .and_then(|bytes| Texture::decode(&name, &bytes))
+                    .and_then(|bytes| Texture::decode_within(&name, &bytes, &mut self.files.budget))
             }
         };
         let found = match decoded {
             Ok(texture) => Some(Arc::new(texture)),
             Err(why) => {
-                self.missing.insert(format!("{name}, which {why}"));
+                let name = printable(&name);
+                self.missing.about("", &name, format!(", which {why}"));
                 None
             }
         };
@@ -132,7 +134,7 @@ impl Reader<'_, '_> {
         let samplers: Vec<_> = samplers.collect();
         if samplers.windows(2).any(|w| w[0] != w[1]) {
             self.missing
-                .insert("a map with its own sampler (the first map's is used)".into());
+                .add("a map with its own sampler (the first map's is used)");
         }
         // The first is the base colour, whose file may hold an opacity.
         let mut opaque = m.alpha_mode() == AlphaMode::Opaque;
@@ -140,13 +142,12 @@ impl Reader<'_, '_> {
             let opaque = std::mem::take(&mut opaque);
             let (texture, own) = texture?;
             if own.transform != placement.transform {
-                self.missing.insert(
-                    "a map with its own texture transform (the first map's is used)".into(),
-                );
+                self.missing
+                    .add("a map with its own texture transform (the first map's is used)");
             }
             if own.set != placement.set {
                 self.missing
-                    .insert("a map on other texture coordinates than the first map's".into());
+                    .add("a map on other texture coordinates than the first map's");
                 return None;
             }
             self.image(&texture.source(), opaque)
@@ -190,7 +191,7 @@ impl Reader<'_, '_> {
         let passing = m.transmission().map_or(0.0, |t| {
             if t.transmission_texture().is_some() {
                 self.missing
-                    .insert("transmission maps (the factor alone is drawn)".into());
+                    .add("transmission maps (the factor alone is drawn)");
             }
             finite(t.transmission_factor(), 0.0, 1.0)
         });

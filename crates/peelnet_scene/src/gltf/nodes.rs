@@ -8,14 +8,11 @@ use crate::{
     mesh::Mesh,
     scene::{Light, Source},
     texture::Texture,
+    warnings::Warnings,
 };
 use glam::{Mat4, Vec3};
 use gltf::{Semantic, camera::Projection, khr_lights_punctual::Kind, mesh::Mode};
-use std::{
-    collections::{BTreeSet, HashMap},
-    path::Path,
-    sync::Arc,
-};
+use std::{collections::HashMap, path::Path, sync::Arc};
 
 /// Reads the nodes of a file: meshes, lights and cameras.
 pub(super) struct Reader<'a, 'f> {
@@ -24,8 +21,8 @@ pub(super) struct Reader<'a, 'f> {
     pub buffers: Vec<Vec<u8>>,
     /// By number, and whether their opacity is dropped; `None` for those that cannot be drawn.
     pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
-    /// What the file uses and is not drawn, each once.
-    pub missing: BTreeSet<String>,
+    /// What the file uses and is not drawn.
+    pub missing: Warnings,
     pub loaded: LoadedGltf,
 }
 
@@ -61,7 +58,7 @@ impl<'a, 'f> Reader<'a, 'f> {
             files,
             buffers,
             images: HashMap::new(),
-            missing: BTreeSet::new(),
+            missing: Warnings::default(),
             loaded: LoadedGltf {
                 mesh: Mesh::empty(),
                 lights: Vec::new(),
@@ -141,7 +138,7 @@ impl<'a, 'f> Reader<'a, 'f> {
                     far: p.zfar(),
                 }),
                 Projection::Orthographic(_) => {
-                    self.missing.insert("orthographic cameras".into());
+                    self.missing.add("orthographic cameras");
                 }
             }
         }
@@ -161,7 +158,7 @@ impl<'a, 'f> Reader<'a, 'f> {
                 color: light.color(),
                 intensity: light.intensity(),
             }),
-            Kind::Spot { .. } => drop(self.missing.insert("spot lights".into())),
+            Kind::Spot { .. } => self.missing.add("spot lights"),
         }
     }
 }

@@ -6,10 +6,11 @@ use super::{
 };
 use crate::{
     error::SceneError,
-    mesh::{Part, PartGeometry, smooth_normals},
+    mesh::{NO_UVS, Part, PartGeometry, smooth_normals},
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{material::AlphaMode, mesh::Mode};
+use peelnet_files::printable;
 
 /// Positions beyond this overflow when they are squared.
 const FARTHEST: f32 = 1e15;
@@ -28,7 +29,7 @@ impl Reader<'_, '_> {
             mode,
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
         ) {
-            self.missing.insert(format!("{mode:?} ({place})"));
+            self.missing.about(format!("{mode:?} ("), &place, ")");
             return Ok(());
         }
         let fail = |message: String| self.fail(format!("{place}{message}"));
@@ -55,19 +56,14 @@ impl Reader<'_, '_> {
         // A mirrored node turns its triangles inside out: turn them back.
         let is_mirrored = Mat3::from_mat4(world).determinant() < 0.0;
         let triangles = triangles(mode, &indices, is_mirrored);
-        let smooth = smooth_normals(&positions, &triangles);
         let normal_matrix = Mat3::from_mat4(world).inverse().transpose();
-        let normals: Vec<Vec3> = match reader.read_normals() {
-            Some(given) if given.len() == positions.len() => given
-                .zip(&smooth)
-                .map(|(n, s)| {
-                    (normal_matrix * Vec3::from(n))
-                        .try_normalize()
-                        .unwrap_or(*s)
-                })
-                .collect(),
-            _ => smooth,
-        };
+        let given = reader.read_normals();
+        let given = given.filter(|given| given.len() == positions.len());
+        let normals = given.map(|given| {
+            let turned = given.map(|n| normal_matrix * Vec3::from(n));
+            turned.map(Vec3::normalize_or_zero).collect()
+        });
+        let normals = complete(normals, &positions, &triangles);
         // Opaque materials ignore the opacity of vertices.
         let is_opaque = primitive.material().alpha_mode() == AlphaMode::Opaque;
         let n = positions.len();
@@ -79,7 +75,7 @@ impl Reader<'_, '_> {
             colors.collect::<Vec<_>>()
         });
         if primitive.morph_targets().len() > 0 {
-            self.missing.insert("morph targets".into());
+            self.missing.add("morph targets");
         }
         let (material, placement) = self.material(&primitive.material());
         let buffers = &self.buffers;
@@ -102,10 +98,26 @@ impl Reader<'_, '_> {
             triangles: 0..0,
             material,
         };
-        let lost = self.loaded.mesh.push(geometry, part);
-        self.missing.extend(lost);
+        let name = format!("'{}'", printable(&part.name));
+        if self.loaded.mesh.push(geometry, part) {
+            self.missing.about("", &name, NO_UVS);
+        }
         Ok(())
     }
+}
+
+/// The normals of a file, and computed ones where it has none or zeros.
+fn complete(given: Option<Vec<Vec3>>, positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let smooth = || smooth_normals(positions, triangles);
+    let mut normals = given.unwrap_or_else(smooth);
+    if normals.contains(&Vec3::ZERO) {
+        for (normal, smooth) in normals.iter_mut().zip(smooth()) {
+            if *normal == Vec3::ZERO {
+                *normal = smooth;
+            }
+        }
+    }
+    normals
 }
 
 /// What is wrong with the first accessor of a primitive that cannot be read.

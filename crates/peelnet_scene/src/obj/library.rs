@@ -2,9 +2,11 @@
 
 use super::text;
 use crate::{
-    error::SceneError,
+    error::{SceneError, shown},
     material::{Lighting, Material},
+    warnings::Warnings,
 };
+use peelnet_files::printable;
 use std::{collections::BTreeSet, path::Path};
 
 /// A material library as `tobj` returns it: materials, and their numbers by name.
@@ -17,7 +19,11 @@ pub(super) type Library = (
 ///
 /// # Errors
 /// A statement that cannot be read, or whose numbers make no sense, with its line.
-pub(super) fn read(path: &Path, text: &str) -> Result<Library, SceneError> {
+pub(super) fn read(
+    path: &Path,
+    text: &str,
+    warnings: &mut Warnings,
+) -> Result<Library, SceneError> {
     let fail = |line: usize, message: String| SceneError::Mesh {
         path: path.to_owned(),
         line: Some(line),
@@ -28,17 +34,24 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Library, SceneError> {
     if let Some(i) = short {
         return Err(fail(i + 1, unreadable(line_at(text, i))));
     }
-    let mut unread = text.as_bytes();
-    let library = match tobj::load_mtl_buf(&mut unread) {
+    let repaired = repaired(text);
+    if repaired.has_halo {
+        warnings.add(format!(
+            "{}: not drawn: -halo (opacity is the same all over a surface)",
+            shown(path)
+        ));
+    }
+    let mut unread = repaired.text.as_bytes();
+    let mut library = match tobj::load_mtl_buf(&mut unread) {
         Ok(library) => library,
         Err(_) => {
-            let line = text::last_line(text, unread);
+            let line = text::last_line(&repaired.text, unread);
             return Err(fail(line, unreadable(line_at(text, line - 1))));
         }
     };
     if library.0.iter().any(|m| fault(m).is_some()) {
         // tobj does not say on which line a value was: its parser, on a line alone, does.
-        for (i, line) in text.lines().enumerate() {
+        for (i, line) in repaired.text.lines().enumerate() {
             let alone = tobj::load_mtl_buf(&mut format!("newmtl x\n{line}").as_bytes());
             let materials = alone.map(|(materials, _)| materials).unwrap_or_default();
             if let Some(fault) = materials.iter().find_map(fault) {
@@ -46,7 +59,53 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Library, SceneError> {
             }
         }
     }
+    for m in &mut library.0 {
+        let bright = [m.diffuse, m.specular]
+            .iter()
+            .flatten()
+            .flatten()
+            .any(|x| *x > 1.0);
+        if bright {
+            let name = format!("'{}'", printable(&m.name));
+            let before = format!("{}: colours above 1 are taken as 1: ", shown(path));
+            warnings.about(before, &name, "");
+        }
+        for color in [&mut m.diffuse, &mut m.specular].into_iter().flatten() {
+            *color = color.map(|x| x.clamp(0.0, 1.0));
+        }
+    }
     Ok(library)
+}
+
+/// A library's text that `tobj` reads right.
+struct Repaired {
+    text: String,
+    has_halo: bool,
+}
+
+/// Rewrites what `tobj` does not read, line by line: colours of one number, which are grey, and the opacity of a halo.
+fn repaired(text: &str) -> Repaired {
+    let mut out = String::with_capacity(text.len());
+    let mut has_halo = false;
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        let all = (words.next(), words.next(), words.next(), words.next());
+        match all {
+            (Some(key @ ("Ka" | "Kd" | "Ks" | "Ke")), Some(grey), None, None) => {
+                out.push_str(&format!("{key} {grey} {grey} {grey}"));
+            }
+            (Some("d"), Some("-halo"), Some(factor), None) => {
+                has_halo = true;
+                out.push_str(&format!("d {factor}"));
+            }
+            _ => out.push_str(line),
+        }
+        out.push('\n');
+    }
+    Repaired {
+        text: out,
+        has_halo,
+    }
 }
 
 fn line_at(text: &str, index: usize) -> &str {
@@ -56,18 +115,20 @@ fn line_at(text: &str, index: usize) -> &str {
 fn is_short_color(line: &str) -> bool {
     let mut words = line.split_whitespace();
     let is_color = matches!(words.next(), Some("Ka" | "Kd" | "Ks" | "Ke"));
-    is_color && words.count() < 3
+    is_color && matches!(words.count(), 0 | 2)
 }
 
 /// The message for a line that `tobj` cannot read.
 fn unreadable(line: &str) -> String {
     match line.split_whitespace().next() {
-        Some(key @ ("Ka" | "Kd" | "Ks" | "Ke")) => format!("'{key}' needs 3 numbers, not '{line}'"),
+        Some(key @ ("Ka" | "Kd" | "Ks" | "Ke")) => {
+            format!("'{key}' needs 1 or 3 numbers, not '{}'", printable(line))
+        }
         Some(key @ ("d" | "Ns" | "Ni" | "illum")) => {
-            format!("'{key}' needs a number, not '{line}'")
+            format!("'{key}' needs a number, not '{}'", printable(line))
         }
         Some("newmtl") => "a material needs a name".into(),
-        _ => format!("'{line}' cannot be read"),
+        _ => format!("'{}' cannot be read", printable(line)),
     }
 }
 
@@ -81,6 +142,7 @@ enum Fault {
 
 impl Fault {
     fn message(self, line: &str) -> String {
+        let line = printable(line);
         match self {
             Self::NotANumber => format!("'{line}' holds no number"),
             Self::NotFinite => format!("'{line}' is not finite"),
@@ -159,9 +221,12 @@ pub(super) fn material(m: &tobj::Material, lighting: Lighting) -> Material {
         emission: emission.map(|c| c.max(0.0)),
         color: m.diffuse.unwrap_or(default.color),
         alpha: alpha.clamp(0.0, 1.0),
-        specular: m
-            .specular
-            .map_or(default.specular, |s| (s[0] + s[1] + s[2]) / 3.0),
+        // Exporters mean no highlight by an exponent of 0, which would be one over the whole hemisphere.
+        specular: match (m.shininess, m.specular) {
+            (Some(exponent), _) if exponent <= 0.0 => 0.0,
+            (_, Some([r, g, b])) => (r + g + b) / 3.0,
+            (_, None) => default.specular,
+        },
         shininess: m.shininess.unwrap_or(default.shininess).max(1.0),
         ..default
     }

@@ -4,7 +4,7 @@
 //! alone, and tabs in place of blanks are not supported by it. They are rewritten here without interpreting statements, and every statement
 //! keeps its line number.
 
-use crate::error::SceneError;
+use crate::error::{SceneError, shown};
 use encoding_rs::UTF_8;
 use std::path::Path;
 
@@ -27,9 +27,11 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<(String, Option<String
     }
     let warning = format!(
         "{}:{line}: is not UTF-8 and is read as Latin-1; save it as UTF-8 where names look wrong",
-        path.display()
+        shown(path)
     );
-    let text = encoding_rs::mem::decode_latin1(bytes);
+    // In Latin-1 a byte order mark would be three letters before the first statement.
+    let marked = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = encoding_rs::mem::decode_latin1(marked);
     Ok((lines(&text), Some(warning)))
 }
 
@@ -38,6 +40,8 @@ pub(super) fn statements(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut joined = 0;
     for line in text.lines() {
+        // Files that were joined have byte order marks inside.
+        let line = line.trim_start_matches('\u{feff}');
         let line = line.split('#').next().unwrap_or("").trim();
         let (part, is_continued) = match line.strip_suffix('\\') {
             Some(part) => (part, true),
@@ -72,6 +76,7 @@ mod tests {
     fn statements_keep_their_lines() {
         let text = "# a\nf 1 2 \\\n3 # b\n\tvn\t0 0 1\n";
         assert_eq!(statements(text), "\nf 1 2  3\n\nvn 0 0 1\n");
+        assert_eq!(statements("v 0\n\u{feff}v 1\n"), "v 0\nv 1\n");
     }
 
     #[test]
@@ -83,7 +88,7 @@ mod tests {
             decoded(b"\xff\xfeo\0\xe9\0\r\0"),
             ("o é\n".replace(' ', ""), None)
         );
-        let (text, warning) = decoded(b"v 0\n# caf\xe9\x80");
+        let (text, warning) = decoded(b"\xef\xbb\xbfv 0\n# caf\xe9\x80");
         assert_eq!(text, "v 0\n# caf\u{e9}\u{80}");
         assert!(warning.is_some_and(|w| w.contains("a.obj:2")));
     }

@@ -1,10 +1,13 @@
 //! Textures that MTL files name.
 
 use crate::{
+    error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
     texture::{Maps, Texture, Wrap},
+    warnings::Warnings,
 };
+use peelnet_files::printable;
 use std::{
     collections::{BTreeMap, HashMap},
     path::{Path, PathBuf},
@@ -63,14 +66,46 @@ struct Statement {
     clamp: bool,
 }
 
-/// The textures of all materials, each file read once.
-#[derive(Default)]
-pub(super) struct Textures {
+/// The textures of all materials, each file read once and each pair of them joined once.
+pub(super) struct Textures<'a> {
     read: HashMap<PathBuf, Option<Arc<Texture>>>,
-    pub warnings: Vec<String>,
+    /// By what they are for and the names of what they are made of.
+    made: HashMap<String, Option<Arc<Texture>>>,
+    warnings: &'a mut Warnings,
 }
 
-impl Textures {
+impl<'a> Textures<'a> {
+    pub fn new(warnings: &'a mut Warnings) -> Self {
+        Self {
+            read: HashMap::new(),
+            made: HashMap::new(),
+            warnings,
+        }
+    }
+
+    /// A texture made of others, which are named in its key; `None`, with a warning, where the scene has no room for it.
+    fn made(
+        &mut self,
+        files: &mut Files<'_>,
+        key: String,
+        size: [u32; 2],
+        make: impl FnOnce() -> Texture,
+    ) -> Option<Arc<Texture>> {
+        if let Some(known) = self.made.get(&key) {
+            return known.clone();
+        }
+        let made = match files.budget.take_texels(size) {
+            Ok(()) => Some(Arc::new(make())),
+            Err(e) => {
+                let after = format!(" is not drawn: {e}");
+                self.warnings.about("texture ", &printable(&key), after);
+                None
+            }
+        };
+        self.made.insert(key, made.clone());
+        made
+    }
+
     /// Reads a statement's arguments; `None`, with a warning, where it names no file.
     fn statement(&mut self, library: &Path, key: &str, text: &str) -> Option<Statement> {
         let words: Vec<&str> = text.split_whitespace().collect();
@@ -92,16 +127,17 @@ impl Textures {
             match (*option, after.first()) {
                 ("-bm", Some(value)) => statement.strength = value.parse().unwrap_or(1.0),
                 ("-clamp", Some(value)) => statement.clamp = *value == "on",
-                _ => self.warnings.push(format!(
-                    "{}: option {option} of {key} is not drawn",
-                    library.display()
-                )),
+                _ => self.warnings.about(
+                    format!("{}: not drawn: ", shown(library)),
+                    &format!("option {} of {key}", printable(option)),
+                    "",
+                ),
             }
             rest = &after[taken.min(after.len())..];
         }
         if rest.is_empty() {
-            let warning = format!("{}: {key} names no file", library.display());
-            self.warnings.push(warning);
+            self.warnings
+                .add(format!("{}: {key} names no file", shown(library)));
             return None;
         }
         // Windows writes backslashes, which other systems do not read.
@@ -115,19 +151,23 @@ impl Textures {
         if let Some(known) = self.read.get(file) {
             return known.clone();
         }
-        let texture = match files.read(file, FileKind::Image) {
+        let read = match files.read(file, FileKind::Image) {
+            Err(SceneError::Read { source, .. }) => Err(format!("cannot be read: {source}")),
             Err(e) => Err(e.to_string()),
-            Ok(bytes) => match Texture::decode(&file.display().to_string(), &bytes) {
-                Err(e) => Err(format!("{}: {e}", file.display())),
-                Ok(texture) => {
-                    files.record(file, &bytes);
-                    Ok(Arc::new(texture))
-                }
-            },
+            Ok(bytes) => {
+                let name = file.display().to_string();
+                let texture = Texture::decode_within(&name, &bytes, &mut files.budget);
+                texture.inspect(|_| files.record(file, &bytes))
+            }
         };
-        let texture = texture
-            .map_err(|e| self.warnings.push(format!("{e}; drawn without it")))
-            .ok();
+        let texture = match read {
+            Ok(texture) => Some(Arc::new(texture)),
+            Err(e) => {
+                let after = format!(" {e}; drawn without it");
+                self.warnings.about("", &shown(file), after);
+                None
+            }
+        };
         self.read.insert(file.to_owned(), texture.clone());
         texture
     }
@@ -157,29 +197,32 @@ impl Textures {
         if uses.values().any(|s| s.clamp) {
             maps.wrap = [Wrap::Clamp; 2];
         }
-        maps.color = color_map(found.get(&Use::Color), found.get(&Use::Alpha));
+        maps.color = self.color_map(files, found.get(&Use::Color), found.get(&Use::Alpha));
         if found.contains_key(&Use::Alpha) {
             material.blend = true;
         }
-        let heights = |heights: &Texture, strength: f32| {
-            // White rises over black by an eightieth of the texture's width.
-            Arc::new(heights.normals_of_heights(strength * heights.size[0] as f32 / 80.0))
-        };
         maps.normal = match (found.get(&Use::Normal), found.get(&Use::Bump)) {
             (Some(normals), _) => Some(Arc::clone(normals)),
-            (None, Some(bump)) if bump.is_grey() => Some(heights(bump, uses[&Use::Bump].strength)),
+            (None, Some(bump)) if bump.is_grey() => {
+                // White rises over black by an eightieth of the texture's width.
+                let slope = uses[&Use::Bump].strength * bump.size[0] as f32 / 80.0;
+                let key = format!("normals of {} by {slope}", bump.name);
+                self.made(files, key, bump.size, || bump.normals_of_heights(slope))
+            }
             (None, bump) => bump.cloned(),
         };
         let has = |key: &str| m.unknown_param.contains_key(key);
         let (rough, metal) = (found.get(&Use::Roughness), found.get(&Use::Metallic));
         if rough.is_some() || metal.is_some() {
             let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
-            let values = Texture::joined(
-                rough.map_or(&white, |t| t.as_ref()),
-                metal.map_or(&white, |t| t.as_ref()),
-                |rough, metal| [255, rough[0], metal[0], 255],
-            );
-            maps.metallic_roughness = Some(Arc::new(values));
+            let [rough_map, metal_map] = [rough, metal].map(|t| t.map_or(&white, |t| t.as_ref()));
+            let key = format!("roughness {}, metallic {}", rough_map.name, metal_map.name);
+            let size = larger(rough_map, metal_map);
+            maps.metallic_roughness = self.made(files, key, size, || {
+                Texture::joined(rough_map, metal_map, |rough, metal| {
+                    [255, rough[0], metal[0], 255]
+                })
+            });
             if material.lighting != Lighting::Unlit {
                 material.lighting = Lighting::Pbr;
             }
@@ -196,30 +239,36 @@ impl Textures {
         }
         Material { maps, ..material }
     }
+    /// Base colour with the opacity of `map_d`. Opacity in the colour's own file is dropped.
+    fn color_map(
+        &mut self,
+        files: &mut Files<'_>,
+        color: Option<&Arc<Texture>>,
+        alpha: Option<&Arc<Texture>>,
+    ) -> Option<Arc<Texture>> {
+        let Some(alpha) = alpha else {
+            let color = color?;
+            if !color.has_alpha() {
+                return Some(Arc::clone(color));
+            }
+            let key = format!("colours of {}", color.name);
+            return self.made(files, key, color.size, || color.opaque());
+        };
+        let by_alpha = alpha.has_alpha();
+        let value = |t: [u8; 4]| if by_alpha { t[3] } else { t[0] };
+        let key = match color {
+            None => format!("opacity of {}", alpha.name),
+            Some(color) => format!("colours of {}, opacity of {}", color.name, alpha.name),
+        };
+        let size = larger(alpha, color.unwrap_or(alpha));
+        self.made(files, key, size, || match color {
+            None => Texture::joined(alpha, alpha, |t, _| [255, 255, 255, value(t)]),
+            Some(color) => Texture::joined(color, alpha, |c, a| [c[0], c[1], c[2], value(a)]),
+        })
+    }
 }
 
-/// Base colour with the opacity of `map_d`. Opacity in the colour's own file is dropped.
-fn color_map(color: Option<&Arc<Texture>>, alpha: Option<&Arc<Texture>>) -> Option<Arc<Texture>> {
-    let opacity = |texture: &Texture| {
-        let by_alpha = texture.has_alpha();
-        move |t: [u8; 4]| if by_alpha { t[3] } else { t[0] }
-    };
-    Some(match (color, alpha) {
-        (None, None) => return None,
-        (Some(color), None) if !color.has_alpha() => Arc::clone(color),
-        (Some(color), None) => {
-            let opaque = |t: [u8; 4], _| [t[0], t[1], t[2], 255];
-            Arc::new(Texture::joined(color, color, opaque))
-        }
-        (None, Some(alpha)) => {
-            let value = opacity(alpha);
-            let white = |t, _| [255, 255, 255, value(t)];
-            Arc::new(Texture::joined(alpha, alpha, white))
-        }
-        (Some(color), Some(alpha)) => {
-            let value = opacity(alpha);
-            let join = |c: [u8; 4], a| [c[0], c[1], c[2], value(a)];
-            Arc::new(Texture::joined(color, alpha, join))
-        }
-    })
+/// The larger of two textures' sizes, along each side.
+fn larger(a: &Texture, b: &Texture) -> [u32; 2] {
+    [0, 1].map(|k| a.size[k].max(b.size[k]))
 }
