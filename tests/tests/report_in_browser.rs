@@ -66,6 +66,7 @@ fn bench() -> Results<Bench> {
     };
     let bench = Bench {
         load: [None; 2],
+        settings: None,
         rows,
     };
     Results::new(machine, "peelnet bench", bench)

@@ -193,6 +193,57 @@ fn a_bench_that_is_killed_goes_on_to_the_same_errors() {
     });
 }
 
+/// What has come to its end is kept: going on says so, and with nothing to go on from it is an error.
+#[test]
+fn resuming_what_has_finished_says_so_and_keeps_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    let said = |line: &str, code: i32, words: &str| {
+        let output = peelnet(line, folder);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{line}: {text}");
+        assert!(text.contains(words), "{line}: {text}");
+    };
+    must("extract --synthetic 2000 --out d", folder);
+    let line = "train d --out m-0.5 --epochs 2";
+    said(
+        &format!("{line} --resume"),
+        1,
+        "m-0.5.checkpoint/state.safetensors",
+    );
+    must(line, folder);
+    let model = std::fs::read(folder.join("m-0.5")).unwrap();
+    said(
+        &format!("{line} --resume"),
+        0,
+        "already finished after epoch 2",
+    );
+    assert_eq!(std::fs::read(folder.join("m-0.5")).unwrap(), model);
+
+    std::fs::write(folder.join("s.toml"), SCENE).unwrap();
+    let line = "bench s.toml --out o --size 32x24 --frames 1 --methods wboit-eq9";
+    must(line, folder);
+    let results = std::fs::read(folder.join("o/results.json")).unwrap();
+    said(
+        &format!("{line} --resume"),
+        0,
+        "has finished with these settings",
+    );
+    assert_eq!(
+        std::fs::read(folder.join("o/results.json")).unwrap(),
+        results
+    );
+    said(
+        &format!("{line} --views 1 --resume"),
+        1,
+        "leave out --resume",
+    );
+    assert_eq!(
+        std::fs::read(folder.join("o/results.json")).unwrap(),
+        results
+    );
+}
+
 /// Files may grow to so many kilobytes and then every write fails, as on a full disk: one error, and nothing left.
 #[cfg(unix)]
 #[test]

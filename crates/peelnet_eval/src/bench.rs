@@ -16,6 +16,9 @@ pub struct Bench {
     /// Mean load of the machine before and after, see [`load`].
     #[serde(default)]
     pub load: [Option<f64>; 2],
+    /// Hash of the settings that it was measured with, by which a run that is resumed finds that it has finished.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settings: Option<String>,
     /// One row per method, scene and view.
     pub rows: Vec<Row>,
 }
@@ -69,6 +72,23 @@ pub fn bench(gpu: &Gpu, scenes: &[Scene], plan: &Plan<'_>) -> Result<Vec<Row>, E
     Ok(bench_watched(gpu, scenes, plan, partial, &stop, &mut |_| {})?.rows)
 }
 
+/// Rows and pictures name their scene.
+///
+/// # Errors
+/// Two scenes of one name.
+pub(crate) fn check_names(scenes: &[Scene]) -> Result<(), EvalError> {
+    for (i, scene) in scenes.iter().enumerate() {
+        if let Some(other) = scenes[..i].iter().find(|s| s.name == scene.name) {
+            return Err(EvalError::SameName {
+                name: scene.name.clone(),
+                first: other.source.clone(),
+                second: scene.source.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
 /// As [`bench()`], but continues what `partial` holds, adds each finished view to it, reports progress, and can be stopped.
 ///
 /// # Errors
@@ -81,6 +101,7 @@ pub fn bench_watched(
     stop: &AtomicBool,
     report: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Bench, EvalError> {
+    check_names(scenes)?;
     let load_before = load();
     let views: usize = scenes
         .iter()
@@ -116,6 +137,30 @@ pub fn bench_watched(
     }
     Ok(Bench {
         load: [load_before, load()],
+        settings: None,
         rows: partial.finish(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    /// Rows are found by their scene's name: the second of two would pass for done.
+    #[test]
+    fn two_scenes_of_one_name_are_refused_with_both_files() {
+        let cups = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/cups.toml");
+        let first = Scene::load(cups).unwrap();
+        let mut second = first.clone();
+        second.source = "b/x.toml".into();
+        let text = check_names(&[first.clone(), second.clone()]).unwrap_err();
+        let text = text.to_string();
+        assert!(
+            text.contains("cups.toml") && text.contains("b/x.toml"),
+            "{text}"
+        );
+        second.name = "other".to_owned();
+        check_names(&[first, second]).unwrap();
+    }
 }

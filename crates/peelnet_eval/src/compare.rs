@@ -1,7 +1,7 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
 use crate::transmittance::{Sample, Stacks};
-use crate::{EvalError, Row, metrics, perceptual::Displayed};
+use crate::{EvalError, Row, metrics, perceptual::Displayed, settings_hash};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
@@ -50,6 +50,14 @@ impl<'a> Plan<'a> {
         }
     }
 
+    /// Whether a row can be of this plan on these scenes.
+    pub fn has(&self, scenes: &[Scene], row: &Row) -> bool {
+        let is_drawn = |s: &Scene| s.name == row.scene && (row.view as usize) < self.views_of(s);
+        scenes.iter().any(is_drawn)
+            && [row.width, row.height] == self.size
+            && (row.method == EXACT || self.methods.iter().any(|m| m.to_string() == row.method))
+    }
+
     /// How many views of a scene are drawn.
     pub fn views_of(&self, scene: &Scene) -> usize {
         let all = scene.views.len();
@@ -57,19 +65,29 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// File name of a method's picture of a scene.
+/// Most characters of a name in a file's name; file systems take 255 in all.
+const MAX_NAME: usize = 100;
+
+/// File name of a method's picture of a scene: another one for every pair of names, on every file system.
+///
+/// Digits, small letters, '-' and '.' stay; any other byte becomes '_' and two hexadecimal digits, because some file systems refuse ':' and
+/// '=', and some take `A` for `a`. A long name ends in its hash.
 pub fn image_name(scene: &str, method: &str) -> String {
-    // Parameters bring ':' and '=' into the name, which some file systems refuse.
     let plain = |text: &str| -> String {
-        text.chars()
-            .map(|c| {
-                if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.') {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect()
+        let mut plain = String::new();
+        for byte in text.bytes() {
+            if byte.is_ascii_digit() || byte.is_ascii_lowercase() || matches!(byte, b'-' | b'.') {
+                plain.push(char::from(byte));
+            } else {
+                plain.push_str(&format!("_{byte:02x}"));
+            }
+        }
+        if plain.len() > MAX_NAME {
+            let hash = settings_hash(&text.into());
+            // No escape begins with h.
+            plain = format!("{}_h{}", &plain[..MAX_NAME - 34], &hash[..32]);
+        }
+        plain
     };
     format!("{}-{}.png", plain(scene), plain(method))
 }
@@ -375,13 +393,57 @@ fn row(
 #[cfg(test)]
 mod tests {
     use super::image_name;
+    use peelnet_render::{METHODS, MethodSpec};
+    use std::collections::BTreeSet;
 
     #[test]
     fn picture_names_are_plain() {
         assert_eq!(
             image_name("cups", "wboit-eq9:targets=f32"),
-            "cups-wboit-eq9_targets_f32.png"
+            "cups-wboit-eq9_3atargets_3df32.png"
         );
-        assert_eq!(image_name("../x", "a"), ".._x-a.png");
+        assert_eq!(image_name("../x", "a"), ".._2fx-a.png");
+    }
+
+    /// Names that differ have files that differ, also where case is ignored.
+    #[test]
+    fn names_that_differ_have_pictures_that_differ() {
+        let long = "x".repeat(5000);
+        let scenes = [
+            "a/b",
+            "a_b",
+            "a:b",
+            "A",
+            "a",
+            "ä",
+            "Ä",
+            "a_2fb",
+            "",
+            ".",
+            &long,
+            &long[1..],
+        ];
+        let curve = MethodSpec::curve();
+        let methods: Vec<String> = curve.iter().map(ToString::to_string).collect();
+        let pairs = scenes
+            .iter()
+            .flat_map(|s| methods.iter().map(move |m| (s, m)));
+        let names: BTreeSet<String> = pairs
+            .map(|(scene, method)| image_name(scene, method).to_lowercase())
+            .collect();
+        assert_eq!(names.len(), scenes.len() * methods.len());
+        assert!(
+            names
+                .iter()
+                .all(|n| n.len() < 255 && !n.contains(['/', '\\', ':']))
+        );
+        // A '-' stands between the names: no method's name ends in another one's behind a '-'.
+        for method in METHODS {
+            let ending = format!("-{}", method.name);
+            assert!(
+                METHODS.iter().all(|m| !m.name.ends_with(&ending)),
+                "{ending}"
+            );
+        }
     }
 }

@@ -282,6 +282,7 @@ pub fn measure(
     stop: &AtomicBool,
     mut tick: impl FnMut(&str),
 ) -> Result<Effects, EvalError> {
+    crate::bench::check_names(scenes)?;
     let mut found = Effects {
         method: settings.method.to_string(),
         size: settings.size,

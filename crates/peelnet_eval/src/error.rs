@@ -61,6 +61,16 @@ pub enum EvalError {
         /// What does not fit.
         why: String,
     },
+    /// Rows and pictures could not be assigned to their scene.
+    #[error("two scenes are named '{name}' ({} and {}): rename one, because rows and pictures name their scene", first.display(), second.display())]
+    SameName {
+        /// The name of both.
+        name: String,
+        /// Where one comes from.
+        first: PathBuf,
+        /// Where the other comes from.
+        second: PathBuf,
+    },
     /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,

@@ -41,6 +41,11 @@ impl Point {
     pub fn is_exact(&self) -> bool {
         self.error <= EXACT_MSE
     }
+
+    /// Its error without the floor: 0 where it is exact.
+    pub fn mse(&self) -> f64 {
+        if self.is_exact() { 0.0 } else { self.error }
+    }
 }
 
 /// The points of all rows, or of one scene's, by time; times are always geometric means. Methods without a time are left out.

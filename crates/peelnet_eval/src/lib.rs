@@ -38,5 +38,5 @@ pub use bench::bench;
 pub use error::EvalError;
 pub use machine::{Machine, load};
 pub use mean::geometric_mean;
-pub use partial::Partial;
+pub use partial::{Partial, settings_hash};
 pub use row::Row;

@@ -1,44 +1,96 @@
 //! What an interrupted comparison has measured so far.
 
 use crate::{EvalError, Row};
+use peelnet_files::printable;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+/// Its name in the folder of a run.
+const FILE: &str = "partial.json";
+
+/// Bytes of the file that are read: a hundred thousand rows have half of it.
+const MAX_BYTES: u64 = 1 << 28;
+
 /// Rows of finished views, and the settings they were measured with: only a run with the same settings is resumed.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug)]
 pub struct Partial {
+    kept: Kept,
+    /// Where it is kept, if anywhere.
+    path: Option<PathBuf>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Kept {
     plan: serde_json::Value,
     rows: Vec<Row>,
-    /// Where it is kept, if anywhere.
-    #[serde(skip)]
-    path: Option<PathBuf>,
+}
+
+/// The file: what is kept, and its hash, so that rows that were changed are not taken for measured ones.
+#[derive(Serialize, Deserialize)]
+struct Stored<K> {
+    sha256: String,
+    #[serde(flatten)]
+    kept: K,
+}
+
+impl Kept {
+    fn sha256(&self) -> String {
+        sha256(&serde_json::to_vec(self).expect("rows have string keys only"))
+    }
+}
+
+/// Hexadecimal hash of settings, by which a finished run is known.
+pub fn settings_hash(settings: &serde_json::Value) -> String {
+    sha256(settings.to_string().as_bytes())
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    let hash = Sha256::digest(bytes);
+    hash.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 impl Partial {
     /// Starts afresh; the file appears in the folder, if one is given, with the first rows.
     pub fn new(folder: Option<&Path>, plan: serde_json::Value) -> Self {
         Self {
-            plan,
-            rows: Vec::new(),
-            path: folder.map(|f| f.join("partial.json")),
+            kept: Kept {
+                plan,
+                rows: Vec::new(),
+            },
+            path: folder.map(|f| f.join(FILE)),
         }
     }
 
-    /// Goes on with what a run of the same plan left in a folder; starts afresh where there is nothing.
+    /// Whether a run left something in a folder.
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(FILE).exists()
+    }
+
+    /// Goes on with what a run of the same plan left in a folder; starts afresh where there is nothing. `belongs` says whether a row can
+    /// be of this plan.
     ///
     /// # Errors
-    /// A file that cannot be read, or that is of another plan.
-    pub fn resume(folder: &Path, plan: serde_json::Value) -> Result<Self, EvalError> {
-        let path = folder.join("partial.json");
-        if !path.exists() {
+    /// A file that cannot be read, that is of another plan, or whose rows are not those that were measured.
+    pub fn resume(
+        folder: &Path,
+        plan: serde_json::Value,
+        belongs: impl Fn(&Row) -> bool,
+    ) -> Result<Self, EvalError> {
+        let path = folder.join(FILE);
+        if !Self::is_in(folder) {
             return Ok(Self::new(Some(folder), plan));
         }
         let refuse = |why: String| EvalError::Resume {
             path: path.clone(),
             why,
         };
-        let bytes = std::fs::read(&path).map_err(EvalError::io(&path, "read"))?;
-        let found: Self = serde_json::from_slice(&bytes).map_err(|e| refuse(e.to_string()))?;
+        let bytes = peelnet_files::read(&path, MAX_BYTES).map_err(EvalError::io(&path, "read"))?;
+        let Stored {
+            sha256,
+            kept: found,
+        }: Stored<Kept> = serde_json::from_slice(&bytes).map_err(|e| refuse(e.to_string()))?;
         if found.plan != plan {
             let differs = |key: &str| found.plan.get(key) != plan.get(key);
             let keys = plan
@@ -52,21 +104,39 @@ impl Partial {
                 names.join(", ")
             )));
         }
+        if found.sha256() != sha256 {
+            return Err(refuse(
+                "it was changed after it was written: its sha256 differs".to_owned(),
+            ));
+        }
+        let mut keys = BTreeSet::new();
+        for row in &found.rows {
+            let name = || {
+                let (method, scene) = (printable(&row.method), printable(&row.scene));
+                format!("{method} on view {} of {scene}", row.view)
+            };
+            if !belongs(row) {
+                return Err(refuse(format!("{} is not of these settings", name())));
+            }
+            if !keys.insert((&row.method, &row.scene, row.view)) {
+                return Err(refuse(format!("{} is in it twice", name())));
+            }
+        }
         Ok(Self {
             path: Some(path),
-            ..found
+            kept: found,
         })
     }
 
     /// All rows so far.
     pub fn rows(&self) -> &[Row] {
-        &self.rows
+        &self.kept.rows
     }
 
     /// Views of a scene that are done.
     pub fn done(&self, scene: &str) -> Vec<u32> {
         let mut views: Vec<u32> = self
-            .rows
+            .rows()
             .iter()
             .filter(|r| r.scene == scene)
             .map(|r| r.view)
@@ -80,11 +150,15 @@ impl Partial {
     /// # Errors
     /// If it cannot be written.
     pub fn push(&mut self, rows: Vec<Row>) -> Result<(), EvalError> {
-        self.rows.extend(rows);
+        self.kept.rows.extend(rows);
         let Some(path) = &self.path else {
             return Ok(());
         };
-        let json = serde_json::to_vec(self).expect("rows have string keys only");
+        let stored = Stored {
+            sha256: self.kept.sha256(),
+            kept: &self.kept,
+        };
+        let json = serde_json::to_vec(&stored).expect("rows have string keys only");
         peelnet_files::write_whole(path, &json).map_err(EvalError::io(path, "write"))
     }
 
@@ -92,7 +166,7 @@ impl Partial {
     pub fn finish(self) -> Vec<Row> {
         // Where it cannot be removed, the next run refuses or overwrites it.
         let _ = self.path.map(std::fs::remove_file);
-        self.rows
+        self.kept.rows
     }
 }
 
@@ -107,12 +181,12 @@ mod tests {
     fn it_goes_on_where_it_stopped() {
         let dir = tempfile::tempdir().unwrap();
         let plan = json!({"size": [4, 4], "methods": ["a"]});
-        let mut first = Partial::resume(dir.path(), plan.clone()).unwrap();
+        let mut first = Partial::resume(dir.path(), plan.clone(), |_| true).unwrap();
         first
             .push(vec![row("s", 0, "a", 1.0), row("s", 0, "b", 2.0)])
             .unwrap();
         drop(first);
-        let mut second = Partial::resume(dir.path(), plan).unwrap();
+        let mut second = Partial::resume(dir.path(), plan, |_| true).unwrap();
         assert_eq!((second.done("s"), second.done("t")), (vec![0], vec![]));
         second.push(vec![row("s", 1, "a", 3.0)]).unwrap();
         assert_eq!(second.done("s"), [0, 1]);
@@ -126,12 +200,44 @@ mod tests {
         let mut first = Partial::new(Some(dir.path()), json!({"size": [4, 4], "methods": ["a"]}));
         first.push(vec![row("s", 0, "a", 1.0)]).unwrap();
         let other = json!({"size": [8, 4], "methods": ["a"]});
-        let e = Partial::resume(dir.path(), other).unwrap_err().to_string();
+        let e = Partial::resume(dir.path(), other, |_| true);
+        let e = e.unwrap_err().to_string();
         assert!(
             e.contains("partial.json") && e.ends_with("settings: size"),
             "{e}"
         );
         std::fs::write(dir.path().join("partial.json"), "{").unwrap();
-        assert!(Partial::resume(dir.path(), json!({})).is_err());
+        assert!(Partial::resume(dir.path(), json!({}), |_| true).is_err());
+    }
+
+    /// An interrupted run is not believed where somebody changed it.
+    #[test]
+    fn edited_doubled_and_foreign_rows_are_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let plan = json!({"size": [4, 4]});
+        let refused = |rows: Vec<Row>, edit: [&str; 2]| {
+            let mut first = Partial::new(Some(dir.path()), plan.clone());
+            first.push(rows).unwrap();
+            let file = dir.path().join("partial.json");
+            let text = std::fs::read_to_string(&file).unwrap();
+            std::fs::write(&file, text.replacen(edit[0], edit[1], 1)).unwrap();
+            Partial::resume(dir.path(), plan.clone(), |r| r.scene == "s")
+                .map(drop)
+                .unwrap_err()
+                .to_string()
+        };
+        let (a, b) = (row("s", 0, "a", 1.0 / 3.0), row("s", 0, "b", 2.0));
+        let e = refused(
+            vec![a.clone(), b.clone()],
+            ["\"mse255\":2.0", "\"mse255\":0.5"],
+        );
+        assert!(e.contains("partial.json") && e.contains("sha256"), "{e}");
+        let e = refused(vec![a.clone(), b, a.clone()], ["", ""]);
+        assert!(e.contains("a on view 0 of s is in it twice"), "{e}");
+        let e = refused(vec![a, row("t", 3, "b", 2.0)], ["", ""]);
+        assert!(
+            e.contains("b on view 3 of t is not of these settings"),
+            "{e}"
+        );
     }
 }

@@ -27,7 +27,7 @@ pub struct Recommendation<'a> {
 impl Budget {
     fn allows(&self, p: &Point) -> bool {
         let within = |limit: Option<f64>, value: f64| limit.is_none_or(|l| value <= l);
-        within(self.ms, p.time_ms) && within(self.error, p.error) && within(self.bytes, p.bytes)
+        within(self.ms, p.time_ms) && within(self.error, p.mse()) && within(self.bytes, p.bytes)
     }
 
     /// The best of the points within the budget: the fastest where an error is asked for, else the most accurate (the faster
@@ -70,10 +70,10 @@ impl Budget {
                 "; {} takes {:.2} x its time{}",
                 next.method,
                 next.time_ms / best.time_ms,
-                if best.is_exact() && next.is_exact() {
-                    " and is exact as well".to_owned()
-                } else {
-                    format!(" and has {:.2} x its error", next.error / best.error)
+                match (best.is_exact(), next.is_exact()) {
+                    (true, true) => " and is exact as well".to_owned(),
+                    (true, false) => format!(" and has an MSE of {:.2e}", next.error),
+                    (false, _) => format!(" and has {:.2} x its error", next.mse() / best.error),
                 }
             ));
         }
@@ -90,7 +90,7 @@ impl Budget {
         let excess = |p: &Point| {
             let over = |limit: Option<f64>, value: f64| limit.map_or(0.0, |l| value / l);
             over(self.ms, p.time_ms)
-                .max(over(self.error, p.error))
+                .max(over(self.error, p.mse()))
                 .max(over(self.bytes, p.bytes))
         };
         points
@@ -101,7 +101,7 @@ impl Budget {
                 |p| {
                     format!(
                         "no method is within the budget; the nearest is {}: {:.2} ms, error {:.2e}, {:.0} bytes a pixel",
-                        p.method, p.time_ms, p.error, p.bytes
+                        p.method, p.time_ms, p.mse(), p.bytes
                     )
                 },
             )
@@ -145,6 +145,30 @@ mod tests {
         assert_eq!(choose(None, Some(1e-3), None), pair("good", Some("fat")));
         assert_eq!(choose(None, None, Some(50.0)), pair("good", Some("fast")));
         assert_eq!(choose(Some(1.0), None, None), pair("fast", None));
+    }
+
+    /// An exact method has no error at all: its point's error is the floor of logarithmic axes.
+    #[test]
+    fn exact_methods_are_within_every_limit_of_the_error() {
+        let points = points();
+        for error in [1e-11, 1e-300, 0.0] {
+            let budget = Budget {
+                error: Some(error),
+                ..Budget::default()
+            };
+            let chosen = budget.choose(&points).unwrap();
+            assert_eq!(
+                (chosen.best.method.as_str(), chosen.best.mse()),
+                ("exact", 0.0)
+            );
+        }
+        let budget = Budget {
+            ms: Some(0.1),
+            error: Some(1e-11),
+            bytes: Some(100.0),
+        };
+        let e = budget.choose(&points[3..]).unwrap_err();
+        assert!(e.contains("error 0.00e0"), "{e}");
     }
 
     #[test]

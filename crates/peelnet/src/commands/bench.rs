@@ -8,11 +8,12 @@ use crate::outputs::Outputs;
 use crate::parse::{MethodList, command_line, shown};
 use crate::progress::Bar;
 use peelnet_eval::{
-    Machine, Partial,
+    EvalError, Machine, Partial,
     bench::{self, Bench, bench_watched},
     compare::Plan,
     front::BASE,
     scaling::{self, Scaling},
+    settings_hash,
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, ModelError, Recipe};
@@ -137,8 +138,14 @@ pub(super) fn measure(
         images: images.as_deref(),
     };
     let settings = settings(&gpu, args, &plan, scenes);
+    let hash = settings_hash(&settings);
     let partial = match out {
-        Some(folder) if args.resume => Partial::resume(folder, settings)?,
+        Some(folder) if args.resume => {
+            if let Some(finished) = finished(context, folder, &hash)? {
+                return Ok(finished);
+            }
+            Partial::resume(folder, settings, |row| plan.has(scenes, row))?
+        }
         _ => Partial::new(out, settings),
     };
     let bar = Bar::new(context.console, "bench", 0);
@@ -153,10 +160,45 @@ pub(super) fn measure(
             .console
             .warn(format!("{method} is left out of {scene}: {why}")),
     };
-    let measured = bench_watched(&gpu, scenes, &plan, partial, context.stop, &mut show)?;
+    let mut measured = bench_watched(&gpu, scenes, &plan, partial, context.stop, &mut show)?;
+    measured.settings = Some(hash);
     drop(bar);
     context.warn_of_memory(&gpu);
     Ok(Results::new(Machine::of(&gpu), command_line(), measured))
+}
+
+/// The results in a folder of a run with these settings that came to its end; nothing where no run ended there.
+///
+/// # Errors
+/// Results of other settings: going on would replace them.
+fn finished(
+    context: &Context<'_>,
+    folder: &Path,
+    settings: &str,
+) -> Result<Option<Results<Bench>>, Failure> {
+    let file = folder.join("results.json");
+    if Partial::is_in(folder) {
+        return Ok(None);
+    }
+    if !file.exists() {
+        let message = format!("{}: no run to resume, so one starts", folder.display());
+        context.console.message(message);
+        return Ok(None);
+    }
+    let results = read(&file)?;
+    if results.measured.settings.as_deref() != Some(settings) {
+        return Err(EvalError::Resume {
+            path: file,
+            why: "a run with other settings came to its end here".to_owned(),
+        }
+        .into());
+    }
+    let message = format!(
+        "{}: the run has finished with these settings: its results are kept",
+        file.display()
+    );
+    context.console.message(message);
+    Ok(Some(results))
 }
 
 /// What must be the same for an interrupted run to be resumed.

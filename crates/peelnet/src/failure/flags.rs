@@ -35,16 +35,24 @@ pub(super) fn are_wrong(error: &(dyn Error + 'static)) -> bool {
         TrainError::Config { .. } | TrainError::CurveFormat(_) => Some(()),
         _ => None,
     };
+    let names = |error: &EvalError| matches!(error, EvalError::SameName { .. }).then_some(());
+    let method = |error: &RenderError| match error {
+        RenderError::Parameter { .. } | RenderError::UnknownMethod { .. } => Some(()),
+        _ => None,
+    };
     let wrong = |error: &PeelError| match error {
         PeelError::NoScene
         | PeelError::SameName { .. }
         | PeelError::TooFewViews { .. }
         | PeelError::Fraction(_)
-        | PeelError::TooManyLists(_) => Some(()),
+        | PeelError::TooManyLists(_)
+        | PeelError::Dataset(DatasetError::TooManyItems { .. }) => Some(()),
         _ => None,
     };
     find(error, wrong)
         .or_else(|| find(error, setting))
+        .or_else(|| find(error, names))
+        .or_else(|| find(error, method))
         .is_some()
 }
 
@@ -94,6 +102,7 @@ fn peel(error: &PeelError) -> Option<&'static str> {
 fn dataset(error: &DatasetError) -> Option<&'static str> {
     match error {
         DatasetError::MissingShards { .. } => Some("peelnet extract with these --shard values"),
+        DatasetError::TooManyItems { .. } => Some("lower --augment or --views"),
         _ => None,
     }
 }
@@ -106,6 +115,7 @@ fn train(error: &TrainError) -> Option<&'static str> {
             "epochs" => Some("set it with --epochs"),
             "batch" => Some("set it with --batch"),
             "hidden" => Some("set it with --hidden"),
+            "max_rows" => Some("set it with --max-rows"),
             "learning_rate" => Some("set it with --lr"),
             "patience" => Some("set it with --patience"),
             "loss" => Some("set it with --loss"),

@@ -25,6 +25,7 @@ use std::ops::Range;
 const BUDGET: Count = Count {
     name: "budget",
     about: "fragments that one tile may hold",
+    most: 1 << 32,
 };
 
 pub(super) const METHOD: Method = Method {

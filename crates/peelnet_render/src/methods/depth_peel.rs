@@ -22,6 +22,7 @@ use std::ops::Range;
 pub(super) const PASSES: Count = Count {
     name: "passes",
     about: "a cap on the number of peeling passes",
+    most: 1 << 20,
 };
 
 /// Coincident fragments that are drawn in another order.

@@ -26,6 +26,7 @@ use std::ops::Range;
 const NODES: Count = Count {
     name: "nodes",
     about: "size of the first pool; it grows as needed",
+    most: 1 << 32,
 };
 
 pub(super) const METHOD: Method = Method {

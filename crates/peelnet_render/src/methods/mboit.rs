@@ -16,25 +16,32 @@ use peelnet_core::methods::{
     mboit4::{self, Settings},
     mboit6,
 };
+use std::ops::Bound;
 
-const OVERESTIMATION: Number = Number::any(
-    "overestimation",
-    Settings::PAPER.overestimation,
-    "0.25 by default",
-);
+const OVERESTIMATION: Number = Number {
+    name: "overestimation",
+    about: "0.25 by default",
+    default: Settings::PAPER.overestimation,
+    least: Bound::Included(0.0),
+    most: 1.0,
+};
 
 /// The default is that of 32-bit moments.
-const BIAS_4: Number = Number::any(
-    "bias",
-    Settings::PAPER.bias,
-    "5e-7 by default, 6e-5 with 16-bit moments",
-);
+const BIAS_4: Number = Number {
+    name: "bias",
+    about: "5e-7 by default, 6e-5 with 16-bit moments",
+    default: Settings::PAPER.bias,
+    least: Bound::Included(0.0),
+    most: 1.0,
+};
 
-const BIAS_6: Number = Number::any(
-    "bias",
-    mboit6::PAPER.bias,
-    "5e-6 by default, 6e-4 with 16-bit moments",
-);
+const BIAS_6: Number = Number {
+    name: "bias",
+    about: "5e-6 by default, 6e-4 with 16-bit moments",
+    default: mboit6::PAPER.bias,
+    least: Bound::Included(0.0),
+    most: 1.0,
+};
 
 const OWN: Word = Word {
     name: "own",

@@ -127,6 +127,9 @@ impl FromStr for MethodSpec {
         }
         for pair in parameters.split(',').filter(|p| !p.is_empty()) {
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
+            if spec.values.contains_key(name) {
+                return Err(spec.bad(format!("{name} is given twice; give it once")));
+            }
             spec.set(name, value)?;
         }
         Ok(spec)

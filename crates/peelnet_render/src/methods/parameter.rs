@@ -3,6 +3,8 @@
 //! A parameter is a constant beside the method that has it. [`MethodSpec`](super::MethodSpec) parses its value once; the constant then reads it
 //! from the specification, default included, and cannot fail.
 
+use std::ops::{Bound, RangeBounds as _};
+
 /// A parameter of a method.
 #[derive(Clone, Copy, Debug)]
 pub enum Parameter {
@@ -18,7 +20,7 @@ pub enum Parameter {
     Targets(Targets),
 }
 
-/// A finite number with a default.
+/// A number within limits, with a default. Shaders read it in 32 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     /// Its name.
@@ -27,9 +29,9 @@ pub struct Number {
     pub about: &'static str,
     /// The value where none is given.
     pub default: f64,
-    /// Values must lie above this; −∞ without a limit.
-    pub above: f64,
-    /// The largest value; ∞ without a limit.
+    /// The smallest value, itself allowed or not.
+    pub least: Bound<f64>,
+    /// The largest value.
     pub most: f64,
 }
 
@@ -53,6 +55,8 @@ pub struct Count {
     pub name: &'static str,
     /// One line for help texts.
     pub about: &'static str,
+    /// The largest value; the smallest is 1.
+    pub most: u64,
 }
 
 /// One of some words.
@@ -87,7 +91,7 @@ pub const SCALE: Number = Number {
     name: "scale",
     about: "of the resolution that transparency is drawn at, 1 by default; upsampled by depth",
     default: 1.0,
-    above: 0.0,
+    least: Bound::Excluded(0.0),
     most: 1.0,
 };
 
@@ -111,24 +115,17 @@ pub(super) enum Value {
 }
 
 impl Number {
-    /// A number without limits.
-    pub(super) const fn any(name: &'static str, default: f64, about: &'static str) -> Self {
-        Self {
-            name,
-            about,
-            default,
-            above: f64::NEG_INFINITY,
-            most: f64::INFINITY,
-        }
+    fn allows(&self, x: f64) -> bool {
+        (self.least, Bound::Included(self.most)).contains(&x)
     }
 
     fn allowed(&self) -> String {
-        let above = (self.above.is_finite()).then(|| format!("above {}", self.above));
-        let most = (self.most.is_finite()).then(|| format!("at most {}", self.most));
-        let limits: Vec<String> = above.into_iter().chain(most).collect();
-        format!("a number {}", limits.join(" and "))
-            .trim_end()
-            .to_owned()
+        let most = self.most;
+        match self.least {
+            Bound::Included(least) => format!("a number from {least} to {most}"),
+            Bound::Excluded(least) => format!("a number above {least} and at most {most}"),
+            Bound::Unbounded => format!("a number of at most {most}"),
+        }
     }
 }
 
@@ -168,7 +165,7 @@ impl Parameter {
         match self {
             Self::Number(p) => p.allowed(),
             Self::Whole(p) => format!("a whole number from 0 to {}", p.most),
-            Self::Count(_) => "a positive whole number".to_owned(),
+            Self::Count(p) => format!("a whole number from 1 to {}", p.most),
             Self::Word(p) => p.words.join(" or "),
             Self::Targets(_) => Targets::WORDS.map(|(word, _)| word).join(" or "),
         }
@@ -179,17 +176,15 @@ impl Parameter {
         match self {
             Self::Number(p) => {
                 let x: f64 = text.parse().ok()?;
-                // Shaders read it in 32 bits.
-                let finite = (x as f32).is_finite();
-                (finite && x > p.above && x <= p.most).then_some(Value::Number(x))
+                p.allows(x).then_some(Value::Number(x))
             }
             Self::Whole(p) => {
                 let n: u64 = text.parse().ok()?;
                 (n <= p.most.into()).then_some(Value::Whole(n))
             }
-            Self::Count(_) => {
+            Self::Count(p) => {
                 let n: u64 = text.parse().ok()?;
-                (n > 0).then_some(Value::Whole(n))
+                (1..=p.most).contains(&n).then_some(Value::Whole(n))
             }
             Self::Word(p) => p
                 .words

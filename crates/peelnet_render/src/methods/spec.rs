@@ -287,12 +287,34 @@ mod tests {
     #[test]
     fn values_are_checked() {
         for (text, allowed) in [
-            ("depth-peel:passes=0", "a positive whole number"),
+            ("depth-peel:passes=0", "a whole number from 1 to 1048576"),
             ("blended:targets=f64", "f16 or f32"),
             ("mboit4:own=maybe", "in or out"),
             ("wavelet-3:own=", "out or in"),
-            ("wboit-eq10:factor=inf", "a number"),
-            ("mboit4:bias=1e39", "a number"),
+            (
+                "depth-peel:passes=1048577",
+                "a whole number from 1 to 1048576",
+            ),
+            (
+                "abuffer:budget=4294967297",
+                "a whole number from 1 to 4294967296",
+            ),
+            (
+                "wboit-eq10:factor=inf",
+                "a number above 0 and at most 1000000000",
+            ),
+            (
+                "wboit-eq10:factor=-1",
+                "a number above 0 and at most 1000000000",
+            ),
+            (
+                "wboit-inverse-power:epsilon=0",
+                "a number above 0 and at most 1000000000",
+            ),
+            ("mboit4:bias=1e30", "a number from 0 to 1"),
+            ("mboit6:bias=-1e-9", "a number from 0 to 1"),
+            ("mboit4:overestimation=-5", "a number from 0 to 1"),
+            ("mboit4:overestimation=NaN", "a number from 0 to 1"),
             ("wboit-inverse-power:k=17", "a whole number from 0 to 16"),
             ("abuffer:scale=0", "a number above 0 and at most 1"),
             ("abuffer:scale=nan", "a number above 0 and at most 1"),
@@ -302,6 +324,59 @@ mod tests {
             let want = format!("{name} must be {allowed}, not '{value}'");
             assert!(e.ends_with(&want), "{e} does not end with {want}");
         }
+    }
+
+    #[test]
+    fn a_parameter_that_is_given_twice_is_refused() {
+        for text in [
+            "mboit4:bias=1e-6,bias=2",
+            "mboit4:bias=1e-6,own=out,bias=1e-6",
+        ] {
+            let e = text.parse::<MethodSpec>().unwrap_err().to_string();
+            assert!(
+                e.contains("mboit4") && e.contains("bias is given twice"),
+                "{e}"
+            );
+        }
+    }
+
+    /// Promises and flaws belong to what a name resolves to, not to how it is spelled.
+    #[test]
+    fn a_bare_name_and_its_explicit_spelling_declare_the_same_flaws() {
+        let mut compared = 0;
+        for method in METHODS {
+            let bare = MethodSpec::representative(method);
+            let mut spellings = Vec::new();
+            for parameter in method.all_parameters() {
+                let values = match parameter {
+                    Parameter::Number(p) => vec![p.default.to_string()],
+                    Parameter::Whole(p) => vec![p.default.to_string()],
+                    Parameter::Word(p) => vec![p.words[0].to_owned()],
+                    Parameter::Targets(_) => Targets::WORDS.map(|(word, _)| word.to_owned()).into(),
+                    // Without a value there is no limit.
+                    Parameter::Count(_) => continue,
+                };
+                let with = |value: &String| bare.with(parameter.name(), value).unwrap();
+                spellings.extend(values.iter().map(with));
+            }
+            for spelled in spellings {
+                // Of the precisions, one or none is the default.
+                if spelled.targets().is_some() && spelled.promises() != bare.promises() {
+                    continue;
+                }
+                assert_eq!(spelled.promises(), bare.promises(), "{spelled}");
+                for flaw in method.flaws {
+                    assert_eq!(
+                        (flaw.when)(&spelled),
+                        (flaw.when)(&bare),
+                        "{spelled}: {}",
+                        flaw.reason
+                    );
+                }
+                compared += 1;
+            }
+        }
+        assert!(compared > METHODS.len());
     }
 
     #[test]

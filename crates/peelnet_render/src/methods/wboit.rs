@@ -12,8 +12,15 @@ use crate::{
     flaw::{Flaw, Property, half_sums},
 };
 use peelnet_core::{methods::wboit, weights::Weight};
+use std::ops::Bound;
 
-const FACTOR: Number = Number::any("factor", 3e3, "largest weight, 3e3 by default");
+const FACTOR: Number = Number {
+    name: "factor",
+    about: "largest weight, 3e3 by default",
+    default: 3e3,
+    least: Bound::Excluded(0.0),
+    most: 1e9,
+};
 
 const EXPONENT: Whole = Whole {
     name: "k",
@@ -22,7 +29,14 @@ const EXPONENT: Whole = Whole {
     most: 16,
 };
 
-const EPSILON: Number = Number::any("epsilon", 5.0, "offset in scene units, 5 by default");
+const EPSILON: Number = Number {
+    name: "epsilon",
+    about: "offset in scene units, 5 by default",
+    default: 5.0,
+    // At 0 the weight of depth 0 is infinite.
+    least: Bound::Excluded(0.0),
+    most: 1e9,
+};
 
 /// A method with a weight that may depend on parameters.
 macro_rules! wboit {

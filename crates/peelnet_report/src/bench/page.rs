@@ -258,6 +258,7 @@ mod tests {
         }
         let bench = Bench {
             load: [Some(0.5), None],
+            settings: None,
             rows,
         };
         let results = Results::new(machine(), "peelnet bench \"a&b\"", bench);
