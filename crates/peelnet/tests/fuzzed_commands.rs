@@ -363,6 +363,19 @@ fn check(ours: &Ours, seed: u64) -> i32 {
     let (line, outputs) = line(&mut random);
     let before = everything(dir.path());
     let output = run(dir.path(), &line);
+    let after = everything(dir.path());
+    let said = String::from_utf8_lossy(&output.stderr);
+    let what = format!("seed {seed}: peelnet {}\n{said}", line.join(" "));
+
+    let code = output.status.code();
+    assert!(matches!(code, Some(0..=2)), "{code:?} from {what}");
+    assert!(!said.contains("panicked"), "{what}");
+    let is_text = !outputs.iter().any(|o| o == "-");
+    for stream in [&output.stdout, &output.stderr] {
+        let text = String::from_utf8_lossy(stream);
+        let hidden = text.chars().find(|c| c.is_control() && *c != '\n');
+        assert!(hidden.is_none() || !is_text, "{what}");
+    }
     if code != Some(0) {
         assert!(said.contains("error: "), "{what}");
     }
