@@ -137,7 +137,12 @@ const FUZZ_TARGETS: [&str; 5] = ["scene", "obj", "gltf", "dataset", "model"];
 pub fn fuzz(seconds: &str) -> Result<(), String> {
     ensure_driver()?;
     println!("\n== commands, {seconds} s");
-    again("PEELNET_FUZZ_SECONDS", seconds, "peelnet", "fuzzed_commands")?;
+    again(
+        "PEELNET_FUZZ_SECONDS",
+        seconds,
+        "peelnet",
+        "fuzzed_commands",
+    )?;
     ensure_subcommand("fuzz")?;
     let seeds = "run --package peelnet_tests --example write_seeds";
     run(cargo().args(seeds.split(' ')), "seeds")?;

@@ -1,7 +1,7 @@
 //! Progress bars: on a terminal only, gone when done.
 
 use crate::console::Console;
-use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use peelnet_files::one_line;
 use std::time::Duration;
 
@@ -57,11 +57,6 @@ impl Drop for Bar {
     }
 }
 
-/// A whole number with commas between the thousands.
-pub fn thousands(count: u64) -> String {
-    HumanCount(count).to_string()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,12 +68,5 @@ mod tests {
         assert_eq!((bar.0.position(), bar.0.length()), (3, Some(12)));
         let spinner = Bar::spinner(Console::new(true, false), "a\u{1b}b".to_owned());
         assert_eq!(spinner.0.message(), r"a\u{1b}b");
-    }
-
-    #[test]
-    fn counts() {
-        assert_eq!(thousands(0), "0");
-        assert_eq!(thousands(999), "999");
-        assert_eq!(thousands(1_544_955), "1,544,955");
     }
 }

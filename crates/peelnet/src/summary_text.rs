@@ -1,9 +1,8 @@
 //! A dataset's summary as text.
 
-use crate::progress::thousands;
 use peelnet_dataset::Summary;
 use peelnet_dataset::summary::Bin;
-use peelnet_files::{Kind, printable};
+use peelnet_files::{Kind, printable, thousands};
 use std::fmt::Write as _;
 
 /// Characters of the longest bar of a histogram.

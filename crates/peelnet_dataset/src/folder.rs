@@ -149,6 +149,24 @@ fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetErr
     }
 }
 
+/// Whether a dataset that is written into a folder replaces an older one. Nothing is changed: for a look before work begins.
+///
+/// # Errors
+/// Those of [`DatasetWriter::create`](crate::DatasetWriter::create) for the folder.
+pub fn replaces(folder: &Path, shard: Option<Shard>) -> Result<bool, DatasetError> {
+    check_not_mixed(folder, shard)?;
+    let folder = shard.map_or_else(|| folder.to_owned(), |s| folder.join(s.folder()));
+    if !folder.is_dir() {
+        return Ok(false);
+    }
+    // What a writer that died left behind is for the next writer to sort out.
+    if names_in(&folder)?.iter().any(|n| n.starts_with(PARTIAL)) {
+        return Ok(false);
+    }
+    older_files(&folder)?;
+    Ok(folder.join(manifest::FILE_NAME).exists())
+}
+
 /// Refuses a folder that holds anything but a dataset, and removes what writers that died left in it.
 ///
 /// # Errors

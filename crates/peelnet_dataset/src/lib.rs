@@ -54,6 +54,7 @@ mod writer;
 pub use batch::FragmentBatch;
 pub use column::{Column, ColumnData, ColumnKind, ColumnSlice};
 pub use error::DatasetError;
+pub use folder::replaces;
 pub use format::{Format, ROW_GROUP_ROWS};
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,

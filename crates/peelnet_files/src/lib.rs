@@ -11,5 +11,7 @@ mod unfinished;
 pub use input::{check_size, open, read, read_head};
 pub use kind::{Kind, Standing};
 pub use output::{Destination, STDOUT, check_folder, destination, folder_of, write_whole};
-pub use text::{MAX_SHOWN, one_line, printable, printable_json, printable_lines};
+pub use text::{
+    MAX_SHOWN, counted, one_line, printable, printable_json, printable_lines, thousands,
+};
 pub use unfinished::{Moving, Unfinished, remove_unfinished};

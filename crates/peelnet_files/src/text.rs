@@ -33,6 +33,25 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// A count with commas between the thousands, and its noun: `1 view`, `1,024 views`.
+pub fn counted(count: u64, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{} {noun}{ending}", thousands(count))
+}
+
+/// A whole number with commas between the thousands.
+pub fn thousands(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k) % 3 == 0 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Text of several lines with all that [`printable`] escapes escaped, but line ends: for whole messages, whose length is theirs to choose.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     if !text.chars().any(|c| c != '\n' && is_hidden(c)) {
@@ -108,6 +127,19 @@ mod tests {
         );
         assert_eq!(one_line("a\nb\u{2028}"), r"a\u{a}b\u{2028}");
         assert_eq!(printable_lines("a\tb\nc\u{7f}"), "a\\u{9}b\nc\\u{7f}");
+    }
+
+    #[test]
+    fn one_is_singular() {
+        let found = [0, 1, 999, 1_000, 1_544_955].map(|n| counted(n, "view"));
+        let texts = [
+            "0 views",
+            "1 view",
+            "999 views",
+            "1,000 views",
+            "1,544,955 views",
+        ];
+        assert_eq!(found, texts);
     }
 
     #[test]

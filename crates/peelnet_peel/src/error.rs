@@ -31,7 +31,7 @@ pub enum PeelError {
         second: PathBuf,
     },
     /// A scene has fewer views than were asked for.
-    #[error("scene {} has {views} views, not {asked}: ask for fewer, or add [orbit] or [[view]]", scene.display())]
+    #[error("scene {} has {views} of the {asked} views that were asked for: ask for fewer, or add [orbit] or [[view]]", scene.display())]
     TooFewViews {
         /// Where the scene comes from.
         scene: PathBuf,

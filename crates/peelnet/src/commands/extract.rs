@@ -5,7 +5,8 @@ use crate::cli::ExtractArgs;
 use crate::failure::Failure;
 use crate::outputs::is_folder;
 use crate::parse::{ViewCount, command_line, json_path, shown};
-use crate::progress::{Bar, thousands};
+use crate::progress::Bar;
+use peelnet_files::{counted, printable, thousands};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{
     ExtractOptions, ExtractReport, Views, extract,
@@ -17,6 +18,11 @@ use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
     is_folder("--out", &args.out)?;
+    if peelnet_dataset::replaces(&args.out, args.shard)? {
+        context
+            .console
+            .message(format!("replacing {} (a dataset)", shown(&args.out)));
+    }
     let report = if let Some(lists) = args.synthetic {
         make_up(
             context,
@@ -119,8 +125,8 @@ pub(super) fn peel(
     context.warn_of_memory(gpu);
     if report.lost > 0 {
         context.console.warn(format!(
-            "{} fragments were left out ({} peeling); --peel sbuffer without --max-passes keeps all",
-            thousands(report.lost),
+            "left out by {1} peeling: {0}; --peel sbuffer without --max-passes keeps all",
+            counted(report.lost, "fragment"),
             options.peel
         ));
     }
@@ -131,26 +137,26 @@ pub(super) fn peel(
 pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
     let seconds = report.wall_micros / 1e6;
     let lost = if report.lost > 0 {
-        format!(", {} FRAGMENTS LOST by peeling", thousands(report.lost))
+        format!(", LOST by peeling: {}", counted(report.lost, "fragment"))
     } else {
         String::new()
     };
     format!(
-        "{}: {} rows of {} pixels in {} parts, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {} coplanar pairs{lost}",
+        "{}: {} of {} in {}, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {}{lost}",
         shown(folder),
-        thousands(report.manifest.rows),
-        thousands(report.manifest.pixels),
-        report.manifest.parts.len(),
+        counted(report.manifest.rows, "row"),
+        counted(report.manifest.pixels, "pixel"),
+        counted(report.manifest.parts.len() as u64, "part"),
         thousands((report.manifest.rows as f64 / seconds.max(1e-6)) as u64),
         report.gpu_micros / 1e6,
-        thousands(report.coplanar),
+        counted(report.coplanar, "coplanar pair"),
     )
 }
 
 /// The scenes for a message.
 fn names(scenes: &[Scene]) -> String {
     match scenes {
-        [one] => format!("scene {}", one.name),
-        many => format!("{} scenes", many.len()),
+        [one] => format!("scene {}", printable(&one.name)),
+        many => counted(many.len() as u64, "scene"),
     }
 }

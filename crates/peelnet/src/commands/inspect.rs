@@ -4,11 +4,10 @@ use super::{Context, bench_effects::METHOD};
 use crate::cli::InspectArgs;
 use crate::failure::{Failure, one_line};
 use crate::parse::{json_path, shown};
-use crate::progress::thousands;
 use crate::summary_text::summary_text;
 use peelnet_dataset::{Dataset, Summary};
 use peelnet_eval::effects::{self, Cost, Settings};
-use peelnet_files::{one_line as escaped, printable};
+use peelnet_files::{counted, one_line as escaped, printable, thousands};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
 use peelnet_scene::{Census, Effect, Scene, suite};
@@ -341,10 +340,10 @@ fn model_text(path: &Path, model: &Model, hash: &str) -> String {
     );
     let _ = writeln!(
         t,
-        "trained by  peelnet {}, seed {}, {} epochs",
+        "trained by  peelnet {}, seed {}, {}",
         printable(&meta.tool_version),
         meta.seed,
-        meta.epochs
+        counted(meta.epochs.into(), "epoch")
     );
     match &meta.dataset {
         Some(d) => {

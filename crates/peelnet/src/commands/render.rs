@@ -6,7 +6,7 @@ use crate::failure::{Failure, one_line};
 use crate::learned;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
-use crate::progress::thousands;
+use peelnet_files::counted;
 use peelnet_render::{Frame, ImageFormat, LayerView, MethodOptions, Renderer};
 use serde_json::json;
 
@@ -27,10 +27,10 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     }
     let camera = scene.views.get(args.view as usize).ok_or_else(|| {
         Failure::Usage(format!(
-            "--view {}: {} has {} views, numbered from 0",
+            "--view {}: {} has {}, numbered from 0",
             args.view,
             shown(&args.scene),
-            scene.views.len()
+            counted(scene.views.len() as u64, "view")
         ))
     })?;
     let gpu = context.gpu()?;
@@ -52,15 +52,15 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     frame.image.save(&args.out)?;
     if frame.stats.lost > 0 {
         context.console.warn(format!(
-            "{method}: {} fragments are not in the image",
-            thousands(frame.stats.lost)
+            "{method}: not in the image: {}",
+            counted(frame.stats.lost, "fragment")
         ));
     }
     context.warn_of_memory(&gpu);
     if frame.image.non_finite() > 0 {
         context.console.warn(format!(
-            "{method}: {} pixels are not finite",
-            frame.image.non_finite()
+            "{method}: not finite: {}",
+            counted(frame.image.non_finite() as u64, "pixel")
         ));
     }
     context.console.result(
@@ -101,7 +101,7 @@ fn text(args: &RenderArgs, method: &str, adapter: &str, frame: &Frame) -> String
     let fragments = frame.stats.fragments.map_or_else(String::new, |n| {
         let most = frame.stats.max_layers;
         let most = most.map_or_else(String::new, |most| format!(", up to {most} a pixel"));
-        format!(", {} fragments{most}", thousands(n))
+        format!(", {}{most}", counted(n, "fragment"))
     });
     let time = gpu_ms(frame).map_or_else(
         || format!("{:.1} ms by the clock", frame.wall_micros / 1e3),

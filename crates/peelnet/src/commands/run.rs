@@ -8,13 +8,13 @@ use crate::outputs::Outputs;
 use crate::parse::{Size, command_line, shown};
 use crate::progress::Bar;
 use crate::summary_text::{self, summary_text};
-use indicatif::HumanCount;
 use peelnet_chart::Svg;
 use peelnet_dataset::{Dataset, Format, Summary};
 use peelnet_eval::bench::{self, bench_watched};
 use peelnet_eval::compare::{EXACT, Plan};
 use peelnet_eval::front;
 use peelnet_eval::{Machine, Partial, Row};
+use peelnet_files::counted;
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views};
@@ -106,6 +106,7 @@ fn check_outputs(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::new(context, &args.scenes);
     outputs.results("--out", &args.out, Results::<ThesisRun>::FILES)?;
     outputs.pictures("--out", &args.out.join("images"))?;
+    peelnet_dataset::replaces(&args.out.join("dataset"), None)?;
     let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
     let networks = [
         ("model.safetensors", peelnet_model::KIND),
@@ -190,8 +191,8 @@ impl Run<'_> {
             ));
         }
         let note = format!(
-            "about {} fragments in the training scenes at {frame}",
-            HumanCount(fragments)
+            "about {} in the training scenes at {frame}",
+            counted(fragments, "fragment")
         );
         self.clock.done("count", note)?;
         Ok((self.sizes.rows as f64 / fragments as f64).min(1.0))
@@ -323,8 +324,9 @@ impl Run<'_> {
         let views: usize = scenes.iter().map(|s| s.views.len()).sum();
         let names: Vec<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
         console.message(format!(
-            "{stage}: {} methods on {views} views of {}",
-            plan.methods.len(),
+            "{stage}: {} on {} of {}",
+            counted(plan.methods.len() as u64, "method"),
+            counted(views as u64, "view"),
             names.join(", ")
         ));
         let bar = Bar::new(console, stage, 0);
@@ -343,9 +345,8 @@ impl Run<'_> {
         let stop = self.context.stop;
         let bench = bench_watched(&self.gpu, scenes, plan, partial, stop, &mut show)?;
         drop(bar);
-        let frames = HumanCount(bench.rows.len() as u64);
-        self.clock
-            .done(stage, format!("{frames} frames at {frame}"))?;
+        let frames = counted(bench.rows.len() as u64, "frame");
+        self.clock.done(stage, format!("{frames} at {frame}"))?;
         Ok(bench.rows)
     }
 

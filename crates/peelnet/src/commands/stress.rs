@@ -93,7 +93,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
             None => "name a folder with --out for pictures of them".to_owned(),
         };
         return Err(Failure::Failed(format!(
-            "{failures} properties do not hold; {see}"
+            "properties that do not hold: {failures}; {see}"
         )));
     }
     Ok(())

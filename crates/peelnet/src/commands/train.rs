@@ -5,9 +5,9 @@ use crate::cli::TrainArgs;
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
-use crate::progress::{Bar, thousands};
+use crate::progress::Bar;
 use peelnet_dataset::Dataset;
-use peelnet_files::{Destination, Unfinished, destination, printable};
+use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
 use peelnet_train::{
     CHECKPOINT_FILES, Config, CurveFormat, End, Outcome, OutputLock, RunOptions, TrainingData,
     UsedRows, checkpoint_folder, held_out_errors, train,
@@ -123,11 +123,11 @@ pub(super) fn fit(
         ));
     }
     context.console.message(format!(
-        "training recipe {} on {} rows of {}, {} epochs",
+        "training recipe {} on {} of {}, {}",
         config.recipe,
-        thousands(data.rows() as u64),
+        counted(data.rows() as u64, "row"),
         data.source,
-        config.epochs
+        counted(config.epochs.into(), "epoch")
     ));
     let bar = Bar::new(context.console, "train", config.epochs.into());
     let outcome = train(config, &data, options, |e| {

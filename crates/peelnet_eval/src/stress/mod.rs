@@ -17,6 +17,7 @@ mod trial;
 
 pub use catalogue::{CASES, Case, Examine, Work};
 pub use network::Network;
+use peelnet_files::counted;
 pub use peelnet_render::{Flaw, MethodOptions, Property};
 pub use properties::Finding;
 pub use subject::Subject;
@@ -80,7 +81,12 @@ impl Stressed {
     pub fn summary(&self) -> String {
         let [pass, declared, fail] =
             [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(|o| self.of(o).count());
-        format!("{pass} properties hold, {declared} declared flaws, {fail} failures")
+        format!(
+            "{pass} {} hold, {}, {}",
+            if pass == 1 { "property" } else { "properties" },
+            counted(declared as u64, "declared flaw"),
+            counted(fail as u64, "failure"),
+        )
     }
 }
 
