@@ -32,6 +32,51 @@ fn every_crate_stands_in_the_architecture() {
     }
 }
 
+/// Every constant that bounds what a file or a flag may ask for stands in the list of limits, and nothing else does.
+#[test]
+fn limits_are_listed() {
+    let list = read("docs/limits.md");
+    let mut names = std::collections::BTreeSet::new();
+    let mut folders = vec![root().join("crates")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let inside = path.strip_prefix(root().join("crates")).unwrap();
+            let mut parts = inside.iter().map(|part| part.to_str().unwrap());
+            let (krate, source) = (parts.next().unwrap(), parts.next());
+            if source != Some("src") || path.extension().is_none_or(|e| e != "rs") {
+                continue;
+            }
+            for line in fs::read_to_string(&path).unwrap().lines() {
+                let declared = line
+                    .split_once("const ")
+                    .and_then(|(_, rest)| rest.split_once(':'));
+                let name = declared
+                    .map(|(name, _)| name)
+                    .filter(|name| name.starts_with("MAX_") || name.starts_with("DEFAULT_MAX_"));
+                names.extend(name.map(|name| format!("{krate}::{name}")));
+            }
+        }
+    }
+    assert!(names.len() > 20, "{names:?}");
+    for name in &names {
+        assert!(
+            list.contains(&format!("`{name}`")),
+            "{name} is not in docs/limits.md"
+        );
+    }
+    for named in list.split('`').filter(|part| part.contains("::MAX_")) {
+        assert!(
+            names.contains(named),
+            "docs/limits.md names {named}, which is gone"
+        );
+    }
+}
+
 /// No source file is over 600 lines.
 #[test]
 fn files_are_short() {

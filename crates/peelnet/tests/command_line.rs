@@ -322,7 +322,7 @@ fn doctor_answers_in_json() {
 fn an_unknown_adapter_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let output = peelnet(&["doctor", "--adapter", "abacus 3000"], dir.path());
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("error: "));
 }
 
@@ -370,7 +370,7 @@ fn the_vase_shows_its_layers_and_its_age() {
         ("render --time 61 --out no.png", "from 0 to 60"),
     ] {
         let output = run(line);
-        assert_eq!(output.status.code(), Some(1), "{line}");
+        assert_eq!(output.status.code(), Some(2), "{line}");
         assert!(stderr(&output).contains(word), "{}", stderr(&output));
     }
     assert!(!dir.path().join("no.png").exists());

@@ -1,20 +1,14 @@
 //! Text from strangers, in files and arguments, reaches neither a terminal nor a shader unescaped.
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
+mod common;
+
+use common::{SCENE, peelnet};
 use std::ffi::OsStr;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// Clears a screen, starts lines that look like ours, and turns the writing direction, in every way a terminal knows.
 const HOSTILE: &str = "x\u{1b}[2J\u{9b}31m\r\u{7}\u{202e}\u{85}y";
-
-fn peelnet<A: AsRef<OsStr>>(folder: &Path, arguments: &[A]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_peelnet"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
 
 /// Neither stream holds what acts on a terminal. Returns whether the name is there in its escaped form.
 fn assert_plain(output: &Output, what: &str) -> bool {
@@ -39,10 +33,8 @@ fn names_in_files_are_printed_escaped() {
     let name = name
         .replace('\u{85}', "\\u0085")
         .replace('\u{202e}', "\\u202e");
-    let scene = format!(
-        "name = {name}\n[camera]\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y = 45\nnear = 0.1\nfar = 10\n\
-        [[object]]\nname = {name}\nmesh = {{ shape = \"quad\", size = [1, 1] }}\n[object.material]\ncolor = [0.8, 0.1, 0.1]\nalpha = 0.5\n"
-    );
+    let scene = SCENE.replace("\"two\"", &name);
+    let scene = scene.replace("[[object]]\n", &format!("[[object]]\nname = {name}\n"));
     std::fs::write(dir.path().join("s.toml"), scene).unwrap();
     let mut model = peelnet::Model::shipped(peelnet::Recipe::SMALL).unwrap();
     model.meta.tool_version = HOSTILE.to_owned();

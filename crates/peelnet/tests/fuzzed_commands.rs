@@ -6,10 +6,11 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
+mod common;
+
+use common::{SCENE, everything};
 use peelnet_core::random::Random;
-use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::os::unix::fs::{FileTypeExt as _, symlink};
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -19,9 +20,6 @@ const COMMANDS: u64 = 60;
 
 /// No command here needs longer, on any machine, by a factor of ten.
 const LONGEST: Duration = Duration::from_secs(300);
-
-const SCENE: &str = "name = \"two\"\n[camera]\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y = 45\nnear = 0.1\nfar = 10\n\
-    [[object]]\nmesh = \"a.obj\"\n[object.material]\ncolor = [0.8, 0.1, 0.1]\nalpha = 0.5\n";
 
 /// Files that peelnet wrote, made once: a dataset, a network, a measurement, an image, a loss curve, a shader.
 struct Ours(tempfile::TempDir);
@@ -319,33 +317,6 @@ fn run(folder: &Path, arguments: &[String]) -> Output {
     }
 }
 
-/// Everything below a folder: what it is, and what it holds.
-fn everything(folder: &Path) -> BTreeMap<PathBuf, (String, u64)> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in std::fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            let kind = std::fs::symlink_metadata(&path).unwrap().file_type();
-            let mut hasher = DefaultHasher::new();
-            let what = if kind.is_symlink() {
-                format!("link to {}", std::fs::read_link(&path).unwrap().display())
-            } else if kind.is_dir() {
-                folders.push(path.clone());
-                "folder".to_owned()
-            } else if kind.is_fifo() {
-                "pipe".to_owned()
-            } else {
-                std::fs::read(&path).unwrap().hash(&mut hasher);
-                "file".to_owned()
-            };
-            let name = path.strip_prefix(folder).unwrap().to_owned();
-            found.insert(name, (what, hasher.finish()));
-        }
-    }
-    found
-}
-
 /// Where the bytes of a named output go, in the folder.
 fn target(folder: &Path, name: &str) -> Option<PathBuf> {
     let resolved = folder.join(name).canonicalize().ok()?;
@@ -389,9 +360,8 @@ fn check(ours: &Ours, seed: u64) -> i32 {
     for (path, was) in &before {
         // A folder of results is replaced file by file; a model brings its training's state.
         let of = |out: &PathBuf| {
-            path.starts_with(out)
-                || *path == PathBuf::from(format!("{}.checkpoint", out.display()))
-                || path.starts_with(format!("{}.checkpoint", out.display()))
+            let checkpoint = format!("{}.checkpoint", out.display());
+            path.starts_with(out) || path.starts_with(checkpoint)
         };
         let may_change = named.iter().any(of) && (force || !foreign(path));
         let is = after.get(path);

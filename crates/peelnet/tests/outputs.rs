@@ -2,57 +2,20 @@
 //! work begins.
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+mod common;
+
+use common::{SCENE, ends_with, everything, peelnet};
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
-
-/// A scene of two triangles that is drawn in no time.
-const SCENE: &str = "name = \"two\"\n[camera]\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y = 45\nnear = 0.1\nfar = 10\n\
-    [[object]]\nmesh = { shape = \"quad\", size = [1, 1] }\n[object.material]\ncolor = [0.8, 0.1, 0.1]\nalpha = 0.5\n";
-
-fn peelnet(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_peelnet"))
-        .args(line.split_whitespace())
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-/// What a command said on stderr, which ends with this code.
-fn ends_with(folder: &Path, line: &str, code: i32) -> String {
-    let output = peelnet(folder, line);
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{line}: {text}");
-    text
-}
+use std::process::{Command, Stdio};
 
 /// A folder with a scene, a shipped network's file, and a small dataset.
 fn folder() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("two.toml"), SCENE).unwrap();
     let model = peelnet::Model::shipped(peelnet::Recipe::SMALL).unwrap();
-    model.save(&dir.path().join("m.safetensors")).unwrap();
+    model.save(dir.path().join("m.safetensors")).unwrap();
     dir
-}
-
-/// Names and hashes of everything in a folder.
-fn everything(folder: &Path) -> Vec<(std::path::PathBuf, u64)> {
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in std::fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let mut hasher = DefaultHasher::new();
-                std::fs::read(&path).unwrap().hash(&mut hasher);
-                found.push((path, hasher.finish()));
-            }
-        }
-    }
-    found.sort();
-    found
 }
 
 #[cfg(unix)]
@@ -95,7 +58,8 @@ fn a_hyphen_is_stdout() {
         ("export m.safetensors --out -", b"// A learned weight"),
         ("train d --epochs 1 --recipe small --out -", b""),
     ] {
-        let output = peelnet(dir.path(), line);
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let output = peelnet(dir.path(), &arguments);
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(0), "{line}: {said}");
         assert!(output.stdout.starts_with(start), "{line}");
@@ -179,7 +143,8 @@ fn a_folder_is_ours_by_its_content() {
         std::fs::write(out.join(name), "a user's own").unwrap();
         let text = ends_with(dir.path(), bench, 1);
         assert!(text.contains(name) && text.contains("--force"), "{text}");
-        assert_eq!(everything(&out).len(), 1, "{name}");
+        // The folder of pictures, and the file.
+        assert_eq!(everything(&out).len(), 2, "{name}");
         std::fs::remove_file(out.join(name)).unwrap();
     }
     ends_with(dir.path(), bench, 0);
@@ -272,9 +237,10 @@ fn signals_end_every_command() {
         assert_eq!(output.status.code(), Some(code), "{line}: {text}");
         assert!(text.contains("interrupted"), "{line}: {text}");
         let left = everything(dir.path());
-        // What a training resumes from.
-        let ours = |p: &Path| p.starts_with(dir.path().join("n.checkpoint"));
-        let left: Vec<_> = left.into_iter().filter(|(p, _)| !ours(p)).collect();
+        // What a training resumes from, and folders that stay empty.
+        let ours = |p: &Path| p.starts_with("n.checkpoint") || dir.path().join(p).is_dir();
+        let before: BTreeMap<_, _> = before.iter().filter(|(p, _)| !ours(p)).collect();
+        let left: BTreeMap<_, _> = left.iter().filter(|(p, _)| !ours(p)).collect();
         assert_eq!(left, before, "{line}");
     }
 }

@@ -25,7 +25,10 @@ fn a_failure_is_exit_code_1_with_pictures() {
     let output = peelnet(line, dir.path());
     let text = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("properties do not hold"), "{text}");
+    assert!(
+        text.contains(" not hold; pictures of them are in o/images"),
+        "{text}"
+    );
     let rows = rows(&output);
     let failed: Vec<_> = rows.iter().filter(|r| r["result"] == "fail").collect();
     assert!(!failed.is_empty());

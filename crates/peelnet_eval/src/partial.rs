@@ -1,14 +1,11 @@
 //! What an interrupted comparison has measured so far.
 
 use crate::{EvalError, Row};
-use peelnet_files::printable;
+use peelnet_files::{Kind, printable};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// Its name in the folder of a run.
-const FILE: &str = "partial.json";
 
 /// Bytes of the file that are read: a hundred thousand rows have half of it.
 const MAX_BYTES: u64 = 1 << 28;
@@ -52,6 +49,15 @@ fn sha256(bytes: &[u8]) -> String {
 }
 
 impl Partial {
+    /// Its name in the folder of a run.
+    pub const FILE: &str = "partial.json";
+
+    /// By what its file is known.
+    pub const KIND: Kind = Kind {
+        name: "the rows of an interrupted bench",
+        is: |head| head.starts_with(b"{\"sha256\":\""),
+    };
+
     /// Starts afresh; the file appears in the folder, if one is given, with the first rows.
     pub fn new(folder: Option<&Path>, plan: serde_json::Value) -> Self {
         Self {
@@ -59,13 +65,13 @@ impl Partial {
                 plan,
                 rows: Vec::new(),
             },
-            path: folder.map(|f| f.join(FILE)),
+            path: folder.map(|f| f.join(Self::FILE)),
         }
     }
 
     /// Whether a run left something in a folder.
     pub fn is_in(folder: &Path) -> bool {
-        folder.join(FILE).exists()
+        folder.join(Self::FILE).exists()
     }
 
     /// Goes on with what a run of the same plan left in a folder; starts afresh where there is nothing. `belongs` says whether a row can
@@ -78,7 +84,7 @@ impl Partial {
         plan: serde_json::Value,
         belongs: impl Fn(&Row) -> bool,
     ) -> Result<Self, EvalError> {
-        let path = folder.join(FILE);
+        let path = folder.join(Self::FILE);
         if !Self::is_in(folder) {
             return Ok(Self::new(Some(folder), plan));
         }
@@ -162,11 +168,15 @@ impl Partial {
         peelnet_files::write_whole(path, &json).map_err(EvalError::io(path, "write"))
     }
 
-    /// All rows; the file is no longer needed.
+    /// All rows. The file stays until they are safe elsewhere: see [`Partial::discard`].
     pub fn finish(self) -> Vec<Row> {
-        // Where it cannot be removed, the next run refuses or overwrites it.
-        let _ = self.path.map(std::fs::remove_file);
         self.kept.rows
+    }
+
+    /// Removes the file of a run whose results are written.
+    pub fn discard(folder: &Path) {
+        // Where it cannot be removed, the next run overwrites it.
+        let _ = std::fs::remove_file(folder.join(Self::FILE));
     }
 }
 
@@ -191,6 +201,10 @@ mod tests {
         second.push(vec![row("s", 1, "a", 3.0)]).unwrap();
         assert_eq!(second.done("s"), [0, 1]);
         assert_eq!(second.finish().len(), 3);
+        let file = dir.path().join(Partial::FILE);
+        let standing = Partial::KIND.standing(&file).unwrap();
+        assert_eq!(standing, peelnet_files::Standing::Replaced);
+        Partial::discard(dir.path());
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
     }
 

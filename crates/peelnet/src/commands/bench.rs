@@ -41,6 +41,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         measure(context, args, &scenes, Some(&args.out))?
     };
     results.write(&args.out)?;
+    Partial::discard(&args.out);
     context
         .console
         .result(|| results.table().plain(), || json!(results))
@@ -58,6 +59,7 @@ pub(super) fn check_outputs(
     let inputs = args.scenes.iter().chain(&args.models);
     let mut outputs = Outputs::new(context, inputs.chain(&args.training));
     outputs.results("--out", &args.out, files)?;
+    outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
     outputs.pictures("--out", &args.out.join("images"))?;
     outputs.announce();
     Ok(())

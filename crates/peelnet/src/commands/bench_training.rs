@@ -44,6 +44,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         .collect::<Result<Vec<_>, _>>()?;
     let base = Config::for_recipe(RECIPE);
     let data = TrainingData::from_datasets(&base, &datasets)?;
+    super::train::warn_of_rows(context, &data, &base);
     let mut plans: Vec<(Varied, Config, f64)> = Vec::new();
     for hidden in HIDDEN {
         let config = Config {

@@ -15,13 +15,13 @@ mod train;
 
 use crate::cli::{Cli, Command, Global};
 use crate::console::Console;
-use crate::failure::Failure;
+use crate::failure::{Failure, one_line};
 use crate::interrupt;
 use crate::parse::shown;
 use crate::progress::Bar;
 use peelnet_gpu::Gpu;
 use peelnet_scene::{
-    Scene,
+    Scene, SceneError,
     suite::{self, SceneFile},
 };
 use std::path::{Path, PathBuf};
@@ -72,8 +72,19 @@ impl Context<'_> {
             ));
         }
         let bar = Bar::spinner(self.console, format!("loading {}", shown(path)));
-        let scene = suite::open(path, time)?;
+        let scene = suite::open(path, time);
         drop(bar);
+        let scene = scene.map_err(|error| match error {
+            // The file is as it should be, the flag is not.
+            SceneError::Value {
+                ref field,
+                ref message,
+                ..
+            } if field == "timeline" && message.starts_with("is missing") => {
+                Failure::Usage(one_line(&error))
+            }
+            error => error.into(),
+        })?;
         for warning in &scene.warnings {
             self.console.warn(warning);
         }

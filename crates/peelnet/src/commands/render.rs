@@ -7,12 +7,16 @@ use crate::learned;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use peelnet_files::counted;
-use peelnet_render::{Frame, ImageFormat, LayerView, MethodOptions, Renderer};
+use peelnet_render::{Frame, ImageFormat, LayerView, MethodOptions, RenderError, Renderer};
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failure> {
-    let format = ImageFormat::of(&args.out)
-        .map_err(|e| Failure::Usage(format!("--out {}", one_line(&e))))?;
+    let format = ImageFormat::of(&args.out).map_err(|e| match e {
+        RenderError::Image { message, .. } => {
+            Failure::Usage(format!("--out {}: {message}", shown(&args.out)))
+        }
+        e => e.into(),
+    })?;
     let inputs = args.model.iter().chain([&args.scene]);
     let mut outputs = Outputs::new(context, inputs);
     outputs.file("--out", &args.out, format.kind())?;
@@ -23,7 +27,9 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
         increasing: args.increasing,
     });
     if let Some(view) = layers {
-        scene = scene.layer_view(view.highlight, false)?;
+        scene = scene.layer_view(view.highlight, false).map_err(|e| {
+            Failure::Usage(format!("--highlight {}: {}", view.highlight, one_line(&e)))
+        })?;
     }
     let camera = scene.views.get(args.view as usize).ok_or_else(|| {
         Failure::Usage(format!(

@@ -93,7 +93,12 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
             None => "name a folder with --out for pictures of them".to_owned(),
         };
         return Err(Failure::Failed(format!(
-            "properties that do not hold: {failures}; {see}"
+            "{failures} {} not hold; {see}",
+            if failures == 1 {
+                "property does"
+            } else {
+                "properties do"
+            }
         )));
     }
     Ok(())

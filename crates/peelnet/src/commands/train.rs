@@ -114,14 +114,7 @@ pub(super) fn fit(
         ..options.clone()
     };
     let data = TrainingData::from_datasets(config, datasets)?;
-    if let Some(UsedRows { used, of }) = data.used.filter(|rows| rows.used < rows.of) {
-        context.console.warn(format!(
-            "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows)",
-            thousands(used),
-            thousands(of),
-            thousands(config.max_rows)
-        ));
-    }
+    warn_of_rows(context, &data, config);
     context.console.message(format!(
         "training recipe {} on {} of {}, {}",
         config.recipe,
@@ -171,6 +164,18 @@ pub(super) fn fit(
         outcome.model.save(&options.out)?;
     }
     Ok(outcome)
+}
+
+/// Says if not all rows are used.
+pub(super) fn warn_of_rows(context: &Context<'_>, data: &TrainingData, config: &Config) {
+    if let Some(UsedRows { used, of }) = data.used.filter(|rows| rows.used < rows.of) {
+        context.console.warn(format!(
+            "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows)",
+            thousands(used),
+            thousands(of),
+            thousands(config.max_rows)
+        ));
+    }
 }
 
 /// Seconds of all epochs.

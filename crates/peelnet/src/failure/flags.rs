@@ -49,7 +49,9 @@ pub(super) fn are_wrong(error: &(dyn Error + 'static)) -> bool {
         | PeelError::Dataset(DatasetError::TooManyItems { .. }) => Some(()),
         _ => None,
     };
+    let adapter = |error: &GpuError| matches!(error, GpuError::NoSuchAdapter { .. }).then_some(());
     find(error, wrong)
+        .or_else(|| find(error, adapter))
         .or_else(|| find(error, setting))
         .or_else(|| find(error, names))
         .or_else(|| find(error, method))
