@@ -3,9 +3,12 @@ use crate::{
     adapter::{self, OPTIONAL_FEATURES},
     pipelines::PipelineCache,
 };
-use std::sync::{
-    Arc, Mutex,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    borrow::Cow,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 /// An open device with its queue. A handle: clones share the device, the errors it reported and the pipelines compiled so far.
@@ -322,7 +325,7 @@ impl Gpu {
         &self,
         label: &str,
         srgb: bool,
-        levels: &[([u32; 2], Vec<u8>)],
+        levels: &[([u32; 2], Cow<'_, [u8]>)],
     ) -> Result<wgpu::TextureView, GpuError> {
         let [width, height] = levels.first().map_or([1, 1], |(size, _)| *size);
         let limit = self.limits.max_texture_dimension_2d;

@@ -16,7 +16,6 @@ mod error;
 pub mod frame;
 pub mod fullscreen;
 mod maps;
-#[cfg(feature = "images")]
 mod mip_levels;
 pub mod pipelines;
 pub mod sbuffer;

@@ -1,7 +1,6 @@
 //! Textures on surfaces: mip levels, samplers and bindings.
 
 use crate::RasterError;
-#[cfg(feature = "images")]
 use crate::mip_levels::levels;
 use peelnet_gpu::{
     Gpu,
@@ -107,10 +106,4 @@ impl MapSets {
         self.images.push((Arc::clone(map), srgb, view.clone()));
         Ok(view)
     }
-}
-
-/// The image alone: its smaller sizes need the feature `images`.
-#[cfg(not(feature = "images"))]
-fn levels(map: &Texture, _: bool) -> Vec<([u32; 2], Vec<u8>)> {
-    vec![(map.size, map.texels.concat())]
 }

@@ -106,6 +106,7 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     // The crate skips unknown names without checking that they are text.
     let mut document = serde_json::from_slice::<Value>(text).map_err(|e| bad(&e))?;
     checks::check_references(&document)?;
+    checks::check_kinds(&document)?;
     repair::repair(&mut document);
     let root = serde_json::from_value(document).map_err(|e| bad(&e))?;
     let document = gltf::Document::from_json(root).map_err(|e| bad(&e))?;

@@ -105,19 +105,22 @@ impl Pattern {
     /// The field's values, row by row.
     fn values(&self) -> Vec<f32> {
         let n = self.size;
+        let grid = |(times, channel)| self.grid(self.cells * times, channel);
+        let grids: Vec<Grid> = match self.pattern {
+            Field::Checker | Field::Bands => Vec::new(),
+            Field::Noise => (0..5).map(|k| grid((1 << k, k))).collect(),
+            Field::Cracks => [(1, 5), (1, 6), (2, 7), (2, 8)].map(grid).into(),
+        };
         let at = |x: u32, y: u32| {
             // Texel centres, in cells.
             let place = (Vec2::new(x as f32, y as f32) + 0.5) / n as f32 * self.cells as f32;
             let raw = match self.pattern {
                 Field::Checker => ((place.x as u32 + place.y as u32) % 2) as f32,
-                Field::Noise => self.octaves(place, self.cells),
+                Field::Noise => octaves(&grids, place),
                 Field::Cracks => {
                     // Not straight: the borders of cells are pushed about by noise.
-                    let push = Vec2::new(
-                        self.noise(place * 2.0, self.cells * 2, 7),
-                        self.noise(place * 2.0, self.cells * 2, 8),
-                    );
-                    let border = self.border(place + (push - 0.5) * 0.35);
+                    let push = Vec2::new(grids[2].noise(place * 2.0), grids[3].noise(place * 2.0));
+                    let border = border(&grids, place + (push - 0.5) * 0.35);
                     1.0 - smoothstep(0.0, self.width, border)
                 }
                 Field::Bands => {
@@ -143,56 +146,17 @@ impl Pattern {
         values
     }
 
-    /// A random number of 0 … 1 for each node of the grid. By a hash, not by a generator: a node's number must not depend on the order.
-    fn random(&self, at: IVec2, period: u32, channel: u32) -> f32 {
-        let at = at.rem_euclid(IVec2::splat(period as i32));
-        pixel_hash(self.seed, channel, at.x as u32, at.y as u32) as f32 / u32::MAX as f32
-    }
-
-    /// Value noise that repeats after `period` cells.
-    fn noise(&self, place: Vec2, period: u32, channel: u32) -> f32 {
-        let node = place.floor();
-        let t = place - node;
-        let t = t * t * (3.0 - 2.0 * t);
-        let node = node.as_ivec2();
-        let value = |x, y| self.random(node + IVec2::new(x, y), period, channel);
-        let across = |y| value(0, y) + t.x * (value(1, y) - value(0, y));
-        across(0) + t.y * (across(1) - across(0))
-    }
-
-    fn octaves(&self, place: Vec2, period: u32) -> f32 {
-        let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
-        for octave in 0..5 {
-            let times = 1 << octave;
-            sum += weight * self.noise(place * times as f32, period * times, octave);
-            total += weight;
-            weight *= 0.5;
+    /// Random numbers for the nodes of a grid.
+    fn grid(&self, period: u32, channel: u32) -> Grid {
+        let number = |i: u32| {
+            // By a hash, not by a generator: a node's number must not depend on the order.
+            let hash = pixel_hash(self.seed, channel, i % period, i / period);
+            hash as f32 / u32::MAX as f32
+        };
+        Grid {
+            period,
+            numbers: (0..period * period).into_par_iter().map(number).collect(),
         }
-        sum / total
-    }
-
-    /// Distance to the border between the two nearest cells' points, in cells (Worley 1996).
-    fn border(&self, place: Vec2) -> f32 {
-        let cell = place.floor().as_ivec2();
-        let around = (-2..=2).flat_map(|y| (-2..=2).map(move |x| IVec2::new(x, y)));
-        let mut nearest = [(f32::INFINITY, Vec2::ZERO); 2];
-        for offset in around {
-            let own = cell + offset;
-            let jitter = Vec2::new(
-                self.random(own, self.cells, 5),
-                self.random(own, self.cells, 6),
-            );
-            let point = own.as_vec2() + jitter;
-            let distance = (point - place).length_squared();
-            if distance < nearest[0].0 {
-                nearest = [(distance, point), nearest[0]];
-            } else if distance < nearest[1].0 {
-                nearest[1] = (distance, point);
-            }
-        }
-        let [(_, a), (_, b)] = nearest;
-        let apart = (b - a).normalize_or(Vec2::X);
-        ((a + b) * 0.5 - place).dot(apart).abs()
     }
 
     fn texture(
@@ -260,6 +224,62 @@ impl Pattern {
             [share, share, share, 255]
         })
     }
+}
+
+/// Random numbers of 0 … 1 at the nodes of a grid that repeats after `period` of them.
+struct Grid {
+    period: u32,
+    numbers: Vec<f32>,
+}
+
+impl Grid {
+    fn at(&self, node: IVec2) -> f32 {
+        let [x, y] = node.rem_euclid(IVec2::splat(self.period as i32)).to_array();
+        self.numbers[y as usize * self.period as usize + x as usize]
+    }
+
+    /// Value noise.
+    fn noise(&self, place: Vec2) -> f32 {
+        let node = place.floor();
+        let t = place - node;
+        let t = t * t * (3.0 - 2.0 * t);
+        let node = node.as_ivec2();
+        let value = |x, y| self.at(node + IVec2::new(x, y));
+        let across = |y| value(0, y) + t.x * (value(1, y) - value(0, y));
+        across(0) + t.y * (across(1) - across(0))
+    }
+}
+
+/// The sum of noises, each twice as fine and half as strong as the one before.
+fn octaves(grids: &[Grid], place: Vec2) -> f32 {
+    let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
+    for (grid, octave) in grids.iter().zip(0..) {
+        sum += weight * grid.noise(place * (1 << octave) as f32);
+        total += weight;
+        weight *= 0.5;
+    }
+    sum / total
+}
+
+/// Distance to the border between the two nearest cells' points, in cells (Worley 1996).
+fn border(grids: &[Grid], place: Vec2) -> f32 {
+    let cell = place.floor().as_ivec2();
+    let around = (-2..=2).flat_map(|y| (-2..=2).map(move |x| IVec2::new(x, y)));
+    let mut nearest = [(f32::INFINITY, Vec2::ZERO); 2];
+    for offset in around {
+        let own = cell + offset;
+        let jitter = Vec2::new(grids[0].at(own), grids[1].at(own));
+        let point = own.as_vec2() + jitter;
+        let distance = (point - place).length_squared();
+        if distance < nearest[0].0 {
+            nearest = [(distance, point), nearest[0]];
+        } else if distance < nearest[1].0 {
+            nearest[1] = (distance, point);
+        }
+    }
+    let [(_, a), (_, b)] = nearest;
+    let apart = (b - a).normalize_or(Vec2::X);
+    ((a + b) * 0.5 - place).dot(apart).abs()
 }
 
 fn smoothstep(a: f32, b: f32, x: f32) -> f32 {

@@ -509,3 +509,37 @@ fn accessors_without_data_are_zeros() {
     );
     assert_eq!(mesh.colors[0], [0.0; 4]);
 }
+
+/// Images, cameras and lights without what their kind needs: the `gltf` crate takes it for granted. Found by fuzzing.
+#[test]
+fn images_cameras_and_lights_are_whole() {
+    let lights = json!({"KHR_lights_punctual": {"lights": [{"type": "spot"}]}});
+    for (key, value, words) in [
+        ("images", json!([{}]), "image 0 lacks"),
+        (
+            "cameras",
+            json!([{"type": "orthographic", "perspective": {"yfov": 1, "znear": 1}}]),
+            "camera 0 lacks",
+        ),
+        ("extensions", lights, "light 0 lacks spot"),
+        (
+            "extensions",
+            json!({}),
+            "node 3 shows light 0, but there are 0 lights",
+        ),
+    ] {
+        let mut d = document();
+        d[key] = value;
+        let e = load(&glb(&d, &square())).expect_err(words);
+        assert!(e.contains(words), "{e}");
+    }
+    let mut d = document();
+    d["images"] = json!([{"bufferView": 0}]);
+    d["textures"] = json!([{"source": 0}]);
+    d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+    let warnings = load(&glb(&d, &square())).unwrap().warnings;
+    assert!(
+        warnings[0].contains("image 0, which is neither"),
+        "{warnings:?}"
+    );
+}

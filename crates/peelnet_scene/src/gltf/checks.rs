@@ -9,6 +9,8 @@ use gltf::{
 use peelnet_files::printable;
 use serde_json::Value;
 
+const LIGHTS: &str = "KHR_lights_punctual";
+
 /// Checks that every index into a list of the file is within that list.
 pub(super) fn check_references(document: &Value) -> Result<(), String> {
     // The crate would look for elements that such an extension leaves out.
@@ -21,6 +23,46 @@ pub(super) fn check_references(document: &Value) -> Result<(), String> {
         ));
     }
     check_value(document, document, "", "")
+}
+
+/// Checks that images, cameras and lights hold what their kind needs, and that every light exists.
+pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
+    for (i, image) in list(&document["images"]).iter().enumerate() {
+        if !image["uri"].is_string() && image["bufferView"].is_null() {
+            return Err(lacks("image", i, "a uri or a buffer view"));
+        }
+    }
+    for (i, camera) in list(&document["cameras"]).iter().enumerate() {
+        if let Some(kind) = camera["type"].as_str()
+            && !camera[kind].is_object()
+        {
+            return Err(lacks("camera", i, &printable(kind)));
+        }
+    }
+    let lights = list(&document["extensions"][LIGHTS]["lights"]);
+    for (i, light) in lights.iter().enumerate() {
+        if light["type"] == "spot" && !light["spot"].is_object() {
+            return Err(lacks("light", i, "spot"));
+        }
+    }
+    for (i, node) in list(&document["nodes"]).iter().enumerate() {
+        let light = &node["extensions"][LIGHTS]["light"];
+        if !light.is_null() && light.as_u64().is_none_or(|n| n >= lights.len() as u64) {
+            return Err(format!(
+                "node {i} shows light {light}, but there are {} lights; export the file again",
+                lights.len()
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+fn lacks(what: &str, number: usize, part: &str) -> String {
+    format!("{what} {number} lacks {part}; export the file again")
 }
 
 /// The list that a field's number points into.

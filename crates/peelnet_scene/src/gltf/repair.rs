@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Supplies bounds of positions, the zeros of accessors without a buffer view, and the scene of a file without one. References have been
-/// checked.
+/// Supplies bounds of positions, the zeros of accessors without a buffer view, the scene of a file without one, and kinds of images.
+/// References have been checked.
 pub(super) fn repair(document: &mut Value) {
     let Some(document) = document.as_object_mut() else {
         return;
@@ -12,6 +12,17 @@ pub(super) fn repair(document: &mut Value) {
     supply_bounds(document);
     supply_zeros(document);
     supply_scene(document);
+    // Its first bytes tell the kind of an image.
+    let images = document.get_mut("images").and_then(Value::as_array_mut);
+    for image in images
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_object_mut)
+    {
+        image
+            .entry("mimeType")
+            .or_insert_with(|| json!("image/png"));
+    }
 }
 
 /// The elements of a list of the document.

@@ -177,7 +177,7 @@ impl Made {
     }
 
     /// The piece that goes on where a region's lower edge meets a vertex.
-    fn below(&mut self, region: Region, v: usize) -> Piece {
+    fn meet_below(&mut self, region: Region, v: usize) -> Piece {
         let mut piece = match region.high {
             None => region.low,
             Some(high) => {
@@ -190,7 +190,7 @@ impl Made {
     }
 
     /// The same where its upper edge meets one.
-    fn above(&mut self, region: &mut Region, v: usize) {
+    fn meet_above(&mut self, region: &mut Region, v: usize) {
         if let Some(high) = region.high.take() {
             self.finish(high, v);
         }
@@ -239,19 +239,19 @@ impl Sweep {
             }
             (true, true) => {
                 let upper = self.status.remove(&self.edge(before))?;
-                let upper = self.made.below(upper, i);
+                let upper = self.made.meet_below(upper, i);
                 let (made, region) = self.around(i)?;
-                made.above(region, i);
+                made.meet_above(region, i);
                 region.high = Some(upper);
             }
             (true, false) => {
                 let region = self.status.remove(&self.edge(before))?;
-                let piece = self.made.below(region, i);
+                let piece = self.made.meet_below(region, i);
                 self.insert(i, piece);
             }
             (false, true) => {
                 let (made, region) = self.around(i)?;
-                made.above(region, i);
+                made.meet_above(region, i);
             }
         }
         Some(())
