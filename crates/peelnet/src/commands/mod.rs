@@ -75,12 +75,8 @@ impl Context<'_> {
         let scene = suite::open(path, time);
         drop(bar);
         let scene = scene.map_err(|error| match error {
-            // The file is as it should be, the flag is not.
-            SceneError::Value {
-                ref field,
-                ref message,
-                ..
-            } if field == "timeline" && message.starts_with("is missing") => {
+            // The file is as it should be, the flag is not: states of a timeline have numbers.
+            SceneError::Value { ref field, .. } if time.is_some() && field == "timeline" => {
                 Failure::Usage(one_line(&error))
             }
             error => error.into(),
