@@ -234,7 +234,7 @@ fn requests_that_make_no_sense_are_refused() {
         views: Views::First(3),
         ..options(&out)
     };
-    assert!(refused(&all, &many).contains("2 views, not 3"));
+    assert!(refused(&all, &many).contains("2 of the 3 views"));
     let twice = [all[0].clone(), all[0].clone()];
     assert!(refused(&twice, &options(&out)).contains("rename one"));
     let none = ExtractOptions {

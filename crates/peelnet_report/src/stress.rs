@@ -194,7 +194,7 @@ mod tests {
         results.write(dir.path()).unwrap();
         let page = std::fs::read_to_string(dir.path().join("stress.html")).unwrap();
         assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));
-        assert!(page.contains("1 properties hold, 2 declared flaws, 1 failures"));
+        assert!(page.contains("1 property holds, 2 declared flaws, 1 failure"));
         let json = dir.path().join("stress.json");
         assert_eq!(Results::<Stressed>::read(&json).unwrap(), results);
         crate::testing::assert_files(dir.path(), Results::<Stressed>::FILES);

@@ -82,8 +82,12 @@ impl Stressed {
         let [pass, declared, fail] =
             [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(|o| self.of(o).count());
         format!(
-            "{pass} {} hold, {}, {}",
-            if pass == 1 { "property" } else { "properties" },
+            "{pass} {}, {}, {}",
+            if pass == 1 {
+                "property holds"
+            } else {
+                "properties hold"
+            },
             counted(declared as u64, "declared flaw"),
             counted(fail as u64, "failure"),
         )
