@@ -80,6 +80,6 @@ pub fn error(text: &str) {
 }
 
 fn to_stderr(before: &str, text: &str) {
-    // Nobody can be told that stderr is closed.
+    // If stderr is closed, there is nowhere to report it.
     let _ = writeln!(io::stderr(), "{before}{}", printable_lines(text));
 }

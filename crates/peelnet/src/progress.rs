@@ -12,17 +12,12 @@ pub struct Bar(ProgressBar);
 impl Bar {
     /// A bar of `total` steps, hidden where none may be shown.
     pub fn new(console: Console, name: &'static str, total: u64) -> Self {
-        let target = if console.shows_progress() {
-            ProgressDrawTarget::stderr()
-        } else {
-            ProgressDrawTarget::hidden()
-        };
         let style =
             ProgressStyle::with_template("{prefix:>8} [{bar:30}] {pos}/{len} · {msg} · {eta} left")
                 .expect("the template is constant and was tested")
                 .progress_chars("=> ");
         Self(
-            ProgressBar::with_draw_target(Some(total), target)
+            ProgressBar::with_draw_target(Some(total), target(console))
                 .with_style(style)
                 .with_prefix(name),
         )
@@ -30,14 +25,9 @@ impl Bar {
 
     /// A sign of life beside what is being done, where nobody knows how long it takes.
     pub fn spinner(console: Console, text: String) -> Self {
-        let target = if console.shows_progress() {
-            ProgressDrawTarget::stderr()
-        } else {
-            ProgressDrawTarget::hidden()
-        };
         let style = ProgressStyle::with_template("{spinner} {msg} · {elapsed}")
             .expect("the template is constant and was tested");
-        let bar = ProgressBar::with_draw_target(None, target).with_style(style);
+        let bar = ProgressBar::with_draw_target(None, target(console)).with_style(style);
         bar.set_message(one_line(&text).into_owned());
         bar.enable_steady_tick(Duration::from_millis(200));
         Self(bar)
@@ -48,6 +38,15 @@ impl Bar {
         self.0.set_length(total);
         self.0.set_message(one_line(&text).into_owned());
         self.0.set_position(done);
+    }
+}
+
+/// Where bars are drawn, if anywhere.
+fn target(console: Console) -> ProgressDrawTarget {
+    if console.shows_progress() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
     }
 }
 

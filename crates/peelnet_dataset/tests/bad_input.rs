@@ -472,7 +472,7 @@ fn every_reader_checks_the_hashes() {
     }
 }
 
-/// Numbers in files are promises: memory is taken for what is there. The old code asked for terabytes.
+/// A file may claim any number of rows; memory is taken only for rows that its bytes can hold.
 #[test]
 fn absurd_counts_are_refused_before_memory_is_taken() {
     let trillion = 1_000_000_000_000u64;

@@ -186,6 +186,12 @@ mod tests {
         let back = image::open(at("a.png")).expect("reads").to_rgb8();
         assert_eq!(back.get_pixel(0, 0).0, [0, 255, 0]);
         assert!(image.save(&at("a.gif")).is_err());
+        for good in ["a.png", "b/c.EXR", "d.npy"] {
+            assert!(ImageFormat::of(Path::new(good)).is_ok(), "{good}");
+        }
+        for bad in ["a", "a.jpg", ".png"] {
+            assert!(ImageFormat::of(Path::new(bad)).is_err(), "{bad}");
+        }
         for (name, foreign) in [
             ("a.png", &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..]),
             ("a.exr", b"PNG"),

@@ -41,7 +41,10 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         measure(context, args, &scenes, Some(&args.out))?
     };
     results.write(&args.out)?;
-    Partial::discard(&args.out);
+    // Drawing older results again ends no interrupted run.
+    if !args.redraw {
+        Partial::discard(&args.out);
+    }
     context
         .console
         .result(|| results.table().plain(), || json!(results))
@@ -183,7 +186,7 @@ fn finished(
         return Ok(None);
     }
     if !file.exists() {
-        let message = format!("{}: no run to resume, so one starts", folder.display());
+        let message = format!("{}: no run to resume, so one starts", shown(folder));
         context.console.message(message);
         return Ok(None);
     }
@@ -197,7 +200,7 @@ fn finished(
     }
     let message = format!(
         "{}: the run has finished with these settings: its results are kept",
-        file.display()
+        shown(&file)
     );
     context.console.message(message);
     Ok(Some(results))
