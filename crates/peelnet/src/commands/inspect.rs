@@ -156,6 +156,7 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
     } else {
         Vec::new()
     };
+    context.check_interrupt()?;
     context.console.result(
         || {
             scene_text(

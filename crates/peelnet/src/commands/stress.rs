@@ -113,6 +113,7 @@ fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
     }
     let gpu = context.gpu()?;
     let numerics = numerics::measure(&gpu)?;
+    context.check_interrupt()?;
     let results = Results::new(Machine::of(&gpu), command_line(), numerics);
     if let Some(out) = &args.out {
         results.write(out)?;
