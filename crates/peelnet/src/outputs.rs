@@ -6,6 +6,7 @@ use crate::parse::shown;
 use peelnet_files::{Destination, Kind, STDOUT, Standing, check_folder, destination, folder_of};
 use peelnet_render::ImageFormat;
 use peelnet_report::kind_of;
+use peelnet_scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// The outputs of a command, collected and checked one by one.
@@ -131,10 +132,22 @@ impl<'a> Outputs<'a> {
         Ok(())
     }
 
-    /// Says what will be replaced.
-    pub fn announce(self) {
+    /// Says what will be replaced, before work on these scenes begins.
+    ///
+    /// # Errors
+    /// An output that a scene reads, such as a texture: which files these are is known only once it is loaded.
+    pub fn begin(mut self, scenes: &[Scene]) -> Result<(), Failure> {
+        let read = scenes.iter().flat_map(|s| &s.files);
+        self.inputs = read.filter_map(|f| f.canonicalize().ok()).collect();
+        let input = self.taken.iter().find(|file| self.is_input(file));
+        if let Some(file) = input.filter(|_| !self.context.global.force) {
+            return Err(Failure::Usage(format!(
+                "--out: would replace {}, which a scene of this command reads; choose another name, or replace it with --force",
+                shown(file)
+            )));
+        }
         let Some((first, what)) = self.replaced.first() else {
-            return;
+            return Ok(());
         };
         let more = match self.replaced.len() - 1 {
             0 => String::new(),
@@ -144,6 +157,7 @@ impl<'a> Outputs<'a> {
         self.context
             .console
             .message(format!("replacing {} ({what}){more}", shown(first)));
+        Ok(())
     }
 
     /// Results then go to stderr, so that stdout holds the file alone.

@@ -125,6 +125,41 @@ fn inputs_and_foreign_files_are_refused_and_forced() {
     );
 }
 
+/// Our own image, which may be replaced elsewhere, is a texture of the scene that is drawn.
+#[test]
+fn files_that_a_scene_reads_are_inputs() {
+    let dir = folder();
+    ends_with(dir.path(), "render two.toml --size 8x8 --out cut.png", 0);
+    std::fs::create_dir_all(dir.path().join("b/images")).unwrap();
+    std::fs::copy(
+        dir.path().join("cut.png"),
+        dir.path().join("b/images/c.png"),
+    )
+    .unwrap();
+    for (texture, scene) in [("cut.png", "cut.toml"), ("b/images/c.png", "c.toml")] {
+        let textured = format!("{SCENE}color_map = \"{texture}\"\n");
+        std::fs::write(dir.path().join(scene), textured).unwrap();
+    }
+    let before = everything(dir.path());
+    for (line, file) in [
+        ("render cut.toml --size 8x8 --out cut.png", "cut.png"),
+        (
+            "bench c.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b",
+            "c.png",
+        ),
+    ] {
+        let text = ends_with(dir.path(), line, 2);
+        let why = "which a scene of this command reads";
+        assert!(text.contains(file) && text.contains(why), "{line}: {text}");
+        assert_eq!(everything(dir.path()), before, "{line}");
+    }
+    ends_with(
+        dir.path(),
+        "render cut.toml --size 8x8 --out cut.png --force",
+        0,
+    );
+}
+
 /// Each of the files of a measurement is looked at, and nothing was measured before.
 #[test]
 fn a_folder_is_ours_by_its_content() {

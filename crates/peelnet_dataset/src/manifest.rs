@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use peelnet_files::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::column::{Column, ColumnKind};
 use crate::error::DatasetError;
 use crate::format::Format;
-use crate::hashed_file::hex;
 use crate::shard::Shard;
 
 /// The version of the manifest's and the columns' layout that this crate writes and reads.

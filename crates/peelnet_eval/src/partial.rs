@@ -44,8 +44,7 @@ pub fn settings_hash(settings: &serde_json::Value) -> String {
 }
 
 fn sha256(bytes: &[u8]) -> String {
-    let hash = Sha256::digest(bytes);
-    hash.iter().map(|b| format!("{b:02x}")).collect()
+    peelnet_files::hex(&Sha256::digest(bytes))
 }
 
 impl Partial {

@@ -199,10 +199,7 @@ fn to_bytes(values: &[f32]) -> Vec<u8> {
 
 /// Hexadecimal sha256.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes)
-        .iter()
-        .map(|b| format!("{b:02x}"))
-        .collect()
+    peelnet_files::hex(&Sha256::digest(bytes))
 }
 
 pub(crate) fn load(path: &Path) -> Result<Model, ModelError> {

@@ -191,6 +191,7 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     Ok(Scene {
         name: raw.name.unwrap_or_else(|| name_of(loader.path)),
         source: loader.path.to_owned(),
+        files: loader.files.used().to_vec(),
         hash: loader.files.hash(),
         background: raw.background,
         transparency_scale: raw.transparency_scale,

@@ -2,7 +2,7 @@
 //! system.
 
 use crate::{budget::Budget, error::SceneError};
-use peelnet_files::check_size;
+use peelnet_files::{check_size, hex};
 use sha2::{Digest as _, Sha256};
 use std::{
     io,
@@ -89,8 +89,7 @@ impl<'a> Files<'a> {
 
     /// SHA-256 over every recorded file in order, hexadecimal.
     pub fn hash(self) -> String {
-        let hash = self.hasher.finalize();
-        hash.iter().map(|byte| format!("{byte:02x}")).collect()
+        hex(&self.hasher.finalize())
     }
 }
 

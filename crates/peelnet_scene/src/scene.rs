@@ -80,6 +80,8 @@ pub struct Scene {
     pub source: PathBuf,
     /// SHA-256 over the scene file and every file it reads, in order.
     pub hash: String,
+    /// The scene file and every file it reads, in order; empty for a scene built in code.
+    pub files: Vec<PathBuf>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
     /// Resolution of transparency as a share of the image's, above 0 and at most 1; exact methods keep the full one.
@@ -122,6 +124,7 @@ impl Scene {
             name: name.to_owned(),
             source: PathBuf::from(format!("{name} (made by {maker})")),
             hash: String::new(),
+            files: Vec::new(),
             background,
             transparency_scale: 1.0,
             views: vec![camera],

@@ -33,11 +33,14 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     if args.scaling {
         return scale(context, args);
     }
-    check_outputs(context, args, Results::<Bench>::FILES)?;
+    let mut outputs = outputs(context, args, Results::<Bench>::FILES)?;
+    outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
     let results = if args.redraw {
+        outputs.begin(&[])?;
         read(&args.out)?
     } else {
         let scenes = context.scenes(&args.scenes)?;
+        outputs.begin(&scenes)?;
         measure(context, args, &scenes, Some(&args.out))?
     };
     results.write(&args.out)?;
@@ -50,27 +53,25 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         .result(|| results.table().plain(), || json!(results))
 }
 
-/// Checks the files and the pictures that a bench writes.
+/// The files and the pictures that a bench of any kind writes.
 ///
 /// # Errors
 /// A foreign file among them, or a folder that cannot be written.
-pub(super) fn check_outputs(
-    context: &Context<'_>,
+pub(super) fn outputs<'a>(
+    context: &'a Context<'a>,
     args: &BenchArgs,
     files: &[&str],
-) -> Result<(), Failure> {
+) -> Result<Outputs<'a>, Failure> {
     let inputs = args.scenes.iter().chain(&args.models);
     let mut outputs = Outputs::new(context, inputs.chain(&args.training));
     outputs.results("--out", &args.out, files)?;
-    outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
     outputs.pictures("--out", &args.out.join("images"))?;
-    outputs.announce();
-    Ok(())
+    Ok(outputs)
 }
 
 /// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    check_outputs(context, args, Results::<Scaling>::FILES)?;
+    outputs(context, args, Results::<Scaling>::FILES)?.begin(&[])?;
     let gpu = context.gpu()?;
     let Chosen {
         mut methods,

@@ -1,6 +1,6 @@
 //! `peelnet bench --effects`: what effects cost.
 
-use super::{Context, bench::check_outputs};
+use super::{Context, bench::outputs};
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::parse::{MethodList, command_line};
@@ -18,12 +18,13 @@ use serde_json::json;
 pub(super) const METHOD: &str = Role::WeightedBlending.method();
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    check_outputs(context, args, Results::<Effects>::FILES)?;
+    let outputs = outputs(context, args, Results::<Effects>::FILES)?;
     let scenes = if args.scenes.is_empty() {
         context.shipped(suite::EFFECTS)?
     } else {
         context.scenes(&args.scenes)?
     };
+    outputs.begin(&scenes)?;
     let method = match &args.methods {
         MethodList::These(methods) => methods.first().cloned(),
         MethodList::All => None,

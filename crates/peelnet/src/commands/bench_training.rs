@@ -1,6 +1,6 @@
 //! `peelnet bench --training`: what accuracy costs in training.
 
-use super::{Context, bench::check_outputs};
+use super::{Context, bench::outputs};
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::learned;
@@ -33,9 +33,22 @@ const SHARES: [f64; 5] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 1.0];
 /// Epochs, as shares of the recipe's.
 const EPOCHS: [f64; 5] = [1.0 / 24.0, 1.0 / 12.0, 0.25, 0.5, 2.0];
 
+/// The file of one of the networks.
+fn network(k: usize) -> String {
+    format!("{k}.safetensors")
+}
+
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    check_outputs(context, args, Results::<Learning>::FILES)?;
+    let mut outputs = outputs(context, args, Results::<Learning>::FILES)?;
+    let folder = args.out.join("networks");
+    let networks = (0..HIDDEN.len() + SHARES.len() + EPOCHS.len()).map(network);
+    outputs.folder(
+        "--out",
+        &folder,
+        networks.map(|name| (name, peelnet_model::KIND)),
+    )?;
     let scenes = context.scenes(&args.scenes)?;
+    outputs.begin(&scenes)?;
     let gpu = context.gpu()?;
     let datasets = args
         .training
@@ -62,7 +75,6 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         plans.push((Varied::Epochs, config, 1.0));
     }
     let bar = Bar::new(context.console, "training", plans.len() as u64);
-    let folder = args.out.join("networks");
     let mut rows: Vec<Lesson> = Vec::new();
     let total = plans.len() as u64;
     for (k, (varied, config, share)) in plans.into_iter().enumerate() {
@@ -70,7 +82,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         // A copy of all data only where a part of it is used.
         let part = (share < 1.0).then(|| data.with_share(share));
         let own = part.as_ref().unwrap_or(&data);
-        let options = RunOptions::new(folder.join(format!("{k}.safetensors")), context.stop);
+        let options = RunOptions::new(folder.join(network(k)), context.stop);
         let outcome = train(&config, own, &options, |_| {})?;
         context.check_interrupt()?;
         let (mse_linear, to_moments) = judge(context, &gpu, &scenes, args, outcome.model.clone())?;

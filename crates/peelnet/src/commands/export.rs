@@ -19,7 +19,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     outputs.file("--out", &args.out, peelnet_export::KIND)?;
     let model = Model::load(&args.model)?;
     let gpu = context.gpu()?;
-    outputs.announce();
+    outputs.begin(&[])?;
     let verification =
         peelnet_export::export(&gpu, &model, &args.out, &peelnet_export::Options::default())?;
     context.console.result(

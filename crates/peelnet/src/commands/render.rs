@@ -21,7 +21,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     let mut outputs = Outputs::new(context, inputs);
     outputs.file("--out", &args.out, format.kind())?;
     let mut scene = context.scene_at(&args.scene, args.time)?;
-    outputs.announce();
+    outputs.begin(std::slice::from_ref(&scene))?;
     let layers = args.highlight.map(|highlight| LayerView {
         highlight,
         increasing: args.increasing,

@@ -101,8 +101,8 @@ impl Clock<'_> {
 /// The summary of the dataset, for programs and for people.
 const SUMMARY: [&str; 2] = ["dataset-summary.json", "dataset-summary.txt"];
 
-/// Checks everything that a run writes but its dataset, which has its own way.
-fn check_outputs(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
+/// Everything that a run writes but its dataset, which has its own way.
+fn outputs<'a>(context: &'a Context<'a>, args: &RunArgs) -> Result<Outputs<'a>, Failure> {
     let mut outputs = Outputs::new(context, &args.scenes);
     outputs.results("--out", &args.out, Results::<ThesisRun>::FILES)?;
     outputs.pictures("--out", &args.out.join("images"))?;
@@ -115,14 +115,14 @@ fn check_outputs(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
         ("loss.svg", CurveFormat::Svg.kind()),
     ];
     outputs.folder("--out", &args.out, summaries.into_iter().chain(networks))?;
-    outputs.announce();
-    Ok(())
+    Ok(outputs)
 }
 
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
-    check_outputs(context, args)?;
+    let outputs = outputs(context, args)?;
     let sizes = Sizes::of(args)?;
     let scenes = scenes(context, args)?;
+    outputs.begin(&scenes)?;
     if scenes.iter().all(|s| s.held_out) {
         return Err(Failure::Usage(
             "every scene is marked held-out, so there is none to train on; add one that is not"

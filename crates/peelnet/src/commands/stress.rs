@@ -24,7 +24,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         let mut outputs = Outputs::new(context, &args.models);
         outputs.results("--out", out, Results::<Stressed>::FILES)?;
         outputs.pictures("--out", &out.join("images"))?;
-        outputs.announce();
+        outputs.begin(&[])?;
     }
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && matches!(args.methods, MethodList::All);
@@ -109,7 +109,7 @@ fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
     if let Some(out) = &args.out {
         let mut outputs = Outputs::new(context, &args.models);
         outputs.results("--out", out, Results::<numerics::Numerics>::FILES)?;
-        outputs.announce();
+        outputs.begin(&[])?;
     }
     let gpu = context.gpu()?;
     let numerics = numerics::measure(&gpu)?;

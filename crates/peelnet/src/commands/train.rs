@@ -49,7 +49,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
         .iter()
         .map(Dataset::open)
         .collect::<Result<Vec<_>, _>>()?;
-    outputs.announce();
+    outputs.begin(&[])?;
     let mut options = RunOptions::new(out, context.stop);
     options.resume = args.resume;
     options.loss_curve = args.loss_curve.clone();

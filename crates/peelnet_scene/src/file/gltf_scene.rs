@@ -47,6 +47,7 @@ pub(super) fn load(path: &Path, mut files: Files<'_>) -> Result<Scene, SceneErro
     Ok(Scene {
         name,
         source: path.to_owned(),
+        files: files.used().to_vec(),
         hash: files.hash(),
         background: [1.0; 3],
         transparency_scale: 1.0,
