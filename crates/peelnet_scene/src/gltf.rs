@@ -17,7 +17,7 @@ use crate::{
 };
 use glam::Mat4;
 use nodes::Reader;
-use peelnet_files::printable;
+use peelnet_files::{counted, printable};
 use serde_json::Value;
 use std::{
     borrow::Cow,
@@ -85,11 +85,27 @@ pub fn load_gltf_from(
     load(path, &mut Files::new(&|path, _| read(path)))
 }
 
+/// Checks that the length in the header of a GLB file holds that header, which the crate subtracts from it unseen. Found by fuzzing.
+fn check_length(bytes: &[u8]) -> Result<(), String> {
+    const HEADER: u32 = 12;
+    let said = bytes.get(8..12).map_or(0, |said| {
+        u32::from_le_bytes([said[0], said[1], said[2], said[3]])
+    });
+    if said < HEADER {
+        return Err(format!(
+            "is no glTF 2.0 file: its header says that it has {}, of which the header alone takes {HEADER}; export it again",
+            counted(said.into(), "byte")
+        ));
+    }
+    Ok(())
+}
+
 /// The document of a glTF or GLB file, checked, and its binary chunk.
 fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     let bad = |e: &dyn std::fmt::Display| format!("is no glTF 2.0 file: {e}; export it again");
     let glb;
     let (text, blob) = if bytes.starts_with(b"glTF") {
+        check_length(bytes)?;
         glb = gltf::binary::Glb::from_slice(bytes).map_err(|e| bad(&e))?;
         (&*glb.json, glb.bin.map(Cow::into_owned))
     } else {
@@ -105,6 +121,7 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     // The crate skips unknown names without checking that they are text.
     let mut document = serde_json::from_slice::<Value>(text).map_err(|e| bad(&e))?;
+    checks::check_version(&document)?;
     checks::check_references(&document)?;
     checks::check_kinds(&document)?;
     repair::repair(&mut document);

@@ -334,6 +334,49 @@ fn bad_files() {
     }
 }
 
+/// The header's length is less than the header's own; of the shorter ones there is nothing to read.
+#[test]
+fn lengths_of_headers_are_checked() {
+    let good = glb(&document(), &square());
+    for said in 0..12u8 {
+        let mut short = good.clone();
+        short[8..12].copy_from_slice(&[said, 0, 0, 0]);
+        let e = load(&short).expect_err("a length that is too short");
+        assert!(e.contains(&format!("has {said} byte")), "{e}");
+    }
+    for length in 4..good.len() {
+        load(&good[..length]).expect_err("a file that was cut off");
+    }
+}
+
+/// What is not glTF 2 may look like it.
+#[test]
+fn other_versions_are_refused() {
+    for (asset, word) in [
+        (json!({"version": "7.0"}), "glTF 7.0"),
+        (json!({"version": "1.0"}), "glTF 1.0"),
+        (
+            json!({"version": "2.1", "minVersion": "2.1"}),
+            "2.1 or newer",
+        ),
+        (json!({}), "of no version"),
+        (json!({"version": 2}), "of no version"),
+    ] {
+        let mut d = document();
+        d["asset"] = asset;
+        let e = load(&glb(&d, &square())).expect_err(word);
+        assert!(e.contains(word) && e.contains("export it"), "{e}");
+    }
+    for asset in [
+        json!({"version": "2.1"}),
+        json!({"version": "2.0", "minVersion": "2.0"}),
+    ] {
+        let mut d = document();
+        d["asset"] = asset;
+        load(&glb(&d, &square())).expect("a file that 2.0 can read");
+    }
+}
+
 /// A name that is not UTF-8 hides nothing from the check of references, although the crate skips it. Found by fuzzing.
 #[test]
 fn bytes_that_are_no_text_are_refused() {

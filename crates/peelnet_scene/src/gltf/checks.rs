@@ -25,6 +25,24 @@ pub(super) fn check_references(document: &Value) -> Result<(), String> {
     check_value(document, document, "", "")
 }
 
+/// Checks that the file is of glTF 2, and needs nothing newer than 2.0 of its reader.
+pub(super) fn check_version(document: &Value) -> Result<(), String> {
+    let asset = &document["asset"];
+    let version = asset["version"].as_str().unwrap_or_default();
+    let needed = asset["minVersion"].as_str().unwrap_or("2.0");
+    if version.starts_with("2.") && needed == "2.0" {
+        return Ok(());
+    }
+    Err(format!(
+        "is glTF {}, and 2.0 is read; export it as that",
+        match version {
+            "" => "of no version".into(),
+            _ if version.starts_with("2.") => format!("{} or newer", printable(needed)).into(),
+            _ => printable(version),
+        }
+    ))
+}
+
 /// Checks that images, cameras and lights hold what their kind needs, and that every light exists.
 pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
     for (i, image) in list(&document["images"]).iter().enumerate() {
