@@ -179,7 +179,7 @@ fn folder(ours: &Ours, random: &mut Random) -> tempfile::TempDir {
 
 /// A command line, and what it names as outputs.
 fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
-    const COMMANDS: [(&str, &[&str], &[&str]); 9] = [
+    const COMMANDS: [(&str, &[&str], &[&str]); 10] = [
         (
             "render",
             &["s.toml", "link.toml", "cups"],
@@ -216,6 +216,7 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
             &["--lang", "--precision"],
         ),
         ("bench", &["s.toml"], &["--views", "--models"]),
+        ("run", &["s.toml"], &["--seed"]),
         ("inspect", &["s.toml", "d", "m.safetensors", "cups"], &[]),
         ("stress --cases deep", &[], &["--models"]),
         ("doctor", &[], &["--adapter"]),
@@ -267,6 +268,10 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
         "bench" => {
             let size = ["--methods", "wboit-eq9", "--frames", "0", "--size", "8x8"];
             line.extend(size.map(str::to_owned));
+        }
+        "run" => {
+            let little = ["--size", "8x8", "--rows", "100", "--epochs", "1"];
+            line.extend(little.map(str::to_owned));
         }
         "stress --cases deep" => line.extend(["--methods", "wboit-eq9"].map(str::to_owned)),
         _ => {}

@@ -109,6 +109,7 @@ pub(crate) fn load(
     let libraries = RefCell::new(Libraries {
         path,
         files,
+        read: HashSet::new(),
         owners: Vec::new(),
         warnings: warnings_of(warning),
         is_incomplete: false,
@@ -182,6 +183,8 @@ struct Libraries<'a, 'f> {
     /// The OBJ file.
     path: &'a Path,
     files: &'a mut Files<'f>,
+    /// Those read so far: naming one again adds nothing, and tobj asks for it all the same.
+    read: HashSet<PathBuf>,
     /// The library of each material, in `tobj`'s order.
     owners: Vec<PathBuf>,
     warnings: Warnings,
@@ -201,6 +204,9 @@ impl Libraries<'_, '_> {
 
     fn read(&mut self, name: &Path) -> Result<library::Library, SceneError> {
         let file = self.path.parent().unwrap_or(Path::new(".")).join(name);
+        if !self.read.insert(file.clone()) {
+            return Ok(library::Library::default());
+        }
         let bytes = match self.files.read(&file, FileKind::Materials) {
             Err(SceneError::Read { source, .. }) => {
                 self.is_incomplete = true;

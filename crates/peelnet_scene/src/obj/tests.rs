@@ -160,6 +160,16 @@ fn a_missing_mtl_is_survived() {
     assert_eq!(loaded.mesh.parts[0].material.color, [0.8; 3]);
 }
 
+/// A library that a file names a thousand times is read once, and its materials are there once.
+#[test]
+fn a_library_is_read_once() {
+    let obj = format!("{}{QUAD}usemtl m\nf 1 2 3\n", "mtllib a.mtl\n".repeat(1000));
+    let mtl = b"newmtl m\nKd 0.25 0.5 1\n";
+    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
+    assert_eq!(loaded.files.len(), 2);
+    assert_eq!(loaded.mesh.parts[0].material.color, [0.25, 0.5, 1.0]);
+}
+
 #[test]
 fn bad_normals_are_computed_and_flat_triangles_left_out() {
     let obj = format!("{QUAD}vn 0 0 0\nvn 0 0 -0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
