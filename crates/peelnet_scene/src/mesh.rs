@@ -246,8 +246,10 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
         face: usize,
         vertex: usize,
     ) {
-        if let Some(tangent) = tangent {
-            self.found[face][vertex] = tangent.tangent_encoded();
+        // UVs that hardly differ, or whose area underflows, have no direction.
+        let tangent = tangent.map(|t| t.tangent_encoded());
+        if let Some(tangent) = tangent.filter(|t| t.iter().all(|x| x.is_finite())) {
+            self.found[face][vertex] = tangent;
         }
     }
 }
@@ -269,6 +271,29 @@ pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An edge and a difference of UVs near the smallest number: MikkTSpace's own squares vanish. Found by fuzzing.
+    #[test]
+    fn tangents_are_finite() {
+        let mesh = Mesh {
+            positions: vec![
+                Vec3::ZERO,
+                Vec3::new(0.0, 4.481_572e-38, 0.0),
+                Vec3::new(0.0, 0.125, 0.0),
+            ],
+            normals: vec![Vec3::Z; 3],
+            triangles: vec![[0, 1, 2]],
+            uvs: vec![[
+                Vec2::ZERO,
+                Vec2::new(1.682_942, 1.080_605),
+                Vec2::new(2.421_404e-38, -3.771_113e-38),
+            ]],
+            ..Mesh::empty()
+        };
+        let tangents = mesh.tangents(0..1).expect("there are UVs");
+        let mut all = tangents.iter().flatten().flatten();
+        assert!(all.all(|x| x.is_finite()), "{tangents:?}");
+    }
 
     /// Cut triangles cover the same area, keep parts, UVs and orientation, and share their middles.
     #[test]
