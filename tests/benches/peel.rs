@@ -60,10 +60,10 @@ fn benches(c: &mut Criterion) {
         b.iter_custom(|n| {
             let micros: f64 = (0..n)
                 .flat_map(|_| {
-                    let (times, _) = renderer
+                    let frame = renderer
                         .profile(&mut prepared, &camera)
                         .unwrap_or_else(|e| panic!("{e}"));
-                    times
+                    frame.times
                 })
                 .filter(|t| t.label == "sort")
                 .map(|t| t.micros)

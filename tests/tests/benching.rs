@@ -51,10 +51,10 @@ fn rows(methods: &[MethodSpec], views: usize, done: &[u32]) -> (Vec<Row>, usize)
 fn a_resumed_comparison_draws_what_is_left() {
     let methods: Vec<MethodSpec> = ["mboit4", "dual-peel"].map(|m| m.parse().unwrap()).to_vec();
     let (all, drawn) = rows(&methods, 3, &[]);
-    // The exact method and two others, on three views: one compared frame and two timed ones each.
-    assert_eq!((all.len(), drawn), (9, 27));
+    // The exact method and two others, on three views: one compared frame, one to warm up and two timed ones each.
+    assert_eq!((all.len(), drawn), (9, 36));
     let (left, drawn) = rows(&methods, 3, &[0, 2]);
-    assert_eq!((left.len(), drawn), (3, 9));
+    assert_eq!((left.len(), drawn), (3, 12));
     for (a, b) in all.iter().filter(|r| r.view == 1).zip(&left) {
         assert_eq!((&a.method, a.view), (&b.method, b.view));
         // Errors agree to the bit.

@@ -95,8 +95,8 @@ fn what_is_not_called_for_is_not_there() {
         let mut prepared = renderer
             .method(&"blended".parse().unwrap(), MethodOptions::sized([8, 6]))
             .unwrap();
-        let (times, _) = renderer.profile(&mut prepared, &s.views[0]).unwrap();
-        times.len()
+        let frame = renderer.profile(&mut prepared, &s.views[0]).unwrap();
+        frame.times.len()
     };
     let fewest = passes(&scene_with(None));
     for effect in Effect::ALL {

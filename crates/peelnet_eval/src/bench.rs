@@ -109,7 +109,7 @@ pub fn bench_watched(
         .sum();
     // The exact method is drawn whether it is in the plan or not.
     let exact = usize::from(!plan.methods.iter().any(|m| m.to_string() == EXACT));
-    let total = (views * (plan.methods.len() + exact) * (1 + plan.frames as usize)) as u64;
+    let total = (views * (plan.methods.len() + exact) * plan.frames_of_each()) as u64;
     let mut done = 0;
     for scene in scenes {
         let finished = partial.done(&scene.name);

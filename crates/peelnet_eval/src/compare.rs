@@ -5,7 +5,8 @@ use crate::{EvalError, Row, metrics, perceptual::Displayed, settings_hash};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
-    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Role,
+    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, Profile, RenderError,
+    Renderer, Role, of_method,
 };
 use peelnet_scene::Scene;
 use std::path::Path;
@@ -56,6 +57,14 @@ impl<'a> Plan<'a> {
         scenes.iter().any(is_drawn)
             && [row.width, row.height] == self.size
             && (row.method == EXACT || self.methods.iter().any(|m| m.to_string() == row.method))
+    }
+
+    /// Frames of each method and view: the compared one, and where any are timed one more to warm up.
+    pub const fn frames_of_each(&self) -> usize {
+        match self.frames {
+            0 => 1,
+            n => n as usize + 2,
+        }
     }
 
     /// How many views of a scene are drawn.
@@ -257,8 +266,7 @@ impl<'a> Stage<'a> {
         Ok(rows)
     }
 
-    /// Times the view, all methods in turn, so that whatever else the machine does affects all of them alike. The compared frame was the
-    /// warm-up.
+    /// Times the view, all methods in turn, so that whatever else the machine does affects all of them alike.
     fn time(
         &self,
         view: usize,
@@ -267,19 +275,24 @@ impl<'a> Stage<'a> {
         notify: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
     ) -> Result<(), EvalError> {
         let camera = &self.scene.views[view];
-        let mut frames: Vec<Vec<Timed>> = vec![Vec::new(); entries.len()];
-        for _ in 0..self.plan.frames {
+        let mut frames: Vec<Vec<Profile>> = vec![Vec::new(); entries.len()];
+        if self.plan.frames == 0 {
+            return Ok(());
+        }
+        for number in 0..=self.plan.frames {
             for (entry, frames) in entries.iter_mut().zip(&mut frames) {
                 self.check_stop()?;
                 let timed = self.renderer.profile(&mut entry.prepared, camera);
-                frames.push(timed.map_err(self.failed(&entry.name))?);
+                let timed = timed.map_err(self.failed(&entry.name))?;
+                // The first is the warm-up: until then the method drew images.
+                if number > 0 {
+                    frames.push(timed);
+                }
                 notify(Event::Drawn(&entry.name))?;
             }
         }
         for (row, frames) in rows.iter_mut().zip(&frames) {
-            if !frames.is_empty() {
-                put_times(row, frames);
-            }
+            put_times(row, frames);
         }
         Ok(())
     }
@@ -293,12 +306,9 @@ pub(crate) fn is_too_large(error: &RenderError) -> bool {
     )
 }
 
-/// A frame's time by pass, and its clock time in microseconds.
-type Timed = (Vec<PassTime>, f64);
-
-/// Median, least and 90th percentile of a method's frames.
-fn put_times(row: &mut Row, frames: &[Timed]) {
-    let sorted = |time: &dyn Fn(&Timed) -> f64| {
+/// Median, least and 90th percentile of a method's frames; passes and bytes as they were timed.
+fn put_times(row: &mut Row, frames: &[Profile]) {
+    let sorted = |time: &dyn Fn(&Profile) -> f64| {
         let mut times: Vec<f64> = frames.iter().map(time).collect();
         times.sort_by(f64::total_cmp);
         times
@@ -308,16 +318,25 @@ fn put_times(row: &mut Row, frames: &[Timed]) {
         let i = (share * times.len() as f64).ceil() as usize;
         times.get(i.max(1) - 1).copied()
     };
-    let times = sorted(&|(passes, wall)| milliseconds(passes).unwrap_or(wall / 1e3));
+    let times = sorted(&method_ms);
     row.time_ms = rank(&times, 0.5);
     row.time_ms_min = times.first().copied();
     row.time_ms_p90 = rank(&times, 0.9);
-    row.wall_ms = rank(&sorted(&|(_, wall)| wall / 1e3), 0.5);
-    let passes: Vec<_> = frames.iter().map(|(passes, _)| passes.as_slice()).collect();
+    row.wall_ms = rank(&sorted(&|frame| frame.wall_micros / 1e3), 0.5);
+    let passes: Vec<_> = frames.iter().map(|f| of_method(&f.times)).collect();
     row.time_by_pass = medians_by_pass(&passes);
+    if let Some(Profile { stats, .. }) = frames.first() {
+        row.passes = stats.geometry_passes + stats.fullscreen_passes;
+        row.bytes_per_pixel = stats.bytes_per_pixel;
+    }
 }
 
-/// GPU time of a frame; none without timestamps.
+/// GPU time of a method's passes; without timestamps the clock time of the frame.
+pub(crate) fn method_ms(frame: &Profile) -> f64 {
+    milliseconds(of_method(&frame.times)).unwrap_or(frame.wall_micros / 1e3)
+}
+
+/// GPU time of passes; none without timestamps.
 pub(crate) fn milliseconds(times: &[PassTime]) -> Option<f64> {
     let micros: f64 = times.iter().map(|t| t.micros).sum();
     (micros > 0.0).then_some(micros / 1e3)
@@ -379,11 +398,11 @@ fn row(
         covered_pixels: d.covered_pixels,
         dark_pixels: d.dark_pixels,
         non_finite_pixels: d.non_finite_pixels,
-        time_ms: milliseconds(&frame.times),
+        time_ms: milliseconds(of_method(&frame.times)),
         time_ms_min: None,
         time_ms_p90: None,
         wall_ms: Some(frame.wall_micros / 1e3),
-        time_by_pass: medians_by_pass(&[&frame.times]),
+        time_by_pass: medians_by_pass(&[of_method(&frame.times)]),
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
         bytes_per_pixel: frame.stats.bytes_per_pixel,
         adapter: gpu.info.name.clone(),

@@ -1,9 +1,9 @@
 //! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
-use crate::{Row, geometric_mean};
+use crate::{Row, geometric_mean, ratios::Bytes};
 use peelnet_render::Role;
 
-/// What times are ratios to: hardware blending in the scene's order, without sorting. The ratio travels between machines.
+/// What times are ratios to: hardware blending in the scene's order, without sorting.
 pub const BASE: &str = Role::HardwareBlending.method();
 
 /// Errors below count as this: a mean squared error of (1e-5)², the agreement that exact methods are held to, in linear
@@ -30,10 +30,14 @@ pub struct Point {
     pub time: f64,
     /// Geometric mean of the frame time, milliseconds.
     pub time_ms: f64,
-    /// Most bytes a pixel.
-    pub bytes: f64,
+    /// Bytes a pixel over the views.
+    pub bytes: Bytes,
     /// Whether no other method is both faster and at least as accurate.
     pub on_front: bool,
+    /// Its time over the front's at its error: 1 on the front.
+    pub time_at_equal_error: f64,
+    /// Its error over the front's at its time: 1 on the front.
+    pub error_at_equal_time: f64,
 }
 
 impl Point {
@@ -85,11 +89,10 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
                 },
                 time: time_ms / base,
                 time_ms,
-                bytes: of(method)
-                    .iter()
-                    .map(|r| r.bytes_per_pixel)
-                    .fold(0.0, f64::max),
+                bytes: Bytes::of(of(method)),
                 on_front: false,
+                time_at_equal_error: 1.0,
+                error_at_equal_time: 1.0,
             })
         })
         .collect();
@@ -99,7 +102,41 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
         p.on_front = p.error < least;
         least = least.min(p.error);
     }
+    measure_against_front(&mut points);
     points
+}
+
+/// Fills in how far each point is behind the front, which is interpolated between its neighbours in the logarithms of time and error.
+fn measure_against_front(points: &mut [Point]) {
+    // By time, and so from the largest error to the smallest.
+    let front: Vec<[f64; 2]> = points
+        .iter()
+        .filter(|p| p.on_front)
+        .map(|p| [p.time.ln(), p.error.ln()])
+        .collect();
+    for p in points.iter_mut().filter(|p| !p.on_front) {
+        let [time, error] = [p.time.ln(), p.error.ln()];
+        // No point is faster than the front's first, or more accurate than its last.
+        let times = front.iter().map(|&[t, e]| [-e, t]);
+        let errors = front.iter().copied();
+        p.time_at_equal_error = (time - interpolated(times, -error)).exp();
+        p.error_at_equal_time = (error - interpolated(errors, time)).exp();
+    }
+}
+
+/// The value at `x` of a line through points of increasing x; that of the nearest end outside of them.
+fn interpolated(points: impl IntoIterator<Item = [f64; 2]>, x: f64) -> f64 {
+    let mut before: Option<[f64; 2]> = None;
+    for [x1, y1] in points {
+        if x <= x1 {
+            return match before {
+                Some([x0, y0]) if x1 > x0 => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+                _ => y1,
+            };
+        }
+        before = Some([x1, y1]);
+    }
+    before.map_or(x, |[_, y]| y)
 }
 
 #[cfg(test)]
@@ -120,6 +157,35 @@ mod tests {
             }
         }
         rows
+    }
+
+    /// On a front of slope −2 in logarithms: a point off it is so many times as slow at its error, and the square as wrong at its time.
+    #[test]
+    fn points_are_measured_against_the_front() {
+        let all = points(
+            &rows(&[
+                (BASE, 1e-2, 1.0),
+                ("end", 1e-6, 100.0),
+                ("middle", 1e-4, 10.0),
+                ("middle, 3 times as slow", 1e-4, 30.0),
+                ("worse than all", 1.0, 5.0),
+            ]),
+            None,
+            Mean::Geometric,
+        );
+        let of = |name: &str| all.iter().find(|p| p.method == name).unwrap();
+        let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+        for name in [BASE, "middle", "end"] {
+            assert_eq!(of(name).time_at_equal_error, 1.0);
+            assert_eq!(of(name).error_at_equal_time, 1.0);
+        }
+        let slow = of("middle, 3 times as slow");
+        assert!(close(slow.time_at_equal_error, 3.0));
+        assert!(close(slow.error_at_equal_time, 9.0));
+        // The front's first point has that error, and less.
+        let worse = of("worse than all");
+        assert!(close(worse.time_at_equal_error, 5.0));
+        assert!(close(worse.error_at_equal_time, 100.0 * 25.0));
     }
 
     #[test]

@@ -28,10 +28,42 @@ pub struct Ratios {
     pub time_to_moments: Option<f64>,
     /// The same to [`WEIGHTED`]'s.
     pub time_to_weighted: Option<f64>,
-    /// Most bytes a pixel.
-    pub bytes_per_pixel: f64,
+    /// Bytes a pixel over scenes and views.
+    pub bytes_per_pixel: Bytes,
     /// Pixels that are not finite, in all views.
     pub non_finite_pixels: u64,
+}
+
+/// Bytes a pixel over several views: those of methods that store fragments differ from view to view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bytes {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Median; of an even number the lower one.
+    pub median: f64,
+    /// The largest.
+    pub most: f64,
+}
+
+impl Bytes {
+    /// Over these rows; zeros of none.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Self {
+        let mut all: Vec<f64> = rows.into_iter().map(|r| r.bytes_per_pixel).collect();
+        all.sort_by(f64::total_cmp);
+        let Some(most) = all.last().copied() else {
+            return Self::default();
+        };
+        Self {
+            mean: all.iter().sum::<f64>() / all.len() as f64,
+            median: all[(all.len() - 1) / 2],
+            most,
+        }
+    }
+
+    /// Whether every view takes the same.
+    pub fn is_one(&self) -> bool {
+        self.mean == self.most
+    }
 }
 
 /// The figures of every method, in the order of the rows.
@@ -78,10 +110,7 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
                 time_to_base: ratio(mean(method, &time), mean(BASE, &time)),
                 time_to_moments: ratio(mean(method, &time), mean(MOMENTS, &time)),
                 time_to_weighted: ratio(mean(method, &time), mean(WEIGHTED, &time)),
-                bytes_per_pixel: of(method)
-                    .iter()
-                    .map(|r| r.bytes_per_pixel)
-                    .fold(0.0, f64::max),
+                bytes_per_pixel: Bytes::of(of(method)),
                 non_finite_pixels: of(method).iter().map(|r| r.non_finite_pixels).sum(),
             }
         })
@@ -92,6 +121,18 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
 mod tests {
     use super::*;
     use crate::row::tests::row;
+
+    #[test]
+    fn bytes_over_views_have_a_mean_a_median_and_a_largest() {
+        let rows = [5.0, 1.0, 3.0, 7.0].map(|bytes| Row {
+            bytes_per_pixel: bytes,
+            ..row("a", 0, "x", 0.0)
+        });
+        let bytes = Bytes::of(&rows);
+        assert_eq!((bytes.mean, bytes.median, bytes.most), (4.0, 3.0, 7.0));
+        assert!(!bytes.is_one());
+        assert_eq!(Bytes::of(&[]), Bytes::default());
+    }
 
     /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.
     #[test]
@@ -107,6 +148,7 @@ mod tests {
         }
         let all = ratios(&rows);
         let x = &all[2];
+        assert!(x.bytes_per_pixel.is_one());
         let close = |a: Option<f64>, b: f64| (a.expect("measured") - b).abs() < 1e-12;
         assert!(close(x.to_moments, 0.5) && close(x.to_weighted, 0.125));
         assert_eq!(x.worst, Some(("b".to_owned(), 1.0)));

@@ -9,7 +9,7 @@ pub struct Budget {
     pub ms: Option<f64>,
     /// Mean squared error, linear light.
     pub error: Option<f64>,
-    /// Bytes a pixel.
+    /// Bytes a pixel, in the view that takes most.
     pub bytes: Option<f64>,
 }
 
@@ -27,7 +27,9 @@ pub struct Recommendation<'a> {
 impl Budget {
     fn allows(&self, p: &Point) -> bool {
         let within = |limit: Option<f64>, value: f64| limit.is_none_or(|l| value <= l);
-        within(self.ms, p.time_ms) && within(self.error, p.mse()) && within(self.bytes, p.bytes)
+        within(self.ms, p.time_ms)
+            && within(self.error, p.mse())
+            && within(self.bytes, p.bytes.most)
     }
 
     /// The best of the points within the budget: the fastest where an error is asked for, else the most accurate (the faster
@@ -91,7 +93,7 @@ impl Budget {
             let over = |limit: Option<f64>, value: f64| limit.map_or(0.0, |l| value / l);
             over(self.ms, p.time_ms)
                 .max(over(self.error, p.mse()))
-                .max(over(self.bytes, p.bytes))
+                .max(over(self.bytes, p.bytes.most))
         };
         points
             .iter()
@@ -101,7 +103,7 @@ impl Budget {
                 |p| {
                     format!(
                         "no method is within the budget; the nearest is {}: {:.2} ms, error {:.2e}, {:.0} bytes a pixel",
-                        p.method, p.time_ms, p.mse(), p.bytes
+                        p.method, p.time_ms, p.mse(), p.bytes.most
                     )
                 },
             )
@@ -112,6 +114,7 @@ impl Budget {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
+    use crate::ratios::Bytes;
 
     fn points() -> Vec<Point> {
         [
@@ -126,8 +129,14 @@ mod tests {
             error,
             time: time_ms,
             time_ms,
-            bytes,
+            bytes: Bytes {
+                mean: bytes,
+                median: bytes,
+                most: bytes,
+            },
             on_front: true,
+            time_at_equal_error: 1.0,
+            error_at_equal_time: 1.0,
         })
         .collect()
     }

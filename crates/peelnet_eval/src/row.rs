@@ -53,8 +53,8 @@ pub struct Row {
     pub dark_pixels: u64,
     /// Pixels with a component that is not finite.
     pub non_finite_pixels: u64,
-    /// GPU time of a frame (clock time where the adapter has no timestamps), milliseconds: the median of the timed frames,
-    /// or of the one that was compared where none were timed.
+    /// GPU time of the method's passes onto a 16-bit target, over its background (clock time of the whole frame where the adapter has no
+    /// timestamps), milliseconds: the median of the timed frames, or of the 32-bit image that was compared where none were timed.
     pub time_ms: Option<f64>,
     /// The fastest timed frame.
     pub time_ms_min: Option<f64>,

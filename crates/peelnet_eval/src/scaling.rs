@@ -229,8 +229,8 @@ pub fn measure(
                 if stop.load(Ordering::Relaxed) {
                     return Err(EvalError::Interrupted);
                 }
-                let (passes, wall) = renderer.profile(prepared, camera).map_err(failed(name))?;
-                times.push(crate::compare::milliseconds(&passes).unwrap_or(wall / 1e3));
+                let frame = renderer.profile(prepared, camera).map_err(failed(name))?;
+                times.push(crate::compare::method_ms(&frame));
                 done += 1;
                 report(done, total, name);
             }

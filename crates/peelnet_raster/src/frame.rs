@@ -141,17 +141,6 @@ impl FrameTargets {
         self.size[0] * self.size[1]
     }
 
-    /// A storage image for compute shaders that write finished pixels: the frame's own, or one beside a caller's target.
-    ///
-    /// # Errors
-    /// A frame beyond the adapter's limits.
-    pub fn storage_image(&self, gpu: &Gpu) -> Result<wgpu::TextureView, RasterError> {
-        match &self.image {
-            Some(image) => Ok(image.clone()),
-            None => storage_image(gpu, self.size),
-        }
-    }
-
     /// The finished image of [`Output::Image`].
     pub const fn image(&self) -> Option<&wgpu::TextureView> {
         self.image.as_ref()
@@ -169,11 +158,6 @@ impl FrameTargets {
         };
         attachment(self.image.as_ref().or(target)?, load)
     }
-}
-
-fn storage_image(gpu: &Gpu, size: [u32; 2]) -> Result<wgpu::TextureView, RasterError> {
-    let usage = wgpu::TextureUsages::STORAGE_BINDING;
-    Ok(gpu.texture("image", IMAGE, size, 1, usage)?)
 }
 
 impl SceneBuffers {
@@ -238,7 +222,7 @@ impl SceneBuffers {
             aspect,
             background: gpu.texture("background", IMAGE, background, 1, none)?,
             image: match output {
-                Output::Image => Some(storage_image(gpu, size)?),
+                Output::Image => Some(gpu.texture("image", IMAGE, size, 1, none)?),
                 Output::Target { .. } => None,
             },
             output,

@@ -109,7 +109,29 @@ impl FullscreenPass {
         recorder: &mut Recorder<'_>,
         colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
     ) {
+        self.record(recorder, colors, None);
+    }
+
+    /// Records the pass over a rectangle: x, y, width, height.
+    pub fn draw_within(
+        &self,
+        recorder: &mut Recorder<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        rectangle: [u32; 4],
+    ) {
+        self.record(recorder, colors, Some(rectangle));
+    }
+
+    fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        rectangle: Option<[u32; 4]>,
+    ) {
         let mut pass = recorder.render(&self.label, colors, None);
+        if let Some([x, y, width, height]) = rectangle {
+            pass.set_scissor_rect(x, y, width, height);
+        }
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group.group, &[]);
         pass.draw(0..3, 0..1);

@@ -29,6 +29,6 @@ mod upload;
 pub use error::RasterError;
 pub use frame::{FrameTargets, OpaqueDepth};
 pub use pipelines::{GeometryPass, GeometryPipelines, Surfaces};
-pub use scene::{SceneBuffers, shader_bytes};
+pub use scene::{BACKGROUND_PASS, SceneBuffers, shader_bytes};
 pub use sort::{Order, Sorted, Submission};
 pub use uniforms::PixelSample;

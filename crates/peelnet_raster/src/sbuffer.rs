@@ -54,8 +54,8 @@ impl Tile {
         groups_2d(self.end - self.begin)
     }
 
-    /// The smallest rectangle of whole rows (or the part of one row) that holds the tile: x, y, width, height.
-    fn scissor(&self, width: u32) -> [u32; 4] {
+    /// Its rectangle in a frame of this width: whole rows or a part of one; x, y, width, height.
+    pub fn scissor(&self, width: u32) -> [u32; 4] {
         let (first, last) = (self.begin / width, (self.end - 1) / width);
         if first == last {
             [self.begin % width, first, self.end - self.begin, 1]

@@ -33,6 +33,9 @@ pub(crate) struct PartBuffers {
     pub(crate) centroids: Vec<glam::Vec3>,
 }
 
+/// Label of the pass that draws the background and the opaque surfaces.
+pub const BACKGROUND_PASS: &str = "background";
+
 /// A scene's buffers, the same for every view and method.
 ///
 /// Objects, materials and lights change in place; [`SceneBuffers::generation`] counts the changes that need other pipelines, bind
@@ -375,7 +378,7 @@ impl SceneBuffers {
             }),
             stencil_ops: None,
         });
-        let mut pass = recorder.render("background", &[color], depth);
+        let mut pass = recorder.render(BACKGROUND_PASS, &[color], depth);
         if let Some(pipelines) = pipelines {
             self.draw(&mut pass, frame, Surfaces::Opaque, pipelines);
         }

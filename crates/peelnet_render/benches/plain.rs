@@ -39,9 +39,8 @@ fn fragment_main(surface: Surface) -> Sums {
 ";
 
 const RESOLVE: &str = "
-@group(0) @binding(0) var background: texture_2d<f32>;
-@group(0) @binding(1) var sums: texture_2d<f32>;
-@group(0) @binding(2) var transmittances: texture_2d<f32>;
+@group(0) @binding(0) var sums: texture_2d<f32>;
+@group(0) @binding(1) var transmittances: texture_2d<f32>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -52,13 +51,12 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let transmittance = textureLoad(transmittances, pixel, 0).x;
-    let behind = textureLoad(background, pixel, 0).rgb;
     if transmittance == 1.0 {
-        return vec4f(behind, 0.0);
+        return vec4f(0.0);
     }
     let found = min(textureLoad(sums, pixel, 0), vec4f(65504.0));
     let average = found.rgb / max(found.a, 5.9604645e-8);
-    return vec4f(average * (1.0 - transmittance) + behind * transmittance, 1.0 - transmittance);
+    return vec4f(average, 1.0) * (1.0 - transmittance);
 }
 ";
 
@@ -77,7 +75,6 @@ struct Plain<'g> {
     camera: wgpu::Buffer,
     scene: peelnet_gpu::bind::Bound,
     gather: wgpu::RenderPipeline,
-    background: wgpu::TextureView,
     sums: wgpu::TextureView,
     transmittance: wgpu::TextureView,
     image: wgpu::TextureView,
@@ -145,11 +142,11 @@ impl<'g> Plain<'g> {
                 .unwrap_or_else(|e| panic!("{e}"))
         };
         use wgpu::{BlendFactor as F, TextureFormat as T};
-        let [background, sums, transmittance, image] = [
-            texture("background", T::Rgba32Float),
+        let [sums, transmittance, image] = [
             texture("sums", T::Rgba16Float),
             texture("transmittance", T::R16Float),
-            texture("image", T::Rgba32Float),
+            // As the renderer's own profiles.
+            texture("image", T::Rgba16Float),
         ];
         let camera = gpu.upload("camera", &[[0.0f32; 16]], wgpu::BufferUsages::UNIFORM);
         let colors = gpu.upload("colors", &colors, wgpu::BufferUsages::STORAGE);
@@ -188,9 +185,13 @@ impl<'g> Plain<'g> {
                 target(T::R16Float, component(F::Zero, F::OneMinusSrc)),
             ],
         );
-        let entries = [&background, &sums, &transmittance].map(Bind::Texture);
+        let entries = [&sums, &transmittance].map(Bind::Texture);
         let resolved = gpu.bind("resolve", wgpu::ShaderStages::FRAGMENT, &entries);
-        let image_target = [Some(T::Rgba32Float.into())];
+        let image_target = [Some(wgpu::ColorTargetState {
+            format: T::Rgba16Float,
+            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::ALL,
+        })];
         let resolve = pipeline(gpu, RESOLVE, &resolved.layout, &[], &image_target);
         Self {
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
@@ -198,7 +199,6 @@ impl<'g> Plain<'g> {
             camera,
             scene: bound,
             gather,
-            background,
             sums,
             transmittance,
             image,
@@ -235,7 +235,7 @@ impl<'g> Plain<'g> {
         let (mut encoder, mut timer) = (self.gpu.encoder(), Timer::new(self.gpu));
         let mut recorder = Recorder::new(self.gpu, &mut encoder, Some(&mut timer));
         let [r, g, b] = self.clear;
-        let background = [clear(&self.background, [r, g, b, 1.0])];
+        let background = [clear(&self.image, [r, g, b, 1.0])];
         drop(recorder.render("background", &background, None));
         {
             let targets = [
@@ -249,7 +249,11 @@ impl<'g> Plain<'g> {
             pass.draw(0..self.count, 0..1);
         }
         {
-            let mut pass = recorder.render("resolve", &[clear(&self.image, [0.0; 4])], None);
+            let mut over = clear(&self.image, [0.0; 4]);
+            if let Some(attachment) = &mut over {
+                attachment.ops.load = wgpu::LoadOp::Load;
+            }
+            let mut pass = recorder.render("resolve", &[over], None);
             pass.set_pipeline(&self.resolve);
             pass.set_bind_group(0, &self.resolved.group, &[]);
             pass.draw(0..3, 0..1);
@@ -290,9 +294,13 @@ fn main() {
         let mut ratios = Vec::new();
         let ours = |prepared: &mut _| {
             let timed = renderer.profile(prepared, &camera);
-            let (passes, wall) = timed.unwrap_or_else(|e| panic!("{e}"));
-            let micros: f64 = passes.iter().map(|p| p.micros).sum();
-            (if micros > 0.0 { micros } else { wall }) / 1e3
+            let frame = timed.unwrap_or_else(|e| panic!("{e}"));
+            let micros: f64 = frame.times.iter().map(|p| p.micros).sum();
+            (if micros > 0.0 {
+                micros
+            } else {
+                frame.wall_micros
+            }) / 1e3
         };
         plain.time(&camera);
         ours(&mut prepared);

@@ -6,7 +6,7 @@
 //! - [`Renderer::draw`] encodes a frame onto a texture of the caller's, over what it holds: no submission, no wait, no read-back. Methods
 //!   that must know how many fragments there are take the counts of an earlier frame; or
 //! - [`Renderer::image`] draws a frame of its own, waits, repeats it where it was too small, and reads it back; or
-//! - [`Renderer::profile`] draws it for its time alone.
+//! - [`Renderer::profile`] draws it for its time alone, onto a target as an engine's.
 //!
 //! Each draws opaque objects over the background colour first, which gives `C_0` and a depth buffer, then lets the method composite all
 //! transparent fragments over `C_0`: in one unordered pass ([`methods`] that commute), by peeling, or by storing and sorting. Everything is
@@ -36,5 +36,5 @@ pub use flaw::{Flaw, Property};
 pub use image::{Image, ImageFormat};
 pub use methods::{FrameStats, METHODS, Method, MethodSpec, Role, layers::LayerView};
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
-pub use renderer::{Frame, Prepared, Renderer};
+pub use renderer::{Frame, Prepared, Profile, Renderer, of_method};
 pub use target::{FrameStatus, LearnedWeight, MethodOptions, Target};

@@ -19,7 +19,8 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    FrameTargets, GeometryPipelines, PixelSample, SceneBuffers, Submission, frame::Output,
+    BACKGROUND_PASS, FrameTargets, GeometryPipelines, PixelSample, SceneBuffers, Submission,
+    frame::Output,
 };
 use peelnet_scene::{Camera, Light, Material, Scene};
 use std::collections::VecDeque;
@@ -44,6 +45,28 @@ pub struct Frame {
     pub wall_micros: f64,
 }
 
+/// A frame that was drawn for its time alone.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// GPU time of every pass, where the adapter measures it.
+    pub times: Vec<PassTime>,
+    /// What the method reports.
+    pub stats: FrameStats,
+    /// Clock time from the first command to the last result, microseconds.
+    pub wall_micros: f64,
+}
+
+/// The passes of the method itself: without the first, which draws the background and the opaque surfaces, whatever the method.
+pub fn of_method(times: &[PassTime]) -> &[PassTime] {
+    match times {
+        [first, rest @ ..] if first.label == BACKGROUND_PASS => rest,
+        all => all,
+    }
+}
+
+/// Format of the target of a [`Renderer::profile`], as engines draw transparency onto before they map tones.
+const PROFILED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
 /// What draws: a method by name, or the view of layers.
 #[derive(Clone, Debug)]
 enum Kind {
@@ -58,6 +81,8 @@ pub struct Prepared {
     kind: Kind,
     options: MethodOptions,
     ready: Option<Ready>,
+    /// The target of profiles.
+    canvas: Option<wgpu::TextureView>,
     /// Counts on their way, with the version of the capacities that their frames had.
     pending: VecDeque<(u64, Vec<Download>)>,
     status: FrameStatus,
@@ -203,6 +228,7 @@ impl Renderer {
             kind,
             options,
             ready: None,
+            canvas: None,
             pending: VecDeque::new(),
             status: FrameStatus::Unknown,
         };
@@ -422,16 +448,21 @@ impl Renderer {
         })
     }
 
-    /// Draws until the frame has room for all of its fragments (and, for times, no more than it needs).
+    /// Draws until the frame has room for all of its fragments (and, for times, no more than it needs): onto a target, or into an image
+    /// of its own.
     async fn drawn(
         &self,
         method: &mut Prepared,
         camera: &Camera,
         counting: bool,
+        target: Option<&Target<'_>>,
     ) -> Result<Drawn, RenderError> {
-        let size = method.size();
+        let (size, output) = match target {
+            Some(target) => self.output(target)?,
+            None => (method.size(), Output::Image),
+        };
         method.pending.clear();
-        let ready = self.ready(method, size, Output::Image, None)?;
+        let ready = self.ready(method, size, output, None)?;
         // Passes of tries that were too small: the frame took them too.
         let mut wasted = 0;
         for _ in 0..MOST_TRIES {
@@ -441,7 +472,7 @@ impl Renderer {
             let mut timer = Timer::new(&self.gpu);
             let mut recorder = Recorder::new(&self.gpu, &mut encoder, Some(&mut timer));
             let mut stats =
-                self.encode(ready, &mut recorder, camera, None, counting, only_count)?;
+                self.encode(ready, &mut recorder, camera, target, counting, only_count)?;
             let downloads = self.downloads(&mut encoder, ready.compositor.feedback());
             let times = timer.finish(&self.gpu, &mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
@@ -486,7 +517,7 @@ impl Renderer {
         method: &mut Prepared,
         camera: &Camera,
     ) -> Result<Frame, RenderError> {
-        let drawn = self.drawn(method, camera, true).await?;
+        let drawn = self.drawn(method, camera, true, None).await?;
         let [width, height] = method.size();
         let view = method.ready.as_ref().and_then(|r| r.frame.image());
         let pixels = match view {
@@ -514,8 +545,8 @@ impl Renderer {
         self.gpu.block_on(self.image_async(method, camera))
     }
 
-    /// Draws a view for its time alone: nothing is counted or read back but what the method itself needs. Returns the time of each pass
-    /// and the clock time, microseconds.
+    /// Draws a view for its time alone, as an engine would: onto a target of 16-bit floats, over what is drawn there. Nothing is counted
+    /// or read back but what the method itself needs.
     ///
     /// # Errors
     /// A lost device, or a frame beyond the adapter's limits.
@@ -523,9 +554,25 @@ impl Renderer {
         &self,
         method: &mut Prepared,
         camera: &Camera,
-    ) -> Result<(Vec<PassTime>, f64), RenderError> {
-        let drawn = self.drawn(method, camera, false).await?;
-        Ok((drawn.times, drawn.wall_micros))
+    ) -> Result<Profile, RenderError> {
+        let size = method.size();
+        let texture = |v: &wgpu::TextureView| [v.texture().width(), v.texture().height()];
+        let canvas = match method.canvas.take().filter(|v| texture(v) == size) {
+            Some(canvas) => canvas,
+            None => {
+                let none = wgpu::TextureUsages::empty();
+                self.gpu.texture("canvas", PROFILED, size, 1, none)?
+            }
+        };
+        let target = Target::cleared(&canvas);
+        let drawn = self.drawn(method, camera, false, Some(&target)).await;
+        method.canvas = Some(canvas);
+        let drawn = drawn?;
+        Ok(Profile {
+            times: drawn.times,
+            stats: drawn.stats,
+            wall_micros: drawn.wall_micros,
+        })
     }
 
     /// The same as [`Self::profile_async`], waiting for the device. Not in a browser.
@@ -533,11 +580,7 @@ impl Renderer {
     /// # Errors
     /// See [`Self::profile_async`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn profile(
-        &self,
-        method: &mut Prepared,
-        camera: &Camera,
-    ) -> Result<(Vec<PassTime>, f64), RenderError> {
+    pub fn profile(&self, method: &mut Prepared, camera: &Camera) -> Result<Profile, RenderError> {
         self.gpu.block_on(self.profile_async(method, camera))
     }
 }

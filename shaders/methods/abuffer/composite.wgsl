@@ -1,13 +1,17 @@
 // S-buffer: composites each sorted run front to back over C_0 (under-blending).
 // Variants: none | tinted
-import package::peel::runs::{background, fragments, image, run_of};
+import package::helpers::screen::screen_corner;
+import package::peel::runs::{background, fragments, run_of};
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    let run = run_of(id);
-    if !run.inside {
-        return;
-    }
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
+    let run = run_of(pixel);
     var color = vec3f(0.0);
     @if(!tinted) var transmittance = 1.0;
     @if(tinted) var transmittance = vec3f(1.0);
@@ -22,8 +26,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             transmittance *= 1.0 - fragments[2u * i + 1u].rgb;
         }
     }
-    let behind = textureLoad(background, run.pixel, 0).rgb;
+    let behind = textureLoad(background, pixel, 0).rgb;
     @if(!tinted) let covered = 1.0 - transmittance;
     @if(tinted) let covered = 1.0 - dot(transmittance, vec3f(1.0 / 3.0));
-    textureStore(image, run.pixel, vec4f(color + transmittance * behind, covered));
+    return vec4f(color + transmittance * behind, covered);
 }

@@ -1,19 +1,15 @@
 // linked-list: sorts each pixel's list by (linear depth, triangle) and composites it front to back over C_0.
 // Variants: none | tinted
-struct Frame {
-    size: vec2u,
-    // Workgroups in a row of the dispatch.
-    groups: u32,
-}
+import package::helpers::screen::screen_corner;
+import package::scene::camera::Camera;
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<uniform> camera: Camera;
 @group(0) @binding(1) var<storage, read> heads: array<u32>;
 @group(0) @binding(2) var<storage, read_write> next: array<u32>;
 @group(0) @binding(3) var<storage, read> depths: array<f32>;
 @group(0) @binding(4) var<storage, read> triangles: array<u32>;
 @group(0) @binding(5) var<storage, read> colors: array<vec4f>;
 @group(0) @binding(6) var background: texture_2d<f32>;
-@group(0) @binding(7) var image: texture_storage_2d<rgba32float, write>;
 
 // Whether one node comes before another; nodes are counted from 1.
 fn before(a: u32, b: u32) -> bool {
@@ -70,13 +66,15 @@ fn sorted(first: u32) -> u32 {
     return list;
 }
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    let index = id.y * frame.groups * 64u + id.x;
-    if index >= frame.size.x * frame.size.y {
-        return;
-    }
-    let pixel = vec2u(index % frame.size.x, index / frame.size.x);
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
+    let index = pixel.y * camera.frame_size.x + pixel.x;
     var color = vec3f(0.0);
     @if(!tinted) var transmittance = 1.0;
     @if(tinted) var transmittance = vec3f(1.0);
@@ -96,5 +94,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let behind = textureLoad(background, pixel, 0).rgb;
     @if(!tinted) let covered = 1.0 - transmittance;
     @if(tinted) let covered = 1.0 - dot(transmittance, vec3f(1.0 / 3.0));
-    textureStore(image, pixel, vec4f(color + transmittance * behind, covered));
+    return vec4f(color + transmittance * behind, covered);
 }

@@ -65,7 +65,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             } else {
                 format!("MSE {:.2e}", p.error)
             },
-            p.bytes
+            p.bytes.most
         )
     };
     context.console.result(
@@ -79,7 +79,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         },
         || {
             let point = |p: &Point| {
-                json!({"method": p.method, "time_ms": p.time_ms, "mse_linear": p.mse(), "bytes_per_pixel": p.bytes})
+                json!({"method": p.method, "time_ms": p.time_ms, "mse_linear": p.mse(), "bytes_per_pixel": p.bytes.most})
             };
             json!({
                 "method": chosen.best.method,

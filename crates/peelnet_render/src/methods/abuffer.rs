@@ -6,18 +6,14 @@ use super::{
     compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
     method::{Method, Promises, Role},
     parameter::{Count, Parameter},
-    present::Present,
 };
 use crate::error::RenderError;
 use peelnet_core::methods::over;
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    wgpu,
-};
+use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_raster::{
     FrameTargets, SceneBuffers,
     count::CountPass,
+    fullscreen::FullscreenPass,
     sbuffer::{SBuffer, Tile, bytes_per_fragment},
 };
 use std::ops::Range;
@@ -47,13 +43,20 @@ pub(super) const METHOD: Method = Method {
 /// Fragments that the first frame has room for, a pixel, where nothing is known yet.
 pub(super) const FIRST_GUESS: u64 = 4;
 
+/// The pass that composites the sorted runs of a tile.
+#[derive(Debug)]
+pub(super) struct Composite {
+    pub shader: &'static str,
+    pub features: &'static [&'static str],
+    /// The text of its module `parameters`.
+    pub parameters: String,
+}
+
 #[derive(Debug)]
 struct ABuffer {
     sbuffer: SBuffer,
-    wgsl: String,
-    composite: Option<(wgpu::ComputePipeline, Bound)>,
-    background: wgpu::TextureView,
-    present: Present,
+    composite: Composite,
+    pass: Option<FullscreenPass>,
     tinted: bool,
     /// Of the last plan; empty before the first.
     tiles: Vec<Tile>,
@@ -67,27 +70,29 @@ struct ABuffer {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let features: &[&str] = if b.scene.tinted { &["tinted"] } else { &[] };
-    let wgsl = peelnet_shaders::link("methods::abuffer::composite", features, &[])?;
+    let features: &'static [&'static str] = if b.scene.tinted { &["tinted"] } else { &[] };
+    let composite = Composite {
+        shader: "methods::abuffer::composite",
+        features,
+        parameters: String::new(),
+    };
     let budget = BUDGET.given(b.spec);
-    build_with(b.gpu, b.scene, b.frame, budget, features, wgsl)
+    build_with(b.gpu, b.scene, b.frame, budget, features, composite)
 }
 
-/// Stores, sorts and hands every pixel's run to a compute shader; `features` are those of storing.
+/// Stores, sorts and composites every pixel's run; `features` are those of storing.
 pub(super) fn build_with(
     gpu: &Gpu,
     scene: &SceneBuffers,
     frame: &FrameTargets,
     budget: Option<u64>,
     features: &[&str],
-    wgsl: String,
+    composite: Composite,
 ) -> Result<Box<dyn Compositor>, RenderError> {
     Ok(Box::new(ABuffer {
         sbuffer: SBuffer::new(gpu, scene, frame, budget, features)?,
-        wgsl,
-        composite: None,
-        background: frame.background.clone(),
-        present: Present::new(gpu, frame)?,
+        composite,
+        pass: None,
         tinted: features.contains(&"tinted"),
         tiles: Vec::new(),
         ends: gpu.storage("tile ends", 4)?,
@@ -116,21 +121,21 @@ impl ABuffer {
         if self.ends.size() < ends {
             self.ends = gpu.storage("tile ends", ends)?;
         }
-        if let (true, Some(storage)) = (is_new || self.composite.is_none(), self.sbuffer.storage())
-        {
-            let group = gpu.bind(
-                "composite",
-                wgpu::ShaderStages::COMPUTE,
+        if let (true, Some(storage)) = (is_new || self.pass.is_none(), self.sbuffer.storage()) {
+            self.pass = Some(FullscreenPass::resolve(
+                gpu,
+                self.composite.shader,
+                self.composite.features,
+                &[("parameters", &self.composite.parameters)],
                 &[
                     Bind::Uniform(self.sbuffer.tile_buffer()),
+                    Bind::Uniform(scene.camera_buffer()),
                     Bind::Read(&self.sbuffer.count.offsets),
                     Bind::Read(&storage.colors),
-                    Bind::Texture(&self.background),
-                    Bind::Store(&self.present.image),
+                    Bind::Texture(&frame.background),
                 ],
-            );
-            let pipeline = gpu.compute("composite", &self.wgsl, &group);
-            self.composite = Some((pipeline, group));
+                frame.output,
+            )?);
         }
         self.tiles = tiles;
         self.version += 1;
@@ -163,15 +168,17 @@ impl Compositor for ABuffer {
             let guess = guess.min(self.sbuffer.limit());
             self.plan(gpu, cx.scene, cx.frame, guess, None)?;
         }
+        let mut output = cx.output();
         for (number, tile) in (0..).zip(&self.tiles) {
             self.sbuffer
                 .store_and_sort(cx.recorder, cx.scene, cx.frame, tile);
-            if let Some((pipeline, group)) = &self.composite {
-                let mut pass = cx.recorder.compute("composite");
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &group.group, &[]);
-                let [x, y] = tile.dispatch();
-                pass.dispatch_workgroups(x, y, 1);
+            if let Some(pass) = &self.pass {
+                let within = tile.scissor(cx.frame.size[0]);
+                pass.draw_within(cx.recorder, &[output.clone()], within);
+            }
+            // The tiles before stay.
+            if let Some(output) = &mut output {
+                output.ops.load = wgpu::LoadOp::Load;
             }
             let offsets = &self.sbuffer.count.offsets;
             let end = u64::from(tile.end) * 4;
@@ -179,7 +186,6 @@ impl Compositor for ABuffer {
                 .encoder()
                 .copy_buffer_to_buffer(offsets, end, &self.ends, number * 4, 4);
         }
-        self.present.draw(cx);
         Ok(FrameStats {
             tiles: self.tiles.len() as u32,
             geometry_passes: 1 + self.tiles.len() as u32,

@@ -1,7 +1,10 @@
 //! The view of layers: one layer of a nested object highlighted, the others around it as a veil. It composites by itself, from the
 //! sorted fragments of the S-buffer, and is no method of transparency.
 
-use super::{abuffer, compositor::Compositor};
+use super::{
+    abuffer::{self, Composite},
+    compositor::Compositor,
+};
 use crate::error::RenderError;
 use peelnet_gpu::Gpu;
 use peelnet_raster::{FrameTargets, SceneBuffers};
@@ -28,15 +31,15 @@ pub(crate) fn build(
         "const HIGHLIGHT: f32 = {:?};\nconst HIGHLIGHT_SHARE: f32 = {HIGHLIGHT_SHARE:?};\n",
         view.highlight as f32
     );
-    let features: &[&str] = if view.increasing {
+    let features: &'static [&'static str] = if view.increasing {
         &["increasing"]
     } else {
         &[]
     };
-    let wgsl = peelnet_shaders::link(
-        "methods::layers::composite",
+    let composite = Composite {
+        shader: "methods::layers::composite",
         features,
-        &[("parameters", &parameters)],
-    )?;
-    abuffer::build_with(gpu, scene, frame, None, &["layered"], wgsl)
+        parameters,
+    };
+    abuffer::build_with(gpu, scene, frame, None, &["layered"], composite)
 }

@@ -7,7 +7,6 @@ use super::{
     compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
     method::{Method, Promises},
     parameter::{Count, Parameter},
-    present::Present,
 };
 use crate::error::RenderError;
 use peelnet_core::methods::over;
@@ -18,7 +17,8 @@ use peelnet_gpu::{
 };
 use peelnet_raster::{
     FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces,
-    count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
+    count::{unwritten, unwritten_attachment, unwritten_texture},
+    fullscreen::FullscreenPass,
     sbuffer::{FragmentStorage, bytes_per_fragment},
 };
 use std::ops::Range;
@@ -47,7 +47,6 @@ pub(super) const METHOD: Method = Method {
 struct LinkedList {
     shared: Shared,
     attachment: wgpu::TextureView,
-    present: Present,
     pool: Pool,
     version: u64,
 }
@@ -57,9 +56,7 @@ struct LinkedList {
 struct Shared {
     heads: wgpu::Buffer,
     used: wgpu::Buffer,
-    extent: wgpu::Buffer,
     background: wgpu::TextureView,
-    image: wgpu::TextureView,
 }
 
 #[derive(Debug)]
@@ -67,25 +64,16 @@ struct Pool {
     nodes: u64,
     build: GeometryPipelines,
     build_group: Bound,
-    composite: wgpu::ComputePipeline,
-    composite_group: Bound,
+    composite: FullscreenPass,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
     let pixels = frame.pixels();
-    let [width, height] = frame.size;
-    let present = Present::of(b)?;
     let shared = Shared {
         heads: gpu.storage("list heads", u64::from(pixels) * 4)?,
         used: gpu.storage("nodes used", 4)?,
-        extent: gpu.upload(
-            "extent",
-            &[width, height, groups_2d(pixels)[0], 0],
-            wgpu::BufferUsages::UNIFORM,
-        ),
         background: frame.background.clone(),
-        image: present.image.clone(),
     };
     let nodes = NODES.given(b.spec);
     let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);
@@ -93,7 +81,6 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         attachment: unwritten_texture(gpu, frame)?,
         pool: Pool::new(gpu, b.scene, frame, &shared, first)?,
         shared,
-        present,
         version: 0,
     }))
 }
@@ -134,27 +121,27 @@ impl Pool {
                 ..GeometryPass::NONE
             },
         )?;
-        let composite_group = gpu.bind(
-            "composite",
-            wgpu::ShaderStages::COMPUTE,
+        let composite = FullscreenPass::resolve(
+            gpu,
+            "methods::linked_list::composite",
+            features,
+            &[],
             &[
-                Bind::Uniform(&shared.extent),
+                Bind::Uniform(scene.camera_buffer()),
                 Bind::Read(&shared.heads),
                 Bind::Write(&next),
                 Bind::Read(&storage.depths),
                 Bind::Read(&storage.triangles),
                 Bind::Read(&storage.colors),
                 Bind::Texture(&shared.background),
-                Bind::Store(&shared.image),
             ],
-        );
-        let wgsl = peelnet_shaders::link("methods::linked_list::composite", features, &[])?;
+            frame.output,
+        )?;
         Ok(Self {
             nodes,
             build,
             build_group,
-            composite: gpu.compute("composite", &wgsl, &composite_group),
-            composite_group,
+            composite,
         })
     }
 }
@@ -172,14 +159,8 @@ impl Compositor for LinkedList {
             cx.scene
                 .draw(&mut pass, cx.frame, Surfaces::Transparent, build);
         }
-        {
-            let mut pass = cx.recorder.compute("composite");
-            pass.set_pipeline(&self.pool.composite);
-            pass.set_bind_group(0, &self.pool.composite_group.group, &[]);
-            let [x, y] = groups_2d(cx.frame.pixels());
-            pass.dispatch_workgroups(x, y, 1);
-        }
-        self.present.draw(cx);
+        let output = cx.output();
+        self.pool.composite.draw(cx.recorder, &[output]);
         let pixels = f64::from(cx.frame.pixels());
         // The fragment and a link.
         let node = bytes_per_fragment(cx.scene.tinted) + 4;

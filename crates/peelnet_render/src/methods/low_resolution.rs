@@ -49,7 +49,6 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
         frame: &frame,
         ..*b
     })?;
-    let image = frame.storage_image(b.gpu)?;
     let [width, height] = full.size;
     let extent = b.gpu.upload(
         "full extent",
@@ -57,7 +56,8 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
         wgpu::BufferUsages::UNIFORM,
     );
     let mut entries = vec![
-        Bind::Texture(&image),
+        // Its output is one.
+        Bind::Texture(frame.image().unwrap_or(&frame.background)),
         Bind::Texture(&full.background),
         Bind::Uniform(&extent),
     ];

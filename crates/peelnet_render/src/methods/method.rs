@@ -83,6 +83,8 @@ pub struct Promises {
     pub order_independent: bool,
     /// It sorts what it draws: another order of drawing gives the very same operations.
     pub sorted: bool,
+    /// It blends into the target itself, in that target's precision; images are of the precision that `targets` says.
+    pub straight: bool,
     /// A pixel is made of its own fragments alone.
     pub per_pixel: bool,
     /// A pixel's colour is a mean of its fragments' colours and `C_0`: it lies in their convex hull.
@@ -110,6 +112,7 @@ impl Promises {
         exact: true,
         order_independent: true,
         sorted: true,
+        straight: false,
         per_pixel: true,
         normalised: true,
         tinted: false,

@@ -23,7 +23,6 @@ mod nmt;
 mod painter;
 pub(crate) mod parameter;
 mod peeling;
-mod present;
 pub(crate) mod spec;
 mod stochastic;
 mod wavelet;

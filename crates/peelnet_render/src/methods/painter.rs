@@ -3,7 +3,7 @@
 
 use super::{
     commutative::{self, Blend, Gather, Plan, Target},
-    compositor::{Build, Compositor},
+    compositor::{Build, Compositor, DrawContext, FrameStats},
     method::{Method, Promises, Role},
     parameter::{Parameter, TARGETS, Word},
     spec::MethodSpec,
@@ -13,7 +13,7 @@ use crate::{
     flaw::{Flaw, Property},
 };
 use peelnet_core::{fragment::Fragment, methods::over};
-use peelnet_raster::Order;
+use peelnet_raster::{GeometryPass, GeometryPipelines, Order, Sorted, Surfaces};
 
 const SORT: Word = Word {
     name: "sort",
@@ -25,6 +25,7 @@ const fn promises(sorted: bool) -> Promises {
     Promises {
         order_independent: sorted,
         sorted,
+        straight: true,
         ..Promises::NORMALISED
     }
 }
@@ -98,7 +99,13 @@ fn triangles(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     build(b, Order::Triangles)
 }
 
+/// Premultiplied colour and alpha, as the sum of all fragments takes them.
+const SHADER: &str = "methods::weighted_sum::gather";
+
 fn build(b: &Build<'_>, order: Order) -> Result<Box<dyn Compositor>, RenderError> {
+    if b.frame.output.is_over() {
+        return Ok(Box::new(Straight::new(b, order)?));
+    }
     commutative::build(
         b,
         &Plan {
@@ -109,9 +116,8 @@ fn build(b: &Build<'_>, order: Order) -> Result<Box<dyn Compositor>, RenderError
                 blend: Blend::Over,
             }],
             passes: &[Gather {
-                label: "blend",
-                // Premultiplied colour and alpha, as the sum of all fragments takes them.
-                shader: "methods::weighted_sum::gather",
+                label: PASS,
+                shader: SHADER,
                 writes: &[0],
                 ..Gather::NONE
             }],
@@ -121,4 +127,55 @@ fn build(b: &Build<'_>, order: Order) -> Result<Box<dyn Compositor>, RenderError
             ..Plan::NONE
         },
     )
+}
+
+const PASS: &str = "blend";
+
+/// Onto the target itself, as engines draw: no targets of its own and no pass over the pixels.
+#[derive(Debug)]
+struct Straight {
+    pipelines: GeometryPipelines,
+    sorted: Option<Sorted>,
+}
+
+impl Straight {
+    fn new(b: &Build<'_>, order: Order) -> Result<Self, RenderError> {
+        let output = b.frame.output;
+        let pass = GeometryPass {
+            label: PASS,
+            shader: SHADER,
+            targets: &[Some(output.state())],
+            samples: output.samples(),
+            ..GeometryPass::NONE
+        };
+        Ok(Self {
+            pipelines: b
+                .scene
+                .pipelines(b.gpu, b.frame, Surfaces::Transparent, &pass)?,
+            sorted: Sorted::new(b.gpu, b.scene, order)?,
+        })
+    }
+}
+
+impl Compositor for Straight {
+    fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
+        if let Some(sorted) = &mut self.sorted {
+            sorted.sort(cx.recorder, cx.scene, cx.camera);
+        }
+        let output = cx.output();
+        let mut pass = cx.recorder.render(PASS, &[output], None);
+        match &self.sorted {
+            Some(sorted) => sorted.draw(&mut pass, cx.scene, cx.frame, &self.pipelines),
+            None => cx
+                .scene
+                .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.pipelines),
+        }
+        let order = self.sorted.as_ref().map_or(0, Sorted::bytes);
+        Ok(FrameStats {
+            tiles: 1,
+            geometry_passes: 1,
+            bytes_per_pixel: order as f64 / f64::from(cx.frame.pixels()),
+            ..Default::default()
+        })
+    }
 }

@@ -11,7 +11,7 @@ use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
     front::{self, BASE, EXACT_MSE, Mean, Point},
-    ratios::{Ratios, ratios},
+    ratios::{Bytes, Ratios, ratios},
 };
 use std::path::Path;
 
@@ -57,9 +57,13 @@ impl Results<Bench> {
             "time / hardware blending",
             "time / mboit4",
             "time / wboit-eq9",
-            "bytes a pixel",
+            "bytes a pixel (mean, median, most)",
+            "time / front at equal error",
+            "error / front at equal time",
         ];
+        let points = front::points(&self.measured.rows, None, Mean::Geometric);
         let line = |r: Ratios| {
+            let point = points.iter().find(|p| p.method == r.method);
             let worst = r.worst.as_ref();
             vec![
                 r.method.clone(),
@@ -71,19 +75,68 @@ impl Results<Bench> {
                 number(r.time_to_base, 3),
                 number(r.time_to_moments, 3),
                 number(r.time_to_weighted, 3),
-                format!("{:.0}", r.bytes_per_pixel),
+                bytes(&r.bytes_per_pixel),
+                number(point.map(|p| p.time_at_equal_error), 2),
+                number(point.map(|p| p.error_at_equal_time), 2),
             ]
         };
         Table::new(headings, ratios(&self.measured.rows).into_iter().map(line))
     }
 
+    /// Times on every scene as ratios to hardware blending, the fastest exact method first: whether it is the right answer depends on the
+    /// scene more than on anything else.
+    pub fn times_by_scene(&self) -> Table {
+        let rows = &self.measured.rows;
+        let mut scenes: Vec<&str> = Vec::new();
+        for row in rows {
+            if !scenes.contains(&row.scene.as_str()) {
+                scenes.push(&row.scene);
+            }
+        }
+        let points = |scene| front::points(rows, Some(scene), Mean::Geometric);
+        let points: Vec<Vec<Point>> = scenes.iter().copied().map(points).collect();
+        // Points come by time.
+        let exact = points.iter().map(|all| {
+            let first = all.iter().find(|p| p.is_exact());
+            first.map_or_else(
+                || "–".to_owned(),
+                |p| format!("{:.2} ({})", p.time, p.method),
+            )
+        });
+        let mut lines = vec![
+            std::iter::once("the fastest exact one".to_owned())
+                .chain(exact)
+                .collect(),
+        ];
+        lines.extend(ratios(rows).into_iter().map(|r| {
+            let time = |all: &Vec<Point>| {
+                let own = all.iter().find(|p| p.method == r.method);
+                number(own.map(|p| p.time), 2)
+            };
+            let times: Vec<String> = points.iter().map(time).collect();
+            std::iter::once(r.method).chain(times).collect()
+        }));
+        let headings = std::iter::once("time / hardware blending").chain(scenes);
+        Table::new(headings, lines)
+    }
+
     /// `table.md`.
     pub fn markdown(&self) -> String {
         format!(
-            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. {}\n",
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. {}\n\n{}",
             self.table().markdown(),
             self.credit(),
+            self.times_by_scene().markdown(),
         )
+    }
+}
+
+/// Bytes a pixel: one number, or mean, median and most over the views.
+fn bytes(b: &Bytes) -> String {
+    if b.is_one() {
+        format!("{:.0}", b.most)
+    } else {
+        format!("{:.0}, {:.0}, {:.0}", b.mean, b.median, b.most)
     }
 }
 
@@ -98,12 +151,14 @@ pub(crate) fn chart(points: &[Point]) -> Svg {
         Bubble {
             name: p.method.clone(),
             title: format!(
-                "{}: {error}, {:.2} x hardware blending, {:.0} bytes a pixel",
-                p.method, p.time, p.bytes
+                "{}: {error}, {:.2} x hardware blending, {} bytes a pixel",
+                p.method,
+                p.time,
+                bytes(&p.bytes)
             ),
             x: p.time,
             y: p.error,
-            weight: p.bytes,
+            weight: p.bytes.mean,
             on_front: p.on_front,
         }
     };
@@ -132,8 +187,14 @@ mod tests {
             error,
             time,
             time_ms: time,
-            bytes: 24.0,
+            bytes: Bytes {
+                mean: 24.0,
+                median: 24.0,
+                most: 24.0,
+            },
             on_front: true,
+            time_at_equal_error: 1.0,
+            error_at_equal_time: 1.0,
         };
         let svg = chart(&[
             point(BASE, 1e-2, 1.0),

@@ -1,6 +1,6 @@
 //! The page of a bench: charts, tables that sort, pictures with difference maps.
 
-use super::chart;
+use super::{bytes, chart};
 use crate::{
     ReportError, Results, Table,
     page::{self, SORT_SCRIPT},
@@ -58,14 +58,19 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
              geometric means."
         }
         (page::chart("chart", &chart(&by_size)))
+        h2 { "Time scene by scene" }
+        p.note { "Times / hardware blending. Where few fragments overlap, exact methods cost little; where smoke fills the frame, much." }
+        (results.times_by_scene().html("sortable", |_| false))
         h2 { "Scene by scene" }
         @for scene in &by_scene { (scene) }
         h2 { "Time by pass" }
         p.note { "Milliseconds, geometric means over scenes and views." }
         (passes(rows, &all).html("text", |_| false))
         p.note {
-            "Times are medians of frames that were drawn method after method in turn, measured by the GPU's timestamps where the adapter \
-             has them, and include sorting on the CPU. Errors are against abuffer. SSIM: image-compare, windows of 8×8 on 8-bit luma. ꟻLIP: \
+            "Times are medians of frames that were drawn method after method in turn onto a 16-bit target, over its background, measured by \
+             the GPU's timestamps where the adapter has them. They include sorting on the CPU, and not the pass that draws background and \
+             opaque surfaces. Time at equal error and error at equal time: how far a method is behind the front, interpolated between its \
+             points in logarithms. Errors are against abuffer. SSIM: image-compare, windows of 8×8 on 8-bit luma. ꟻLIP: \
              nv-flip, 67 pixels per degree. T error: mean difference between the estimated and the exact transmittance, over the fragments \
              of a sample of pixels."
         }
@@ -128,6 +133,8 @@ fn points_table(rows: &[Row], points: &[Point]) -> Markup {
         "T error",
         "passes",
         "bytes a pixel",
+        "time / front at equal error",
+        "error / front at equal time",
     ];
     let line = |p: &Point| {
         let own: Vec<&Row> = rows.iter().filter(|r| r.method == p.method).collect();
@@ -156,7 +163,9 @@ fn points_table(rows: &[Row], points: &[Point]) -> Markup {
             number(mean(|r| Some(r.p99_error)), 1),
             number(mean(|r| r.transmittance_error), 4),
             own.iter().map(|r| r.passes).max().unwrap_or(0).to_string(),
-            format!("{:.0}", p.bytes),
+            bytes(&p.bytes),
+            number(Some(p.time_at_equal_error), 2),
+            number(Some(p.error_at_equal_time), 2),
         ]
     };
     Table::new(headings, points.iter().map(line)).html("sortable", |k| points[k].on_front)

@@ -127,7 +127,7 @@ fn table(rows: &[Row], points: &[Point], methods: &[&str]) -> Table {
             number(ratio.and_then(|r| r.to_moments), 3),
             number(point.map(|p| p.time), 2),
             number(point.map(|p| p.time_ms), 1),
-            number(point.map(|p| p.bytes), 0),
+            number(point.map(|p| p.bytes.most), 0),
         ]
     };
     Table::new(headings, methods.iter().map(line))
