@@ -36,7 +36,7 @@ impl Subject {
                 continue;
             }
             // Where 16 bits for all are a point of the curve of their own, they are not the default.
-            if method.curve.contains(&":targets=f16") {
+            if method.curve.iter().any(|c| c.ends_with(":targets=f16")) {
                 all.push(default.clone());
             }
             // One of them may be the default; both are named, so that rows state the precision.

@@ -68,7 +68,9 @@ pub struct Pixel<'a> {
 /// The number at the end of a method's name.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbered {
-    /// The largest; the smallest is 1.
+    /// The smallest.
+    pub least: u32,
+    /// The largest.
     pub most: u32,
     /// Whether it must be a power of two.
     pub power_of_two: bool,
@@ -163,9 +165,9 @@ impl Role {
 impl Numbered {
     /// Reads the number behind `name`.
     pub(super) fn parse(self, name: &str, text: &str) -> Result<u32, String> {
-        let most = self.most;
+        let Self { least, most, .. } = self;
         match text.parse::<u32>() {
-            Ok(n) if n == 0 || n > most => {}
+            Ok(n) if !(least..=most).contains(&n) => {}
             Ok(n) if self.power_of_two && !n.is_power_of_two() => {
                 let above = n.next_power_of_two();
                 return Err(format!(
@@ -177,7 +179,7 @@ impl Numbered {
             Err(_) => {}
         }
         Err(format!(
-            "the number behind '{name}-' must be 1 to {most}, not '{text}'"
+            "the number behind '{name}-' must be {least} to {most}, not '{text}'"
         ))
     }
 }

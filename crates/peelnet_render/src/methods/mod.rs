@@ -5,6 +5,7 @@
 
 pub mod abuffer;
 mod anchored;
+mod bins;
 mod blended;
 mod commutative;
 pub(crate) mod compositor;
@@ -24,6 +25,7 @@ mod painter;
 pub(crate) mod parameter;
 mod peeling;
 mod present;
+mod range;
 pub(crate) mod spec;
 mod stochastic;
 mod wavelet;
@@ -61,6 +63,7 @@ pub const METHODS: &[Method] = &[
     mboit::FOUR,
     mboit::SIX,
     wavelet::METHOD,
+    bins::METHOD,
     kbuffer::PLAIN,
     kbuffer::HYBRID,
     stochastic::METHOD,

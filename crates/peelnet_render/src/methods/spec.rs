@@ -26,7 +26,9 @@ impl MethodSpec {
         let middle = method.curve[method.curve.len() / 2];
         Self {
             method,
-            number: method.numbered.and_then(|_| middle[1..].parse().ok()),
+            number: method
+                .numbered
+                .and_then(|_| middle[1..].split(':').next()?.parse().ok()),
             values: BTreeMap::new(),
         }
     }
