@@ -107,7 +107,7 @@ struct Normalised {
 
 /// Every point of every method's curve that needs no network.
 static POINTS: LazyLock<Vec<MethodSpec>> = LazyLock::new(|| {
-    let all = MethodSpec::curve().into_iter();
+    let all = MethodSpec::compared().into_iter();
     // Twins know no precision of targets.
     all.filter(|s| s.promises().normalised && !s.needs_model() && s.targets().is_none())
         .collect()

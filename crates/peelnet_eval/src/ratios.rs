@@ -28,8 +28,8 @@ pub struct Ratios {
     pub time_to_moments: Option<f64>,
     /// The same to [`WEIGHTED`]'s.
     pub time_to_weighted: Option<f64>,
-    /// Most bytes a pixel.
-    pub bytes_per_pixel: f64,
+    /// Most bytes a pixel; `None` where none are known.
+    pub bytes_per_pixel: Option<f64>,
     /// Pixels that are not finite, in all views.
     pub non_finite_pixels: u64,
 }
@@ -80,8 +80,8 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
                 time_to_weighted: ratio(mean(method, &time), mean(WEIGHTED, &time)),
                 bytes_per_pixel: of(method)
                     .iter()
-                    .map(|r| r.bytes_per_pixel)
-                    .fold(0.0, f64::max),
+                    .filter_map(|r| r.bytes_per_pixel)
+                    .reduce(f64::max),
                 non_finite_pixels: of(method).iter().map(|r| r.non_finite_pixels).sum(),
             }
         })

@@ -10,6 +10,7 @@ pub mod dfaoit;
 pub mod kbuffer;
 pub mod mboit4;
 pub mod mboit6;
+pub mod mlab;
 pub mod nmt;
 pub mod over;
 pub mod range;

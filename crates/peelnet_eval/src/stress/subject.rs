@@ -29,7 +29,7 @@ impl Subject {
     /// Every method in every precision. Of those with a number, one in the middle of its curve.
     pub fn all_methods() -> Vec<MethodSpec> {
         let mut all: Vec<MethodSpec> = Vec::new();
-        for method in METHODS {
+        for method in METHODS.iter().filter(|m| m.cpu_only.is_none()) {
             let default = MethodSpec::representative(method);
             if !method.has_targets() {
                 all.push(default);

@@ -25,6 +25,9 @@ pub struct Method {
     pub parameters: &'static [Parameter],
     /// Whether it draws with a trained network.
     pub learned: bool,
+    /// Why only its CPU twin exists, for a method that needs what portable WebGPU lacks: its error is known, but no time and no bytes.
+    /// The twin's colour is what it adds to `T_∞ C_0`.
+    pub cpu_only: Option<&'static str>,
     /// What it promises, before a choice of targets or a lower resolution; see [`MethodSpec::promises`].
     pub promises: fn(&MethodSpec) -> Promises,
     /// What a benchmark of all methods draws: endings of its name, the default first.
@@ -203,6 +206,7 @@ impl Method {
             numbered: None,
             parameters: &[],
             learned: false,
+            cpu_only: None,
             promises: |_| Promises::NORMALISED,
             curve: &[""],
             roles: &[],

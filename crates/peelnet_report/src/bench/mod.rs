@@ -10,7 +10,7 @@ use crate::{
 use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
-    front::{self, BASE, EXACT_MSE, Mean, Point},
+    front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
     ratios::{Ratios, ratios},
 };
 use std::path::Path;
@@ -71,7 +71,7 @@ impl Results<Bench> {
                 number(r.time_to_base, 3),
                 number(r.time_to_moments, 3),
                 number(r.time_to_weighted, 3),
-                format!("{:.0}", r.bytes_per_pixel),
+                number(r.bytes_per_pixel, 0),
             ]
         };
         Table::new(headings, ratios(&self.measured.rows).into_iter().map(line))
@@ -79,9 +79,14 @@ impl Results<Bench> {
 
     /// `table.md`.
     pub fn markdown(&self) -> String {
+        let untimed = untimed(&self.measured.rows);
+        let why = untimed
+            .iter()
+            .map(|(method, why)| format!(" {method} has no time: {why}."));
         format!(
-            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. {}\n",
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views.{} {}\n",
             self.table().markdown(),
+            why.collect::<String>(),
             self.credit(),
         )
     }
