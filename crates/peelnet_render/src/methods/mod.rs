@@ -19,6 +19,7 @@ mod learned;
 mod linked_list;
 mod low_resolution;
 mod mboit;
+mod mboit_trig;
 pub(crate) mod method;
 mod mlab;
 mod nmt;
@@ -63,6 +64,8 @@ pub const METHODS: &[Method] = &[
     wboit::INVERSE_POWER,
     mboit::FOUR,
     mboit::SIX,
+    mboit::EIGHT,
+    mboit_trig::METHOD,
     wavelet::METHOD,
     bins::METHOD,
     kbuffer::PLAIN,

@@ -34,6 +34,13 @@ fn settings(spec: &MethodSpec) -> Settings {
     }
 }
 
+const OWN_SHARE: Flaw = Flaw::new(
+    Property::Transmittance,
+    &["isolated", "two-layers"],
+    "a fragment's own absorbance counts by its place in its bin; own=out leaves it out",
+)
+.when(|s| !settings(s).own_share_out && settings(s).bounds == Bounds::Frame);
+
 pub(super) const METHOD: Method = Method {
     numbered: Some(Numbered {
         least: 2,
@@ -68,6 +75,18 @@ pub(super) const METHOD: Method = Method {
             "rank 3 separates eight depths (Aizenshtein et al. 2022)",
         )
         .when(|s| settings(s).own_share_out && settings(s).bounds == Bounds::Frame),
+        Flaw::new(
+            Property::Opaque,
+            &["alpha-near-one"],
+            "eight bins over the whole frame's depth blur what lies close together",
+        )
+        .when(|s| settings(s).rank == 2 && settings(s).bounds == Bounds::Frame),
+        OWN_SHARE,
+        Flaw {
+            property: Property::Opaque,
+            cases: &["alpha-near-one"],
+            ..OWN_SHARE
+        },
     ],
     ..Method::new(
         "wavelet",
