@@ -1,7 +1,7 @@
 // Transmittance in front of an angle from trigonometric moments (Muenstermann et al. 2018, supplement); the steps are explained in the
 // twin, peelnet_core::methods::mboit_trig.
 import package::methods::mboit_trig::circle::{WRAPPING_ZONE, conjugate, times, turn};
-import package::methods::mboit_trig::roots::{cubic, quadratic, quartic};
+import package::methods::mboit_trig::roots::{cubic, quadratic};
 import package::parameters::{BIAS, MOMENTS, OVERESTIMATION};
 
 // How much of a point counts as in front of phi; it is x = cot(angle / 2) from there.
@@ -18,14 +18,7 @@ fn other_points(kernel: array<vec2f, 5>) -> vec4f {
     if MOMENTS == 2 {
         return vec4f(quadratic(vec3f(a.y - 2.0 * a.x, 4.0 * b.x, 2.0 * a.x + a.y)), 0.0, 0.0);
     }
-    if MOMENTS == 3 {
-        return vec4f(cubic(vec4f(b.y - b.x, a.y - 3.0 * a.x, 3.0 * b.x + b.y, a.x + a.y)), 0.0);
-    }
-    let middle = kernel[2].x;
-    return quartic(
-        vec4f(2.0 * (a.x - a.y) + middle, 4.0 * b.y - 8.0 * b.x, 2.0 * middle - 12.0 * a.x, 8.0 * b.x + 4.0 * b.y),
-        2.0 * (a.x + a.y) + middle,
-    );
+    return vec4f(cubic(vec4f(b.y - b.x, a.y - 3.0 * a.x, 3.0 * b.x + b.y, a.x + a.y)), 0.0);
 }
 
 fn transmittance_from_moments(total: f32, moments: array<vec2f, 4>, phi: f32) -> f32 {

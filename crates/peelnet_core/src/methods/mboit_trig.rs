@@ -1,5 +1,7 @@
-//! `mboit-trig-M`: moment-based transparency with M = 2, 3 or 4 trigonometric moments (Münstermann et al. 2018, supplement). The shader
-//! twin is `methods/mboit_trig/`.
+//! `mboit-trig-M`: moment-based transparency with M = 2 or 3 trigonometric moments (Münstermann et al. 2018, supplement). The shader
+//! twin is `methods/mboit_trig/`. Four moments are here, in 64 bits, and have no shader: asked at one of four layers, the last norm's inverse
+//! is 2,800 with this bias, 32-bit sums move two close points of the measure by 2e-3, and 2 % of its mass is lost (a colour off by 0.04 on
+//! the worked example).
 //!
 //! Depth becomes an angle, and pass 1 sums absorbance and `c_k = Σ b_i e^{ikθ_i}`, k = 1 … M: complex numbers, 2M values. As with power
 //! moments, the estimate in front of a depth comes from the one measure with these moments that has a point there; it has M others. Depths use

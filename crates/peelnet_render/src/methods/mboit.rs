@@ -120,7 +120,7 @@ const BLURRED_BEHIND_COINCIDENT: Flaw = Flaw::new(
 )
 .when(own_out);
 
-pub(super) const fn jumping(cases: &'static [&'static str]) -> Flaw {
+const fn jumping(cases: &'static [&'static str]) -> Flaw {
     let reason =
         "16-bit moments without the paper's quantisation: roots jump where they come close";
     Flaw::new(Property::Steady, cases, reason)

@@ -5,11 +5,11 @@ use super::{
     commutative::{self, Gather, Plan},
     compositor::{Build, Compositor},
     mboit::{
-        BLURRED, OVERESTIMATION, OWN, OWN_SHARE, bias, jumping, moments, own_out, own_share,
-        promises, settings,
+        BLURRED, OVERESTIMATION, OWN, OWN_SHARE, bias, moments, own_out, own_share, promises,
+        settings,
     },
     method::{Method, Numbered},
-    parameter::{MOMENT_TARGETS, Number, Parameter, Precision},
+    parameter::{MOMENT_TARGETS, Number, Parameter},
     spec::MethodSpec,
     weighted::SUMS,
 };
@@ -35,7 +35,7 @@ fn settings_of(spec: &MethodSpec) -> Settings {
 pub(super) const METHOD: Method = Method {
     numbered: Some(Numbered {
         least: 2,
-        most: 4,
+        most: 3,
         power_of_two: false,
     }),
     parameters: &[
@@ -45,7 +45,7 @@ pub(super) const METHOD: Method = Method {
         Parameter::Word(OWN),
     ],
     promises: |s| promises(s.number()),
-    curve: &["-2", "-3", "-4", "-3:own=out", "-2:targets=f16"],
+    curve: &["-2", "-3", "-3:own=out", "-2:targets=f16"],
     twin: Some(|s, p| {
         let (fragments, c0, count) = (p.fragments, p.background, s.number() as usize);
         let settings = settings_of(s);
@@ -63,7 +63,6 @@ pub(super) const METHOD: Method = Method {
         Flaw::swallowed(&["deep", "near-overflow"]),
         Flaw::swallowed(&["alpha-tiny"]).when(|s| s.number() == 2 && half_statistics(s)),
         BLURRED.when(|s| !own_out(s) && (s.number() != 3 || half_statistics(s))),
-        jumping(&["passing"]).when(|s| s.number() == 4 && half_statistics(s)),
         OWN_SHARE,
     ],
     ..Method::new(
@@ -85,50 +84,42 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         moments("absorbance", 1),
         moments("moments 1 and 2", 4),
     ];
-    match count {
-        3 => targets.push(moments("moment 3", 2)),
-        4 => targets.push(moments("moments 3 and 4", 4)),
-        _ => {}
-    }
-    // Absorbance and four moments in 32 bits are more than the 32 bytes a pixel that one pass of portable WebGPU writes.
-    let parts: &[(&[&str], &[usize])] = match (count, b.spec.targets()) {
-        (2, _) => &[(&["lower"], &[1, 2])],
-        (4, None | Some(Precision::Full)) => &[(&["lower"], &[1, 2]), (&["upper"], &[3])],
-        _ => &[(&["lower", "upper"], &[1, 2, 3])],
-    };
+    let mut written = vec![1, 2];
+    let mut statistics = vec![];
     let mut features = own_share(own_share_out).to_vec();
-    features.extend((count > 2).then_some("upper"));
-    let reads: Vec<usize> = (1..targets.len()).collect();
+    if count == 3 {
+        written.push(targets.len());
+        targets.push(moments("moment 3", 2));
+        statistics.push("upper");
+        features.push("upper");
+    }
     // `{:?}` prints the shortest text that reads back the same, with a point or an exponent.
     let parameters = format!(
         "const BIAS: f32 = {:?};\nconst OVERESTIMATION: f32 = {:?};\nconst MOMENTS: i32 = {count};\n",
         bias as f32, overestimation as f32
     );
-    let extra = [("parameters", parameters.as_str())];
-    let mut passes: Vec<Gather<'_>> = parts
-        .iter()
-        .map(|&(features, writes)| Gather {
-            label: "moments",
-            shader: "methods::mboit_trig::moments",
-            features,
-            writes,
-            ..Gather::NONE
-        })
-        .collect();
-    passes.push(Gather {
-        shader: "methods::mboit_trig::gather",
-        features: &features,
-        extra: &extra,
-        writes: &[0],
-        reads: &reads,
-        ..Gather::NONE
-    });
     commutative::build(
         b,
         &Plan {
             targets: &targets,
-            tinted_by: Some(passes.len() - 1),
-            passes: &passes,
+            passes: &[
+                Gather {
+                    label: "moments",
+                    shader: "methods::mboit_trig::moments",
+                    features: &statistics,
+                    writes: &written,
+                    ..Gather::NONE
+                },
+                Gather {
+                    shader: "methods::mboit_trig::gather",
+                    features: &features,
+                    extra: &[("parameters", &parameters)],
+                    writes: &[0],
+                    reads: &written,
+                    ..Gather::NONE
+                },
+            ],
+            tinted_by: Some(1),
             resolve: "methods::mboit4::resolve",
             resolve_reads: &[0, 1],
             ..Plan::NONE
