@@ -88,7 +88,7 @@ fn bench(machine: &Path) -> Result<Vec<String>, ReportError> {
         .iter()
         .map(|r| r.method.as_str())
         .collect();
-    let all = MethodSpec::curve().into_iter().map(|m| m.to_string());
+    let all = MethodSpec::compared().into_iter().map(|m| m.to_string());
     Ok(all.filter(|m| !there.contains(m.as_str())).collect())
 }
 

@@ -2,19 +2,32 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_core::fragment::worked_example;
+use peelnet_core::{
+    fragment::{Fragment, worked_example},
+    methods::{mlab, over},
+};
 use peelnet_eval::{
     Row,
     compare::{Event, Plan, compare},
     scaling::{self, Series},
 };
-use peelnet_render::MethodSpec;
+use peelnet_render::{MethodOptions, MethodSpec, Renderer};
 use peelnet_tests::{gpu, walls};
 use std::sync::atomic::AtomicBool;
 
 fn rows(methods: &[MethodSpec], views: usize, done: &[u32]) -> (Vec<Row>, usize) {
+    rows_of(&worked_example(), [0.0; 3], methods, views, done)
+}
+
+fn rows_of(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    methods: &[MethodSpec],
+    views: usize,
+    done: &[u32],
+) -> (Vec<Row>, usize) {
     let gpu = gpu();
-    let mut scene = walls(&worked_example(), [0.0; 3]);
+    let mut scene = walls(fragments, background);
     scene.views = vec![scene.views[0]; views];
     let plan = Plan {
         size: [16, 12],
@@ -44,6 +57,45 @@ fn rows(methods: &[MethodSpec], views: usize, done: &[u32]) -> (Vec<Row>, usize)
     )
     .unwrap();
     (rows, drawn)
+}
+
+/// A method without passes is composited on the CPU, in the order of drawing: its row has the error that follows from the walls, and neither
+/// time nor bytes.
+#[test]
+fn a_method_on_the_cpu_has_an_error_and_no_time() {
+    let wall = |depth, color| Fragment::new(depth, 0.5, color);
+    let (red, green, blue) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let drawn = [wall(1.0, red), wall(3.0, green), wall(2.0, blue)];
+    let c0 = [0.25, 0.5, 0.75];
+    let methods: Vec<MethodSpec> = ["mlab-1", "mlab-4"].map(|m| m.parse().unwrap()).to_vec();
+    let (rows, _) = rows_of(&drawn, c0, &methods, 1, &[]);
+    let exact = over::composite_f64(&drawn, c0);
+    for (nodes, row) in [(1, &rows[1]), (4, &rows[2])] {
+        let twin = mlab::composite(&drawn, c0, nodes);
+        let squares = (0..3).map(|k| (f64::from(twin[k]) - exact[k]).powi(2));
+        let want = squares.sum::<f64>() / 3.0;
+        assert_eq!(row.method, format!("mlab-{nodes}"));
+        // Twice the error of an exact image, 1e-5, times the error itself.
+        let slack = 2e-5 * want.sqrt() + 1e-10;
+        assert!(
+            (row.mse_linear - want).abs() < slack,
+            "{nodes}: {} for {want}",
+            row.mse_linear
+        );
+        assert_eq!((row.time_ms, row.wall_ms, row.passes), (None, None, 0));
+        assert_eq!((row.bytes_per_pixel, row.time_by_pass.as_str()), (None, ""));
+        assert_eq!(row.flip.is_some(), rows[0].flip.is_some());
+    }
+    assert!(rows[1].mse_linear > 1e-3 && rows[2].mse_linear < 1e-10);
+    // Such a method cannot be drawn, and says why.
+    let scene = walls(&drawn, c0);
+    let renderer = Renderer::new(&gpu(), &scene).unwrap();
+    let refused = renderer.method(&methods[0], MethodOptions::sized([4, 4]));
+    let refused = refused.map(drop).unwrap_err().to_string();
+    assert!(
+        refused.contains("mlab-1") && refused.contains("ordered access"),
+        "{refused}"
+    );
 }
 
 /// Views that are done are not drawn again; the others have the rows that they would have had.

@@ -88,7 +88,8 @@ fn draw(
 
 /// Every method ready for a scene, the learned ones with their shipped networks.
 fn methods(renderer: &Renderer, size: [u32; 2]) -> Vec<(MethodSpec, Prepared)> {
-    let all = METHODS.iter().map(MethodSpec::representative);
+    let all = METHODS.iter().filter(|m| m.cpu_only.is_none());
+    let all = all.map(MethodSpec::representative);
     all.map(|spec| {
         let network = network_of(&spec).map(|(text, _)| text);
         let options = MethodOptions::sized(size).with(network.as_ref());

@@ -35,7 +35,7 @@ fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
         wall_ms: None,
         time_by_pass: format!("gather={ms}"),
         passes: 2,
-        bytes_per_pixel: 24.0,
+        bytes_per_pixel: Some(24.0),
         adapter: "test".to_owned(),
     }
 }

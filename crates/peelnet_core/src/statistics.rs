@@ -4,6 +4,9 @@
 //! farthest ζ with their opacities. What the networks read of them is in [`features`](crate::features). The shader twin is
 //! `learned/anchored.wgsl`, part of every exported text.
 //!
+//! A fragment's own share is taken out before it asks what lies in front of it, as in the write-up of wavelet transparency by Osorio
+//! López (osor.io/OIT) and in Flywheel's shaders (`signal_corrected_transmittance`).
+//!
 //! Written once for 32 and 64 bits: shaders compute in 32, training and tests in 64.
 
 use crate::absorbance::ABSORBANCE_MAX;

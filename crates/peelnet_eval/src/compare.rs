@@ -1,6 +1,6 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
-use crate::transmittance::{Sample, Stacks};
+use crate::transmittance::Sample;
 use crate::{EvalError, Row, metrics, perceptual::Displayed, settings_hash};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
@@ -145,8 +145,7 @@ pub fn compare(
     let mut entries = stage.prepare(notify)?;
     let mut sample = Sample::new(gpu, scene, plan.size)?;
     for view in left {
-        let stacks = sample.peel(view)?;
-        let mut rows = stage.draw(view, &mut entries, &stacks, notify)?;
+        let mut rows = stage.draw(view, &mut entries, &mut sample, notify)?;
         stage.time(view, &mut entries, &mut rows, notify)?;
         notify(Event::View(rows))?;
     }
@@ -158,7 +157,8 @@ struct Entry<'a> {
     name: String,
     method: MethodSpec,
     model: Option<&'a Model>,
-    prepared: Prepared,
+    /// None of a method that is composited on the CPU.
+    prepared: Option<Prepared>,
 }
 
 /// A scene that methods are compared on.
@@ -197,23 +197,30 @@ impl<'a> Stage<'a> {
                 .learned
                 .iter()
                 .find(|l| l.recipe.method == method.name());
+            let models = plan.models.iter();
+            let mut models = models.filter(|m| m.meta.recipe.method == method.name());
+            let mut entry = Entry {
+                name,
+                method: method.clone(),
+                model: models.next(),
+                prepared: None,
+            };
+            if method.method().cpu_only.is_some() {
+                entries.push(entry);
+                continue;
+            }
             let prepared = match self
                 .renderer
                 .method(method, MethodOptions::sized(plan.size).with(learned))
             {
                 Err(e) if plan.lenient && is_too_large(&e) && !entries.is_empty() => {
-                    notify(Event::LeftOut(&name, e.to_string()))?;
+                    notify(Event::LeftOut(&entry.name, e.to_string()))?;
                     continue;
                 }
-                prepared => prepared.map_err(self.failed(&name))?,
+                prepared => prepared.map_err(self.failed(&entry.name))?,
             };
-            let mut models = plan.models.iter();
-            entries.push(Entry {
-                name,
-                method: method.clone(),
-                model: models.find(|m| m.meta.recipe.method == method.name()),
-                prepared,
-            });
+            entry.prepared = Some(prepared);
+            entries.push(entry);
         }
         Ok(entries)
     }
@@ -223,16 +230,23 @@ impl<'a> Stage<'a> {
         &self,
         view: usize,
         entries: &mut Vec<Entry<'a>>,
-        stacks: &Stacks,
+        sample: &mut Sample<'_>,
         notify: &mut dyn FnMut(Event<'_>) -> Result<(), EvalError>,
     ) -> Result<Vec<Row>, EvalError> {
         let camera = &self.scene.views[view];
+        let stacks = sample.peel(view)?;
         let mut exact: Option<(Image, Displayed)> = None;
         let mut rows: Vec<Row> = Vec::new();
         while let Some(entry) = entries.get_mut(rows.len()) {
             self.check_stop()?;
             let name = &entry.name;
-            let frame = match self.renderer.image(&mut entry.prepared, camera) {
+            let drawn = if let Some(prepared) = &mut entry.prepared {
+                self.renderer.image(prepared, camera)
+            } else {
+                let (image, _) = exact.as_ref().expect("the exact method has passes");
+                Ok(sample.composite(view, &entry.method, image)?)
+            };
+            let frame = match drawn {
                 Err(e) if self.plan.lenient && is_too_large(&e) && !rows.is_empty() => {
                     notify(Event::LeftOut(name, e.to_string()))?;
                     entries.remove(rows.len());
@@ -282,7 +296,10 @@ impl<'a> Stage<'a> {
         for number in 0..=self.plan.frames {
             for (entry, frames) in entries.iter_mut().zip(&mut frames) {
                 self.check_stop()?;
-                let timed = self.renderer.profile(&mut entry.prepared, camera);
+                let Some(prepared) = &mut entry.prepared else {
+                    continue;
+                };
+                let timed = self.renderer.profile(prepared, camera);
                 let timed = timed.map_err(self.failed(&entry.name))?;
                 // The first is the warm-up: until then the method drew images.
                 if number > 0 {
@@ -292,7 +309,10 @@ impl<'a> Stage<'a> {
             }
         }
         for (row, frames) in rows.iter_mut().zip(&frames) {
-            put_times(row, frames);
+            // Of what is composited on the CPU there are none.
+            if !frames.is_empty() {
+                put_times(row, frames);
+            }
         }
         Ok(())
     }
@@ -327,7 +347,7 @@ fn put_times(row: &mut Row, frames: &[Profile]) {
     row.time_by_pass = medians_by_pass(&passes);
     if let Some(Profile { stats, .. }) = frames.first() {
         row.passes = stats.geometry_passes + stats.fullscreen_passes;
-        row.bytes_per_pixel = stats.bytes_per_pixel;
+        row.bytes_per_pixel = Some(stats.bytes_per_pixel);
     }
 }
 
@@ -376,6 +396,8 @@ fn row(
     frame: &Frame,
     d: metrics::Differences,
 ) -> Row {
+    // A method on the CPU has no passes, and no times of its own.
+    let drawn = frame.stats.fullscreen_passes + frame.stats.geometry_passes > 0;
     Row {
         method: method.to_owned(),
         scene: scene.name.clone(),
@@ -401,10 +423,10 @@ fn row(
         time_ms: milliseconds(of_method(&frame.times)),
         time_ms_min: None,
         time_ms_p90: None,
-        wall_ms: Some(frame.wall_micros / 1e3),
+        wall_ms: drawn.then_some(frame.wall_micros / 1e3),
         time_by_pass: medians_by_pass(&[of_method(&frame.times)]),
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
-        bytes_per_pixel: frame.stats.bytes_per_pixel,
+        bytes_per_pixel: drawn.then_some(frame.stats.bytes_per_pixel),
         adapter: gpu.info.name.clone(),
     }
 }

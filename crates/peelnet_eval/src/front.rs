@@ -1,7 +1,7 @@
 //! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
 use crate::{Row, geometric_mean, ratios::Bytes};
-use peelnet_render::Role;
+use peelnet_render::{MethodSpec, Role};
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting.
 pub const BASE: &str = Role::HardwareBlending.method();
@@ -52,6 +52,22 @@ impl Point {
     }
 }
 
+/// Methods of which only errors are known, because they were composited on the CPU, each with the reason.
+pub fn untimed(rows: &[Row]) -> Vec<(&str, &'static str)> {
+    let mut found: Vec<(&str, &str)> = Vec::new();
+    for row in rows {
+        let method = row.method.as_str();
+        let reason = |spec: MethodSpec| spec.method().cpu_only;
+        // Rows of an older version may have names that are no longer there.
+        if let Some(why) = method.parse().ok().and_then(reason)
+            && !found.iter().any(|(m, _)| *m == method)
+        {
+            found.push((method, why));
+        }
+    }
+    found
+}
+
 /// The points of all rows, or of one scene's, by time; times are always geometric means. Methods without a time are left out.
 pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
     let rows: Vec<&Row> = rows
@@ -89,7 +105,7 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
                 },
                 time: time_ms / base,
                 time_ms,
-                bytes: Bytes::of(of(method)),
+                bytes: Bytes::of(of(method)).unwrap_or_default(),
                 on_front: false,
                 time_at_equal_error: 1.0,
                 error_at_equal_time: 1.0,
@@ -231,5 +247,9 @@ mod tests {
         // A method that was not timed everywhere has no mean.
         assert_eq!(points(&all, None, Mean::Geometric).len(), 1);
         assert!(points(&[], None, Mean::Geometric).is_empty());
+        // That there is no time is no reason by itself.
+        all.push(row("a", 0, "mlab-4", 1.0));
+        let untimed = untimed(&all);
+        assert!(untimed.len() == 1 && untimed[0].0 == "mlab-4" && untimed[0].1.contains("order"));
     }
 }

@@ -28,8 +28,8 @@ pub struct Ratios {
     pub time_to_moments: Option<f64>,
     /// The same to [`WEIGHTED`]'s.
     pub time_to_weighted: Option<f64>,
-    /// Bytes a pixel over scenes and views.
-    pub bytes_per_pixel: Bytes,
+    /// Bytes a pixel over scenes and views; `None` where none are known.
+    pub bytes_per_pixel: Option<Bytes>,
     /// Pixels that are not finite, in all views.
     pub non_finite_pixels: u64,
 }
@@ -46,18 +46,16 @@ pub struct Bytes {
 }
 
 impl Bytes {
-    /// Over these rows; zeros of none.
-    pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Self {
-        let mut all: Vec<f64> = rows.into_iter().map(|r| r.bytes_per_pixel).collect();
+    /// Over the rows that know them; `None` where none does.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Option<Self> {
+        let mut all: Vec<f64> = rows.into_iter().filter_map(|r| r.bytes_per_pixel).collect();
         all.sort_by(f64::total_cmp);
-        let Some(most) = all.last().copied() else {
-            return Self::default();
-        };
-        Self {
+        let most = all.last().copied()?;
+        Some(Self {
             mean: all.iter().sum::<f64>() / all.len() as f64,
             median: all[(all.len() - 1) / 2],
             most,
-        }
+        })
     }
 
     /// Whether every view takes the same.
@@ -125,13 +123,13 @@ mod tests {
     #[test]
     fn bytes_over_views_have_a_mean_a_median_and_a_largest() {
         let rows = [5.0, 1.0, 3.0, 7.0].map(|bytes| Row {
-            bytes_per_pixel: bytes,
+            bytes_per_pixel: Some(bytes),
             ..row("a", 0, "x", 0.0)
         });
-        let bytes = Bytes::of(&rows);
+        let bytes = Bytes::of(&rows).expect("rows");
         assert_eq!((bytes.mean, bytes.median, bytes.most), (4.0, 3.0, 7.0));
         assert!(!bytes.is_one());
-        assert_eq!(Bytes::of(&[]), Bytes::default());
+        assert_eq!(Bytes::of(&[]), None);
     }
 
     /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.
@@ -148,7 +146,7 @@ mod tests {
         }
         let all = ratios(&rows);
         let x = &all[2];
-        assert!(x.bytes_per_pixel.is_one());
+        assert!(x.bytes_per_pixel.is_some_and(|b| b.is_one()));
         let close = |a: Option<f64>, b: f64| (a.expect("measured") - b).abs() < 1e-12;
         assert!(close(x.to_moments, 0.5) && close(x.to_weighted, 0.125));
         assert_eq!(x.worst, Some(("b".to_owned(), 1.0)));

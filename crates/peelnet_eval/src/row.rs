@@ -67,11 +67,11 @@ pub struct Row {
     /// adapter has no timestamps.
     #[serde(default)]
     pub time_by_pass: String,
-    /// Geometry and full-screen passes.
+    /// Geometry and full-screen passes; 0 of a method that was composited on the CPU.
     pub passes: u32,
-    /// Bytes of the method's own targets and storage, per pixel.
-    pub bytes_per_pixel: f64,
-    /// The adapter that drew it.
+    /// Bytes of the method's own targets and storage, per pixel; `null` of a method that was composited on the CPU, as its times are.
+    pub bytes_per_pixel: Option<f64>,
+    /// The adapter that drew it, or the exact image that it is compared with.
     pub adapter: String,
 }
 
@@ -87,7 +87,7 @@ pub(crate) mod tests {
             view,
             mse_linear: mse255 / 65025.0,
             mse255,
-            bytes_per_pixel: 10.0,
+            bytes_per_pixel: Some(10.0),
             ..Row::default()
         }
     }

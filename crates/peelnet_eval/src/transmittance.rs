@@ -4,11 +4,13 @@
 //! without that of its targets; only the learned methods' sums are rounded as the method rounds them.
 
 use crate::EvalError;
-use peelnet_core::{absorbance::DepthWarp, hash::sample_threshold};
+use peelnet_core::{
+    absorbance::DepthWarp, fragment::Fragment, hash::sample_threshold, methods::over,
+};
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::{MethodSpec, PixelSample};
+use peelnet_render::{Frame, FrameStats, Image, MethodSpec, PixelSample, methods::Pixel};
 use peelnet_scene::Scene;
 
 /// The share of pixels that is sampled.
@@ -68,6 +70,67 @@ impl<'a> Sample<'a> {
         Ok(Stacks {
             pixels,
             warp: self.harvester.depth_warp(camera),
+        })
+    }
+}
+
+impl Sample<'_> {
+    /// The image of a method that is composited on the CPU, from all fragments of a view in the order of drawing. `exact` is the
+    /// view's exact image: what it holds beside its fragments is `T_∞ C_0`.
+    ///
+    /// # Errors
+    /// If the view cannot be drawn.
+    pub fn composite(
+        &mut self,
+        view: usize,
+        method: &MethodSpec,
+        exact: &Image,
+    ) -> Result<Frame, EvalError> {
+        let camera = &self.scene.views[view];
+        let warp = self.harvester.depth_warp(camera);
+        let mut image = exact.clone();
+        let mut take = |tile: RawTile| {
+            for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
+                let run = run[0] as usize..run[1] as usize;
+                let mut fragments: Vec<Fragment> = run
+                    .map(|i| Fragment {
+                        triangle: tile.triangles[i],
+                        ..Fragment::new(
+                            tile.depths[i],
+                            tile.colors[i][3],
+                            [tile.colors[i][0], tile.colors[i][1], tile.colors[i][2]],
+                        )
+                    })
+                    .collect();
+                let own = over::composite_f64(&fragments, [0.0; 3]);
+                // Triangles are drawn by their numbers.
+                fragments.sort_by_key(|f| f.triangle);
+                let position = [pixel % image.width, pixel / image.width];
+                let twin = method.twin(&Pixel {
+                    fragments: &fragments,
+                    background: [0.0; 3],
+                    warp,
+                    position,
+                    model: None,
+                });
+                let shown = &mut image.pixels[pixel as usize];
+                for (k, twin) in twin.unwrap_or_default().into_iter().enumerate() {
+                    shown[k] = (f64::from(shown[k]) - own[k] + f64::from(twin)) as f32;
+                }
+            }
+            Ok(())
+        };
+        self.harvester.keep_triangles(true);
+        let harvested =
+            self.harvester
+                .harvest(camera, PixelSample::ALL, None, RawTile::default, &mut take);
+        self.harvester.keep_triangles(false);
+        harvested.map_err(EvalError::peel(&self.scene.name))?;
+        Ok(Frame {
+            image,
+            times: Vec::new(),
+            stats: FrameStats::default(),
+            wall_micros: 0.0,
         })
     }
 }

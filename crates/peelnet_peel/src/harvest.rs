@@ -88,6 +88,7 @@ pub struct Harvester {
     peeler: Peeler,
     collector: Option<Collector>,
     step: wgpu::Buffer,
+    with_triangles: bool,
 }
 
 /// What was found in one view.
@@ -136,11 +137,17 @@ impl Harvester {
             sbuffer: SBuffer::new(gpu, &scene, &frame, budget, features)?,
             step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
             collector: None,
+            with_triangles: false,
             gpu: gpu.clone(),
             scene,
             frame,
             peeler,
         })
+    }
+
+    /// Whether tiles hold the triangles of their fragments, which [`Peel::SBuffer`] alone keeps.
+    pub const fn keep_triangles(&mut self, keep: bool) {
+        self.with_triangles = keep && matches!(self.peeler, Peeler::SBuffer);
     }
 
     /// The warp that methods take a view's depths through.
@@ -309,6 +316,9 @@ impl Harvester {
         if let Some(storage) = self.sbuffer.storage() {
             gpu.read_into(&storage.depths, 0..fragments * 4, &mut raw.depths)?;
             gpu.read_into(&storage.colors, 0..fragments * 16, &mut raw.colors)?;
+            if self.with_triangles {
+                gpu.read_into(&storage.triangles, 0..fragments * 4, &mut raw.triangles)?;
+            }
         }
         Ok(())
     }

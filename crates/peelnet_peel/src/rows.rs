@@ -13,6 +13,9 @@ pub struct RawTile {
     pub depths: Vec<f32>,
     /// Un-premultiplied linear radiance and alpha.
     pub colors: Vec<[f32; 4]>,
+    /// Indices in the scene's list of triangles, which is the order of drawing; empty unless asked for, see
+    /// [`Harvester::keep_triangles`](crate::harvest::Harvester::keep_triangles).
+    pub triangles: Vec<u32>,
 }
 
 /// What is the same for all rows of a view.

@@ -32,6 +32,14 @@ pub enum RenderError {
     /// A learned method without its network.
     #[error("method {0} draws with a trained network, and none was given")]
     NeedsModel(String),
+    /// A method that has no passes.
+    #[error("{method} cannot be drawn: {why}; bench measures its error")]
+    CpuOnly {
+        /// The method.
+        method: String,
+        /// What is missing.
+        why: &'static str,
+    },
     /// Coloured transmission, and a method that keeps one transmittance for all channels.
     #[error(
         "{method} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of \

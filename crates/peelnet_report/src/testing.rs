@@ -33,7 +33,7 @@ pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
         psnr: metrics::psnr(mse255),
         covered_pixels: 4,
         passes: 1,
-        bytes_per_pixel: 10.0,
+        bytes_per_pixel: Some(10.0),
         adapter: "test".to_owned(),
         ..Row::default()
     }

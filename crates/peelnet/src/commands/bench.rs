@@ -125,7 +125,7 @@ pub(super) fn measure(
         &gpu,
         &args.methods,
         &args.models,
-        MethodSpec::curve,
+        MethodSpec::compared,
     )?;
     // What times are ratios to.
     let base: MethodSpec = BASE.parse()?;

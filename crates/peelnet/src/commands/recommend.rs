@@ -5,7 +5,7 @@ use crate::cli::{BenchArgs, RecommendArgs};
 use crate::failure::Failure;
 use crate::parse::{MethodList, ViewCount};
 use peelnet_eval::{
-    front::{Mean, Point, points},
+    front::{Mean, Point, points, untimed},
     recommend::Budget,
 };
 use serde_json::json;
@@ -54,6 +54,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         bytes: args.max_bytes,
     };
     let chosen = budget.choose(&points).map_err(Failure::Failed)?;
+    let untimed = untimed(&results.measured.rows);
     let line = |p: &Point| {
         format!(
             "{}: {:.2} ms ({:.2} x hardware blending), {}, {:.0} bytes a pixel",
@@ -74,6 +75,9 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             if let Some(next) = chosen.runner_up {
                 text.push_str(&format!("runner-up\n  {}\n", line(next)));
             }
+            for (method, why) in &untimed {
+                text.push_str(&format!("{method} is not among them: {why}\n"));
+            }
             text.push_str(&format!("measured on {} with {from}\n", results.machine.adapter));
             text
         },
@@ -86,6 +90,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 "best": point(chosen.best),
                 "runner_up": chosen.runner_up.map(point),
                 "why": chosen.why,
+                "without_time": untimed.iter().map(|(method, why)| json!({"method": method, "why": why})).collect::<Vec<_>>(),
                 "adapter": results.machine.adapter,
             })
         },

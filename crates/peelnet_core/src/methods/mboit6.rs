@@ -4,6 +4,7 @@
 use super::{
     deep,
     mboit4::{PowerMoments, Settings},
+    roots,
 };
 use crate::{
     absorbance::{DepthWarp, absorbance},
@@ -58,32 +59,12 @@ fn share_bounds(moments: [f64; 6], bias: f64, zeta: f64) -> (f64, f64) {
     let c2 = y[1] / d3 - l43 * c3;
     let c1 = y[0] / d2 - l32 * c2 - l42 * c3;
     let c0 = 1.0 - m[0] * c1 - m[1] * c2 - m[2] * c3;
-    let low = cubic_roots([c0, c1, c2, c3])
+    let low = roots::cubic([c0, c1, c2, c3])
         .into_iter()
         .filter(|&t| t < zeta)
         .map(mass)
         .sum();
     (low, low + mass(zeta))
-}
-
-/// The three real roots of `c0 + c1 t + c2 t² + c3 t³`, by cosines (Viète); at most ±1e4, where a point holds nothing.
-fn cubic_roots([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
-    // The polynomial of 1/t, where that keeps the roots finite.
-    let reversed = c0.abs() > c3.abs();
-    let [a, b, c] = if reversed {
-        [c1 / c0, c2 / c0, c3 / c0]
-    } else {
-        [c2 / c3, c1 / c3, c0 / c3]
-    };
-    let q = (a * a / 9.0 - b / 3.0).max(1e-30);
-    let r = (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0;
-    let angle = (r / (q * q.sqrt())).clamp(-1.0, 1.0).acos() / 3.0;
-    let third = std::f64::consts::TAU / 3.0;
-    [0.0, third, -third].map(|turn| {
-        let root = -2.0 * q.sqrt() * (angle + turn).cos() - a / 3.0;
-        let root = if reversed { root.recip() } else { root };
-        root.clamp(-1e4, 1e4)
-    })
 }
 
 /// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
@@ -180,22 +161,5 @@ mod tests {
             }
         }
         assert!(errors[0] < errors[1], "{errors:?}");
-    }
-
-    #[test]
-    fn roots_of_cubics() {
-        // (t − 1)(t + 2)(t − 0.5), and two roots with one at infinity.
-        for (c, want) in [
-            ([1.0, -2.5, 0.5, 1.0], vec![-2.0, 0.5, 1.0]),
-            ([-2.0, 1.0, 1.0, 0.0], vec![-2.0, 1.0]),
-        ] {
-            let roots = cubic_roots(c);
-            for w in want {
-                assert!(
-                    roots.iter().any(|r: &f64| (r - w).abs() < 1e-6),
-                    "{roots:?} {w}"
-                );
-            }
-        }
     }
 }

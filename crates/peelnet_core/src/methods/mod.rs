@@ -3,21 +3,31 @@
 //! The commutative methods take fragments in any order; [`over`] sorts first. `background` is `C_0`, linear RGB.
 
 pub mod anchored;
+pub mod bins;
 pub mod blended;
 pub mod deep;
 pub mod dfaoit;
 pub mod kbuffer;
 pub mod mboit4;
 pub mod mboit6;
+pub mod mboit8;
+pub mod mboit_trig;
+pub mod mlab;
 pub mod nmt;
 pub mod over;
+pub mod range;
+mod roots;
 pub mod stochastic;
 pub mod wavelet;
 pub mod wboit;
 pub mod weighted_average;
 pub mod weighted_sum;
 
-use crate::absorbance::{DepthWarp, absorbance};
+use crate::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::Fragment,
+    guards::WEIGHT_FLOOR,
+};
 
 /// Asks the sums over a pixel's fragments, given as (linear depth, α), for the transmittance in front of each: with the
 /// fragment's own absorbance in the sums or taken out of them.
@@ -47,10 +57,25 @@ fn transmittances<S: Copy>(
         .collect()
 }
 
+/// Eq 6's composite with estimates of the transmittance as weights, which `transmittances` gives of fragments as (linear depth, α).
+fn composite_by(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    transmittances: impl FnOnce(&[(f32, f32)]) -> Vec<f64>,
+) -> [f32; 3] {
+    let points: Vec<_> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
+    let mut weights = transmittances(&points).into_iter();
+    deep::composite(fragments, background, |_| {
+        // One estimate a fragment.
+        let t = weights.next().unwrap_or_default();
+        t.max(WEIGHT_FLOOR.into()) as f32
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragment::{Fragment, worked_example};
+    use crate::fragment::worked_example;
     use crate::weights::Weight;
 
     const C0: [f32; 3] = [0.1, 0.2, 0.9];

@@ -22,6 +22,7 @@ const WEIGHT: Word = Word {
 };
 
 const K: Option<Numbered> = Some(Numbered {
+    least: 1,
     most: 64,
     power_of_two: false,
 });

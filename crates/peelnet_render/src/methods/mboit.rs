@@ -1,4 +1,4 @@
-//! `mboit4` and `mboit6`: moment-based transparency with four and six power moments (Münstermann et al. 2018).
+//! `mboit4`, `mboit6` and `mboit8`: moment-based transparency with four, six and eight power moments (Münstermann et al. 2018).
 
 use super::{
     commutative::{self, Blend, Gather, Plan, Target},
@@ -10,15 +10,15 @@ use super::{
 };
 use crate::{
     error::RenderError,
-    flaw::{Flaw, Property, half_statistics},
+    flaw::{Flaw, Property, half_statistics, half_sums},
 };
 use peelnet_core::methods::{
     mboit4::{self, Settings},
-    mboit6,
+    mboit6, mboit8,
 };
 use std::ops::Bound;
 
-const OVERESTIMATION: Number = Number {
+pub(super) const OVERESTIMATION: Number = Number {
     name: "overestimation",
     about: "0.25 by default",
     default: Settings::PAPER.overestimation,
@@ -43,18 +43,26 @@ const BIAS_6: Number = Number {
     most: 1.0,
 };
 
-const OWN: Word = Word {
+const BIAS_8: Number = Number {
+    name: "bias",
+    about: "5e-5 by default, 2.5e-3 with 16-bit moments",
+    default: mboit8::PAPER.bias,
+    least: Bound::Included(0.0),
+    most: 1.0,
+};
+
+pub(super) const OWN: Word = Word {
     name: "own",
     about: "in (default, as published) or out: a fragment's own absorbance",
     words: &["in", "out"],
 };
 
-fn own_out(spec: &MethodSpec) -> bool {
+pub(super) fn own_out(spec: &MethodSpec) -> bool {
     OWN.of(spec) == "out"
 }
 
 /// The bias that was given, or the paper's for the moments' precision.
-fn bias(spec: &MethodSpec, bias: Number, half: f64) -> f64 {
+pub(super) fn bias(spec: &MethodSpec, bias: Number, half: f64) -> f64 {
     let paper = if half_statistics(spec) {
         half
     } else {
@@ -63,7 +71,7 @@ fn bias(spec: &MethodSpec, bias: Number, half: f64) -> f64 {
     bias.given(spec).unwrap_or(paper)
 }
 
-fn settings(spec: &MethodSpec, bias: f64) -> Settings {
+pub(super) fn settings(spec: &MethodSpec, bias: f64) -> Settings {
     Settings {
         overestimation: OVERESTIMATION.of(spec),
         bias,
@@ -79,7 +87,11 @@ fn settings_6(spec: &MethodSpec) -> Settings {
     settings(spec, bias(spec, BIAS_6, 6e-4))
 }
 
-const fn promises(root: u32) -> Promises {
+fn settings_8(spec: &MethodSpec) -> Settings {
+    settings(spec, bias(spec, BIAS_8, mboit8::BIAS_HALF))
+}
+
+pub(super) const fn promises(root: u32) -> Promises {
     Promises {
         tinted: true,
         statistics: Precision::Full,
@@ -88,14 +100,14 @@ const fn promises(root: u32) -> Promises {
     }
 }
 
-const OWN_SHARE: Flaw = Flaw::new(
+pub(super) const OWN_SHARE: Flaw = Flaw::new(
     Property::Transmittance,
     &["isolated", "two-layers", "coplanar"],
     "a fragment's own absorbance counts for a quarter, as published (Münstermann et al. 2018); own=out leaves it out",
 )
 .when(|s| !own_out(s));
 
-const BLURRED: Flaw = Flaw::new(
+pub(super) const BLURRED: Flaw = Flaw::new(
     Property::Opaque,
     &["alpha-near-one"],
     "moments blur what lies close together (Münstermann et al. 2018)",
@@ -178,7 +190,37 @@ pub(super) const SIX: Method = Method {
     ..Method::new("mboit6", "Münstermann et al. 2018, six power moments", six)
 };
 
-const fn moments(label: &'static str, channels: u32) -> Target {
+pub(super) const EIGHT: Method = Method {
+    parameters: &[
+        MOMENT_TARGETS,
+        Parameter::Number(OVERESTIMATION),
+        Parameter::Number(BIAS_8),
+        Parameter::Word(OWN),
+    ],
+    promises: |_| promises(4),
+    curve: &["", ":own=out"],
+    twin: Some(|s, p| {
+        let (fragments, c0) = (p.fragments, p.background);
+        Some(mboit8::composite(fragments, c0, &p.warp, &settings_8(s)))
+    }),
+    transmittances: Some(|s, fragments, warp, _| {
+        Some(mboit8::transmittances(fragments, warp, &settings_8(s)))
+    }),
+    flaws: &[
+        Flaw::swallowed(&["deep"]),
+        Flaw::swallowed(&["near-overflow"]).when(|s| own_out(s) && half_sums(s)),
+        BLURRED.when(half_statistics).seen_on_llvmpipe(),
+        jumping(&["passing", "moving-camera"]),
+        OWN_SHARE,
+    ],
+    ..Method::new(
+        "mboit8",
+        "Münstermann et al. 2018, eight power moments, in two passes",
+        eight,
+    )
+};
+
+pub(super) const fn moments(label: &'static str, channels: u32) -> Target {
     Target {
         label,
         channels,
@@ -187,10 +229,12 @@ const fn moments(label: &'static str, channels: u32) -> Target {
     }
 }
 
-/// What four and six moments differ in.
+/// What numbers of moments differ in.
 struct Order {
     targets: &'static [Target],
     moments: &'static str,
+    /// Passes that sum moments: the shader's features, and the targets that it writes.
+    parts: &'static [(&'static [&'static str], &'static [usize])],
     gather: &'static str,
     /// The targets that hold moments.
     reads: &'static [usize],
@@ -199,6 +243,7 @@ struct Order {
 const FOUR_MOMENTS: Order = Order {
     targets: &[SUMS, moments("absorbance", 1), moments("moments", 4)],
     moments: "methods::mboit4::moments",
+    parts: &[(&[], &[1, 2])],
     gather: "methods::mboit4::gather",
     reads: &[1, 2],
 };
@@ -211,7 +256,21 @@ const SIX_MOMENTS: Order = Order {
         moments("moments 5 and 6", 2),
     ],
     moments: "methods::mboit6::moments",
+    parts: &[(&[], &[1, 2, 3])],
     gather: "methods::mboit6::gather",
+    reads: &[1, 2, 3],
+};
+
+const EIGHT_MOMENTS: Order = Order {
+    targets: &[
+        SUMS,
+        moments("absorbance", 1),
+        moments("moments 1 to 4", 4),
+        moments("moments 5 to 8", 4),
+    ],
+    moments: "methods::mboit8::moments",
+    parts: &[(&["lower"], &[1, 2]), (&["upper"], &[3])],
+    gather: "methods::mboit8::gather",
     reads: &[1, 2, 3],
 };
 
@@ -221,6 +280,10 @@ fn four(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
 
 fn six(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     build(b, &SIX_MOMENTS, &settings_6(b.spec))
+}
+
+fn eight(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    build(b, &EIGHT_MOMENTS, &settings_8(b.spec))
 }
 
 fn build(
@@ -233,29 +296,31 @@ fn build(
     // `{:?}` prints the shortest text that reads back the same, with a point or an exponent.
     let parameters =
         format!("const BIAS: f32 = {bias:?};\nconst OVERESTIMATION: f32 = {overestimation:?};\n");
+    let sums = order.parts.iter().map(|&(features, writes)| Gather {
+        label: "moments",
+        shader: order.moments,
+        features,
+        writes,
+        ..Gather::NONE
+    });
+    let mut passes: Vec<Gather<'_>> = sums.collect();
+    let extra = [("parameters", parameters.as_str())];
+    passes.push(Gather {
+        shader: order.gather,
+        features,
+        extra: &extra,
+        writes: &[0],
+        reads: order.reads,
+        ..Gather::NONE
+    });
     commutative::build(
         b,
         &Plan {
             targets: order.targets,
-            passes: &[
-                Gather {
-                    label: "moments",
-                    shader: order.moments,
-                    writes: order.reads,
-                    ..Gather::NONE
-                },
-                Gather {
-                    shader: order.gather,
-                    features,
-                    extra: &[("parameters", &parameters)],
-                    writes: &[0],
-                    reads: order.reads,
-                    ..Gather::NONE
-                },
-            ],
+            tinted_by: Some(passes.len() - 1),
+            passes: &passes,
             resolve: "methods::mboit4::resolve",
             resolve_reads: &[0, 1],
-            tinted_by: Some(1),
             ..Plan::NONE
         },
     )

@@ -25,6 +25,9 @@ pub struct Method {
     pub parameters: &'static [Parameter],
     /// Whether it draws with a trained network.
     pub learned: bool,
+    /// Why only its CPU twin exists, for a method that needs what portable WebGPU lacks: its error is known, but no time and no bytes.
+    /// The twin's colour is what it adds to `T_∞ C_0`.
+    pub cpu_only: Option<&'static str>,
     /// What it promises, before a choice of targets or a lower resolution; see [`MethodSpec::promises`].
     pub promises: fn(&MethodSpec) -> Promises,
     /// What a benchmark of all methods draws: endings of its name, the default first.
@@ -68,7 +71,9 @@ pub struct Pixel<'a> {
 /// The number at the end of a method's name.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbered {
-    /// The largest; the smallest is 1.
+    /// The smallest.
+    pub least: u32,
+    /// The largest.
     pub most: u32,
     /// Whether it must be a power of two.
     pub power_of_two: bool,
@@ -166,9 +171,9 @@ impl Role {
 impl Numbered {
     /// Reads the number behind `name`.
     pub(super) fn parse(self, name: &str, text: &str) -> Result<u32, String> {
-        let most = self.most;
+        let Self { least, most, .. } = self;
         match text.parse::<u32>() {
-            Ok(n) if n == 0 || n > most => {}
+            Ok(n) if !(least..=most).contains(&n) => {}
             Ok(n) if self.power_of_two && !n.is_power_of_two() => {
                 let above = n.next_power_of_two();
                 return Err(format!(
@@ -180,7 +185,7 @@ impl Numbered {
             Err(_) => {}
         }
         Err(format!(
-            "the number behind '{name}-' must be 1 to {most}, not '{text}'"
+            "the number behind '{name}-' must be {least} to {most}, not '{text}'"
         ))
     }
 }
@@ -204,6 +209,7 @@ impl Method {
             numbered: None,
             parameters: &[],
             learned: false,
+            cpu_only: None,
             promises: |_| Promises::NORMALISED,
             curve: &[""],
             roles: &[],

@@ -5,6 +5,7 @@
 
 pub mod abuffer;
 mod anchored;
+mod bins;
 mod blended;
 mod commutative;
 pub(crate) mod compositor;
@@ -18,11 +19,14 @@ mod learned;
 mod linked_list;
 mod low_resolution;
 mod mboit;
+mod mboit_trig;
 pub(crate) mod method;
+mod mlab;
 mod nmt;
 mod painter;
 pub(crate) mod parameter;
 mod peeling;
+mod range;
 pub(crate) mod spec;
 mod stochastic;
 mod wavelet;
@@ -59,9 +63,13 @@ pub const METHODS: &[Method] = &[
     wboit::INVERSE_POWER,
     mboit::FOUR,
     mboit::SIX,
+    mboit::EIGHT,
+    mboit_trig::METHOD,
     wavelet::METHOD,
+    bins::METHOD,
     kbuffer::PLAIN,
     kbuffer::HYBRID,
+    mlab::METHOD,
     stochastic::METHOD,
     deep_thesis::METHOD,
     nmt::METHOD,
@@ -72,17 +80,23 @@ pub const METHODS: &[Method] = &[
 ];
 
 impl MethodSpec {
-    /// Every method that draws without a model, with its default parameters.
+    /// Every method that draws on the GPU without a model, with its default parameters.
     pub fn all() -> Vec<Self> {
         METHODS
             .iter()
-            .filter(|m| !m.learned)
+            .filter(|m| !m.learned && m.cpu_only.is_none())
             .filter_map(|m| Self::points(m).next())
             .collect()
     }
 
-    /// Every method with the parameters that belong to its curve of error against time.
+    /// Every method that draws on the GPU, with the parameters that belong to its curve of error against time.
     pub fn curve() -> Vec<Self> {
+        let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+        drawn.flat_map(Self::points).collect()
+    }
+
+    /// What a comparison of all methods measures: [`MethodSpec::curve`], and the methods of which only the error can be known.
+    pub fn compared() -> Vec<Self> {
         METHODS.iter().flat_map(Self::points).collect()
     }
 

@@ -16,6 +16,7 @@ use peelnet_core::methods::stochastic;
 
 pub(super) const METHOD: Method = Method {
     numbered: Some(Numbered {
+        least: 1,
         most: 256,
         power_of_two: true,
     }),

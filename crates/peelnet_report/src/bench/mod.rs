@@ -10,7 +10,7 @@ use crate::{
 use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
-    front::{self, BASE, EXACT_MSE, Mean, Point},
+    front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
     ratios::{Bytes, Ratios, ratios},
 };
 use std::path::Path;
@@ -75,7 +75,8 @@ impl Results<Bench> {
                 number(r.time_to_base, 3),
                 number(r.time_to_moments, 3),
                 number(r.time_to_weighted, 3),
-                bytes(&r.bytes_per_pixel),
+                r.bytes_per_pixel
+                    .map_or_else(|| "–".to_owned(), |b| bytes(&b)),
                 number(point.map(|p| p.time_at_equal_error), 2),
                 number(point.map(|p| p.error_at_equal_time), 2),
             ]
@@ -122,9 +123,14 @@ impl Results<Bench> {
 
     /// `table.md`.
     pub fn markdown(&self) -> String {
+        let untimed = untimed(&self.measured.rows);
+        let why = untimed
+            .iter()
+            .map(|(method, why)| format!(" {method} has no time: {why}."));
         format!(
-            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views. {}\n\n{}",
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views.{} {}\n\n{}",
             self.table().markdown(),
+            why.collect::<String>(),
             self.credit(),
             self.times_by_scene().markdown(),
         )

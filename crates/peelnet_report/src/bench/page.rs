@@ -52,6 +52,7 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
         }
         (page::chart("chart", &chart(&all)))
         (points_table(rows, &all))
+        (untimed(rows))
         h2 { "All scenes, arithmetic means" }
         p.note {
             "Arithmetic means of the errors: a method that is nearly exact on many scenes and wrong on one ranks lower here than by \
@@ -169,6 +170,39 @@ fn points_table(rows: &[Row], points: &[Point]) -> Markup {
         ]
     };
     Table::new(headings, points.iter().map(line)).html("sortable", |k| points[k].on_front)
+}
+
+/// Methods without a time, which no chart and no table of points has, and why.
+fn untimed(rows: &[Row]) -> Markup {
+    let all = front::untimed(rows);
+    if all.is_empty() {
+        return Markup::default();
+    }
+    let ratios = ratios::ratios(rows);
+    let line = |(method, why): &(&str, &str)| {
+        let ratio = ratios.iter().find(|r| r.method == *method);
+        let error = ratio.and_then(|r| r.mse_linear);
+        vec![
+            (*method).to_owned(),
+            error.map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}")),
+            number(ratio.and_then(|r| r.to_weighted), 3),
+            number(ratio.and_then(|r| r.to_moments), 3),
+            (*why).to_owned(),
+        ]
+    };
+    let to_weighted = format!("/ {WEIGHTED}");
+    let to_moments = format!("/ {MOMENTS}");
+    let headings = [
+        "error only",
+        "MSE (linear)",
+        &to_weighted,
+        &to_moments,
+        "why there is no time",
+    ];
+    html! {
+        p.note { "Composited on the CPU from the scene's fragments: the error is the method's own, time and bytes are unknown." }
+        (Table::new(headings, all.iter().map(line)).html("text", |_| false))
+    }
 }
 
 /// Where every method's time goes.

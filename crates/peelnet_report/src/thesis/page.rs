@@ -70,7 +70,8 @@ fn costs(rows: &[Row], methods: &[String]) -> Table {
         let mut times: Vec<f64> = rows.iter().filter_map(|r| r.time_ms).collect();
         times.sort_by(f64::total_cmp);
         let most = rows.iter().map(|r| r.passes).max().unwrap_or(0);
-        let bytes = rows.iter().map(|r| r.bytes_per_pixel).fold(0.0, f64::max);
+        let bytes = rows.iter().filter_map(|r| r.bytes_per_pixel);
+        let bytes = bytes.fold(0.0, f64::max);
         vec![
             method.clone(),
             most.to_string(),

@@ -1,0 +1,46 @@
+// mboit-trig, last pass: eq 6 with the transmittance that follows from the moments.
+// Variants: none | upper | own_share_out | own_share_out upper | tinted | tinted upper
+import package::helpers::absorbance::{absorbance, warped_depth};
+import package::helpers::guards::WEIGHT_FLOOR;
+import package::methods::mboit_trig::circle::{angle, times, turn};
+import package::methods::mboit_trig::reconstruct::transmittance_from_moments;
+import package::scene::shade::shade;
+@if(tinted) import package::scene::shade::covering;
+import package::scene::surface::Surface;
+import package::scene::visible::visible;
+
+@group(1) @binding(0) var zeroth: texture_2d<f32>;
+@group(1) @binding(1) var lower: texture_2d<f32>;
+@if(upper) @group(1) @binding(2) var upper: texture_2d<f32>;
+
+struct Sums {
+    @location(0) color: vec4f,
+    // Blended multiplicatively: dst * (1 - src).
+    @if(tinted) @location(1) covering: vec4f,
+}
+
+@fragment
+fn fragment_main(surface: Surface) -> Sums {
+    if !visible(surface) {
+        discard;
+    }
+    let pixel = vec2u(surface.position.xy);
+    let color = shade(surface);
+    let phi = angle(warped_depth(surface.depth_linear));
+    var total = textureLoad(zeroth, pixel, 0).x;
+    var m12 = textureLoad(lower, pixel, 0);
+    var m34 = vec4f(0.0);
+    @if(upper) m34 = textureLoad(upper, pixel, 0);
+    @if(own_share_out) {
+        let b = absorbance(color.a);
+        let first = turn(phi);
+        let second = times(first, first);
+        total -= b;
+        m12 -= b * vec4f(first, second);
+        m34 -= b * vec4f(times(second, first), times(second, second));
+    }
+    let moments = array<vec2f, 4>(m12.xy, m12.zw, m34.xy, m34.zw);
+    let weight = max(transmittance_from_moments(total, moments, phi), WEIGHT_FLOOR);
+    @if(tinted) return Sums(color * weight, vec4f(covering(surface), 0.0));
+    @else return Sums(color * weight);
+}
