@@ -48,13 +48,15 @@ const RECIPES: [(&str, &[&str]); 6] = [
     ("small", &[]),
     ("medium", &[]),
     ("large", &[]),
-    ("nmt", &[]),
+    ("nmt", &["--max-rows", "6000000"]),
     ("dfaoit", &[]),
     // The recipe's own are the thesis's published settings, which `peelnet run` repeats.
     ("thesis", &THESIS_BUDGET),
 ];
 
-const THESIS_BUDGET: [&str; 8] = [
+const THESIS_BUDGET: [&str; 10] = [
+    "--max-rows",
+    "2000000",
     "--schedule",
     "one-cycle",
     "--batch",
@@ -62,14 +64,14 @@ const THESIS_BUDGET: [&str; 8] = [
     "--lr",
     "0.004",
     "--epochs",
-    "24",
+    "80",
 ];
 
 /// Where the table of the search is kept.
 const SEARCH: &str = "docs/results/llvmpipe-epyc-2cores/search";
 
 /// Rows that a search uses of its datasets, at most.
-const SEARCH_ROWS: &str = "600000";
+const SEARCH_ROWS: &str = "1200000";
 
 /// Trains every recipe with each point of a grid of rates and numbers of epochs, and writes what each gave on scenes and synthetic worlds
 /// that it was not trained on.
