@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::RenderError,
-    flaw::{Flaw, Property},
+    flaw::{Flaw, Property, half_sums},
 };
 use peelnet_core::methods::deep;
 
@@ -44,8 +44,15 @@ pub(super) const METHOD: Method = Method {
             "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
         ),
         Flaw::new(
+            Property::Scale,
+            &["thin-slab"],
+            "it divides depths by a pixel's own range of them, here a few roundings (Tsopouridis et al. 2024)",
+        )
+        .when(|spec| !half_sums(spec))
+        .seen_on_llvmpipe(),
+        Flaw::new(
             Property::Transmittance,
-            &["isolated", "two-layers", "coplanar"],
+            &["two-layers", "coplanar"],
             "the network's own error (Tsopouridis et al. 2024)",
         ),
     ],
