@@ -4,7 +4,7 @@ pub mod readers;
 
 use glam::{Vec2, Vec3};
 use peelnet_core::{fragment::Fragment, scanline};
-use peelnet_gpu::{AdapterRequest, Gpu};
+use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
@@ -40,6 +40,55 @@ pub fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
         renderer.image(&mut prepared, &scene.views[0])
     };
     drawn().unwrap_or_else(|e| panic!("{e}")).image
+}
+
+/// Runs `body`, which reads `a = inputs[2i]` and `b = inputs[2i + 1]` and sets `y`, with functions of an exported text.
+pub fn evaluate_text(
+    gpu: &Gpu,
+    text: &str,
+    functions: &str,
+    body: &str,
+    inputs: &[[[f32; 4]; 2]],
+) -> Vec<[f32; 4]> {
+    let root = format!(
+        "import package::learned::weight::{{{functions}}};
+        @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
+        @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
+        @compute @workgroup_size(64)
+        fn main(@builtin(global_invocation_id) id: vec3u) {{
+            if id.x >= arrayLength(&answers) {{ return; }}
+            let a = inputs[2u * id.x];
+            let b = inputs[2u * id.x + 1u];
+            var y = vec4f(0.0);
+            {body}
+            answers[id.x] = y;
+        }}"
+    );
+    let sources = [("driver", root.as_str()), ("learned::weight", text)];
+    let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap_or_else(|e| panic!("{e}"));
+    run_text(gpu, &wgsl, inputs.as_flattened(), inputs.len())
+}
+
+/// Runs a compute shader on buffers of inputs and of `count` answers.
+pub fn run_text<T: bytemuck::Pod>(
+    gpu: &Gpu,
+    wgsl: &str,
+    inputs: &[[f32; 4]],
+    count: usize,
+) -> Vec<T> {
+    let input = gpu.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
+    let bytes = (count * size_of::<T>()) as u64;
+    let output = gpu
+        .storage("answers", bytes)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let bound = gpu.bind(
+        "driver",
+        wgpu::ShaderStages::COMPUTE,
+        &[Bind::Read(&input), Bind::Write(&output)],
+    );
+    gpu.dispatch("driver", wgsl, &bound, (count as u32).div_ceil(64));
+    gpu.read(&output, 0..bytes)
+        .unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A texture of one colour.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use peelnet_eval::{Row, bench::Bench, effects::Effects, numerics::Numerics};
+use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
 use std::{
     fs,
@@ -376,5 +377,43 @@ fn costs_of_effects_are_those_measured() {
         let cells = row.iter().map(|f| format!(" {:.2} |", f.ms_one / first));
         let cells: String = cells.collect();
         assert!(between("fills").contains(&cells), "{cells}");
+    }
+}
+
+/// The networks that others published are trained with the budget that the committed search chose for them, by the least loss on its
+/// validation data; ours learn for no more epochs than the longest of its trainings. The recipes hold the budgets, and the model files that they were trained so.
+#[test]
+fn budgets_of_training_are_those_of_the_search() {
+    let json = read("docs/results/llvmpipe-epyc-2cores/search/search.json");
+    let search: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let recipes = search["recipes"].as_array().unwrap();
+    assert_eq!(recipes.len(), Recipe::ALL.len());
+    for found in recipes {
+        let recipe: Recipe = found["recipe"].as_str().unwrap().parse().unwrap();
+        let points = found["points"].as_array().unwrap();
+        let loss = |p: &serde_json::Value| p["validation_loss"].as_f64().unwrap_or(f64::INFINITY);
+        let least = points.iter().min_by(|a, b| loss(a).total_cmp(&loss(b)));
+        let chosen = &points[found["chosen"].as_u64().unwrap() as usize];
+        assert_eq!(Some(chosen), least, "{recipe}");
+        let trained = Model::shipped(recipe).unwrap().meta.config;
+        if recipe.loss.is_some() {
+            let longest = points.iter().filter_map(|p| p["epochs"].as_u64()).max();
+            assert!(trained["epochs"].as_u64() <= longest, "{recipe}");
+            continue;
+        }
+        for setting in ["epochs", "learning_rate"] {
+            assert_eq!(trained[setting], chosen[setting], "{recipe}");
+        }
+        // The thesis's published settings are its recipe's, for `peelnet run`.
+        if recipe != Recipe::THESIS {
+            assert_eq!(
+                Some(u64::from(recipe.budget.epochs)),
+                chosen["epochs"].as_u64()
+            );
+            assert_eq!(
+                Some(recipe.budget.learning_rate),
+                chosen["learning_rate"].as_f64()
+            );
+        }
     }
 }

@@ -10,9 +10,9 @@ use peelnet_core::{
     statistics::{FAR_END, NEAR_END},
 };
 use peelnet_export::Description;
-use peelnet_gpu::{Gpu, bind::Bind, wgpu};
+use peelnet_gpu::Gpu;
 use peelnet_model::{Inputs, Model, Recipe};
-use peelnet_tests::{gpu, shipped};
+use peelnet_tests::{evaluate_text, gpu, run_text, shipped};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -79,47 +79,6 @@ fn the_document_says_what_the_exported_text_says() {
     );
 }
 
-/// Runs `body`, which reads `a = inputs[2i]` and `b = inputs[2i + 1]` and sets `y`, with functions of a text.
-fn evaluate(
-    gpu: &Gpu,
-    text: &str,
-    functions: &str,
-    body: &str,
-    inputs: &[[[f32; 4]; 2]],
-) -> Vec<[f32; 4]> {
-    let root = format!(
-        "import package::learned::weight::{{{functions}}};
-        @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
-        @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
-        @compute @workgroup_size(64)
-        fn main(@builtin(global_invocation_id) id: vec3u) {{
-            if id.x >= arrayLength(&answers) {{ return; }}
-            let a = inputs[2u * id.x];
-            let b = inputs[2u * id.x + 1u];
-            var y = vec4f(0.0);
-            {body}
-            answers[id.x] = y;
-        }}"
-    );
-    let sources = [("driver", root.as_str()), ("learned::weight", text)];
-    let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
-    run(gpu, &wgsl, inputs.as_flattened(), inputs.len())
-}
-
-/// Runs a compute shader on buffers of inputs and of `count` answers.
-fn run<T: bytemuck::Pod>(gpu: &Gpu, wgsl: &str, inputs: &[[f32; 4]], count: usize) -> Vec<T> {
-    let input = gpu.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
-    let bytes = (count * size_of::<T>()) as u64;
-    let output = gpu.storage("answers", bytes).unwrap();
-    let bound = gpu.bind(
-        "driver",
-        wgpu::ShaderStages::COMPUTE,
-        &[Bind::Read(&input), Bind::Write(&output)],
-    );
-    gpu.dispatch("driver", wgsl, &bound, (count as u32).div_ceil(64));
-    gpu.read(&output, 0..bytes).unwrap()
-}
-
 /// Depth on the logarithmic scale, on the linear one where near is not above 0, and for a flat range.
 ///
 /// WGSL's logarithm errs by 2⁻²¹ where the ratio is below 2, and by three roundings elsewhere; the scale multiplies that. The
@@ -144,7 +103,7 @@ fn depths_are_those_of_the_core() {
     for (near, z) in [(1.0, 1.0), (5.0, 7.0), (0.0, 0.0), (0.0, 3.0), (-2.0, -2.0)] {
         inputs.push([[z, near, near, 0.0], [0.0; 4]]);
     }
-    let got = evaluate(
+    let got = evaluate_text(
         &gpu,
         &text(&shipped(Recipe::MEDIUM)),
         "peelnet_zeta",
@@ -190,7 +149,7 @@ fn resolves_are_those_of_the_core() {
         for recipe in [Recipe::SMALL, Recipe::MEDIUM] {
             let separate = recipe == Recipe::MEDIUM;
             let ends = if separate { "b, " } else { "" };
-            let got = evaluate(
+            let got = evaluate_text(
                 &gpu,
                 &text(&shipped(recipe)),
                 "peelnet_resolve",
@@ -387,7 +346,7 @@ fn on_the_gpu(gpu: &Gpu, model: &Model, pixels: &[Points], half: bool) -> Vec<Ve
             [zeta, a, first as f32, end]
         }));
     }
-    let rows: Vec<[f32; 20]> = run(gpu, &wgsl, &fragments, fragments.len());
+    let rows: Vec<[f32; 20]> = run_text(gpu, &wgsl, &fragments, fragments.len());
     let mut rows = rows.into_iter().map(|a| Answer {
         moments: [a[0], a[1], a[2], a[3], a[4]],
         end: a[5],

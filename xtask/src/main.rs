@@ -18,6 +18,8 @@ cargo xtask <command>
   demo [--full]   peel the shipped scenes, train, export, render, compare; ends with a report in out/demo
                   (--full: the thesis's full size, 1.5 M rows and 150 epochs, into out/full)
   train-models    make the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
+  train-models --search
+                  compare budgets of training for every network, on the same data; the table is in docs/results
   test            formatting, clippy, all tests, documentation
   ci              test, and cargo-deny: licences, advisories, sources, versions
   results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         (Some("demo"), []) => product::demo(false),
         (Some("demo"), ["--full"]) => product::demo(true),
         (Some("train-models"), []) => product::train_models(),
+        (Some("train-models"), ["--search"]) => product::search(),
         (Some("test"), []) => checks::test(),
         (Some("ci"), []) => checks::test().and_then(|()| checks::deny()),
         (Some("results"), ["--check"]) => checks::results(),

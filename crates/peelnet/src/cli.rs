@@ -205,6 +205,9 @@ pub struct TrainArgs {
     /// Learning rate [default: the recipe's]
     #[arg(long, value_name = "X", value_parser = positive)]
     pub lr: Option<f64>,
+    /// Learning rate over the run: constant, or one cycle that rises for a fifth of the steps and falls to nothing [default: the recipe's]
+    #[arg(long, value_name = "SCHEDULE")]
+    pub schedule: Option<LearningSchedule>,
     /// What small, medium and large minimise: image, contributions, weighted-transmittance or transmittance
     #[arg(long, value_name = "LOSS", default_value = "image")]
     pub loss: PixelLoss,
@@ -223,6 +226,15 @@ pub struct TrainArgs {
     /// Stop after N epochs without a lower held-out loss and keep the best
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub patience: Option<u32>,
+}
+
+/// How a learning rate changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LearningSchedule {
+    /// Not at all
+    Constant,
+    /// Up, and down to nothing
+    OneCycle,
 }
 
 /// Languages of exported shaders.

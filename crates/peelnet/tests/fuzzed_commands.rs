@@ -177,6 +177,28 @@ fn folder(ours: &Ours, random: &mut Random) -> tempfile::TempDir {
     dir
 }
 
+/// Flags of `train`, and the curve among its outputs.
+fn train_flags(random: &mut Random, line: &mut Vec<String>, outputs: &mut Vec<String>) {
+    const CURVES: [&str; 7] = [
+        "loss.csv",
+        "curve.svg",
+        "table.csv",
+        "new.svg",
+        "d/manifest.json",
+        "m.safetensors",
+        "-",
+    ];
+    line.extend(["--epochs".to_owned(), "1".to_owned()]);
+    if random.below(2) == 0 {
+        let curve = CURVES[random.below(CURVES.len())].to_owned();
+        line.extend(["--loss-curve".to_owned(), curve.clone()]);
+        outputs.push(curve);
+    }
+    if random.below(4) == 0 {
+        line.push("--resume".to_owned());
+    }
+}
+
 /// A command line, and what it names as outputs.
 fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
     const COMMANDS: [(&str, &[&str], &[&str]); 10] = [
@@ -243,28 +265,7 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
     }
     match command {
         "render" | "extract" => line.extend(["--size".to_owned(), "8x8".to_owned()]),
-        "train" => {
-            line.extend(["--epochs".to_owned(), "1".to_owned()]);
-            if random.below(2) == 0 {
-                let curve = pick(
-                    random,
-                    &[
-                        "loss.csv",
-                        "curve.svg",
-                        "table.csv",
-                        "new.svg",
-                        "d/manifest.json",
-                        "m.safetensors",
-                        "-",
-                    ],
-                );
-                line.extend(["--loss-curve".to_owned(), curve.clone()]);
-                outputs.push(curve);
-            }
-            if random.below(4) == 0 {
-                line.push("--resume".to_owned());
-            }
-        }
+        "train" => train_flags(random, &mut line, &mut outputs),
         "bench" => {
             let size = ["--methods", "wboit-eq9", "--frames", "0", "--size", "8x8"];
             line.extend(size.map(str::to_owned));

@@ -165,23 +165,39 @@ const NMT: &[Pass] = &[
         name: "statistics",
         compute: "let s = peelnet_statistics(alpha, zeta);",
         targets: &[
-            sum("absorbance", "rg32float", "s.absorbance"),
+            sum("totals", "rgba32float", "s.totals"),
             sum("moments", "rgba32float", "s.moments"),
+            Target {
+                name: "extent",
+                format: "rg32float",
+                clear: [-65504.0; 4],
+                color: Blend::Max,
+                alpha: Blend::Max,
+                write: "s.extent",
+            },
         ],
     },
     Pass {
         name: "weights",
-        compute: "let w = peelnet_fragment(zeta, absorbance, moments);",
-        targets: &[sum("sums", "rgba16float", WEIGHTED)],
+        compute: "let w = peelnet_fragment(zeta, totals, moments, extent);",
+        targets: &[sum("sums", "rgba32float", WEIGHTED)],
     },
 ];
 
 const DFAOIT: &[Pass] = &[Pass {
-    name: "tail",
-    compute: "let s = peelnet_statistics(vec4f(alpha * rgb, alpha));",
+    name: "statistics",
+    compute: "let s = peelnet_statistics(vec4f(rgb, alpha), front);",
     targets: &[
-        sum("tail", "rgba16float", "s.tail"),
-        sum("sums", "rg16float", "s.sums"),
+        sum("behind", "rgba16float", "s.behind"),
+        Target {
+            name: "all",
+            format: "rgba16float",
+            clear: [0.0, 0.0, 0.0, 1.0],
+            color: Blend::Add,
+            alpha: Blend::Transmit,
+            write: "s.all",
+        },
+        sum("count", "r16float", "s.count"),
     ],
 }];
 
@@ -204,14 +220,12 @@ impl Description {
                 THESIS,
                 "peelnet_resolve(sums, transmittance, background)",
             ),
-            (Inputs::Moments(_), _) => {
-                (ZETA, NMT, "peelnet_resolve(sums, absorbance.x, background)")
-            }
-            (Inputs::Tail(_), _) => (
+            (Inputs::Moments(_), _) => (ZETA, NMT, "peelnet_resolve(sums, totals.x, background)"),
+            (Inputs::Layers(_), _) => (
                 "Composite the two nearest fragments of each pixel exactly, by depth peeling or insertion, into front: premultiplied colour, \
-                 and transmittance in alpha. The pass below leaves them out.",
+                 and transmittance in alpha. The pass below draws them again, with front = true.",
                 DFAOIT,
-                "peelnet_resolve(front, tail, sums, background)",
+                "peelnet_resolve(front, behind, all, count, background)",
             ),
         };
         Self {

@@ -59,7 +59,7 @@ fn about(model: &Model) -> Vec<String> {
             "transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1"
                 .into()
         }
-        Output::TailColor => "linear RGB, kept in 0 .. 1".into(),
+        Output::Color => "linear RGB of all transparent fragments over black, kept in 0 .. 1".into(),
     };
     let mut lines = vec![
         format!(

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 /// The exported function's name.
 pub(crate) const fn function_name(output: Output) -> &'static str {
     match output {
-        Output::TailColor => "peelnet_tail_color",
+        Output::Color => "peelnet_color",
         _ => "peelnet_weight",
     }
 }
@@ -22,13 +22,13 @@ pub(crate) fn call(model: &Model) -> String {
     let (parameters, function) = match recipe.inputs {
         Inputs::Row(_) => ("linear_depth: f32, statistics: vec2f", "peelnet_weight"),
         Inputs::Moments(_) => (
-            "zeta: f32, absorbance: vec2f, moments: vec4f",
+            "zeta: f32, extent: vec2f, totals: vec4f, moments: vec4f",
             "peelnet_weight",
         ),
         Inputs::Rest(_) => ("rest: PeelnetRest", "peelnet_share"),
-        Inputs::Tail(_) => (
-            "front: vec4f, tail: vec4f, sums: vec2f",
-            "peelnet_tail_color",
+        Inputs::Layers(_) => (
+            "front: vec4f, behind: vec4f, all: vec4f, count: f32",
+            "peelnet_color",
         ),
     };
     let about = recipe.inputs.about();
@@ -74,7 +74,7 @@ pub(crate) fn weight_function(model: &Model) -> String {
     let mut t = String::new();
     // Writing to a string cannot fail.
     let _ = match output {
-        Output::Transmittance | Output::TailColor => {
+        Output::Transmittance | Output::Color => {
             let _ = writeln!(t, "fn {name}({parameters}) -> {kind} {{");
             let last = network(&mut t, model, true);
             let answer = if output.count() == 1 {

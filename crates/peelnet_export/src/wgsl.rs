@@ -61,7 +61,7 @@ fn modules(recipe: Recipe) -> Vec<&'static str> {
             "learned::resolve",
             "learned::composite",
         ],
-        (Inputs::Tail(_), _) => vec!["learned::absorbance", "learned::dfaoit"],
+        (Inputs::Layers(_), _) => vec!["learned::dfaoit"],
         (Inputs::Rest(_), output) => {
             let mut modules = vec![
                 "learned::zeta",

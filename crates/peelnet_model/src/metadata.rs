@@ -23,8 +23,8 @@ pub enum Output {
     AnchoredShare,
     /// The same, where the nearest and the farthest fragment accumulate apart.
     AnchoredShareSeparateEnds,
-    /// Linear RGB of the fragments behind the exact ones, kept in 0 … 1.
-    TailColor,
+    /// Linear RGB of all transparent fragments of a pixel over black, kept in 0 … 1.
+    Color,
 }
 
 impl Output {
@@ -34,14 +34,14 @@ impl Output {
             Self::Transmittance => "transmittance",
             Self::AnchoredShare => "anchored-share",
             Self::AnchoredShareSeparateEnds => "anchored-share-separate-ends",
-            Self::TailColor => "tail-color",
+            Self::Color => "color",
         }
     }
 
     /// The number of values.
     pub const fn count(self) -> usize {
         match self {
-            Self::TailColor => 3,
+            Self::Color => 3,
             _ => 1,
         }
     }
@@ -50,7 +50,7 @@ impl Output {
     pub const fn range(self) -> (f32, f32) {
         match self {
             Self::Transmittance => (WEIGHT_FLOOR, 1.0),
-            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::TailColor => (0.0, 1.0),
+            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::Color => (0.0, 1.0),
         }
     }
 

@@ -18,7 +18,7 @@ use peelnet_core::{
     },
     methods::{
         deep::{Row, THESIS_INPUTS},
-        dfaoit::{self, Tail},
+        dfaoit::{self, Layers},
         nmt,
     },
     mlp::Activation,
@@ -38,8 +38,8 @@ pub enum Inputs {
     /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be
     /// [`ROOT_ABSORBANCE`].
     Rest(&'static [&'static Feature<Rest<f64>>]),
-    /// A pixel behind its two nearest fragments: every pixel is an example.
-    Tail(&'static [&'static Feature<Tail>]),
+    /// A pixel with more fragments than are composited exactly: every such pixel is an example.
+    Layers(&'static [&'static Feature<Layers>]),
 }
 
 impl Inputs {
@@ -52,7 +52,7 @@ impl Inputs {
             Self::Row(features) => of(features),
             Self::Moments(features) => of(features),
             Self::Rest(features) => of(features),
-            Self::Tail(features) => of(features),
+            Self::Layers(features) => of(features),
         }
     }
 }
@@ -173,10 +173,13 @@ const PIXELS: Budget = Budget {
     validation: 0.1,
 };
 
-/// The competitors' batches are rows: as many fragments as ours have on average.
+/// Of the competitors, as `cargo xtask train-models --search` chose it for them. Batches are rows: as many fragments as ours have on
+/// average.
 const ROWS: Budget = Budget {
+    epochs: 80,
     batch: 8192,
     chunk: 2048,
+    learning_rate: 1.6e-2,
     ..PIXELS
 };
 
@@ -270,7 +273,7 @@ impl Recipe {
         loss: Some(PixelLoss::Image),
     });
 
-    /// Tsopouridis et al. 2024: transmittance from four moments.
+    /// Tsopouridis et al. 2024, "Neural Moment Transparency": transmittance from four moments.
     pub const NMT: Self = Self(&Declaration {
         name: "nmt",
         method: "nmt",
@@ -282,12 +285,12 @@ impl Recipe {
         loss: None,
     });
 
-    /// Tsopouridis et al. 2024: the colour behind two exact layers.
+    /// Tsopouridis et al. 2024, "Deep and Fast Approximate Order Independent Transparency": the colour of a pixel.
     pub const DFAOIT: Self = Self(&Declaration {
         name: "dfaoit",
         method: "dfaoit",
-        inputs: Inputs::Tail(&dfaoit::INPUTS),
-        output: Output::TailColor,
+        inputs: Inputs::Layers(&dfaoit::INPUTS),
+        output: Output::Color,
         sums: SumPrecision::Exact,
         network: relu(&[32, 16], Activation::Sigmoid),
         budget: Budget {

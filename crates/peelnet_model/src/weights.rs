@@ -1,8 +1,8 @@
 use crate::{Inputs, Model};
 use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
+    absorbance::DepthWarp,
     features::Feature,
-    methods::{anchored, deep, mboit4, nmt},
+    methods::{anchored, deep, nmt},
     statistics::SumPrecision,
 };
 
@@ -21,20 +21,8 @@ impl Model {
                 .map(|seen| seen.weight(|rest| self.answer(features, rest)))
                 .collect(),
             Inputs::Moments(features) => {
-                let zeta = |depth: f32| warp.apply(depth.into());
-                let mut moments = mboit4::Moments::default();
-                for &(depth, alpha) in points {
-                    moments.add(absorbance(alpha), zeta(depth));
-                }
-                let seen = |&(depth, _): &(f32, f32)| nmt::Seen {
-                    zeta: zeta(depth),
-                    count: points.len(),
-                    moments: moments.0,
-                };
-                points
-                    .iter()
-                    .map(|point| self.answer(features, &seen(point)))
-                    .collect()
+                let all = nmt::Seen::all(points, warp);
+                all.iter().map(|seen| self.answer(features, seen)).collect()
             }
             Inputs::Row(features) => {
                 let alpha_sum = points.iter().map(|(_, alpha)| alpha).sum();
@@ -52,7 +40,7 @@ impl Model {
                     })
                     .collect()
             }
-            Inputs::Tail(_) => Vec::new(),
+            Inputs::Layers(_) => Vec::new(),
         }
     }
 

@@ -295,8 +295,8 @@ fn bad_metadata() {
             &["other features", "recipe small", "root_absorbance"],
         ),
         (
-            |v| v["output"] = "tail-color".into(),
-            &["recipe thesis", "tail-color"],
+            |v| v["output"] = "color".into(),
+            &["recipe thesis", "color"],
         ),
         (
             |v| v["inputs"][2]["scale"] = serde_json::Value::Null,

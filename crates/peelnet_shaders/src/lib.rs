@@ -167,11 +167,11 @@ mod tests {
                     "learned::composite",
                     "learned::resolve",
                 ],
-                "zeta: f32, absorbance: vec2f, moments: vec4f) -> f32 { return 1.0; }",
+                "zeta: f32, extent: vec2f, totals: vec4f, moments: vec4f) -> f32 { return 1.0; }",
             ),
             "methods::dfaoit" => (
-                &["learned::absorbance", "learned::dfaoit"],
-                "front: vec4f, tail: vec4f, sums: vec2f) -> vec3f { return vec3f(1.0); }",
+                &["learned::dfaoit"],
+                "front: vec4f, behind: vec4f, all: vec4f, count: f32) -> vec3f { return vec3f(1.0); }",
             ),
             _ if features.contains(&"separate_ends") => (
                 &[

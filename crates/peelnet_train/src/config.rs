@@ -72,6 +72,9 @@ pub enum Schedule {
 }
 
 impl Schedule {
+    /// One cycle, with the share of rising steps that the networks of this project are trained with.
+    pub const ONE_CYCLE: Self = Self::OneCycle { warmup: 0.2 };
+
     /// The rate of step `step` (from 0) of `steps`.
     pub(crate) fn rate(self, peak: f64, step: u64, steps: u64) -> f64 {
         let Self::OneCycle { warmup } = self else {

@@ -24,38 +24,65 @@ impl TrainingData {
     /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
         let split = Split::new(config.seed, config.validation, config.held_out)?;
-        let parts: Vec<(&Dataset, &Part)> = datasets
-            .iter()
-            .flat_map(|dataset| dataset.manifest().parts.iter().map(move |p| (dataset, p)))
-            .filter(|(dataset, part)| !dataset.is_held_out(part))
+        let mut data = Self::of_parts(config, &[(datasets, split)])?;
+        data.check_split(config);
+        Ok(data)
+    }
+
+    /// The rows of `training` to learn from and those of `validation` to choose by: whole scenes, because pixels of one view say much
+    /// about one another. Nothing is set aside for testing.
+    ///
+    /// # Errors
+    /// A dataset that cannot be read.
+    pub fn validated(
+        config: &Config,
+        training: &[Dataset],
+        validation: &[Dataset],
+    ) -> Result<Self, TrainError> {
+        let all = |validation| Split::new(config.seed, validation, 0.0);
+        Self::of_parts(config, &[(training, all(0.0)?), (validation, all(1.0)?)])
+    }
+
+    /// The rows of all scenes that are not held out, of datasets with the split of their pixels.
+    fn of_parts(config: &Config, all: &[(&[Dataset], Split)]) -> Result<Self, TrainError> {
+        let datasets = || {
+            all.iter()
+                .flat_map(|(datasets, split)| datasets.iter().map(move |d| (d, split)))
+        };
+        let parts: Vec<(&Dataset, &Part, &Split)> = datasets()
+            .flat_map(|(dataset, split)| {
+                let parts = dataset.manifest().parts.iter();
+                parts.map(move |part| (dataset, part, split))
+            })
+            .filter(|(dataset, part, _)| !dataset.is_held_out(part))
             .collect();
         let total = parts
             .iter()
-            .map(|(_, p)| p.rows)
+            .map(|(_, p, _)| p.rows)
             .fold(0, u64::saturating_add);
         let mut sample = Sample::new(config.seed, config.max_rows, total);
-        let views = parts.iter().filter(|(_, part)| part.rows > 0);
-        let views = views.map(|&(dataset, part)| View::Stored(dataset, part));
+        let views = parts.iter().filter(|(_, part, _)| part.rows > 0);
+        let views = views.map(|&(dataset, part, split)| (View::Stored(dataset, part), split));
         let mut data = match config.recipe.inputs {
-            Inputs::Row(features) => rows(features, &split, &mut sample, views)?,
-            _ => pixels::gather(config.recipe, &split, &mut sample, views)?,
+            Inputs::Row(features) => rows(features, &mut sample, views)?,
+            _ => pixels::gather(config.recipe, &mut sample, views)?,
         };
         data.used = Some(UsedRows {
             used: sample.kept()?,
             of: total,
         });
-        let paths: Vec<String> = datasets
-            .iter()
-            .map(|d| d.path().display().to_string())
+        let paths: Vec<String> = datasets()
+            .map(|(d, _)| d.path().display().to_string())
             .collect();
         data.source = paths.join(", ");
-        let hashes: Vec<&str> = datasets.iter().map(Dataset::hash).collect();
+        let hashes: Vec<&str> = datasets().map(|(d, _)| d.hash()).collect();
         data.dataset = Some(DatasetRef {
             hash: hashes.join("+"),
             rows: total,
-            scenes: pixels::training_scenes(datasets).into_iter().collect(),
+            scenes: pixels::training_scenes(datasets().map(|(d, _)| d))
+                .into_iter()
+                .collect(),
         });
-        data.check_split(config);
         Ok(data)
     }
 
@@ -77,10 +104,10 @@ impl TrainingData {
             batch.check()?;
         }
         let views = batches.chunk_by(|a, b| a.view.first() == b.view.first());
-        let views = views.map(View::Held);
+        let views = views.map(|batches| (View::Held(batches), &split));
         let mut data = match config.recipe.inputs {
-            Inputs::Row(features) => rows(features, &split, &mut Sample::all(), views)?,
-            _ => pixels::gather(config.recipe, &split, &mut Sample::all(), views)?,
+            Inputs::Row(features) => rows(features, &mut Sample::all(), views)?,
+            _ => pixels::gather(config.recipe, &mut Sample::all(), views)?,
         };
         data.source = source.to_owned();
         data.check_split(config);
@@ -116,12 +143,11 @@ impl TrainingData {
 /// Every row is an example with its transmittance as the target.
 fn rows<'a>(
     features: &[&Feature<Row>],
-    split: &Split,
     sample: &mut Sample,
-    views: impl IntoIterator<Item = View<'a>>,
+    views: impl IntoIterator<Item = (View<'a>, &'a Split)>,
 ) -> Result<TrainingData, TrainError> {
     let mut data = TrainingData::of_rows(features);
-    for view in views {
+    for (view, split) in views {
         sample.begin(view.rows());
         view.for_each_batch(|batch| {
             for pixel in batch.pixels() {

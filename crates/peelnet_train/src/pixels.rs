@@ -6,7 +6,7 @@ use std::ops::Range;
 use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::features::{Feature, Rest};
 use peelnet_core::methods::anchored::{Place, seen};
-use peelnet_core::methods::dfaoit::Tail;
+use peelnet_core::methods::dfaoit::{FRONT, Layers};
 use peelnet_core::methods::{mboit4, nmt};
 use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
@@ -181,12 +181,11 @@ struct Gathered {
     first: usize,
 }
 
-/// Reads views as the recipe's examples.
+/// Reads views, each with the split of its pixels, as the recipe's examples.
 pub(crate) fn gather<'a>(
     recipe: Recipe,
-    split: &Split,
     sample: &mut Sample,
-    views: impl IntoIterator<Item = View<'a>>,
+    views: impl IntoIterator<Item = (View<'a>, &'a Split)>,
 ) -> Result<TrainingData, TrainError> {
     let mut data = TrainingData {
         source: String::new(),
@@ -199,7 +198,7 @@ pub(crate) fn gather<'a>(
         dataset: None,
     };
     let mut all = Vec::new();
-    for view in views {
+    for (view, split) in views {
         let warp = view.warp()?;
         let mut gathered = Gathered {
             first: data.weights.as_ref().map_or(0, Vec::len),
@@ -217,7 +216,7 @@ pub(crate) fn gather<'a>(
                 Inputs::Moments(features) => {
                     transmittance_rows(features, &mut data, pixel, &warp, subset);
                 }
-                Inputs::Tail(features) => tail_row(features, &mut data, pixel, subset),
+                Inputs::Layers(features) => color_row(features, &mut data, pixel, subset),
                 Inputs::Rest(features) => {
                     share_pixel(features, &mut data, pixel, &warp, recipe, subset);
                 }
@@ -327,17 +326,9 @@ fn transmittance_rows(
     warp: &DepthWarp,
     subset: Subset,
 ) {
-    let mut moments = mboit4::Moments::default();
-    for &(depth, alpha) in pixel.points {
-        moments.add(absorbance(alpha), warp.apply(depth.into()));
-    }
-    for (&(depth, alpha), &t) in pixel.points.iter().zip(pixel.transmittance) {
-        let seen = nmt::Seen {
-            zeta: warp.apply(depth.into()),
-            count: pixel.points.len(),
-            moments: moments.0,
-        };
-        push_inputs(data, features, &seen);
+    let all = nmt::Seen::all(pixel.points, warp);
+    for ((seen, &(_, alpha)), &t) in all.iter().zip(pixel.points).zip(pixel.transmittance) {
+        push_inputs(data, features, seen);
         data.targets[0].push(t);
         if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
             // An error of T is seen as much as the fragment is opaque.
@@ -347,67 +338,35 @@ fn transmittance_rows(
     }
 }
 
-/// One row for a pixel with a tail of two or more fragments; a tail of one needs no network.
-fn tail_row(
-    features: &[&Feature<Tail>],
+/// One row for a pixel that shows more fragments than are composited exactly.
+fn color_row(
+    features: &[&Feature<Layers>],
     data: &mut TrainingData,
     pixel: &Pixel<'_>,
     subset: Subset,
 ) {
-    const FRONT: usize = 2;
-    let n = pixel.points.len();
-    if n < FRONT + 2 {
+    if pixel.points.len() <= FRONT || pixel.behind() >= 1.0 {
         return;
     }
-    let seen: Vec<f64> = pixel.contributions().collect();
-    let mut front = [0.0f64; 3];
-    let (mut exact, mut average, mut alphas) = ([0.0f64; 3], [0.0f64; 3], 0.0f64);
-    for (i, color) in pixel.colors.iter().enumerate() {
-        let alpha = f64::from(pixel.points[i].1);
-        if i >= FRONT {
-            alphas += alpha;
-        }
-        for k in 0..3 {
-            let c = f64::from(color[k]);
-            if i < FRONT {
-                front[k] += seen[i] * c;
-            } else {
-                exact[k] += seen[i] * c;
-                average[k] += alpha * c;
-            }
+    let mut exact = [0.0f64; 3];
+    for (seen, color) in pixel.contributions().zip(pixel.colors) {
+        for (sum, &c) in exact.iter_mut().zip(color) {
+            *sum += seen * f64::from(c);
         }
     }
-    let through = f64::from(pixel.transmittance[FRONT]);
-    let tail = (n - FRONT) as f64;
-    let behind: f64 = pixel.points[FRONT..]
-        .iter()
-        .map(|(_, alpha)| absorbance(*alpha))
-        .sum::<f64>();
-    let behind = (-behind).exp();
-    let covered = through * (1.0 - behind);
-    if covered <= 0.0 || alphas <= 0.0 {
-        return;
-    }
-    let known = Tail {
-        front,
-        front_transmittance: through,
-        average: average.map(|c| c / alphas),
-        alpha: alphas / tail,
-        transmittance: behind,
-        count: tail,
-    };
-    push_inputs(data, features, &known);
-    push(&mut data.targets, exact.map(|c| (c / covered).min(1.0)));
+    let alphas = pixel.points.iter().map(|&(_, alpha)| alpha);
+    let layers = Layers::of(alphas.zip(pixel.colors.iter().copied()));
+    push_inputs(data, features, &layers);
+    push(&mut data.targets, exact.map(|c| c.min(1.0)));
     if let (Some(weights), Some(subsets)) = (&mut data.weights, &mut data.subsets) {
-        weights.push((covered * covered) as f32);
+        weights.push(1.0);
         subsets.push(subset);
     }
 }
 
 /// Names of the scenes that are trained on.
-pub(crate) fn training_scenes(datasets: &[Dataset]) -> BTreeSet<String> {
+pub(crate) fn training_scenes<'a>(datasets: impl Iterator<Item = &'a Dataset>) -> BTreeSet<String> {
     datasets
-        .iter()
         .flat_map(|dataset| {
             let manifest = dataset.manifest();
             manifest

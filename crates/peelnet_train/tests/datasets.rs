@@ -272,6 +272,30 @@ fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
     }
 }
 
+/// Validation by whole datasets: every row of one trains, every row of the other is chosen by, whatever the shares of the recipe.
+#[test]
+fn whole_datasets_validate() {
+    let folder = tempfile::tempdir().unwrap();
+    let make =
+        |name: &str, scenes| write_views(&folder.path().join(name), scenes, |k| stacks(k, 6));
+    let training = [make("a", vec![scene("one", false), scene("held", true)])];
+    let validation = [make("b", vec![scene("two", false)])];
+    for recipe in Recipe::ALL {
+        let config = Config::for_recipe(recipe);
+        let data = TrainingData::validated(&config, &training, &validation).unwrap();
+        let subsets = data.subsets.as_ref().unwrap();
+        let half = subsets.len() / 2;
+        assert!(
+            half > 0 && subsets[..half].iter().all(|s| *s == Subset::Train),
+            "{recipe}"
+        );
+        assert!(
+            subsets[half..].iter().all(|s| *s == Subset::Validation),
+            "{recipe}"
+        );
+    }
+}
+
 /// Values that are allowed but were changed after the dataset was written neither train nor judge.
 #[test]
 fn files_that_were_changed_are_refused_in_training_and_judging() {

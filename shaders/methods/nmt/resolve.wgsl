@@ -6,7 +6,7 @@ import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
-@group(0) @binding(2) var absorbances: texture_2d<f32>;
+@group(0) @binding(2) var totals: texture_2d<f32>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -17,7 +17,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let found = textureLoad(sums, pixel, 0);
-    let absorbance = textureLoad(absorbances, pixel, 0).x;
+    let absorbance = textureLoad(totals, pixel, 0).x;
     let behind = textureLoad(background, pixel, 0).rgb;
     @if(full_sums) {
         let transmittance = exp(-absorbance);

@@ -1,7 +1,7 @@
 //! `peelnet train`: a dataset into a network.
 
 use super::Context;
-use crate::cli::TrainArgs;
+use crate::cli::{LearningSchedule, TrainArgs};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
@@ -9,8 +9,8 @@ use crate::progress::Bar;
 use peelnet_dataset::Dataset;
 use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
 use peelnet_train::{
-    CHECKPOINT_FILES, Config, CurveFormat, End, Outcome, OutputLock, RunOptions, TrainingData,
-    UsedRows, checkpoint_folder, held_out_errors, train,
+    CHECKPOINT_FILES, Config, CurveFormat, End, Outcome, OutputLock, RunOptions, Schedule,
+    TrainingData, UsedRows, checkpoint_folder, held_out_errors, train,
 };
 use serde_json::json;
 use std::path::Path;
@@ -92,6 +92,11 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.epochs = args.epochs.unwrap_or(config.epochs);
     config.batch = args.batch.map_or(config.batch, |b| b as usize);
     config.learning_rate = args.lr.unwrap_or(config.learning_rate);
+    config.schedule = match args.schedule {
+        None => config.schedule,
+        Some(LearningSchedule::Constant) => Schedule::Constant,
+        Some(LearningSchedule::OneCycle) => Schedule::ONE_CYCLE,
+    };
     config.hidden = args.hidden.clone().unwrap_or(config.hidden);
     config.patience = args.patience.or(config.patience);
     config.loss = args.loss;

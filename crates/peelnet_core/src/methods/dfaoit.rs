@@ -1,8 +1,13 @@
-//! `dfaoit`: the two nearest fragments exactly, the colour of the rest from a network (Tsopouridis, Vasilakos & Fudos 2024).
+//! `dfaoit`: the two nearest fragments exactly, and from three fragments on the colour of all of them from a network ("Deep and Fast
+//! Approximate Order Independent Transparency", Tsopouridis, Vasilakis & Fudos 2024).
+//!
+//! Inputs and network (10-32-16-3) are those of the authors' shaders (github.com/gtsopus/DFA): averages of α and of the colour that is
+//! *not* premultiplied over the fragments behind the two nearest, `Σ α c` of *all* fragments, and the two nearest composited. The network
+//! predicts everything but the background, which is added with `T_∞`. One thing is ours, and changes nothing but rounding: the averages
+//! are summed behind the two nearest, where they subtract those from sums over all.
 
 use super::over;
 use crate::{
-    absorbance::absorbance,
     features::{About, Feature, Shared},
     fragment::Fragment,
 };
@@ -10,30 +15,56 @@ use crate::{
 /// Fragments that are composited exactly.
 pub const FRONT: usize = 2;
 
-/// What is known of a pixel: its two nearest fragments composited, and sums over the others, the tail.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tail {
-    /// Colour of the front, premultiplied.
-    pub front: [f64; 3],
-    /// Transmittance of the front.
-    pub front_transmittance: f64,
-    /// Mean colour of the tail, weighted by opacity.
+/// What is known of a pixel with more than [`FRONT`] fragments.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Layers {
+    /// Mean opacity of the fragments behind the front.
+    pub average_alpha: f64,
+    /// Their mean colour, not premultiplied, each with the same weight.
     pub average: [f64; 3],
-    /// Mean opacity of the tail's fragments.
-    pub alpha: f64,
-    /// Transmittance of the tail.
-    pub transmittance: f64,
-    /// Number of the tail's fragments.
-    pub count: f64,
+    /// `Σ α c` of all fragments.
+    pub sum: [f64; 3],
+    /// The front, composited and premultiplied.
+    pub front: [f64; 3],
 }
 
-/// A feature; in WGSL a function of `front`, `tail`, `sums` and `average`.
+impl Layers {
+    /// Of a pixel's fragments, given as (α, radiance), nearest first.
+    pub fn of(fragments: impl IntoIterator<Item = (f32, [f32; 3])>) -> Self {
+        let mut layers = Self::default();
+        let (mut through, mut behind) = (1.0, 0.0);
+        for (i, (alpha, color)) in fragments.into_iter().enumerate() {
+            let alpha = f64::from(alpha);
+            for (k, c) in color.map(f64::from).into_iter().enumerate() {
+                layers.sum[k] += alpha * c;
+                if i < FRONT {
+                    layers.front[k] += through * alpha * c;
+                } else {
+                    layers.average[k] += c;
+                }
+            }
+            if i < FRONT {
+                through *= 1.0 - alpha;
+            } else {
+                layers.average_alpha += alpha;
+                behind += 1.0;
+            }
+        }
+        if behind > 0.0 {
+            layers.average_alpha /= behind;
+            layers.average = layers.average.map(|c| c / behind);
+        }
+        layers
+    }
+}
+
+/// A feature; in WGSL a function of `front`, `behind`, `all` and `count`.
 const fn feature(
     name: &'static str,
     wgsl: &'static str,
     shared: Option<&'static Shared>,
-    value: fn(&Tail) -> f64,
-) -> Feature<Tail> {
+    value: fn(&Layers) -> f64,
+) -> Feature<Layers> {
     Feature {
         about: About {
             name,
@@ -45,76 +76,41 @@ const fn feature(
     }
 }
 
-const AVERAGE: Shared = Shared {
+const AVERAGE: Option<&Shared> = Some(&Shared {
     name: "average",
-    wgsl: "peelnet_average(tail)",
+    wgsl: "behind / max(count, 1.0)",
     module: None,
-};
+});
 
-/// The inputs of the network.
-pub static INPUTS: [&Feature<Tail>; 10] = [
-    &feature("front_r", "front.r", None, |tail| tail.front[0]),
-    &feature("front_g", "front.g", None, |tail| tail.front[1]),
-    &feature("front_b", "front.b", None, |tail| tail.front[2]),
-    &feature("front_transmittance", "front.a", None, |tail| {
-        tail.front_transmittance
+/// The inputs of the network, in the published order.
+pub static INPUTS: [&Feature<Layers>; 10] = [
+    &feature("average_alpha", "average.a", AVERAGE, |layers| {
+        layers.average_alpha
     }),
-    &feature("tail_r", "average.r", Some(&AVERAGE), |tail| {
-        tail.average[0]
-    }),
-    &feature("tail_g", "average.g", Some(&AVERAGE), |tail| {
-        tail.average[1]
-    }),
-    &feature("tail_b", "average.b", Some(&AVERAGE), |tail| {
-        tail.average[2]
-    }),
-    &feature("tail_alpha", "tail.a / max(sums.y, 1.0)", None, |tail| {
-        tail.alpha
-    }),
-    &feature("tail_transmittance", "exp(-sums.x)", None, |tail| {
-        tail.transmittance
-    }),
-    &feature("tail_count", "sums.y", None, |tail| tail.count),
+    &feature("average_r", "average.r", AVERAGE, |l| l.average[0]),
+    &feature("average_g", "average.g", AVERAGE, |l| l.average[1]),
+    &feature("average_b", "average.b", AVERAGE, |l| l.average[2]),
+    &feature("sum_r", "all.r", None, |layers| layers.sum[0]),
+    &feature("sum_g", "all.g", None, |layers| layers.sum[1]),
+    &feature("sum_b", "all.b", None, |layers| layers.sum[2]),
+    &feature("front_r", "front.r", None, |layers| layers.front[0]),
+    &feature("front_g", "front.g", None, |layers| layers.front[1]),
+    &feature("front_b", "front.b", None, |layers| layers.front[2]),
 ];
 
-/// Composites a pixel; `network` predicts the colour of the tail.
+/// Composites a pixel; `network` predicts the colour of all fragments over black.
 pub fn composite(
     fragments: &[Fragment],
     background: [f32; 3],
-    network: impl FnOnce(&Tail) -> [f32; 3],
+    network: impl FnOnce(&Layers) -> [f32; 3],
 ) -> [f32; 3] {
     let sorted = over::sorted(fragments);
-    let (front, tail) = sorted.split_at(sorted.len().min(FRONT));
-    if tail.is_empty() {
-        return over::composite(front, background);
+    let transmittance: f32 = sorted.iter().map(|f| 1.0 - f.alpha).product();
+    if sorted.len() <= FRONT || transmittance == 1.0 {
+        return over::composite(&sorted, background);
     }
-    let near = over::composite(front, [0.0; 3]);
-    let near_transmittance: f32 = front.iter().map(|f| 1.0 - f.alpha).product();
-    let n = tail.len() as f32;
-    let alpha: f32 = tail.iter().map(|f| f.alpha).sum();
-    let total: f64 = tail.iter().map(|f| absorbance(f.alpha)).sum();
-    let transmittance = (-total).exp() as f32;
-    let mean: [f32; 3] = std::array::from_fn(|k| {
-        let sum: f32 = tail.iter().map(|f| f.premultiplied()[k]).sum();
-        sum / alpha.max(1e-6)
-    });
-    // A tail of one fragment is its colour.
-    let color = if tail.len() == 1 {
-        mean
-    } else {
-        network(&Tail {
-            front: near.map(f64::from),
-            front_transmittance: near_transmittance.into(),
-            average: mean.map(f64::from),
-            alpha: (alpha / n).into(),
-            transmittance: transmittance.into(),
-            count: n.into(),
-        })
-    };
-    std::array::from_fn(|k| {
-        let behind = color[k] * (1.0 - transmittance) + background[k] * transmittance;
-        near[k] + near_transmittance * behind
-    })
+    let color = network(&Layers::of(sorted.iter().map(|f| (f.alpha, f.color))));
+    std::array::from_fn(|k| color[k] + transmittance * background[k])
 }
 
 #[cfg(test)]
@@ -122,25 +118,35 @@ mod tests {
     use super::*;
     use crate::fragment::worked_example;
 
-    /// Up to three layers are exact whatever the network predicts, and what it predicts is what lies behind two.
+    /// Up to two layers are exact whatever the network predicts. From three on its colour stands in front of the background.
     #[test]
     fn few_layers_are_exact() {
         let f = worked_example();
         let c0 = [0.1, 0.2, 0.9];
-        for n in 0..=3 {
-            let (got, want) = (
-                composite(&f[..n], c0, |_| [9.0; 3]),
-                over::composite(&f[..n], c0),
-            );
-            for k in 0..3 {
-                assert!((got[k] - want[k]).abs() < 1e-6, "{n}: {got:?} {want:?}");
-            }
+        for n in 0..=2 {
+            let want = over::composite(&f[..n], c0);
+            assert_eq!(composite(&f[..n], c0, |_| [9.0; 3]), want, "{n}");
         }
-        let mut seen = 0.0;
-        composite(&f, c0, |tail| {
-            seen = tail.count;
+        // T_∞ = ½³·0.1.
+        let got = composite(&f, c0, |_| [0.5; 3]);
+        for (g, b) in got.iter().zip(c0) {
+            assert!((g - (0.5 + 0.0125 * b)).abs() < 1e-6, "{got:?}");
+        }
+    }
+
+    /// The worked example: ½ red, ½ green in front, ½ blue and 0.9 white behind them.
+    #[test]
+    fn known_fragments_have_known_inputs() {
+        let mut inputs = [0.0; 10];
+        composite(&worked_example(), [0.0; 3], |layers| {
+            inputs = INPUTS.map(|f| (f.value)(layers));
             [0.0; 3]
         });
-        assert_eq!(seen, 2.0);
+        // Behind: α (0.5 + 0.9)/2, colour (blue + white)/2. Sum: ½ of each and 0.9. Front: ½ red and ¼ green.
+        let want = [0.7, 0.5, 0.5, 1.0, 1.4, 1.4, 1.4, 0.5, 0.25, 0.0];
+        for (got, want) in inputs.iter().zip(want) {
+            // 0.9 in 32 bits.
+            assert!((got - want).abs() < 1e-7, "{inputs:?}");
+        }
     }
 }

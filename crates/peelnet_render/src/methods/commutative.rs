@@ -38,7 +38,7 @@ pub(crate) enum Blend {
 
 impl Blend {
     /// What a target is cleared to.
-    fn start(self) -> [f64; 4] {
+    pub(crate) fn start(self) -> [f64; 4] {
         let least = -f64::from(HALF_MAX);
         match self {
             Self::Add => [0.0; 4],

@@ -40,21 +40,30 @@ pub(super) const METHOD: Method = Method {
             &[
                 "alpha-near-one",
                 "alpha-one",
+                "alpha-zero",
                 "coplanar",
+                "deep",
+                "emissive",
                 "far",
+                "grazing",
                 "high-alpha",
                 "intersecting",
                 "moving-camera",
                 "opaque-mix",
                 "passing",
+                "thin-slab",
                 "two-layers",
                 "wide-range",
             ],
             IN_SCENE_UNITS,
         ),
-        Flaw::new(Property::Scale, &["alpha-tiny", "deep"], IN_SCENE_UNITS)
-            .when(half_sums)
-            .seen_on_llvmpipe(),
+        Flaw::new(
+            Property::Scale,
+            &["alpha-tiny", "near-overflow"],
+            IN_SCENE_UNITS,
+        )
+        .when(half_sums)
+        .seen_on_llvmpipe(),
         Flaw::new(
             Property::Transmittance,
             &["isolated", "two-layers", "coplanar"],

@@ -1,5 +1,5 @@
-//! `dfaoit`: the two nearest fragments exact, the colour of the rest from a network (Tsopouridis, Vasilakos & Fudos 2024),
-//! drawn with the exported text itself.
+//! `dfaoit`: up to two fragments exact, the colour of more from a network (Tsopouridis, Vasilakis & Fudos 2024), drawn with the exported
+//! text itself. Passes are those of the authors' shaders for portable hardware: two peels, and one pass of sums.
 
 use super::{
     commutative::{Blend, Target},
@@ -7,9 +7,11 @@ use super::{
     depth_peel::COINCIDENT,
     method::{Method, Promises},
     parameter::{Precision, TARGETS},
-    weighted::SUMS,
 };
-use crate::error::RenderError;
+use crate::{
+    error::RenderError,
+    flaw::{Flaw, Property},
+};
 use peelnet_core::methods::dfaoit;
 use peelnet_gpu::{
     bind::{Bind, Bound},
@@ -26,32 +28,56 @@ use peelnet_raster::{
 pub(super) const METHOD: Method = Method {
     parameters: &[TARGETS],
     learned: true,
-    // The tail's colour is the network's, not a mean.
+    // The colour is the network's, not a mean.
     promises: |_| Promises {
         normalised: false,
         ..Promises::NORMALISED
     },
     twin: Some(|_, p| {
         let model = p.model?;
-        let Inputs::Tail(features) = model.meta.recipe.inputs else {
+        let Inputs::Layers(features) = model.meta.recipe.inputs else {
             return None;
         };
-        let tail = |known: &dfaoit::Tail| {
+        let network = |known: &dfaoit::Layers| {
             let color = model.answers(features, known);
             [0, 1, 2].map(|k| color[k] as f32)
         };
-        Some(dfaoit::composite(p.fragments, p.background, tail))
+        Some(dfaoit::composite(p.fragments, p.background, network))
     }),
-    flaws: &[COINCIDENT],
+    flaws: &[
+        COINCIDENT,
+        Flaw::new(
+            Property::Opaque,
+            &["alpha-near-one"],
+            "the network's own error: it predicts the nearest layers' colour with that of the others (Tsopouridis et al. 2024)",
+        ),
+    ],
     ..Method::new(
         "dfaoit",
-        "Tsopouridis et al. 2024: two layers exact, the colour of the rest from a network",
+        "Tsopouridis et al. 2024: up to two layers exact, the colour of more from a network",
         build,
     )
 };
 
 /// Layers that are composited exactly.
-const FRONT: u32 = 2;
+const FRONT: u32 = dfaoit::FRONT as u32;
+
+/// Sums over the fragments behind the front, over all fragments, and the number of those behind.
+const SUMS: [Target; 3] = {
+    const fn target(label: &'static str, channels: u32, blend: Blend) -> Target {
+        Target {
+            label,
+            channels,
+            full: false,
+            blend,
+        }
+    }
+    [
+        target("behind", 4, Blend::Add),
+        target("all", 4, Blend::AddTransmit),
+        target("count", 1, Blend::Add),
+    ]
+};
 
 #[derive(Debug)]
 struct Dfaoit {
@@ -60,8 +86,8 @@ struct Dfaoit {
     front: [wgpu::TextureView; 2],
     under: [FullscreenPass; 2],
     second: Bound,
-    tail: GeometryPipelines,
-    sums: [wgpu::TextureView; 2],
+    gather: GeometryPipelines,
+    sums: [wgpu::TextureView; 3],
     resolve: FullscreenPass,
     bytes_per_pixel: f64,
 }
@@ -79,23 +105,12 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         )?;
     }
     let peel = SinglePeel::new(gpu, b.scene, frame, &[])?;
-    let targets = [
-        SUMS,
-        Target {
-            label: "tail absorbance",
-            channels: 2,
-            full: false,
-            blend: Blend::Add,
-        },
-    ];
     let texture =
         |label, format| gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty());
     let format = wgpu::TextureFormat::Rgba32Float;
     let front = [texture("front", format)?, texture("front", format)?];
-    let sums = [
-        texture(targets[0].label, targets[0].format(full))?,
-        texture(targets[1].label, targets[1].format(full))?,
-    ];
+    let [behind, all, count] = SUMS.map(|t| texture(t.label, t.format(full)));
+    let sums = [behind?, all?, count?];
     let found = gpu.storage("found", 8)?;
     let image = [Some(format.into())];
     let under = |from: usize| {
@@ -120,16 +135,16 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         &[Bind::Uint(&peel.keys[0])],
     );
     let extra = [("learned::weight", learned.wgsl.as_str())];
-    let tail = b.scene.pipelines(
+    let gather = b.scene.pipelines(
         gpu,
         frame,
         Surfaces::Transparent,
         &GeometryPass {
-            label: "tail",
-            shader: "methods::dfaoit::tail",
+            label: "gather",
+            shader: "methods::dfaoit::gather",
             extra: &extra,
             group: Some(&second),
-            targets: &targets.map(|t| Some(t.state(full))),
+            targets: &SUMS.map(|t| Some(t.state(full))),
             ..GeometryPass::NONE
         },
     )?;
@@ -143,22 +158,20 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             Bind::Texture(&front[0]),
             Bind::Texture(&sums[0]),
             Bind::Texture(&sums[1]),
+            Bind::Texture(&sums[2]),
         ],
         frame.output,
     )?;
-    let bytes = targets
-        .map(|t| f64::from(t.bytes(full)))
-        .iter()
-        .sum::<f64>();
+    let bytes: u32 = SUMS.iter().map(|t| t.bytes(full)).sum();
     Ok(Box::new(Dfaoit {
         under: [under(0)?, under(1)?],
         peel,
         front,
         second,
-        tail,
+        gather,
         sums,
         resolve,
-        bytes_per_pixel: single::BYTES_PER_PIXEL + 2.0 * 16.0 + bytes,
+        bytes_per_pixel: single::BYTES_PER_PIXEL + 2.0 * 16.0 + f64::from(bytes),
     }))
 }
 
@@ -176,11 +189,11 @@ impl Compositor for Dfaoit {
             self.under[from].draw(cx.recorder, &[clear_color(&self.front[1 - from], [0.0; 4])]);
         }
         {
-            let colors = [0, 1].map(|i| clear_color(&self.sums[i], [0.0; 4]));
-            let mut pass = cx.recorder.render("tail", &colors, None);
+            let colors = [0, 1, 2].map(|i| clear_color(&self.sums[i], SUMS[i].blend.start()));
+            let mut pass = cx.recorder.render("gather", &colors, None);
             pass.set_bind_group(1, &self.second.group, &[]);
             cx.scene
-                .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.tail);
+                .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.gather);
         }
         let output = cx.output();
         self.resolve.draw(cx.recorder, &[output]);

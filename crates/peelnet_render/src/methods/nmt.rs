@@ -1,26 +1,30 @@
-//! `nmt`: eq 6 with the transmittance that a network reads off four moments (Tsopouridis et al. 2024), drawn with the
-//! exported text itself.
+//! `nmt`: eq 6 with the transmittance that a network reads off four raw moments (Tsopouridis et al. 2024), drawn with the exported
+//! text itself. Targets are the published ones, 56 bytes a pixel.
 
 use super::{
     commutative::{self, Blend, Gather, Plan, Target},
     compositor::{Build, Compositor},
     learned::learned_transmittances,
     method::{Method, Promises},
-    parameter::{MOMENT_TARGETS, Precision},
+    parameter::{Parameter, Precision, Targets},
     weighted::SUMS,
 };
 use crate::{
     error::RenderError,
-    flaw::{Flaw, Property, half_statistics, half_sums},
+    flaw::{Flaw, Property, half_sums},
 };
 use peelnet_core::methods::deep;
 
+const TARGETS: Parameter = Parameter::Targets(Targets {
+    about: "f32 (default, as published) or f16",
+});
+
 pub(super) const METHOD: Method = Method {
-    parameters: &[MOMENT_TARGETS],
+    parameters: &[TARGETS],
     learned: true,
     promises: |_| Promises {
+        sums: Precision::Full,
         statistics: Precision::Full,
-        root: Some(2),
         ..Promises::NORMALISED
     },
     curve: &["", ":targets=f16"],
@@ -33,17 +37,22 @@ pub(super) const METHOD: Method = Method {
     }),
     transmittances: Some(learned_transmittances),
     flaws: &[
-        Flaw::swallowed(&["alpha-tiny", "deep"]),
-        // 0.0044 for a limit of 0.0039; with statistics in half floats it stays within.
-        Flaw::swallowed(&["near-overflow"]).when(|s| half_sums(s) && !half_statistics(s)),
+        Flaw::swallowed(&["deep", "near-overflow"]),
         Flaw::new(
             Property::Opaque,
             &["alpha-near-one"],
             "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
         ),
         Flaw::new(
+            Property::Scale,
+            &["thin-slab"],
+            "it divides depths by a pixel's own range of them, here a few roundings (Tsopouridis et al. 2024)",
+        )
+        .when(|spec| !half_sums(spec))
+        .seen_on_llvmpipe(),
+        Flaw::new(
             Property::Transmittance,
-            &["isolated", "two-layers", "coplanar"],
+            &["two-layers", "coplanar"],
             "the network's own error (Tsopouridis et al. 2024)",
         ),
     ],
@@ -56,23 +65,29 @@ pub(super) const METHOD: Method = Method {
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
-    let target = |label, channels| Target {
+    let target = |label, channels, blend| Target {
         label,
         channels,
         full: true,
-        blend: Blend::Add,
+        blend,
     };
     let extra = [("learned::weight", learned.wgsl.as_str())];
     commutative::build(
         b,
         &Plan {
-            targets: &[SUMS, target("absorbance", 2), target("moments", 4)],
+            targets: &[
+                Target { full: true, ..SUMS },
+                // b_0 and the number of fragments: published with four channels.
+                target("totals", 4, Blend::Add),
+                target("moments", 4, Blend::Add),
+                target("extent", 2, Blend::MaxAdd),
+            ],
             passes: &[
                 Gather {
                     label: "statistics",
                     shader: "methods::nmt::statistics",
                     extra: &extra,
-                    writes: &[1, 2],
+                    writes: &[1, 2, 3],
                     ..Gather::NONE
                 },
                 Gather {
@@ -80,7 +95,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                     shader: "methods::nmt::gather",
                     extra: &extra,
                     writes: &[0],
-                    reads: &[1, 2],
+                    reads: &[1, 2, 3],
                     ..Gather::NONE
                 },
             ],

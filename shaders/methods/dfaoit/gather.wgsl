@@ -1,6 +1,6 @@
-// dfaoit: sums over the fragments behind the two nearest.
+// dfaoit: sums over all fragments, and over those behind the two nearest.
 import package::learned::weight::peelnet_statistics;
-import package::scene::shade::shade;
+import package::scene::shade::radiance;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -8,8 +8,10 @@ import package::scene::visible::visible;
 @group(1) @binding(0) var second: texture_2d<u32>;
 
 struct Sums {
-    @location(0) color: vec4f,
-    @location(1) absorbance: vec2f,
+    @location(0) behind: vec4f,
+    // Colour adds, alpha is blended multiplicatively: dst * (1 - src).
+    @location(1) all: vec4f,
+    @location(2) count: f32,
 }
 
 @fragment
@@ -19,9 +21,7 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let before = textureLoad(second, vec2u(surface.position.xy), 0).xy;
     let depth = bitcast<u32>(surface.depth_linear);
-    if depth < before.x || (depth == before.x && surface.triangle + 1u <= before.y) {
-        discard;
-    }
-    let s = peelnet_statistics(shade(surface));
-    return Sums(s.tail, s.sums);
+    let front = depth < before.x || (depth == before.x && surface.triangle + 1u <= before.y);
+    let s = peelnet_statistics(radiance(surface), front);
+    return Sums(s.behind, s.all, s.count);
 }
