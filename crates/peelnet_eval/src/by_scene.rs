@@ -1,6 +1,6 @@
 //! Errors of every method on every scene: means over the views.
 
-use crate::{Row, geometric_mean};
+use crate::{Row, geometric_mean, methods_of, scenes_of};
 use peelnet_render::MethodSpec;
 use std::collections::BTreeMap;
 
@@ -50,17 +50,9 @@ pub struct ByScene {
 impl ByScene {
     /// Averages rows over the views of each scene.
     pub fn of(rows: &[Row]) -> Self {
-        let mut methods: Vec<String> = Vec::new();
-        let mut scenes: Vec<String> = Vec::new();
-        for row in rows {
-            if !methods.contains(&row.method) {
-                methods.push(row.method.clone());
-            }
-            if !scenes.contains(&row.scene) {
-                scenes.push(row.scene.clone());
-            }
-        }
-        let scenes: Vec<SceneErrors> = scenes
+        let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
+        let methods: Vec<String> = owned(methods_of(rows));
+        let scenes: Vec<SceneErrors> = scenes_of(rows)
             .into_iter()
             .map(|scene| {
                 let of = |pick: &dyn Fn(&Row) -> Option<f64>| {
@@ -88,7 +80,7 @@ impl ByScene {
                     mse255: of(&|r| Some(r.mse255)),
                     mse_linear: of(&|r| Some(r.mse_linear)),
                     mse255_covered: of(&|r| r.mse255_covered),
-                    scene,
+                    scene: scene.to_owned(),
                 }
             })
             .collect();

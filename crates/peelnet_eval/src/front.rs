@@ -1,6 +1,6 @@
 //! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
-use crate::{Row, geometric_mean, ratios::Bytes};
+use crate::{Row, geometric_mean, methods_of, ratios::Bytes};
 use peelnet_render::{MethodSpec, Role};
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting.
@@ -54,18 +54,11 @@ impl Point {
 
 /// Methods of which only errors are known, because they were composited on the CPU, each with the reason.
 pub fn untimed(rows: &[Row]) -> Vec<(&str, &'static str)> {
-    let mut found: Vec<(&str, &str)> = Vec::new();
-    for row in rows {
-        let method = row.method.as_str();
-        let reason = |spec: MethodSpec| spec.method().cpu_only;
-        // Rows of an older version may have names that are no longer there.
-        if let Some(why) = method.parse().ok().and_then(reason)
-            && !found.iter().any(|(m, _)| *m == method)
-        {
-            found.push((method, why));
-        }
-    }
-    found
+    let reason = |spec: MethodSpec| spec.method().cpu_only;
+    // Rows of an older version may have names that are no longer there.
+    let why = |method: &str| method.parse().ok().and_then(reason);
+    let methods = methods_of(rows).into_iter();
+    methods.filter_map(|m| Some((m, why(m)?))).collect()
 }
 
 /// The points of all rows, or of one scene's, by time; times are always geometric means. Methods without a time are left out.
@@ -74,12 +67,7 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
         .iter()
         .filter(|r| scene.is_none_or(|s| r.scene == s))
         .collect();
-    let mut methods: Vec<&str> = Vec::new();
-    for row in &rows {
-        if !methods.contains(&row.method.as_str()) {
-            methods.push(&row.method);
-        }
-    }
+    let methods = methods_of(rows.iter().copied());
     let of = |method: &str| -> Vec<&Row> {
         let all = rows.iter().copied();
         all.filter(|r| r.method == method).collect()

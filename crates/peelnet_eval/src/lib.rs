@@ -39,4 +39,4 @@ pub use error::EvalError;
 pub use machine::{Machine, load};
 pub use mean::geometric_mean;
 pub use partial::{Partial, settings_hash};
-pub use row::Row;
+pub use row::{Row, methods_of, scenes_of};

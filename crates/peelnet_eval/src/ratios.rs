@@ -1,6 +1,6 @@
 //! Methods against one another: the errors of each as ratios to those of two references, over scenes and views.
 
-use crate::{Row, front::BASE, geometric_mean};
+use crate::{Row, front::BASE, geometric_mean, methods_of};
 use peelnet_render::Role;
 use std::collections::BTreeMap;
 
@@ -66,12 +66,7 @@ impl Bytes {
 
 /// The figures of every method, in the order of the rows.
 pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
-    let mut methods: Vec<&str> = Vec::new();
-    for row in rows {
-        if !methods.contains(&row.method.as_str()) {
-            methods.push(&row.method);
-        }
-    }
+    let methods = methods_of(rows);
     let of = |method: &str| -> Vec<&Row> { rows.iter().filter(|r| r.method == method).collect() };
     let mean = |method: &str, value: &dyn Fn(&Row) -> Option<f64>| {
         let values: Option<Vec<f64>> = of(method).into_iter().map(value).collect();

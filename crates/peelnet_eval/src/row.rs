@@ -75,6 +75,26 @@ pub struct Row {
     pub adapter: String,
 }
 
+/// The names of the rows' methods, each once, in the order of the rows.
+pub fn methods_of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Vec<&'a str> {
+    each_once(rows.into_iter().map(|r| r.method.as_str()))
+}
+
+/// The names of the rows' scenes, each once, in the order of the rows.
+pub fn scenes_of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Vec<&'a str> {
+    each_once(rows.into_iter().map(|r| r.scene.as_str()))
+}
+
+fn each_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut found = Vec::new();
+    for name in names {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;

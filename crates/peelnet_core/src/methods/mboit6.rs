@@ -2,15 +2,10 @@
 //! 2018). As [`mboit4`](super::mboit4), with bounds that measures of four points meet. The shader twin is `methods/mboit6/`.
 
 use super::{
-    deep,
     mboit4::{PowerMoments, Settings},
     roots,
 };
-use crate::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::Fragment,
-    guards::WEIGHT_FLOOR,
-};
+use crate::{absorbance::DepthWarp, fragment::Fragment};
 
 /// The paper's settings for 32-bit moments.
 pub const PAPER: Settings = Settings {
@@ -87,18 +82,8 @@ pub fn composite(
     warp: &DepthWarp,
     settings: &Settings,
 ) -> [f32; 3] {
-    let zeta = |f: &Fragment| warp.apply(f.depth.into());
-    let mut moments = Moments::default();
-    for f in fragments {
-        moments.add(absorbance(f.alpha), zeta(f));
-    }
-    deep::composite(fragments, background, |f| {
-        let mut seen = moments;
-        if settings.own_share_out {
-            seen.add(-absorbance(f.alpha), zeta(f));
-        }
-        let t = seen.transmittance(zeta(f), settings);
-        t.max(WEIGHT_FLOOR.into()) as f32
+    super::composite_by(fragments, background, |points| {
+        transmittances(points, warp, settings)
     })
 }
 

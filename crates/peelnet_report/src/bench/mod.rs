@@ -12,6 +12,7 @@ use peelnet_eval::{
     bench::Bench,
     front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
     ratios::{Bytes, Ratios, ratios},
+    scenes_of,
 };
 use std::path::Path;
 
@@ -88,12 +89,7 @@ impl Results<Bench> {
     /// scene more than on anything else.
     pub fn times_by_scene(&self) -> Table {
         let rows = &self.measured.rows;
-        let mut scenes: Vec<&str> = Vec::new();
-        for row in rows {
-            if !scenes.contains(&row.scene.as_str()) {
-                scenes.push(&row.scene);
-            }
-        }
+        let scenes = scenes_of(rows);
         let points = |scene| front::points(rows, Some(scene), Mean::Geometric);
         let points: Vec<Vec<Point>> = scenes.iter().copied().map(points).collect();
         // Points come by time.

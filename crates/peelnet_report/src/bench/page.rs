@@ -16,6 +16,7 @@ use peelnet_eval::{
     front::{self, Mean, Point},
     geometric_mean,
     ratios::{self, MOMENTS, WEIGHTED},
+    scenes_of,
 };
 use std::path::Path;
 
@@ -28,12 +29,7 @@ pub(crate) const MAGNIFIED: u16 = 8;
 /// The whole page. `images` is the folder with `<scene>-<method>.png`.
 pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, ReportError> {
     let rows = &results.measured.rows;
-    let mut scenes: Vec<&str> = Vec::new();
-    for row in rows {
-        if !scenes.contains(&row.scene.as_str()) {
-            scenes.push(&row.scene);
-        }
-    }
+    let scenes = scenes_of(rows);
     let all = front::points(rows, None, Mean::Geometric);
     let by_size = front::points(rows, None, Mean::Arithmetic);
     let by_scene = scenes

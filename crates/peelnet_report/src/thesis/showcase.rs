@@ -17,6 +17,7 @@ use peelnet_eval::{
     Row,
     compare::{EXACT, image_name},
     front::{self, BASE, Mean, Point},
+    methods_of,
     ratios::{self, MOMENTS, WEIGHTED},
 };
 use std::path::Path;
@@ -30,13 +31,9 @@ pub(super) fn section(rows: &[Row], images: Option<&Path>) -> Result<Markup, Rep
         return Ok(Markup::default());
     };
     let points = front::points(rows, None, Mean::Arithmetic);
-    let mut methods: Vec<&str> = Vec::new();
-    for row in rows {
-        // Blending without sorting is only the unit of time.
-        if !methods.contains(&row.method.as_str()) && row.method != BASE {
-            methods.push(&row.method);
-        }
-    }
+    let mut methods = methods_of(rows);
+    // Blending without sorting is only the unit of time.
+    methods.retain(|&m| m != BASE);
     let gallery = match images {
         Some(folder) => gallery(rows, scene, &methods, folder)?,
         None => Markup::default(),
