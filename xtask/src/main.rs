@@ -3,6 +3,7 @@
 //! Only the standard library is used, so that this compiles in a second before anything else does.
 
 mod checks;
+mod measure;
 mod product;
 mod setup;
 
@@ -22,6 +23,9 @@ cargo xtask <command>
                   compare budgets of training for every network, on the same data; the table is in docs/results
   test            formatting, clippy, all tests, documentation
   ci              test, and cargo-deny: licences, advisories, sources, versions
+  measure [--binary PEELNET] [--only STEP,…] [--name NAME] [--into DIR]
+                  every result in docs/results, of this machine and under its name (up to 40 minutes); with a program that was built
+                  elsewhere neither a compiler nor a network is needed
   results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
   wasm            check the crates that run in a browser for wasm32
   docs            build the book in docs/ with mdBook, into target/book
@@ -43,6 +47,9 @@ fn main() -> ExitCode {
         (Some("train-models"), ["--search"]) => product::search(),
         (Some("test"), []) => checks::test(),
         (Some("ci"), []) => checks::test().and_then(|()| checks::deny()),
+        (Some("measure"), rest) => {
+            measure::Options::parse(rest).and_then(|options| measure::measure(&options))
+        }
         (Some("results"), ["--check"]) => checks::results(),
         (Some("wasm"), []) => checks::wasm(),
         (Some("docs"), []) => checks::docs(),
@@ -69,10 +76,15 @@ fn main() -> ExitCode {
     }
 }
 
-/// The workspace's root: this package's parent.
+/// The workspace's root: this package's parent, where it was built.
 fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.parent().unwrap_or(here).to_owned()
+    let root = here.parent().unwrap_or(here);
+    // Built elsewhere: then it is started in the root.
+    match env::current_dir() {
+        Ok(current) if !root.exists() => current,
+        _ => root.to_owned(),
+    }
 }
 
 fn cargo() -> Command {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Compiles the release build of `peelnet`, with cargo's own progress, and returns the program.
-fn build() -> Result<PathBuf, String> {
+pub fn build() -> Result<PathBuf, String> {
     let args = ["build", "--release", "--package", "peelnet"];
     run(cargo().args(args), "cargo build")?;
     // This program lies in target/debug.
@@ -190,6 +190,13 @@ fn finish(program: &Path, recipe: &str, data: &[&str], more: &[&str]) -> Result<
     std::fs::write(shipped.join("metrics.json"), output.stdout).map_err(io)?;
     std::fs::copy(root().join(made), shipped.join("model.safetensors")).map_err(io)?;
     Ok(())
+}
+
+/// The shipped scenes that no network learns from.
+pub fn held_out_scenes() -> Result<Vec<String>, String> {
+    let mut files = scene_files()?;
+    files.retain(|file| file.ends_with("-held.toml"));
+    Ok(files)
 }
 
 /// The shipped scenes, relative to the root, in the order of their names.
