@@ -77,7 +77,7 @@ const BENCH_FILES: &[&str] = &[
 ];
 
 #[rustfmt::skip]
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 11] = [
     Step {
         name: "numerics",
         before: &[],
@@ -136,6 +136,12 @@ const STEPS: [Step; 10] = [
         name: "extract-dual",
         before: &[],
         args: &["extract", "data/scenes/sixteen-050.toml", "--size", "1024x768", "--peel", "dual", "--json"],
+        keep: &[],
+    },
+    Step {
+        name: "extract-single",
+        before: &[],
+        args: &["extract", "data/scenes/sixteen-050.toml", "--size", "1024x768", "--peel", "single", "--json"],
         keep: &[],
     },
 ];
