@@ -223,9 +223,21 @@ pub struct TrainArgs {
     /// Rows of the datasets that are used at most; of more, whole pixels are drawn from the seed
     #[arg(long, value_name = "N", default_value_t = peelnet_train::DEFAULT_MAX_ROWS)]
     pub max_rows: u64,
+    /// What stays together when rows are set aside for testing: scenes (one scene alone is split by pixel), or pixels of all scenes alike
+    #[arg(long, value_name = "BY", default_value = "scene")]
+    pub split: SplitChoice,
     /// Stop after N epochs without a lower held-out loss and keep the best
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub patience: Option<u32>,
+}
+
+/// What stays together when rows are set aside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SplitChoice {
+    /// Whole scenes
+    Scene,
+    /// Whole pixels
+    Pixel,
 }
 
 /// How a learning rate changes.

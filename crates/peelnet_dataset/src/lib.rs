@@ -61,6 +61,6 @@ pub use manifest::{
 };
 pub use reader::{Batches, Dataset};
 pub use shard::Shard;
-pub use split::{Split, Subset};
+pub use split::{Split, SplitBy, Subset};
 pub use summary::Summary;
 pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter};

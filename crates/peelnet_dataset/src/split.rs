@@ -1,8 +1,11 @@
 //! Which rows train, which choose, and which judge.
 //!
-//! A split is never stored: it follows from a seed and the pixel's place, so that the same pixel is in the same
-//! subset in every format, shard and batch. Pixels are split whole, because the fragments of one pixel say almost
-//! everything about one another. Scenes that are marked held-out are not trained on at all.
+//! A split is never stored: it follows from a seed and the names of scenes or the pixel's place, so that the same pixel is in the
+//! same subset in every format, shard and batch. Scenes are split whole where there is more than one, because the pixels of a scene
+//! say much about one another; pixels are always split whole, because the fragments of one say almost everything about one another.
+//! Scenes that are marked held-out are not trained on at all.
+
+use std::collections::BTreeMap;
 
 use peelnet_core::hash::{pcg, pixel_hash};
 use serde::{Deserialize, Serialize};
@@ -22,6 +25,17 @@ pub enum Subset {
     Test,
     /// Of a scene that is not trained on; reported only.
     HeldOut,
+}
+
+/// What stays together when rows are set aside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SplitBy {
+    /// Whole scenes, where there are enough of them; else pixels.
+    Scene,
+    /// Whole pixels, of every scene alike: what the rows that are set aside say of other scenes is little.
+    #[default]
+    Pixel,
 }
 
 /// A deterministic assignment of pixels to subsets.
@@ -74,6 +88,75 @@ impl Split {
         subsets
     }
 
+    /// Whole scenes for each subset, by name: in an order drawn from the seed, scenes are set aside for testing until they have the
+    /// share of the rows that is asked, then for validation, the others train. `None` where there are too few for one in each
+    /// subset that is asked.
+    ///
+    /// ```
+    /// use peelnet_dataset::{Split, Subset};
+    /// use std::collections::BTreeMap;
+    ///
+    /// let rows = BTreeMap::from([("cups", 100), ("panes", 100), ("smoke", 100)]);
+    /// let subsets = Split::new(1, 0.0, 1.0 / 3.0)?.scenes(&rows).expect("three scenes");
+    /// assert_eq!(subsets.values().filter(|s| **s == Subset::Test).count(), 1);
+    /// # Ok::<(), peelnet_dataset::DatasetError>(())
+    /// ```
+    pub fn scenes<'a>(&self, rows: &BTreeMap<&'a str, u64>) -> Option<BTreeMap<&'a str, Subset>> {
+        let asked = [
+            (Subset::Test, self.test),
+            (Subset::Validation, self.validation),
+        ];
+        let mut asked: Vec<_> = asked
+            .into_iter()
+            .filter(|(_, share)| *share > 0.0)
+            .collect();
+        if rows.len() <= asked.len() {
+            return None;
+        }
+        let total = rows.values().fold(0u64, |a, &b| a.saturating_add(b)) as f64;
+        let mut order: Vec<(u32, &str, u64)> = rows
+            .iter()
+            .map(|(&name, &n)| {
+                let bytes = name.bytes();
+                (
+                    bytes.fold(self.mixed_seed(), |h, b| pcg(h ^ u32::from(b))),
+                    name,
+                    n,
+                )
+            })
+            .collect();
+        order.sort_unstable();
+        let mut subsets = BTreeMap::new();
+        let mut taken = 0.0;
+        for (k, &(_, name, n)) in order.iter().enumerate() {
+            // One scene is left for every subset behind this one, training among them.
+            let left = order.len() - k;
+            while let Some(&(_, share)) = asked.first() {
+                // Rounding of a share times a total, in rows.
+                if taken > 0.0 && (taken >= share * total - 0.5 || left <= asked.len()) {
+                    asked.remove(0);
+                    taken = 0.0;
+                } else {
+                    break;
+                }
+            }
+            let subset = asked.first().map_or(Subset::Train, |(subset, _)| *subset);
+            subsets.insert(name, subset);
+            taken += n.max(1) as f64;
+        }
+        Some(subsets)
+    }
+
+    /// A split that gives every pixel to one subset.
+    pub fn whole(subset: Subset) -> Self {
+        let share = |of: Subset| if subset == of { 1.0 } else { 0.0 };
+        Self {
+            seed: 0,
+            validation: share(Subset::Validation),
+            test: share(Subset::Test),
+        }
+    }
+
     /// The seed for the pixels' hash. The sampling of an extraction keeps pixels by the same hash, usually with the
     /// same seed: used as it is, the split would see only the hashes below the sampling's threshold and give all of
     /// them to one subset.
@@ -108,6 +191,46 @@ mod tests {
             let count = |s| sampled.iter().filter(|&&t| t == s).count();
             assert_share(count(Subset::Test), sampled.len(), 0.33);
             assert_share(count(Subset::Validation), sampled.len(), 0.1);
+        }
+    }
+
+    /// Shares of scenes of equal size are met to one scene, no subset that is asked is empty, every seed draws others, and a scene
+    /// keeps its place whatever the number of its rows.
+    #[test]
+    fn whole_scenes_are_set_aside() {
+        let names: Vec<String> = (0..12).map(|k| format!("s{k}")).collect();
+        let rows: BTreeMap<&str, u64> = names.iter().map(|n| (n.as_str(), 50)).collect();
+        let count =
+            |subsets: &BTreeMap<&str, Subset>, s| subsets.values().filter(|t| **t == s).count();
+        let third = Split::new(3, 0.25, 1.0 / 3.0)
+            .unwrap()
+            .scenes(&rows)
+            .unwrap();
+        let counts = [Subset::Test, Subset::Validation, Subset::Train].map(|s| count(&third, s));
+        assert_eq!(counts, [4, 3, 5]);
+        let other = Split::new(4, 0.25, 1.0 / 3.0)
+            .unwrap()
+            .scenes(&rows)
+            .unwrap();
+        assert_ne!(third, other);
+        // The smallest shares take a scene, and the largest leave one.
+        for (validation, test) in [(1e-6, 1e-6), (0.49, 0.5), (0.0, 0.999), (0.999, 0.0)] {
+            for scenes in 2..12 {
+                let rows: BTreeMap<&str, u64> =
+                    rows.iter().take(scenes).map(|(a, b)| (*a, *b)).collect();
+                let split = Split::new(1, validation, test).unwrap();
+                let asked = usize::from(validation > 0.0) + usize::from(test > 0.0);
+                let Some(subsets) = split.scenes(&rows) else {
+                    assert!(scenes <= asked, "{scenes}");
+                    continue;
+                };
+                assert!(count(&subsets, Subset::Train) > 0, "{scenes}");
+                assert_eq!(count(&subsets, Subset::Test) > 0, test > 0.0);
+                assert_eq!(count(&subsets, Subset::Validation) > 0, validation > 0.0);
+            }
+        }
+        for subset in [Subset::Train, Subset::Validation, Subset::Test] {
+            assert_eq!(Split::whole(subset).pixel(3, 4, 5), subset);
         }
     }
 

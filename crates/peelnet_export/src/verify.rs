@@ -330,6 +330,7 @@ mod tests {
                 dataset: Some(DatasetRef {
                     hash: "0".into(),
                     rows: 1,
+                    set_aside: Vec::new(),
                     scenes: vec!["sixteen".into()],
                 }),
                 epochs: 1,

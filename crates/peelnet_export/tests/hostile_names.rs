@@ -19,6 +19,7 @@ fn hostile(recipe: Recipe, text: &str) -> Model {
     meta.dataset = Some(DatasetRef {
         hash: text.to_owned(),
         rows: 1,
+        set_aside: Vec::new(),
         scenes: vec![text.to_owned(); 1000],
     });
     meta.held_out = (0..1000).map(|k| (format!("{text}{k}"), 0.5)).collect();

@@ -48,6 +48,7 @@ fn model() -> Model {
             dataset: Some(DatasetRef {
                 hash: "cd".repeat(32),
                 rows: 1_544_955,
+                set_aside: Vec::new(),
                 scenes: vec!["sixteen-050".to_owned()],
             }),
             epochs: 150,

@@ -1,5 +1,7 @@
 //! Generated textures: a field of 0 … 1 that repeats without a seam, read as colours, heights or values.
 
+mod letters;
+
 use crate::texture::{Texture, normals_of};
 use glam::{IVec2, Vec2};
 use peelnet_core::{hash::pixel_hash, srgb};
@@ -18,6 +20,10 @@ pub enum Field {
     Cracks,
     /// 1 in some bands across the texture, with waves on their edges: painted decoration.
     Bands,
+    /// 1 on capital letters in lines, with words between spaces: a page of a text that means nothing.
+    Letters,
+    /// 1 in the middle, falling to 0 before the edges with a ragged border: a puff of smoke or a small cloud.
+    Puff,
 }
 
 /// A generated map: `color_map = { pattern = "cracks", cells = 12, colors = [[1, 1, 1], [0.2, 0.1, 0]] }`.
@@ -108,7 +114,8 @@ impl Pattern {
         let grid = |(times, channel)| self.grid(self.cells * times, channel);
         let grids: Vec<Grid> = match self.pattern {
             Field::Checker | Field::Bands => Vec::new(),
-            Field::Noise => (0..5).map(|k| grid((1 << k, k))).collect(),
+            Field::Letters => vec![grid((1, 9))],
+            Field::Noise | Field::Puff => (0..5).map(|k| grid((1 << k, k))).collect(),
             Field::Cracks => [(1, 5), (1, 6), (2, 7), (2, 8)].map(grid).into(),
         };
         let at = |x: u32, y: u32| {
@@ -122,6 +129,13 @@ impl Pattern {
                     let push = Vec2::new(grids[2].noise(place * 2.0), grids[3].noise(place * 2.0));
                     let border = border(&grids, place + (push - 0.5) * 0.35);
                     1.0 - smoothstep(0.0, self.width, border)
+                }
+                Field::Letters => letters::ink(place, |cell| grids[0].at(cell)),
+                Field::Puff => {
+                    let out = (place / self.cells as f32 - 0.5).length() * 2.0;
+                    // The noise eats into the disc from its edge; nothing is left at a distance of 1.
+                    let ball = (1.0 - out * out).max(0.0);
+                    (ball * (0.4 + 1.2 * octaves(&grids, place)) - 0.1).max(0.0)
                 }
                 Field::Bands => {
                     let down = place.y / self.cells as f32;
@@ -303,7 +317,7 @@ mod tests {
     /// differ with the seed.
     #[test]
     fn fields_repeat_without_a_seam() {
-        for name in ["noise", "cracks", "bands"] {
+        for name in ["noise", "cracks", "bands", "letters", "puff"] {
             let p = pattern(&format!("pattern = '{name}'\nsize = 128\nwidth = 0.3"));
             let v = p.values();
             let at = |x: u32, y: u32| v[(y * 128 + x % 128) as usize];
@@ -325,6 +339,22 @@ mod tests {
                 };
                 assert_ne!(other.values(), v, "{name}");
             }
+        }
+    }
+
+    /// Letters leave the edges of their cells free, and a puff the edges of the texture: quads with them show no border.
+    #[test]
+    fn nothing_reaches_the_edges_of_letters_and_puffs() {
+        for name in ["letters", "puff"] {
+            let p = pattern(&format!("pattern = '{name}'\ncells = 4\nsize = 128"));
+            let v = p.values();
+            let edges = (0..128).flat_map(|k| [k, 127 * 128 + k, 128 * k, 128 * k + 127]);
+            for i in edges {
+                assert_eq!(v[i], 0.0, "{name}: {i}");
+            }
+            // Neither nearly empty nor nearly full.
+            let mean = v.iter().sum::<f32>() / v.len() as f32;
+            assert!((0.1..0.5).contains(&mean), "{name}: {mean}");
         }
     }
 

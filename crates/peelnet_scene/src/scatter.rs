@@ -14,12 +14,16 @@
 //! color = "random"                  # or [r, g, b]
 //! alpha = [0.05, 0.95]              # evenly between, or one number
 //! lighting = "unlit"
+//! color_map = { pattern = "puff", … }   # or an image file, as in a material
 //! layer = 0
 //! ```
 //!
 //! Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
 
-use crate::file::{materials::check_color, references::MeshRef};
+use crate::file::{
+    materials::check_color,
+    references::{MapRef, MeshRef},
+};
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::random::Random;
 use serde::Deserialize;
@@ -58,6 +62,8 @@ pub struct Scatter {
     pub alpha: Option<NumberOrRange>,
     /// As in a material.
     pub lighting: Option<String>,
+    /// Texture of colour and opacity of every object, as in a material.
+    pub color_map: Option<MapRef>,
     /// Layer of all objects.
     pub layer: Option<u32>,
 }

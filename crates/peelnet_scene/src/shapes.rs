@@ -1,6 +1,8 @@
-//! Generated meshes. Closed ones are watertight, face outwards, and share their vertices.
+//! Generated meshes. Closed ones are watertight, face outwards, and share their vertices; quads, strands and terrain are open.
 
+mod strands;
 mod surfaces;
+mod terrain;
 #[cfg(test)]
 mod tests;
 mod unwrap;
@@ -12,6 +14,7 @@ use crate::{
 use glam::Vec3;
 use serde::Deserialize;
 use std::f32::consts::PI;
+use strands::Strands;
 use surfaces::{Surface, Waves, cuboid, lathe, resample, revolve, torus, torus_grid};
 use unwrap::Unwrap;
 
@@ -110,6 +113,51 @@ pub enum Shape {
         #[serde(default = "smooth")]
         triangles: usize,
     },
+    /// Hair: thin ribbons that grow out of the upper part of a sphere around the origin and hang down around it.
+    Strands {
+        /// Radius of the sphere.
+        #[serde(default = "one")]
+        radius: f32,
+        /// Number of strands.
+        #[serde(default = "thousand")]
+        count: usize,
+        /// Rectangles of a strand, two triangles each.
+        #[serde(default = "eight")]
+        segments: usize,
+        /// Length of the longest strand; the others have 0.7 of it or more.
+        #[serde(default = "one")]
+        length: f32,
+        /// Width at the root; it falls to a third towards the tip.
+        #[serde(default = "hundredth")]
+        width: f32,
+        /// How soon a strand hangs down: 0 grows straight outwards.
+        #[serde(default = "one")]
+        droop: f32,
+        /// How far a strand winds about its course: 0 is straight hair.
+        #[serde(default)]
+        curl: f32,
+        /// Height of the lowest roots as a part of the radius, −1 … 1.
+        #[serde(default)]
+        roots: f32,
+        /// Another seed, other strands.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// Land over the xz plane: ridges and valleys, open below.
+    Terrain {
+        /// Extent along x and z.
+        #[serde(default = "two_twos")]
+        size: [f32; 2],
+        /// Height between the lowest and the highest place.
+        #[serde(default = "half")]
+        height: f32,
+        /// Another seed, another land.
+        #[serde(default)]
+        seed: u64,
+        /// About how many triangles.
+        #[serde(default = "smooth")]
+        triangles: usize,
+    },
 }
 
 const fn one() -> f32 {
@@ -139,6 +187,15 @@ const fn two_twos() -> [f32; 2] {
 const fn smooth() -> usize {
     2000
 }
+const fn thousand() -> usize {
+    1000
+}
+const fn eight() -> usize {
+    8
+}
+const fn hundredth() -> f32 {
+    0.01
+}
 
 impl Shape {
     /// The shape's name.
@@ -152,6 +209,8 @@ impl Shape {
             Self::Bumpy { .. } => "bumpy",
             Self::Cup { .. } => "cup",
             Self::Lathe { .. } => "lathe",
+            Self::Strands { .. } => "strands",
+            Self::Terrain { .. } => "terrain",
         }
     }
 
@@ -160,12 +219,16 @@ impl Shape {
         match self {
             Self::Box { .. } => 12,
             Self::Quad { .. } => 2,
+            Self::Strands {
+                count, segments, ..
+            } => count.saturating_mul(*segments).saturating_mul(2),
             Self::Sphere { triangles, .. }
             | Self::Torus { triangles, .. }
             | Self::Capsule { triangles, .. }
             | Self::Bumpy { triangles, .. }
             | Self::Cup { triangles, .. }
-            | Self::Lathe { triangles, .. } => *triangles,
+            | Self::Lathe { triangles, .. }
+            | Self::Terrain { triangles, .. } => *triangles,
         }
     }
 
@@ -241,6 +304,34 @@ impl Shape {
                 let profile = lathe(profile, offset, rings)?;
                 Ok(smooth_revolved(profile, segments))
             }
+            Self::Strands {
+                radius,
+                count,
+                segments,
+                length,
+                width,
+                droop,
+                curl,
+                roots,
+                seed,
+            } => Strands {
+                radius,
+                count,
+                segments,
+                length,
+                width,
+                droop,
+                curl,
+                roots,
+                seed,
+            }
+            .build(),
+            Self::Terrain {
+                size,
+                height,
+                seed,
+                triangles,
+            } => terrain::build(size, height, seed, triangles),
         }
     }
 }

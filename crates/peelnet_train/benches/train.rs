@@ -20,6 +20,7 @@ fn rows() -> TrainingData {
         pixels: None,
         subsets: None,
         used: None,
+        split: None,
         dataset: None,
     }
 }

@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         pixels: None,
         subsets: None,
         used: None,
+        split: None,
         dataset: None,
     };
     let config = Config {

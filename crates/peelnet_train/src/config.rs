@@ -1,6 +1,7 @@
 //! Every hyper-parameter of a run.
 
 use peelnet_core::mlp::Activation;
+use peelnet_dataset::SplitBy;
 use peelnet_model::{PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,10 @@ pub struct Config {
     /// Share of the examples that choices are made by, in `[0, 1)`: neither trained on nor tested with.
     #[serde(default)]
     pub validation: f64,
+    /// What stays together when examples are set aside for these two. Rows in memory, which have no scenes, are always split by
+    /// pixel.
+    #[serde(default, skip_serializing_if = "is_by_pixel")]
+    pub split: SplitBy,
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
     /// Rows of the datasets that are used at most: of more, whole pixels are drawn, see [`TrainingData::used`].
@@ -108,6 +113,15 @@ const fn is_default_max_rows(rows: &u64) -> bool {
     *rows == DEFAULT_MAX_ROWS
 }
 
+/// Left out of saved configurations: earlier versions knew nothing else.
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+fn is_by_pixel(split: &SplitBy) -> bool {
+    *split == SplitBy::Pixel
+}
+
 /// Left out of saved configurations: those of versions without a choice of loss read the same.
 fn is_default(loss: &PixelLoss) -> bool {
     *loss == PixelLoss::default()
@@ -157,6 +171,7 @@ impl Config {
             epsilon: 1e-8,
             held_out: budget.held_out,
             validation: budget.validation,
+            split: SplitBy::Scene,
             patience: None,
             max_rows: DEFAULT_MAX_ROWS,
             loss: recipe.loss.unwrap_or_default(),

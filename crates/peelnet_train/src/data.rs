@@ -5,27 +5,60 @@ use std::ops::Range;
 
 use peelnet_core::features::Feature;
 use peelnet_core::methods::deep::Row;
-use peelnet_dataset::{Dataset, FragmentBatch, Part, Split, Subset};
+use peelnet_dataset::{Dataset, FragmentBatch, Part, Split, SplitBy, Subset};
 use peelnet_model::{DatasetRef, Inputs, Model};
 
 use crate::config::Config;
 use crate::error::TrainError;
 use crate::pixels::{self, View};
 use crate::sample::Sample;
-use crate::training_data::{TrainingData, UsedRows};
+use crate::training_data::{DataSplit, TrainingData, UsedRows};
 
 impl TrainingData {
     /// The rows of all scenes that are not held out, dataset after dataset.
     ///
-    /// Of these, the shares [`Config::held_out`] and [`Config::validation`] are set aside by whole pixels: the fragments of a pixel have their sum
-    /// and count in common and say almost everything about one another.
+    /// Of these, the shares [`Config::held_out`] and [`Config::validation`] are set aside: whole scenes where [`Config::split`] says so
+    /// and there are enough of them, else whole pixels, whose fragments have their sum and count in common and say almost everything
+    /// about one another. Each world of a synthetic dataset counts as a scene. [`TrainingData::split`] says what was done.
     ///
     /// # Errors
     /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
         let split = Split::new(config.seed, config.validation, config.held_out)?;
-        let mut data = Self::of_parts(config, &[(datasets, split)])?;
+        let scenes = scenes_of(datasets);
+        let rows: BTreeMap<&str, u64> = scenes.iter().map(|(n, r)| (n.as_str(), *r)).collect();
+        let subsets = (config.split == SplitBy::Scene)
+            .then(|| split.scenes(&rows))
+            .flatten();
+        let Some(subsets) = subsets else {
+            let mut data = Self::of_parts(config, &[(datasets, &|_, _| split)])?;
+            data.check_split(config);
+            data.split = Some(DataSplit::Pixels {
+                scenes: scenes.len(),
+            });
+            return Ok(data);
+        };
+        let of = |dataset: &Dataset, part: &Part| {
+            let subset = subsets.get(scene_of(dataset, part).as_str());
+            Split::whole(subset.copied().unwrap_or(Subset::Train))
+        };
+        let mut data = Self::of_parts(config, &[(datasets, &of)])?;
         data.check_split(config);
+        let names = |wanted: Subset| {
+            let of = subsets.iter().filter(move |(_, s)| **s == wanted);
+            of.map(|(name, _)| (*name).to_owned()).collect()
+        };
+        let aside = DataSplit::Scenes {
+            validation: names(Subset::Validation),
+            test: names(Subset::Test),
+        };
+        if let Some(reference) = &mut data.dataset {
+            let all = std::mem::take(&mut reference.scenes);
+            (reference.set_aside, reference.scenes) =
+                all.into_iter().partition(|name| aside.contains(name));
+        }
+        // A share of the rows that holds no example of a subset is dropped above.
+        data.split = data.subsets.is_some().then_some(aside);
         Ok(data)
     }
 
@@ -39,22 +72,27 @@ impl TrainingData {
         training: &[Dataset],
         validation: &[Dataset],
     ) -> Result<Self, TrainError> {
-        let all = |validation| Split::new(config.seed, validation, 0.0);
-        Self::of_parts(config, &[(training, all(0.0)?), (validation, all(1.0)?)])
+        Self::of_parts(
+            config,
+            &[
+                (training, &|_, _| Split::whole(Subset::Train)),
+                (validation, &|_, _| Split::whole(Subset::Validation)),
+            ],
+        )
     }
 
-    /// The rows of all scenes that are not held out, of datasets with the split of their pixels.
-    fn of_parts(config: &Config, all: &[(&[Dataset], Split)]) -> Result<Self, TrainError> {
+    /// The rows of all scenes that are not held out, of datasets with the split of each part's pixels.
+    fn of_parts(config: &Config, all: &[(&[Dataset], SplitOf<'_>)]) -> Result<Self, TrainError> {
         let datasets = || {
             all.iter()
                 .flat_map(|(datasets, split)| datasets.iter().map(move |d| (d, split)))
         };
-        let parts: Vec<(&Dataset, &Part, &Split)> = datasets()
+        let parts: Vec<(&Dataset, &Part, Split)> = datasets()
             .flat_map(|(dataset, split)| {
                 let parts = dataset.manifest().parts.iter();
-                parts.map(move |part| (dataset, part, split))
+                let parts = parts.filter(move |part| !dataset.is_held_out(part));
+                parts.map(move |part| (dataset, part, split(dataset, part)))
             })
-            .filter(|(dataset, part, _)| !dataset.is_held_out(part))
             .collect();
         let total = parts
             .iter()
@@ -79,6 +117,7 @@ impl TrainingData {
         data.dataset = Some(DatasetRef {
             hash: hashes.join("+"),
             rows: total,
+            set_aside: Vec::new(),
             scenes: pixels::training_scenes(datasets().map(|(d, _)| d))
                 .into_iter()
                 .collect(),
@@ -90,7 +129,8 @@ impl TrainingData {
     /// follow one another with the same number of the view are one view. `source` names them in messages. Held-out scenes are the
     /// caller's to leave out.
     ///
-    /// The shares that are set aside are those of [`TrainingData::from_datasets`], so the same rows train the same network.
+    /// The shares are set aside by pixels. They are those of [`TrainingData::from_datasets`] with [`SplitBy::Pixel`], so the same rows
+    /// train the same network.
     ///
     /// # Errors
     /// Columns of different lengths, or settings out of their range.
@@ -104,7 +144,7 @@ impl TrainingData {
             batch.check()?;
         }
         let views = batches.chunk_by(|a, b| a.view.first() == b.view.first());
-        let views = views.map(|batches| (View::Held(batches), &split));
+        let views = views.map(|batches| (View::Held(batches), split));
         let mut data = match config.recipe.inputs {
             Inputs::Row(features) => rows(features, &mut Sample::all(), views)?,
             _ => pixels::gather(config.recipe, &mut Sample::all(), views)?,
@@ -135,16 +175,46 @@ impl TrainingData {
             pixels: None,
             subsets: Some(Vec::new()),
             used: None,
+            split: None,
             dataset: None,
         }
     }
+}
+
+/// The split of a part's pixels.
+type SplitOf<'a> = &'a dyn Fn(&Dataset, &Part) -> Split;
+
+/// The name that a part's rows are split by: its scene, or of a synthetic dataset its world.
+fn scene_of(dataset: &Dataset, part: &Part) -> String {
+    let manifest = dataset.manifest();
+    let name = &manifest.scenes[part.scene as usize].name;
+    if manifest.peel == SYNTHETIC {
+        format!("{name} {}", part.index)
+    } else {
+        name.clone()
+    }
+}
+
+/// How a dataset's manifest says that its lists were made up.
+const SYNTHETIC: &str = "synthetic";
+
+/// Rows of each scene that is not held out.
+fn scenes_of(datasets: &[Dataset]) -> BTreeMap<String, u64> {
+    let mut rows = BTreeMap::new();
+    for dataset in datasets {
+        let parts = dataset.manifest().parts.iter();
+        for part in parts.filter(|p| p.rows > 0 && !dataset.is_held_out(p)) {
+            *rows.entry(scene_of(dataset, part)).or_default() += part.rows;
+        }
+    }
+    rows
 }
 
 /// Every row is an example with its transmittance as the target.
 fn rows<'a>(
     features: &[&Feature<Row>],
     sample: &mut Sample,
-    views: impl IntoIterator<Item = (View<'a>, &'a Split)>,
+    views: impl IntoIterator<Item = (View<'a>, Split)>,
 ) -> Result<TrainingData, TrainError> {
     let mut data = TrainingData::of_rows(features);
     for (view, split) in views {

@@ -96,4 +96,4 @@ pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};
 pub use task::{Part, Task};
 pub use train::{RunOptions, train};
-pub use training_data::{PixelColumns, PixelFixed, TrainingData, UsedRows};
+pub use training_data::{DataSplit, PixelColumns, PixelFixed, TrainingData, UsedRows};

@@ -185,7 +185,7 @@ struct Gathered {
 pub(crate) fn gather<'a>(
     recipe: Recipe,
     sample: &mut Sample,
-    views: impl IntoIterator<Item = (View<'a>, &'a Split)>,
+    views: impl IntoIterator<Item = (View<'a>, Split)>,
 ) -> Result<TrainingData, TrainError> {
     let mut data = TrainingData {
         source: String::new(),
@@ -195,6 +195,7 @@ pub(crate) fn gather<'a>(
         pixels: recipe.loss.map(|_| PixelColumns::default()),
         subsets: Some(Vec::new()),
         used: None,
+        split: None,
         dataset: None,
     };
     let mut all = Vec::new();

@@ -27,8 +27,37 @@ pub struct TrainingData {
     pub subsets: Option<Vec<Subset>>,
     /// How many of a dataset's rows these examples are made of; none where they were in memory before.
     pub used: Option<UsedRows>,
+    /// How rows of datasets were set aside; none where they were in memory before.
+    pub split: Option<DataSplit>,
     /// Recorded in the model file.
     pub dataset: Option<DatasetRef>,
+}
+
+/// What was set aside for validation and testing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DataSplit {
+    /// Whole scenes, by name.
+    Scenes {
+        /// Those that choices are made by.
+        validation: Vec<String>,
+        /// Those that are only reported.
+        test: Vec<String>,
+    },
+    /// Pixels of all scenes alike.
+    Pixels {
+        /// How many scenes there are.
+        scenes: usize,
+    },
+}
+
+impl DataSplit {
+    /// Whether a scene was set aside whole.
+    pub(crate) fn contains(&self, name: &String) -> bool {
+        match self {
+            Self::Scenes { validation, test } => validation.contains(name) || test.contains(name),
+            Self::Pixels { .. } => false,
+        }
+    }
 }
 
 /// How many rows of datasets a training uses.

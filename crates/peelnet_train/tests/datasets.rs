@@ -6,10 +6,12 @@ use std::sync::atomic::AtomicBool;
 
 use peelnet_dataset::{
     CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo,
-    SceneEntry, Subset,
+    SceneEntry, SplitBy, Subset,
 };
 use peelnet_model::Recipe;
-use peelnet_train::{Config, RunOptions, TrainError, TrainingData, held_out_errors, train};
+use peelnet_train::{
+    Config, DataSplit, RunOptions, TrainError, TrainingData, held_out_errors, train,
+};
 
 const SIDE: u32 = 30;
 
@@ -117,6 +119,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let b = write(&folder.path().join("b"), vec![scene("smoke", false)]);
     let config = Config {
         epochs: 2,
+        split: SplitBy::Pixel,
         ..Config::for_recipe(Recipe::THESIS)
     };
     let datasets = [a, b];
@@ -207,7 +210,10 @@ fn batches_in_memory_train_as_their_dataset() {
         Recipe::NMT,
         Recipe::DFAOIT,
     ] {
-        let config = Config::for_recipe(recipe);
+        let config = Config {
+            split: SplitBy::Pixel,
+            ..Config::for_recipe(recipe)
+        };
         let stored = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
         let held = TrainingData::from_batches(&config, "rows", &batches).unwrap();
         assert!(stored.rows() > 0, "{recipe}");
@@ -270,6 +276,59 @@ fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
             "{none}"
         );
     }
+}
+
+/// Where there are several scenes, whole ones are set aside, and the model file does not say that they were trained on. One scene
+/// is split by pixel, as all are where that is asked, and the data say so.
+#[test]
+fn whole_scenes_are_set_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["a", "b", "c", "d", "e", "f"];
+    let mut scenes: Vec<SceneEntry> = names.iter().map(|n| scene(n, false)).collect();
+    scenes.push(scene("held", true));
+    let dataset = write(&folder.path().join("rows"), scenes);
+    let datasets = std::slice::from_ref(&dataset);
+    let rows = 3 * (SIDE * SIDE) as usize;
+    for recipe in [Recipe::THESIS, Recipe::MEDIUM] {
+        let config = Config {
+            held_out: 1.0 / 3.0,
+            validation: 1.0 / 6.0,
+            ..Config::for_recipe(recipe)
+        };
+        let data = TrainingData::from_datasets(&config, datasets).unwrap();
+        let Some(DataSplit::Scenes { validation, test }) = &data.split else {
+            panic!("{:?}", data.split);
+        };
+        assert_eq!((validation.len(), test.len()), (1, 2));
+        // Examples of a scene are one run, in the order of the names.
+        let subsets = data.subsets.as_ref().unwrap();
+        for (name, of) in names.iter().zip(subsets.chunks(subsets.len() / 6)) {
+            let name = (*name).to_owned();
+            let expected = if test.contains(&name) {
+                Subset::Test
+            } else if validation.contains(&name) {
+                Subset::Validation
+            } else {
+                Subset::Train
+            };
+            assert!(of.iter().all(|s| *s == expected), "{name}");
+        }
+        let reference = data.dataset.clone().unwrap();
+        assert_eq!((reference.scenes.len(), reference.set_aside.len()), (3, 3));
+        assert!(test.iter().all(|name| reference.set_aside.contains(name)));
+        assert_eq!(data.used.unwrap().of as usize, 6 * rows);
+        let by_pixel = Config {
+            split: SplitBy::Pixel,
+            ..config
+        };
+        let data = TrainingData::from_datasets(&by_pixel, datasets).unwrap();
+        assert_eq!(data.split, Some(DataSplit::Pixels { scenes: 6 }));
+        assert_eq!(data.dataset.unwrap().scenes.len(), 6);
+    }
+    let one = write(&folder.path().join("one"), vec![scene("a", false)]);
+    let config = Config::for_recipe(Recipe::THESIS);
+    let data = TrainingData::from_datasets(&config, &[one]).unwrap();
+    assert_eq!(data.split, Some(DataSplit::Pixels { scenes: 1 }));
 }
 
 /// Validation by whole datasets: every row of one trains, every row of the other is chosen by, whatever the shares of the recipe.

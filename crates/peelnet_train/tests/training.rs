@@ -23,6 +23,7 @@ fn rows(n: usize) -> TrainingData {
         pixels: None,
         subsets: None,
         used: None,
+        split: None,
         dataset: None,
     };
     for i in 0..n {

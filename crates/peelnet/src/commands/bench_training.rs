@@ -55,7 +55,11 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         .iter()
         .map(Dataset::open)
         .collect::<Result<Vec<_>, _>>()?;
-    let base = Config::for_recipe(RECIPE);
+    let base = Config {
+        // The scenes of the bench judge.
+        split: peelnet_dataset::SplitBy::Pixel,
+        ..Config::for_recipe(RECIPE)
+    };
     let data = TrainingData::from_datasets(&base, &datasets)?;
     super::train::warn_of_rows(context, &data, &base);
     let mut plans: Vec<(Varied, Config, f64)> = Vec::new();

@@ -1,16 +1,16 @@
 //! `peelnet train`: a dataset into a network.
 
 use super::Context;
-use crate::cli::{LearningSchedule, TrainArgs};
+use crate::cli::{LearningSchedule, SplitChoice, TrainArgs};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use crate::progress::Bar;
-use peelnet_dataset::Dataset;
+use peelnet_dataset::{Dataset, SplitBy};
 use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
 use peelnet_train::{
-    CHECKPOINT_FILES, Config, CurveFormat, End, Outcome, OutputLock, RunOptions, Schedule,
-    TrainingData, UsedRows, checkpoint_folder, held_out_errors, train,
+    CHECKPOINT_FILES, Config, CurveFormat, DataSplit, End, Outcome, OutputLock, RunOptions,
+    Schedule, TrainingData, UsedRows, checkpoint_folder, held_out_errors, train,
 };
 use serde_json::json;
 use std::path::Path;
@@ -76,6 +76,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
                 "max_rows": args.max_rows,
                 "rows": meta.dataset.as_ref().map(|d| d.rows),
                 "dataset": meta.dataset.as_ref().map(|d| &d.hash),
+                "set_aside": meta.dataset.as_ref().map(|d| &d.set_aside),
                 "seed": meta.seed,
                 "seconds": seconds(&outcome),
                 "rows_per_s": rows_per_s(&outcome),
@@ -101,6 +102,10 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.patience = args.patience.or(config.patience);
     config.loss = args.loss;
     config.max_rows = args.max_rows;
+    config.split = match args.split {
+        SplitChoice::Scene => SplitBy::Scene,
+        SplitChoice::Pixel => SplitBy::Pixel,
+    };
     config.check()?;
     Ok(config)
 }
@@ -120,6 +125,11 @@ pub(super) fn fit(
     };
     let data = TrainingData::from_datasets(config, datasets)?;
     warn_of_rows(context, &data, config);
+    if let Some(split) = &data.split
+        && config.held_out + config.validation > 0.0
+    {
+        context.console.message(split_text(split));
+    }
     context.console.message(format!(
         "training recipe {} on {} of {}, {}",
         config.recipe,
@@ -180,6 +190,42 @@ pub(super) fn warn_of_rows(context: &Context<'_>, data: &TrainingData, config: &
             thousands(of),
             thousands(config.max_rows)
         ));
+    }
+}
+
+/// What the losses of rows that are set aside say.
+fn split_text(split: &DataSplit) -> String {
+    match split {
+        DataSplit::Scenes { validation, test } => {
+            let named = [("validation", validation), ("testing", test)];
+            let named = named.into_iter().filter(|(_, scenes)| !scenes.is_empty());
+            let named: Vec<String> = named
+                .map(|(what, scenes)| format!("{what}: {}", listed(scenes)))
+                .collect();
+            format!("whole scenes are set aside, {}", named.join("; "))
+        }
+        DataSplit::Pixels { scenes: 1 } => {
+            "one scene alone is split by pixel: its test loss says little of other scenes"
+                .to_owned()
+        }
+        DataSplit::Pixels { scenes } => format!(
+            "{} are split by pixel: the test loss says little of other scenes",
+            counted(*scenes as u64, "scene")
+        ),
+    }
+}
+
+/// The first names of a list, and how many there are beyond.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 6;
+    let shown: Vec<String> = names
+        .iter()
+        .take(SHOWN)
+        .map(|n| printable(n).to_string())
+        .collect();
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
     }
 }
 

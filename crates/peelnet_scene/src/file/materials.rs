@@ -39,8 +39,8 @@ impl Loader<'_> {
         }
     }
 
-    /// A texture: a file, read once, or a generated pattern, read as its use asks.
-    fn map(
+    /// A texture: a file, read once, or a generated pattern, read as its use asks. `field` is the table of the key.
+    pub fn map(
         &mut self,
         map: Option<&MapRef>,
         of_pattern: fn(&Pattern) -> Result<Texture, String>,
@@ -53,7 +53,7 @@ impl Loader<'_> {
                 let texture = self.pattern(pattern, of_pattern, key);
                 texture
                     .map(Some)
-                    .map_err(|e| self.value(&format!("{field}.material.{key}"), e))
+                    .map_err(|e| self.value(&format!("{field}.{key}"), e))
             }
             Some(MapRef::File(name)) => self.texture(name).map(Some),
         }
@@ -77,7 +77,8 @@ impl Loader<'_> {
             return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
         }
         let mut map = |map: &Option<MapRef>, of_pattern, key, base: &Option<Arc<Texture>>| {
-            let own = self.map(map.as_ref().filter(|_| read), of_pattern, key, field)?;
+            let own = map.as_ref().filter(|_| read);
+            let own = self.map(own, of_pattern, key, &format!("{field}.material"))?;
             Ok::<_, SceneError>(own.or_else(|| base.clone()))
         };
         let metal = &raw.metallic_roughness_map;

@@ -5,11 +5,16 @@ use crate::{
     error::SceneError,
     material::Material,
     mesh::Mesh,
+    pattern::Pattern,
     scatter::{Scatter, fixed_axes},
     scene::Object,
+    texture::Maps,
 };
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
+
+/// What is wrong with a mesh without UVs whose material has textures.
+const NO_UVS: &str = "has no texture coordinates for its material's maps; export it with them";
 
 /// Loads and places an object as it is at the time that is shown.
 pub(super) fn place(
@@ -26,8 +31,7 @@ pub(super) fn place(
     let mesh = now.mesh.as_ref().unwrap_or(&raw.mesh);
     let mesh = loader.mesh(mesh, has_maps, &format!("{field}.mesh"))?;
     if has_maps && mesh.uvs.is_empty() {
-        let message = "has no texture coordinates for its material's maps; export it with them";
-        return Err(loader.value(&format!("{field}.mesh"), message));
+        return Err(loader.value(&format!("{field}.mesh"), NO_UVS));
     }
     let mesh = match raw.vertex_colors {
         None => mesh,
@@ -107,9 +111,15 @@ pub(super) fn scatter(
         .map_err(|(key, message)| loader.value(&format!("{field}.{key}"), message))?;
     let lighting =
         loader.lighting_word(scatter.lighting.as_deref(), &format!("{field}.lighting"))?;
+    let map = scatter.color_map.as_ref();
+    let map = loader.map(map, Pattern::color, "color_map", &field)?;
     let mut meshes = Vec::new();
     for mesh in scatter.mesh_list() {
-        meshes.push(loader.mesh(mesh, false, &format!("{field}.mesh"))?);
+        let mesh = loader.mesh(mesh, map.is_some(), &format!("{field}.mesh"))?;
+        if map.is_some() && mesh.uvs.is_empty() {
+            return Err(loader.value(&format!("{field}.mesh"), NO_UVS));
+        }
+        meshes.push(mesh);
     }
     let parts = meshes.iter().map(|m| m.parts.len()).max().unwrap_or(0);
     let taken = loader.files.budget.take_parts(scatter.count, parts);
@@ -122,7 +132,11 @@ pub(super) fn scatter(
             alpha: placed.alpha.unwrap_or(p.material.alpha),
             lighting: lighting.unwrap_or(p.material.lighting),
             // An opacity of 1 drawn from a range blends like the others.
-            blend: placed.alpha.is_some(),
+            blend: placed.alpha.is_some() || map.as_ref().is_some_and(|map| map.has_alpha()),
+            maps: Maps {
+                color: map.clone().or_else(|| p.material.maps.color.clone()),
+                ..p.material.maps.clone()
+            },
             ..p.material.clone()
         });
         Object {

@@ -134,6 +134,62 @@ fn triangle_counts_come_near() {
     }
 }
 
+/// Strands are as many as asked, no longer than asked, never inside the head, and hang down where they droop.
+#[test]
+fn strands_grow_out_of_the_sphere_and_hang_down() {
+    const TEXT: &str = "shape = 'strands'\nradius = 0.8\ncount = 40\nsegments = 12\nlength = 1.5\nwidth = 0.02\nroots = 0.1\ncurl = 0.3";
+    let mesh = build(&format!("{TEXT}\ndroop = 2.0")).expect("builds");
+    assert_eq!(mesh.triangles.len(), 40 * 12 * 2);
+    assert_eq!(mesh.uvs.len(), mesh.triangles.len());
+    let middles = |mesh: &Mesh| -> Vec<Vec3> {
+        let pairs = mesh.positions.chunks(2);
+        pairs.map(|p| (p[0] + p[1]) / 2.0).collect()
+    };
+    let course = middles(&mesh);
+    // Rounding of a few sums of lengths near 1.
+    const ROUNDING: f32 = 1e-5;
+    for p in &course {
+        assert!(p.length() >= 0.8 * 1.02 - ROUNDING, "{p}");
+    }
+    for (strand, pairs) in course.chunks(13).zip(mesh.positions.chunks(26)) {
+        assert!(strand[0].y >= 0.8 * 1.02 * 0.1 - ROUNDING, "{}", strand[0]);
+        let length: f32 = strand.windows(2).map(|w| w[0].distance(w[1])).sum();
+        assert!(length <= 1.5 + ROUNDING, "{length}");
+        let width = |k: usize| pairs[2 * k].distance(pairs[2 * k + 1]);
+        assert!((width(0) - 0.02).abs() < ROUNDING && (width(12) - 0.02 / 3.0).abs() < ROUNDING);
+    }
+    for n in &mesh.normals {
+        assert!((n.length() - 1.0).abs() < ROUNDING, "{n}");
+    }
+    let height = |course: &[Vec3]| course.iter().map(|p| p.y).sum::<f32>() / course.len() as f32;
+    let straight = middles(&build(&format!("{TEXT}\ndroop = 0.0")).expect("builds"));
+    assert!(height(&course) < height(&straight) - 0.3);
+}
+
+/// Land faces up, has the extent that is asked, and repeats with its seed.
+#[test]
+fn terrain_faces_up_within_its_box() {
+    let text = |seed| {
+        format!("shape = 'terrain'\nsize = [4, 2]\nheight = 0.7\nseed = {seed}\ntriangles = 5000")
+    };
+    let mesh = build(&text(3)).expect("builds");
+    let off = mesh.triangles.len() as f64 / 5000.0 - 1.0;
+    assert!(off.abs() < 0.03, "{}", mesh.triangles.len());
+    let (low, high) = mesh.bounds().expect("has vertices");
+    let size = high - low;
+    assert!(
+        (size - Vec3::new(4.0, 0.7, 2.0)).abs().max_element() < 1e-5,
+        "{size}"
+    );
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        assert!((b - a).cross(c - a).y > 0.0);
+    }
+    assert!(mesh.normals.iter().all(|n| n.y > 0.0));
+    assert_eq!(mesh.positions, build(&text(3)).expect("builds").positions);
+    assert_ne!(mesh.positions, build(&text(4)).expect("builds").positions);
+}
+
 #[test]
 fn bad_parameters_are_named() {
     for (text, word) in [
@@ -144,6 +200,10 @@ fn bad_parameters_are_named() {
         ("shape = 'cow'", "cow"),
         ("shape = 'bumpy'\namplitude = 0.9", "amplitude"),
         ("shape = 'lathe'\nprofile = [[0, 0], [1, 1]]", "profile"),
+        ("shape = 'strands'\nsegments = 0", "segments"),
+        ("shape = 'strands'\ncount = 20000000", "count"),
+        ("shape = 'strands'\nroots = 2.0", "roots"),
+        ("shape = 'terrain'\nheight = 0.0", "height"),
         (
             "shape = 'lathe'\nprofile = [[0, 0], [-1, 1], [0, 2]]",
             "profile",

@@ -10,12 +10,18 @@ pub(super) enum Unwrap {
     Torus(usize),
     /// Rectangles of four vertices, each with all of the texture.
     Faces,
+    /// A UV for each vertex.
+    Vertices(Vec<Vec2>),
 }
 
 impl Unwrap {
     /// UVs of each triangle's vertices.
     pub fn uvs(&self, triangles: &[[u32; 3]]) -> Vec<[Vec2; 3]> {
         match self {
+            Self::Vertices(uvs) => triangles
+                .iter()
+                .map(|t| t.map(|i| uvs[i as usize]))
+                .collect(),
             Self::Faces => triangles
                 .iter()
                 .map(|t| {
