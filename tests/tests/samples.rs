@@ -69,7 +69,12 @@ fn coverage_comes_in_quarters() {
         blend: true,
         ..Material::unlit([1.0; 3], 1.0)
     };
-    for (share, covered) in [(0.0625, 0), (0.25, 1), (0.5, 2), (0.75, 3), (1.0, 4)] {
+    // To both sides of each sample, by a thirty-second of a pixel.
+    let shares = (0..4).flat_map(|k| {
+        let sample = 0.125 + 0.25 * k as f32;
+        [(sample - 0.03125, k), (sample + 0.03125, k + 1)]
+    });
+    for (share, covered) in shares {
         let wall = half_plane(2.0, share, white.clone());
         let scene = scene("edge", [0.0; 3], vec![wall]);
         for method in ["abuffer", "linked-list", "depth-peel", "dual-peel"] {
