@@ -31,6 +31,7 @@ fn rows_of(
     scene.views = vec![scene.views[0]; views];
     let plan = Plan {
         size: [16, 12],
+        samples: 1,
         methods,
         learned: &[],
         models: &[],
@@ -141,6 +142,7 @@ fn what_is_too_large_is_left_out_and_told() {
     let run = |lenient| {
         let plan = Plan {
             size: [2048, height as u32],
+            samples: 1,
             methods: &methods,
             learned: &[],
             models: &[],

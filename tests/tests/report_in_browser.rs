@@ -13,6 +13,7 @@ fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
         view: 0,
         width: 8,
         height: 8,
+        samples: 1,
         fragments: Some(128),
         max_layers: Some(4),
         lost: None,

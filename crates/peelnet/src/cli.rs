@@ -1,6 +1,6 @@
 //! The commands and their flags. The names are fixed: scripts call them.
 
-use crate::parse::{MethodList, Size, ViewCount, fraction, positive};
+use crate::parse::{MethodList, Size, ViewCount, fraction, positive, samples};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use peelnet_dataset::{Format, Shard};
 use peelnet_gpu::AdapterRequest;
@@ -325,6 +325,9 @@ pub struct RenderArgs {
     /// Frame size in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x768")]
     pub size: Size,
+    /// Samples a pixel: 1, or 4 where multisampling has them; each is composited by itself. A frame of 4 is drawn four times
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with = "highlight")]
+    pub samples: u32,
     /// Time in the scene's timeline; material values are interpolated between its states
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub time: Option<f32>,
@@ -343,6 +346,7 @@ pub struct RenderArgs {
   peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
   peelnet bench --scaling --out out/scaling
   peelnet bench --effects --out out/effects
+  peelnet bench --path sixteen-050 --size 512x384 --methods painter-object,wboit-eq9,deep-medium --out out/path
   peelnet bench --training out/synthetic data/scenes/*-held.toml --out out/training
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
@@ -369,18 +373,31 @@ pub struct BenchArgs {
     /// Measure nothing; write report, charts and tables again from DIR/results.json
     #[arg(long, conflicts_with_all = ["scenes", "scaling", "training"])]
     pub redraw: bool,
+    /// Move the camera and all objects along a path instead: error of every frame, its change from frame to frame, and the visible
+    /// difference of the video (ColorVideoVDP)
+    #[arg(long, conflicts_with_all = ["scaling", "effects", "training", "redraw", "views", "resume"])]
+    pub path: bool,
     /// Methods to compare, separated by commas; parameters follow a colon
     #[arg(long, value_name = "all|A,B", default_value = "all")]
     pub methods: MethodList,
     /// Model files of learned methods, separated by commas
     #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',')]
     pub models: Vec<PathBuf>,
-    /// Timed frames per method and view, drawn method after method in turn; 0 times the compared frame
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    /// Timed frames per method and view, drawn method after method in turn; 0 times the compared frame. With --path the frames of the
+    /// path, 60 by default
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 5,
+        default_value_if("path", "true", "60")
+    )]
     pub frames: u32,
     /// Frame size in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x768")]
     pub size: Size,
+    /// Samples a pixel, 1 or 4, of all methods and of the exact image; a frame of 4 is drawn four times
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with_all = ["scaling", "effects", "training"])]
+    pub samples: u32,
     /// Views of each scene
     #[arg(long, value_name = "N|all", default_value = "all")]
     pub views: ViewCount,

@@ -86,6 +86,15 @@ pub fn fraction(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Samples a pixel.
+pub fn samples(text: &str) -> Result<u32, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err(format!("a pixel has 1 or 4 samples, not '{text}'")),
+    }
+}
+
 /// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

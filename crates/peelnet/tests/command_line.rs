@@ -54,6 +54,9 @@ fn wrong_usage_is_exit_code_2() {
         "render a.toml --out a.png --method wboit-eq9 --highlight 1",
         "render a.toml --out a.png --increasing",
         "bench a.toml --out d --effects --scaling",
+        "bench a.toml --out d --path --scaling",
+        "bench a.toml --out d --samples 2",
+        "render a.toml --out a.png --samples 8",
         "doctor --frobnicate",
     ] {
         let arguments: Vec<&str> = line.split_whitespace().collect();

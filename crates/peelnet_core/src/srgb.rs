@@ -14,6 +14,11 @@ pub fn encode(linear: f32) -> f32 {
     }
 }
 
+/// The byte that an 8-bit image stores for linear light.
+pub fn encode8(linear: f32) -> u8 {
+    (encode(linear) * 255.0).round() as u8
+}
+
 /// What is stored as linear light.
 pub fn decode(stored: f32) -> f32 {
     if stored <= 0.04045 {
@@ -32,7 +37,7 @@ mod tests {
     fn bytes_come_back() {
         for byte in 0..=255u8 {
             let x = f32::from(byte) / 255.0;
-            assert_eq!((encode(decode(x)) * 255.0).round() as u8, byte);
+            assert_eq!(encode8(decode(x)), byte);
         }
         assert_eq!((encode(f32::NAN), encode(2.0)), (0.0, encode(1.0)));
         assert!((encode(1.0) - 1.0).abs() < 1e-6 && (decode(1.0) - 1.0).abs() < 1e-6);

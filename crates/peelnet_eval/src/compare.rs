@@ -20,6 +20,8 @@ pub const EXACT: &str = Role::Reference.method();
 pub struct Plan<'a> {
     /// Width and height of every frame, pixels.
     pub size: [u32; 2],
+    /// Samples a pixel, 1 or 4, of all methods and of the exact image that judges them.
+    pub samples: u32,
     /// Methods in addition to the exact one; the exact one may be among them.
     pub methods: &'a [MethodSpec],
     /// Weights for the learned methods among them, found by recipe.
@@ -41,6 +43,7 @@ impl<'a> Plan<'a> {
     pub fn new(size: [u32; 2], methods: &'a [MethodSpec]) -> Self {
         Self {
             size,
+            samples: 1,
             methods,
             learned: &[],
             models: &[],
@@ -55,7 +58,7 @@ impl<'a> Plan<'a> {
     pub fn has(&self, scenes: &[Scene], row: &Row) -> bool {
         let is_drawn = |s: &Scene| s.name == row.scene && (row.view as usize) < self.views_of(s);
         scenes.iter().any(is_drawn)
-            && [row.width, row.height] == self.size
+            && ([row.width, row.height], row.samples) == (self.size, self.samples)
             && (row.method == EXACT || self.methods.iter().any(|m| m.to_string() == row.method))
     }
 
@@ -65,6 +68,10 @@ impl<'a> Plan<'a> {
             0 => 1,
             n => n as usize + 2,
         }
+    }
+
+    fn options(&self) -> MethodOptions {
+        MethodOptions::sized(self.size).sampled(self.samples)
     }
 
     /// How many views of a scene are drawn.
@@ -206,13 +213,15 @@ impl<'a> Stage<'a> {
                 prepared: None,
             };
             if method.method().cpu_only.is_some() {
-                entries.push(entry);
+                if plan.samples > 1 {
+                    let why = "it is composited on the CPU, of one sample a pixel".to_owned();
+                    notify(Event::LeftOut(&entry.name, why))?;
+                } else {
+                    entries.push(entry);
+                }
                 continue;
             }
-            let prepared = match self
-                .renderer
-                .method(method, MethodOptions::sized(plan.size).with(learned))
-            {
+            let prepared = match self.renderer.method(method, plan.options().with(learned)) {
                 Err(e) if plan.lenient && is_too_large(&e) && !entries.is_empty() => {
                     notify(Event::LeftOut(&entry.name, e.to_string()))?;
                     continue;
@@ -264,6 +273,7 @@ impl<'a> Stage<'a> {
                 .map_or((&frame.image, &shown), |(image, shown)| (image, shown));
             let differences = metrics::differences(&against.pixels, &frame.image.pixels)?;
             let mut row = row(self.gpu, self.scene, name, view, &frame, differences);
+            row.samples = self.plan.samples;
             row.ssim = shown.ssim(displayed);
             row.transmittance_error = stacks.error(&entry.method, entry.model);
             row.flip = Some(shown.flip(displayed));
@@ -353,7 +363,7 @@ fn put_times(row: &mut Row, frames: &[Profile]) {
 
 /// GPU time of a method's passes; without timestamps the clock time of the frame.
 pub(crate) fn method_ms(frame: &Profile) -> f64 {
-    milliseconds(of_method(&frame.times)).unwrap_or(frame.wall_micros / 1e3)
+    milliseconds(&of_method(&frame.times)).unwrap_or(frame.wall_micros / 1e3)
 }
 
 /// GPU time of passes; none without timestamps.
@@ -363,9 +373,9 @@ pub(crate) fn milliseconds(times: &[PassTime]) -> Option<f64> {
 }
 
 /// Median over frames of each pass's time: `name=ms`, by first appearance, passes of one name summed in each frame.
-fn medians_by_pass(frames: &[&[PassTime]]) -> String {
+fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
     let mut names: Vec<&str> = Vec::new();
-    for pass in frames.iter().copied().flatten() {
+    for pass in frames.iter().flatten() {
         if !names.contains(&pass.label.as_str()) {
             names.push(&pass.label);
         }
@@ -404,6 +414,7 @@ fn row(
         view: u32::try_from(view).unwrap_or(u32::MAX),
         width: frame.image.width,
         height: frame.image.height,
+        samples: 1,
         fragments: frame.stats.fragments,
         max_layers: frame.stats.max_layers,
         lost: frame.stats.fragments.map(|_| frame.stats.lost),
@@ -420,7 +431,7 @@ fn row(
         covered_pixels: d.covered_pixels,
         dark_pixels: d.dark_pixels,
         non_finite_pixels: d.non_finite_pixels,
-        time_ms: milliseconds(of_method(&frame.times)),
+        time_ms: milliseconds(&of_method(&frame.times)),
         time_ms_min: None,
         time_ms_p90: None,
         wall_ms: drawn.then_some(frame.wall_micros / 1e3),

@@ -53,6 +53,24 @@ pub enum EvalError {
         /// Pixels of the other one.
         approximate: usize,
     },
+    /// A path whose frames would take too much memory.
+    #[error(
+        "a path of {frames} frames of {}x{} pixels keeps {needed} bytes, more than {most}; make --size smaller or --frames fewer",
+        size[0], size[1]
+    )]
+    LongPath {
+        /// Frames of the path.
+        frames: u32,
+        /// Width and height in pixels.
+        size: [u32; 2],
+        /// Bytes.
+        needed: u64,
+        /// The most bytes that are kept.
+        most: u64,
+    },
+    /// The video metric refused what it was given.
+    #[error("the video metric: {0}")]
+    Video(#[from] colorvideovdp::Error),
     /// An interrupted run cannot be resumed.
     #[error("{}: cannot resume: {why}", path.display())]
     Resume {

@@ -3,6 +3,7 @@
 //! ```text
 //! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► front, ratios, by_scene ─► recommend
 //! hard cases ─► stress ─► rows (method × case × property)
+//! path: every frame of a moving camera and moving objects ─► rows (method × scene, and × frame)
 //! effects, scaling, numerics, learning ─► rows of their own
 //! ```
 //!
@@ -25,6 +26,7 @@ mod mean;
 pub mod metrics;
 pub mod numerics;
 mod partial;
+pub mod path;
 pub mod perceptual;
 pub mod ratios;
 pub mod recommend;

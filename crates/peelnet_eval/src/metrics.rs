@@ -1,12 +1,14 @@
 //! Differences between two images of the same view.
 //!
-//! Two scales. *Linear light*: the values themselves; ratios between methods use it. *Display-referred*: clamped to
+//! Three scales. *Linear light*: the values themselves; ratios between methods use it. *Display-referred*: clamped to
 //! 0 … 1, sRGB-encoded (IEC 61966-2-1) and scaled to 0 … 255, but not rounded to whole numbers, as in the thesis's
-//! table. The three colour channels weigh the same, and coverage, the fourth component, is not compared.
+//! table. *8-bit*: the same rounded to whole numbers, the bytes of a PNG file; PSNR is of these, as papers report it. The three
+//! colour channels weigh the same, and coverage, the fourth component, is not compared.
 //!
 //! *Covered* pixels are those that hold at least one transparent fragment: coverage above 0 in the exact image.
 
 use crate::EvalError;
+use peelnet_core::srgb::encode8;
 
 /// The sRGB encoding of a linear value in 64 bits, clamped to 0 … 1 first. What is not a number becomes black, as on
 /// a screen. A test compares it with the renderer's, which encodes pictures in 32 bits.
@@ -35,7 +37,9 @@ pub struct Differences {
     pub mse255: f64,
     /// The same over covered pixels; `None` if no pixel is covered.
     pub mse255_covered: Option<f64>,
-    /// Peak signal-to-noise ratio of `mse255`, dB; `None` for identical images.
+    /// Mean squared error of 8-bit sRGB images over all pixels and channels.
+    pub mse_8bit: f64,
+    /// Peak signal-to-noise ratio of `mse_8bit`, dB; `None` where the 8-bit images are identical.
     pub psnr: Option<f64>,
     /// 99th percentile (nearest rank) of the pixel error: the largest difference of the three channels, 0–255 scale.
     pub p99_error: f64,
@@ -51,7 +55,7 @@ pub struct Differences {
     pub non_finite_pixels: u64,
 }
 
-/// Peak signal-to-noise ratio of an error on the 0–255 scale, dB; `None` where there is no error.
+/// Peak signal-to-noise ratio of a mean squared error on the 0–255 scale, dB; `None` where there is no error.
 pub fn psnr(mse255: f64) -> Option<f64> {
     (mse255 > 0.0).then(|| 10.0 * (255.0 * 255.0 / mse255).log10())
 }
@@ -107,6 +111,7 @@ pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Diffe
     let mut all = Sums::default();
     let mut covered = Sums::default();
     let mut result = Differences::default();
+    let mut squares_8bit = 0u64;
     for (e, a) in exact.iter().zip(approximate) {
         let (mut linear, mut display, mut pixel_error) = (0.0, 0.0, 0.0f64);
         let (mut brightest, mut darkest) = (0.0f64, 0.0f64);
@@ -117,6 +122,7 @@ pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Diffe
             linear += (f64::from(value) - f64::from(e[k])).powi(2);
             let d = 255.0 * (srgb_encode(value) - srgb_encode(e[k]));
             display += d * d;
+            squares_8bit += u64::from(encode8(value).abs_diff(encode8(e[k]))).pow(2);
             pixel_error = pixel_error.max(d.abs());
             brightest = brightest.max(d);
             darkest = darkest.min(d);
@@ -131,7 +137,8 @@ pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Diffe
     }
     result.mse_linear = all.mean(all.linear);
     result.mse255 = all.mean(all.display);
-    result.psnr = psnr(result.mse255);
+    result.mse_8bit = squares_8bit as f64 / (3 * exact.len().max(1)) as f64;
+    result.psnr = psnr(result.mse_8bit);
     result.p99_error = all.percentile(0.99);
     result.max_error = all.percentile(1.0);
     result.covered_pixels = covered.pixel_errors.len() as u64;
@@ -197,6 +204,22 @@ mod tests {
         assert!((d.psnr.unwrap() - 10.791_812_460_476).abs() < 1e-9);
         assert!((d.p99_error - 255.0).abs() < 1e-9);
         assert_eq!(d.dark_pixels, 1);
+    }
+
+    /// PSNR is of 8-bit images: half a level more or less of linear light is another byte or the same one. Three of six channels are one
+    /// level off: 10·log10(255² / 0.5).
+    #[test]
+    fn psnr_is_of_8_bit_images() {
+        let level = |x: f64| peelnet_core::srgb::decode((x / 255.0) as f32);
+        let exact = [[level(100.0); 4], [level(200.0); 4]];
+        let same = [[level(100.4); 4], [level(199.6); 4]];
+        let d = differences(&exact, &same).unwrap();
+        assert_eq!((d.mse_8bit, d.psnr), (0.0, None));
+        assert!((d.mse255 - 0.16).abs() < 1e-3, "{}", d.mse255);
+        let next = [[level(100.6); 4], [level(200.4); 4]];
+        let d = differences(&exact, &next).unwrap();
+        assert_eq!(d.mse_8bit, 0.5);
+        assert!((d.psnr.unwrap() - 51.141_103_565_318).abs() < 1e-9);
     }
 
     #[test]

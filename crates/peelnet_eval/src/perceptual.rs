@@ -24,6 +24,11 @@ impl Displayed {
         Self { luma, rgb: bytes }
     }
 
+    /// Width and height in pixels, and three bytes a pixel, row by row.
+    pub fn rgb8(&self) -> ([u32; 2], &[u8]) {
+        (self.luma.dimensions().into(), &self.rgb)
+    }
+
     /// Mean structural similarity (Wang et al. 2004) of the luma: `image-compare`'s, over windows of 8×8 pixels; 1 for equal
     /// images. `None` for images smaller than a window, or of different sizes.
     pub fn ssim(&self, exact: &Self) -> Option<f64> {

@@ -16,7 +16,10 @@ pub struct Row {
     pub width: u32,
     /// Pixels.
     pub height: u32,
-    /// Transparent fragments of the view.
+    /// Samples a pixel.
+    #[serde(default = "one")]
+    pub samples: u32,
+    /// Transparent fragments of the view, of all samples.
     pub fragments: Option<u64>,
     /// The most fragments of one pixel.
     pub max_layers: Option<u32>,
@@ -32,7 +35,7 @@ pub struct Row {
     pub mse255: f64,
     /// Display-referred, 0–255, covered pixels.
     pub mse255_covered: Option<f64>,
-    /// dB; `null` for identical images.
+    /// dB, of 8-bit sRGB images; `null` where these are identical.
     pub psnr: Option<f64>,
     /// Mean structural similarity, see [`crate::perceptual`]; `null` for images under 8×8 pixels.
     #[serde(default)]
@@ -73,6 +76,11 @@ pub struct Row {
     pub bytes_per_pixel: Option<f64>,
     /// The adapter that drew it, or the exact image that it is compared with.
     pub adapter: String,
+}
+
+/// Of rows that were measured before there were more.
+const fn one() -> u32 {
+    1
 }
 
 /// The names of the rows' methods, each once, in the order of the rows.

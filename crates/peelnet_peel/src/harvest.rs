@@ -10,7 +10,7 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    FrameTargets, GeometryPipelines, PixelSample, SceneBuffers,
+    FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers,
     dual::DualPeel,
     frame::Output,
     sbuffer::{SBuffer, Tile},
@@ -172,8 +172,13 @@ impl Harvester {
         let gpu = &self.gpu.clone();
         let (mut encoder, mut timer) = (gpu.encoder(), Timer::new(gpu));
         let mut recorder = Recorder::new(gpu, &mut encoder, Some(&mut timer));
-        self.scene
-            .set_view(&mut recorder, camera, &self.frame, sample);
+        self.scene.set_view(
+            &mut recorder,
+            camera,
+            &self.frame,
+            sample,
+            SamplePoint::MIDDLE,
+        );
         self.scene
             .draw_background(&mut recorder, &self.frame, self.opaque.as_ref(), None, true);
         let found = self

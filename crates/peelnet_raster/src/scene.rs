@@ -1,7 +1,8 @@
 //! A scene's buffers, drawn from every view by every method, and edited in place.
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RasterError, Submission, Surfaces,
+    FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RasterError, SamplePoint,
+    Submission, Surfaces,
     frame::{OpaqueDepth, attachment, clear_color, depth_state},
     maps::MapSets,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
@@ -242,15 +243,17 @@ impl SceneBuffers {
         [opaque, gpu.bind("scene", stages, &entries)]
     }
 
-    /// Records the write of a view into the camera uniform.
+    /// Records the write of a view into the camera uniform; `point` is where pixels are sampled.
     pub fn set_view(
         &self,
         recorder: &mut Recorder<'_>,
         camera: &Camera,
         frame: &FrameTargets,
         sample: PixelSample,
+        point: SamplePoint,
     ) {
-        let clip_from_world = camera.clip_from_view(frame.aspect) * camera.view_from_world();
+        let clip_from_world =
+            point.shift() * camera.clip_from_view(frame.aspect) * camera.view_from_world();
         let warp = self.depth_warp(camera);
         let uniform = CameraUniform {
             clip_from_world: clip_from_world.to_cols_array_2d(),

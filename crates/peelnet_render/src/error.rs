@@ -54,6 +54,9 @@ pub enum RenderError {
     /// A target that a frame cannot be drawn onto.
     #[error("the target cannot be drawn onto: {0}")]
     Target(String),
+    /// A number of samples that WebGPU does not have.
+    #[error("a pixel has 1 or 4 samples, not {0}")]
+    Samples(u32),
     /// A frame whose counts changed every time it was drawn.
     #[error("the frame was drawn {0} times and never had room for all of its fragments")]
     NeverWhole(u32),

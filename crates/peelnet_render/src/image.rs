@@ -90,7 +90,7 @@ impl Image {
         self.pixels
             .iter()
             .flat_map(|p| [p[0], p[1], p[2]])
-            .map(|c| (srgb::encode(c) * 255.0).round() as u8)
+            .map(srgb::encode8)
             .collect()
     }
 

@@ -29,6 +29,7 @@ pub mod flaw;
 mod image;
 pub mod methods;
 mod renderer;
+mod samples;
 mod target;
 
 pub use error::RenderError;

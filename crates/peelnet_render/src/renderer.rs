@@ -9,6 +9,7 @@ use crate::{
         layers::LayerView,
         spec::MethodSpec,
     },
+    samples::{self, Drawn, Mean},
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
 use peelnet_core::absorbance::DepthWarp;
@@ -19,8 +20,8 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    BACKGROUND_PASS, FrameTargets, GeometryPipelines, PixelSample, SceneBuffers, Submission,
-    frame::Output,
+    BACKGROUND_PASS, FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers,
+    Submission, frame::Output,
 };
 use peelnet_scene::{Camera, Light, Material, Scene};
 use std::collections::VecDeque;
@@ -56,12 +57,14 @@ pub struct Profile {
     pub wall_micros: f64,
 }
 
-/// The passes of the method itself: without the first, which draws the background and the opaque surfaces, whatever the method.
-pub fn of_method(times: &[PassTime]) -> &[PassTime] {
-    match times {
-        [first, rest @ ..] if first.label == BACKGROUND_PASS => rest,
-        all => all,
+/// The passes of the method itself, with its work on the CPU: without the first pass of that name that draws the background and the opaque
+/// surfaces, whatever the method.
+pub fn of_method(times: &[PassTime]) -> Vec<PassTime> {
+    let mut times = times.to_vec();
+    if let Some(place) = times.iter().position(|t| t.label == BACKGROUND_PASS) {
+        times.remove(place);
     }
+    times
 }
 
 /// Format of the target of a [`Renderer::profile`], as engines draw transparency onto before they map tones.
@@ -83,6 +86,8 @@ pub struct Prepared {
     ready: Option<Ready>,
     /// The target of profiles.
     canvas: Option<wgpu::TextureView>,
+    /// The mean of the samples of profiles.
+    mean: Option<Mean>,
     /// Counts on their way, with the version of the capacities that their frames had.
     pending: VecDeque<(u64, Vec<Download>)>,
     status: FrameStatus,
@@ -107,6 +112,19 @@ impl Prepared {
     pub const fn size(&self) -> [u32; 2] {
         self.options.size
     }
+
+    /// Samples a pixel of [`Renderer::image`]s.
+    pub const fn samples(&self) -> u32 {
+        self.options.samples
+    }
+
+    /// Where the repetitions of a frame sample its pixels.
+    fn points(&self) -> Vec<SamplePoint> {
+        match self.options.samples {
+            4 => SamplePoint::of_four(self.options.size).to_vec(),
+            _ => vec![SamplePoint::MIDDLE],
+        }
+    }
 }
 
 /// A scene on a device. Objects, materials and lights change in place, for all frames submitted later.
@@ -114,13 +132,6 @@ impl Prepared {
 pub struct Renderer {
     gpu: Gpu,
     scene: SceneBuffers,
-}
-
-/// What one try of a frame came to.
-struct Drawn {
-    stats: FrameStats,
-    times: Vec<PassTime>,
-    wall_micros: f64,
 }
 
 impl Renderer {
@@ -224,11 +235,15 @@ impl Renderer {
     }
 
     fn made(&self, kind: Kind, options: MethodOptions) -> Result<Prepared, RenderError> {
+        if !matches!(options.samples, 1 | 4) {
+            return Err(RenderError::Samples(options.samples));
+        }
         let mut method = Prepared {
             kind,
             options,
             ready: None,
             canvas: None,
+            mean: None,
             pending: VecDeque::new(),
             status: FrameStatus::Unknown,
         };
@@ -305,6 +320,11 @@ impl Renderer {
         camera: &Camera,
         target: &Target<'_>,
     ) -> Result<FrameStatus, RenderError> {
+        if method.samples() > 1 {
+            return Err(RenderError::Target(
+                "the method is ready for images of 4 samples a pixel, which repeat the frame; make it ready with 1 sample".into(),
+            ));
+        }
         let (size, output) = self.output(target)?;
         self.ready(method, size, output, target.depth)?;
         // Callbacks of finished frames run here where nothing else polls the device.
@@ -314,7 +334,8 @@ impl Renderer {
             return Ok(FrameStatus::Unknown);
         };
         let mut recorder = Recorder::new(&self.gpu, encoder, None);
-        self.encode(ready, &mut recorder, camera, Some(target), true, false)?;
+        let view = (camera, SamplePoint::MIDDLE);
+        self.encode(ready, &mut recorder, view, Some(target), true, false)?;
         let feedback = ready.compositor.feedback();
         if feedback.is_empty() {
             method.status = FrameStatus::Whole;
@@ -421,14 +442,14 @@ impl Renderer {
         &self,
         ready: &mut Ready,
         recorder: &mut Recorder<'_>,
-        camera: &Camera,
+        (camera, point): (&Camera, SamplePoint),
         target: Option<&Target<'_>>,
         counting: bool,
         only_count: bool,
     ) -> Result<FrameStats, RenderError> {
         let frame = &ready.frame;
         self.scene
-            .set_view(recorder, camera, frame, PixelSample::ALL);
+            .set_view(recorder, camera, frame, PixelSample::ALL, point);
         let color = target.map(|t| t.color);
         self.scene.draw_background(
             recorder,
@@ -441,6 +462,7 @@ impl Renderer {
             recorder,
             scene: &self.scene,
             camera,
+            point,
             frame,
             target: color,
             counting,
@@ -453,7 +475,7 @@ impl Renderer {
     async fn drawn(
         &self,
         method: &mut Prepared,
-        camera: &Camera,
+        view: (&Camera, SamplePoint),
         counting: bool,
         target: Option<&Target<'_>>,
     ) -> Result<Drawn, RenderError> {
@@ -472,7 +494,7 @@ impl Renderer {
             let mut timer = Timer::new(&self.gpu);
             let mut recorder = Recorder::new(&self.gpu, &mut encoder, Some(&mut timer));
             let mut stats =
-                self.encode(ready, &mut recorder, camera, target, counting, only_count)?;
+                self.encode(ready, &mut recorder, view, target, counting, only_count)?;
             let downloads = self.downloads(&mut encoder, ready.compositor.feedback());
             let times = timer.finish(&self.gpu, &mut encoder);
             self.gpu.queue.submit([encoder.finish()]);
@@ -508,7 +530,8 @@ impl Renderer {
         Err(RenderError::NeverWhole(MOST_TRIES))
     }
 
-    /// Draws a view, counts what its statistics need, and reads the image back.
+    /// Draws a view, counts what its statistics need, and reads the image back. Of several samples a pixel the frame is drawn once for each,
+    /// through another place in every pixel, and the images are averaged: any method can, at so many times the time and no more memory.
     ///
     /// # Errors
     /// A lost device, or a frame beyond the adapter's limits.
@@ -517,22 +540,33 @@ impl Renderer {
         method: &mut Prepared,
         camera: &Camera,
     ) -> Result<Frame, RenderError> {
-        let drawn = self.drawn(method, camera, true, None).await?;
         let [width, height] = method.size();
-        let view = method.ready.as_ref().and_then(|r| r.frame.image());
-        let pixels = match view {
-            Some(view) => self.gpu.read_rgba32f_async(view).await?,
-            None => Vec::new(),
-        };
+        let mut pixels: Vec<[f32; 4]> = Vec::new();
+        let mut sum = Drawn::default();
+        let points = method.points();
+        for &point in &points {
+            sum.add(self.drawn(method, (camera, point), true, None).await?);
+            let view = method.ready.as_ref().and_then(|r| r.frame.image());
+            let read = match view {
+                Some(view) => self.gpu.read_rgba32f_async(view).await?,
+                None => Vec::new(),
+            };
+            pixels = samples::sum(pixels, read);
+        }
+        let share = 1.0 / points.len() as f32;
+        pixels
+            .as_flattened_mut()
+            .iter_mut()
+            .for_each(|c| *c *= share);
         Ok(Frame {
             image: Image {
                 width,
                 height,
                 pixels,
             },
-            times: drawn.times,
-            stats: drawn.stats,
-            wall_micros: drawn.wall_micros,
+            times: sum.times,
+            stats: sum.stats,
+            wall_micros: sum.wall_micros,
         })
     }
 
@@ -565,13 +599,28 @@ impl Renderer {
             }
         };
         let target = Target::cleared(&canvas);
-        let drawn = self.drawn(method, camera, false, Some(&target)).await;
+        let points = method.points();
+        let mut sum = Drawn::default();
+        for (k, &point) in points.iter().enumerate() {
+            let drawn = self.drawn(method, (camera, point), false, Some(&target));
+            sum.add(drawn.await?);
+            if points.len() > 1 {
+                let mean = match method.mean.take().filter(|m| m.is_of(&canvas)) {
+                    Some(mean) => mean,
+                    None => Mean::new(&self.gpu, &canvas)?,
+                };
+                sum.add(mean.take(&self.gpu, k == 0).await?);
+                method.mean = Some(mean);
+            }
+        }
         method.canvas = Some(canvas);
-        let drawn = drawn?;
+        if points.len() > 1 {
+            sum.stats.bytes_per_pixel += samples::MEAN_BYTES;
+        }
         Ok(Profile {
-            times: drawn.times,
-            stats: drawn.stats,
-            wall_micros: drawn.wall_micros,
+            times: sum.times,
+            stats: sum.stats,
+            wall_micros: sum.wall_micros,
         })
     }
 

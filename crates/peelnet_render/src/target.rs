@@ -21,6 +21,9 @@ pub struct MethodOptions {
     pub size: [u32; 2],
     /// The network of a learned method; by default the one that ships for it.
     pub learned: Option<LearnedWeight>,
+    /// Samples a pixel of [`crate::Renderer::image`]s and [`crate::Renderer::profile`]s: 1, or 4 where WebGPU's multisampling has them. The
+    /// method composites every sample by itself, and the pixel is their mean in linear light.
+    pub samples: u32,
 }
 
 impl Default for MethodOptions {
@@ -35,7 +38,15 @@ impl MethodOptions {
         Self {
             size,
             learned: None,
+            samples: 1,
         }
+    }
+
+    /// With so many samples a pixel, 1 or 4.
+    #[must_use]
+    pub const fn sampled(mut self, samples: u32) -> Self {
+        self.samples = samples;
+        self
     }
 
     /// With a network.

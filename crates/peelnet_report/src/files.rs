@@ -7,7 +7,9 @@ use serde::Serialize;
 use std::path::Path;
 
 /// First columns of the tables that are written as CSV.
-const TABLES: [&str; 4] = [
+const TABLES: [&str; 5] = [
+    // Of paths: `method,scene,frames,` and `method,scene,frame,`.
+    "method,scene,frame",
     "method,scene,view,",
     "method,case,property,",
     "method,series,value,",

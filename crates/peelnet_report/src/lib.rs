@@ -14,6 +14,7 @@ mod error;
 mod files;
 mod numerics;
 mod page;
+mod path;
 mod picture;
 mod results;
 mod scaling;

@@ -1,6 +1,6 @@
 //! `peelnet bench`: error against time for many methods.
 
-use super::{Context, bench_effects, bench_training};
+use super::{Context, bench_effects, bench_path, bench_training};
 use crate::cli::BenchArgs;
 use crate::failure::{Failure, one_line};
 use crate::learned;
@@ -32,6 +32,9 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     }
     if args.scaling {
         return scale(context, args);
+    }
+    if args.path {
+        return bench_path::run(context, args);
     }
     let mut outputs = outputs(context, args, Results::<Bench>::FILES)?;
     outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
@@ -135,6 +138,7 @@ pub(super) fn measure(
     let images = out.map(|folder| folder.join("images"));
     let plan = Plan {
         size: args.size.0,
+        samples: args.samples,
         methods: &methods,
         learned: &learned,
         models: &models,
@@ -213,6 +217,7 @@ fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> s
     json!({
         "machine": Machine::of(gpu),
         "size": plan.size,
+        "samples": plan.samples,
         "frames": plan.frames,
         "views": format!("{:?}", args.views),
         "methods": names,

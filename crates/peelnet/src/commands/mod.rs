@@ -2,6 +2,7 @@
 
 mod bench;
 mod bench_effects;
+mod bench_path;
 mod bench_training;
 mod doctor;
 mod export;

@@ -24,6 +24,8 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 effects: false,
                 training: Vec::new(),
                 redraw: false,
+                path: false,
+                samples: 1,
                 methods: MethodList::All,
                 models: Vec::new(),
                 frames: args.frames,

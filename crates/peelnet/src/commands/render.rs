@@ -46,7 +46,9 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
         Some(view) => renderer.layers(view, args.size.0)?,
         None => renderer.method(
             &args.method,
-            MethodOptions::sized(args.size.0).with(learned.as_ref()),
+            MethodOptions::sized(args.size.0)
+                .sampled(args.samples)
+                .with(learned.as_ref()),
         )?,
     };
     let method = layers.map_or_else(
@@ -82,6 +84,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
                 "width": frame.image.width,
                 "height": frame.image.height,
                 "fragments": frame.stats.fragments,
+                "samples": args.samples,
                 "max_layers": frame.stats.max_layers,
                 "lost": frame.stats.lost,
                 "tiles": frame.stats.tiles,
@@ -109,12 +112,16 @@ fn text(args: &RenderArgs, method: &str, adapter: &str, frame: &Frame) -> String
         let most = most.map_or_else(String::new, |most| format!(", up to {most} a pixel"));
         format!(", {}{most}", counted(n, "fragment"))
     });
+    let samples = match args.samples {
+        1 => String::new(),
+        n => format!(" with {n} samples a pixel, drawn one after the other"),
+    };
     let time = gpu_ms(frame).map_or_else(
         || format!("{:.1} ms by the clock", frame.wall_micros / 1e3),
         |ms| format!("{ms:.1} ms on the GPU"),
     );
     format!(
-        "{}: {method} of {}, {}{fragments}; {} geometry and {} full-screen passes, {:.0} bytes a pixel, {time}, on {adapter}",
+        "{}: {method} of {}, {}{samples}{fragments}; {} geometry and {} full-screen passes, {:.0} bytes a pixel, {time}, on {adapter}",
         shown(&args.out),
         shown(&args.scene),
         args.size,

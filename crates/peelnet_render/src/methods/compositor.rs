@@ -3,7 +3,7 @@
 use super::spec::MethodSpec;
 use crate::{error::RenderError, target::LearnedWeight};
 use peelnet_gpu::{Gpu, record::Recorder, wgpu};
-use peelnet_raster::{FrameTargets, SceneBuffers};
+use peelnet_raster::{FrameTargets, SamplePoint, SceneBuffers};
 use peelnet_scene::Camera;
 use std::{fmt, ops::Range};
 
@@ -35,6 +35,8 @@ pub struct DrawContext<'a, 'e> {
     pub scene: &'a SceneBuffers,
     /// The view.
     pub camera: &'a Camera,
+    /// Where pixels are sampled.
+    pub point: SamplePoint,
     /// `C_0` and where the finished picture goes.
     pub frame: &'a FrameTargets,
     /// The caller's target, where the frame's output is one.

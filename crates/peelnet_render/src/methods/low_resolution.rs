@@ -88,7 +88,7 @@ impl Compositor for LowResolution {
         let output = cx.output();
         let frame = &self.frame;
         cx.scene
-            .set_view(cx.recorder, cx.camera, frame, PixelSample::ALL);
+            .set_view(cx.recorder, cx.camera, frame, PixelSample::ALL, cx.point);
         cx.scene
             .draw_background(cx.recorder, frame, self.opaque.as_ref(), None, true);
         let black = [clear_color(&frame.background, [0.0, 0.0, 0.0, 1.0])];

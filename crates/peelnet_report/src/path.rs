@@ -1,0 +1,303 @@
+//! The files of `peelnet bench --path`: errors along a path, their change from frame to frame, and how visible the difference is.
+
+use crate::{
+    ReportError, Results, Table,
+    files::{write_csv, write_file},
+    page::{self, SORT_SCRIPT},
+    picture::{data_uri, figure, read},
+    table::number,
+};
+use maud::{Markup, html};
+use peelnet_chart::{Line, LineChart, Scale, Svg};
+use peelnet_eval::{
+    compare::{EXACT, image_name},
+    front::EXACT_MSE,
+    path::{Along, FrameRow, PathRow},
+};
+use std::path::Path;
+
+/// Width of a strip in the page, pixels.
+const STRIP_WIDTH: u32 = 1200;
+
+/// What the columns of the tables and the charts mean.
+const NOTE: &str = "JOD: just-objectionable differences by ColorVideoVDP, 10 for no visible difference. Error: mean absolute difference of \
+    sRGB-encoded values from the exact image, 0–255. Change: mean absolute change of that difference from frame to frame, 0–255; an error \
+    that is glued to a moving surface changes as well. Worst step: the largest change between two frames. PSNR of 8-bit sRGB, ꟻLIP and MSE \
+    in linear light are means over the frames.";
+
+impl Results<Along> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &[&str] = &[
+        "path.json",
+        "path.csv",
+        "path-frames.csv",
+        "path.md",
+        "path-error.svg",
+        "path-change.svg",
+        "report.html",
+    ];
+
+    /// Names in the order of the rows, each once.
+    fn names(&self, of: fn(&PathRow) -> &str) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for name in self.measured.rows.iter().map(of) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
+    }
+
+    /// A line for each method, means over the scenes, the best JOD first.
+    pub fn table(&self) -> Table {
+        self.table_of(None)
+    }
+
+    /// The lines of one scene, or means over all.
+    fn table_of(&self, scene: Option<&str>) -> Table {
+        let rows = || {
+            let all = self.measured.rows.iter();
+            all.filter(|r| scene.is_none_or(|s| r.scene == s))
+        };
+        let mean = |method: &str, value: fn(&PathRow) -> Option<f64>| {
+            let own = rows().filter(|r| r.method == method).map(value);
+            let values: Option<Vec<f64>> = own.collect();
+            let values = values.filter(|v| !v.is_empty())?;
+            Some(values.iter().sum::<f64>() / values.len() as f64)
+        };
+        let mut methods = self.names(|r| &r.method);
+        methods.retain(|m| rows().any(|r| r.method == *m));
+        let jod = |m: &str| mean(m, |r| r.jod).unwrap_or(f64::NEG_INFINITY);
+        methods.sort_by(|a, b| jod(b).total_cmp(&jod(a)));
+        let line = |method: &str| {
+            let of = |value| mean(method, value);
+            let own = rows().filter(|r| r.method == method);
+            let worst = own.filter_map(|r| r.change_max).reduce(f64::max);
+            let mse = of(|r| Some(r.mse_linear)).unwrap_or_default();
+            vec![
+                method.to_owned(),
+                number(of(|r| r.jod), 2),
+                number(of(|r| Some(r.error)), 3),
+                number(of(|r| r.change), 3),
+                number(worst, 3),
+                number(of(|r| r.psnr), 1),
+                number(of(|r| Some(r.flip)), 4),
+                format!("{mse:.2e}"),
+            ]
+        };
+        let headings = [
+            "method",
+            "JOD",
+            "error, 0–255",
+            "change, 0–255",
+            "worst step",
+            "PSNR dB",
+            "ꟻLIP",
+            "MSE (linear)",
+        ];
+        Table::new(headings, methods.into_iter().map(line))
+    }
+
+    /// A value of every method against the number of the frame, means over the scenes; exact methods have no line.
+    fn chart(&self, y: &str, value: fn(&FrameRow) -> Option<f64>) -> Svg {
+        let is_exact = |method: &str| {
+            let mut own = self.measured.rows.iter().filter(|r| r.method == method);
+            own.all(|r| r.mse_linear <= EXACT_MSE)
+        };
+        let line = |method: &&str| {
+            let points = (0..self.measured.frames).filter_map(|frame| {
+                let rows = self.measured.by_frame.iter();
+                let own = rows.filter(|r| r.method == *method && r.frame == frame);
+                let values: Vec<f64> = own.filter_map(value).collect();
+                let mean = values.iter().sum::<f64>() / values.len() as f64;
+                (!values.is_empty()).then_some((f64::from(frame), mean))
+            });
+            Line::new(*method, points)
+        };
+        let mut methods = self.names(|r| &r.method);
+        methods.retain(|m| !is_exact(m));
+        let lines: Vec<Line> = methods.iter().map(line).collect();
+        LineChart {
+            lines: &lines,
+            x: "frame",
+            y,
+            x_scale: Scale::Linear,
+        }
+        .svg()
+    }
+
+    fn charts(&self) -> [Svg; 2] {
+        [
+            self.chart("mean absolute error, 0–255", |r| Some(r.error)),
+            self.chart(
+                "mean absolute change since the frame before, 0–255",
+                |r| r.change,
+            ),
+        ]
+    }
+
+    /// Writes `path.json`, both tables as CSV, `path.md`, two charts and `report.html` into a folder; strips of frames are taken from
+    /// `images/` in it.
+    ///
+    /// # Errors
+    /// If a file cannot be written, or a picture not be read.
+    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+        self.write_json(&folder.join("path.json"))?;
+        write_csv(&folder.join("path.csv"), &self.measured.rows)?;
+        write_csv(&folder.join("path-frames.csv"), &self.measured.by_frame)?;
+        let text = format!(
+            "{}\n{NOTE}\n\n{}. {}\n",
+            self.table().markdown(),
+            self.settings(),
+            self.credit()
+        );
+        write_file(&folder.join("path.md"), text)?;
+        let [error, change] = self.charts();
+        write_file(&folder.join("path-error.svg"), error.on_white())?;
+        write_file(&folder.join("path-change.svg"), change.on_white())?;
+        write_file(&folder.join("report.html"), self.page(folder)?)
+    }
+
+    /// Size, frames and display.
+    fn settings(&self) -> String {
+        let Along {
+            size: [width, height],
+            samples,
+            frames,
+            fps,
+            display,
+            ..
+        } = &self.measured;
+        let samples = if *samples > 1 {
+            format!(", {samples} samples a pixel")
+        } else {
+            String::new()
+        };
+        format!(
+            "{frames} frames of {width}x{height}{samples}, shown at {fps} frames a second on a {display}"
+        )
+    }
+
+    fn page(&self, folder: &Path) -> Result<String, ReportError> {
+        let scenes = self.names(|r| &r.scene);
+        let [error, change] = self.charts();
+        let by_scene = scenes.iter().map(|scene| self.of_scene(scene, folder));
+        let by_scene = by_scene.collect::<Result<Vec<Markup>, _>>()?;
+        let body = html! {
+            p { "Scenes: " (scenes.len()) ". " (self.settings()) ". The camera moves on an arc, and every object swings." }
+            h2 { "All scenes" }
+            p.note { (NOTE) }
+            (self.table().html("sortable", |_| false))
+            (page::chart("curve", &error))
+            (page::chart("curve", &change))
+            h2 { "Scene by scene" }
+            @for scene in &by_scene { (scene) }
+        };
+        let title = "Errors along a path";
+        Ok(page::page(self, title, body, &[], Some(SORT_SCRIPT)))
+    }
+
+    /// Table and strips of one scene.
+    fn of_scene(&self, scene: &str, folder: &Path) -> Result<Markup, ReportError> {
+        let table = self.table_of(Some(scene));
+        let methods = table.rows.iter().map(|row| row[0].as_str());
+        let mut strips = Vec::new();
+        for method in std::iter::once(EXACT).chain(methods) {
+            let path = folder.join("images").join(image_name(scene, method));
+            let Some(strip) = read(&path)? else { continue };
+            let caption = if method == EXACT {
+                format!("{scene}, exact")
+            } else {
+                format!(
+                    "{method}: error × 8; below, its change since the frame before × 8. Last, the frame of the largest change"
+                )
+            };
+            let uri = data_uri(&path, &strip, STRIP_WIDTH)?;
+            strips.push(figure(&uri, &caption, &caption));
+        }
+        Ok(html! {
+            details {
+                summary { (scene) }
+                (table.html("sortable", |_| false))
+                @for strip in strips { div.strip { (strip) } }
+            }
+            "\n"
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use crate::testing::machine;
+
+    fn row(method: &str, scene: &str, jod: Option<f64>, mse_linear: f64) -> PathRow {
+        PathRow {
+            method: method.into(),
+            scene: scene.into(),
+            frames: 2,
+            mse_linear,
+            psnr: Some(30.0),
+            flip: 0.1,
+            error: 2.0,
+            change: Some(0.5),
+            change_max: Some(0.75),
+            jod,
+        }
+    }
+
+    #[test]
+    fn tables_charts_and_strips() {
+        let frame = |method: &str, scene: &str, frame, error| FrameRow {
+            method: method.into(),
+            scene: scene.into(),
+            frame,
+            error,
+            change: (frame > 0).then_some(0.5),
+            ..FrameRow::default()
+        };
+        let along = Along {
+            size: [8, 6],
+            samples: 4,
+            frames: 2,
+            fps: 30.0,
+            display: "a monitor".into(),
+            rows: vec![
+                row("wboit-eq9", "a", Some(8.0), 1e-3),
+                row("depth-peel", "a", Some(10.0), 0.0),
+                row("wboit-eq9", "<b>", Some(9.0), 1e-3),
+            ],
+            by_frame: vec![
+                frame("wboit-eq9", "a", 0, 2.0),
+                frame("wboit-eq9", "a", 1, 3.0),
+                frame("wboit-eq9", "<b>", 1, 5.0),
+                // Rounding alone.
+                frame("depth-peel", "a", 1, 1e-6),
+            ],
+        };
+        let results = Results::new(machine(), "peelnet bench --path", along);
+        let table = results.table();
+        assert_eq!(table.rows[0][..2], ["depth-peel", "10.00"]);
+        assert_eq!(table.rows[1][..2], ["wboit-eq9", "8.50"]);
+        let one = results.table_of(Some("<b>"));
+        assert_eq!((one.rows.len(), one.rows[0][1].as_str()), (1, "9.00"));
+        let folder = tempfile::tempdir().unwrap();
+        let images = folder.path().join("images");
+        std::fs::create_dir(&images).unwrap();
+        for method in [EXACT, "wboit-eq9"] {
+            let path = images.join(image_name("a", method));
+            image::RgbImage::new(8, 8).save(path).unwrap();
+        }
+        results.write(folder.path()).unwrap();
+        let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+        assert_eq!(page.matches("data:image/png").count(), 2);
+        assert!(page.contains("4 samples a pixel") && page.contains("&lt;b&gt;"));
+        assert!(!page.contains("<b>"));
+        let chart = std::fs::read_to_string(folder.path().join("path-error.svg")).unwrap();
+        assert!(chart.contains("wboit-eq9") && !chart.contains("depth-peel"));
+        let read: Results<Along> = Results::read(&folder.path().join("path.json")).unwrap();
+        assert_eq!(read, results);
+        crate::testing::assert_files(folder.path(), Results::<Along>::FILES);
+    }
+}

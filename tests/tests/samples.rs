@@ -1,0 +1,228 @@
+//! Four samples a pixel: each is composited by itself, and the pixel is their mean in linear light.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use glam::Vec3;
+use peelnet_core::fragment::Fragment;
+use peelnet_gpu::Gpu;
+use peelnet_render::{
+    Image, MethodOptions, MethodSpec, RenderError, Renderer, Target,
+    methods::{Pixel, Precision},
+};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{camera, gpu, scene};
+
+/// Pixels of a side; at depth 2 a pixel is one unit wide.
+const SIDE: u32 = 4;
+
+/// The column of pixels that edges cut.
+const CUT: u32 = 1;
+
+/// Places of the four samples of a pixel from its left edge, in the order of the standard pattern, and from its upper edge.
+const ACROSS: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
+
+const BACKGROUND: [f32; 3] = [0.1, 0.2, 0.4];
+
+/// Sums of a few fragments in 16 bits: a rounding of 2⁻¹¹ for each of the sums and of the products behind them, of values below 2.
+const HALF_SUMS: f32 = 8.0 / 2048.0;
+
+/// The same in 32 bits, with the shader's own logarithms and roots.
+const FULL_SUMS: f32 = 1e-4;
+
+/// Roots of moments in 32 bits: see `MOMENTS` of the closed forms.
+const ROOTS: f32 = 2e-2;
+
+/// A wall at a depth that ends to the right at this share of the pixels of column [`CUT`].
+fn half_plane(depth: f32, share: f32, material: Material) -> Object {
+    let unit = depth / 2.0;
+    let edge = (CUT as f32 + share - 2.0) * unit;
+    let v = |x: f32, y: f32| Vec3::new(x, y * unit, -depth);
+    let (a, b) = (v(-9.0 * unit, -9.0), v(edge, -9.0));
+    let (c, d) = (v(edge, 9.0), v(-9.0 * unit, 9.0));
+    Object::of_triangles("half-plane", &[[a, b, c], [a, c, d]], material)
+}
+
+/// The window depth that the test camera gives to a depth.
+fn window_depth(depth: f32) -> f32 {
+    let clip = camera().clip_from_view(1.0) * glam::Vec4::new(0.0, 0.0, -depth, 1.0);
+    clip.z / clip.w
+}
+
+/// Whether a half-plane covers a sample of the pixels that its edge cuts.
+fn covers(share: f32, sample: usize) -> bool {
+    ACROSS[sample] < share
+}
+
+fn image(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, samples: u32) -> Image {
+    let renderer = Renderer::new(gpu, scene).unwrap();
+    let options = MethodOptions::sized([SIDE; 2]).sampled(samples);
+    let mut method = renderer.method(spec, options).unwrap();
+    let frame = renderer.image(&mut method, &scene.views[0]);
+    frame.unwrap_or_else(|e| panic!("{spec}: {e}")).image
+}
+
+/// A surface that covers k of a pixel's samples covers k quarters of it: the A-buffer's coverage of areas.
+#[test]
+fn coverage_comes_in_quarters() {
+    let gpu = gpu();
+    let white = Material {
+        blend: true,
+        ..Material::unlit([1.0; 3], 1.0)
+    };
+    // To both sides of each sample, by a thirty-second of a pixel.
+    let shares = (0..4).flat_map(|k| {
+        let sample = 0.125 + 0.25 * k as f32;
+        [(sample - 0.03125, k), (sample + 0.03125, k + 1)]
+    });
+    for (share, covered) in shares {
+        let wall = half_plane(2.0, share, white.clone());
+        let scene = scene("edge", [0.0; 3], vec![wall]);
+        for method in ["abuffer", "linked-list", "depth-peel", "dual-peel"] {
+            let image = image(&gpu, &scene, &method.parse().unwrap(), 4);
+            for (i, pixel) in image.pixels.iter().enumerate() {
+                let want = match (i as u32 % SIDE).cmp(&CUT) {
+                    std::cmp::Ordering::Less => 1.0,
+                    std::cmp::Ordering::Equal => covered as f32 / 4.0,
+                    std::cmp::Ordering::Greater => 0.0,
+                };
+                assert_eq!(*pixel, [want; 4], "{method}, edge at {share}, pixel {i}");
+            }
+        }
+    }
+}
+
+/// A pixel cut by the edges of two surfaces is, for every method, the mean of what its CPU twin makes of the fragments of each sample: one
+/// sample holds both, one the nearer, one the farther surface, and one none. Means of statistics would give another colour.
+#[test]
+fn a_pixel_is_the_mean_of_its_samples() {
+    let gpu = gpu();
+    // Depth, share of the pixel, colour and alpha.
+    let surfaces = [
+        (2.0, 0.5, [0.9, 0.2, 0.1], 0.5),
+        (4.0, 0.75, [0.1, 0.8, 0.3], 0.7),
+    ];
+    let objects = surfaces.map(|(depth, share, color, alpha)| {
+        half_plane(depth, share, Material::unlit(color, alpha))
+    });
+    let scene = scene("edges", BACKGROUND, objects.into());
+    let warp = Renderer::new(&gpu, &scene)
+        .unwrap()
+        .depth_warp(&scene.views[0]);
+    let mut judged = 0;
+    for spec in MethodSpec::all() {
+        let promises = spec.promises();
+        let mean = || -> Option<[f32; 3]> {
+            let mut mean = [0.0; 3];
+            for sample in 0..4 {
+                let inside = surfaces.iter().filter(|s| covers(s.1, sample));
+                let fragments: Vec<Fragment> = inside
+                    .map(|&(depth, _, color, alpha)| Fragment {
+                        window_depth: window_depth(depth),
+                        ..Fragment::new(depth, alpha, color)
+                    })
+                    .collect();
+                let color = spec.twin(&Pixel {
+                    fragments: &fragments,
+                    background: BACKGROUND,
+                    warp,
+                    position: [CUT, 0],
+                    model: None,
+                })?;
+                for (m, c) in mean.iter_mut().zip(color) {
+                    *m += c / 4.0;
+                }
+            }
+            Some(mean)
+        };
+        // Random numbers of a pixel's position are other ones in every row.
+        let Some(want) = mean().filter(|_| !promises.noisy) else {
+            continue;
+        };
+        let tolerance = match (promises.root, promises.sums, promises.statistics) {
+            (Some(_), _, Precision::Full) => ROOTS,
+            // Errors of 16-bit statistics have no simple bound where roots are taken.
+            (Some(_), ..) => continue,
+            (None, Precision::Full, Precision::Full) => FULL_SUMS,
+            _ => HALF_SUMS,
+        };
+        let image = image(&gpu, &scene, &spec, 4);
+        for y in 0..SIDE {
+            let pixel = image.pixels[(y * SIDE + CUT) as usize];
+            for k in 0..3 {
+                let apart = (pixel[k] - want[k]).abs();
+                assert!(apart <= tolerance, "{spec}: {pixel:?}, not {want:?}");
+            }
+        }
+        judged += 1;
+    }
+    assert!(judged > 15, "{judged}");
+}
+
+/// Inside of surfaces all samples hold the same fragments: the image is that of one sample.
+#[test]
+fn samples_change_nothing_away_from_edges() {
+    let gpu = gpu();
+    let wall = half_plane(2.0, 1.0, Material::unlit([0.9, 0.2, 0.1], 0.5));
+    let scene = scene("edge", BACKGROUND, vec![wall]);
+    for spec in MethodSpec::all() {
+        if spec.promises().noisy {
+            continue;
+        }
+        let [one, four] = [1, 4].map(|samples| image(&gpu, &scene, &spec, samples));
+        for (a, b) in one.pixels.iter().zip(&four.pixels) {
+            for (a, b) in a.iter().zip(b) {
+                assert!((a - b).abs() <= 1e-5, "{spec}: {a} and {b}");
+            }
+        }
+    }
+}
+
+/// What samples cost is told: four times the passes, the pass that averages them in a timed frame, and the target of the mean.
+#[test]
+fn samples_have_their_cost() {
+    let gpu = gpu();
+    let wall = half_plane(2.0, 0.5, Material::unlit([0.9, 0.2, 0.1], 0.5));
+    let scene = scene("edge", BACKGROUND, vec![wall]);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let spec: MethodSpec = "wboit-eq9".parse().unwrap();
+    let profile = |samples| {
+        let options = MethodOptions::sized([8, 8]).sampled(samples);
+        let mut method = renderer.method(&spec, options).unwrap();
+        renderer.profile(&mut method, &scene.views[0]).unwrap()
+    };
+    let (one, four) = (profile(1), profile(4));
+    assert_eq!(four.stats.geometry_passes, 4 * one.stats.geometry_passes);
+    assert_eq!(
+        four.stats.fullscreen_passes,
+        4 * (one.stats.fullscreen_passes + 1)
+    );
+    assert_eq!(four.stats.bytes_per_pixel, one.stats.bytes_per_pixel + 8.0);
+    let backgrounds = |times: &[peelnet_gpu::record::PassTime]| {
+        let all = times.iter();
+        all.filter(|t| t.label == "background").count()
+    };
+    assert_eq!(backgrounds(&four.times), backgrounds(&one.times));
+}
+
+/// Numbers that WebGPU does not have are refused, and so is a target of the caller's, which cannot be drawn again.
+#[test]
+fn what_cannot_be_sampled_is_refused() {
+    let gpu = gpu();
+    let scene = scene("empty", BACKGROUND, Vec::new());
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let spec: MethodSpec = "abuffer".parse().unwrap();
+    for samples in [0, 2, 3, 8] {
+        let refused = renderer.method(&spec, MethodOptions::sized([4, 4]).sampled(samples));
+        assert!(matches!(refused, Err(RenderError::Samples(n)) if n == samples));
+    }
+    let options = MethodOptions::sized([4, 4]).sampled(4);
+    let mut method = renderer.method(&spec, options).unwrap();
+    let format = peelnet_gpu::wgpu::TextureFormat::Rgba16Float;
+    let none = peelnet_gpu::wgpu::TextureUsages::empty();
+    let view = gpu.texture("target", format, [4, 4], 1, none).unwrap();
+    let mut encoder = gpu.encoder();
+    let target = Target::over(&view);
+    let drawn = renderer.draw(&mut encoder, &mut method, &scene.views[0], &target);
+    let text = drawn.unwrap_err().to_string();
+    assert!(text.contains("1 sample"), "{text}");
+}
