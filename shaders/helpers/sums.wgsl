@@ -6,6 +6,11 @@ struct Sums {
     @if(tinted) @location(1) alpha: vec4f,
 }
 
+// What the shader of Papakostas' thesis (2022) sums, as printed: C w against w, and prod (1 - w) in the place of the transmittance.
+fn printed_sums(color: vec4f, weight: f32) -> Sums {
+    return sums_of(vec4f(color.rgb * weight, weight), vec3f(clamp(weight, 0.0, 1.0)));
+}
+
 // `weighted` is premultiplied colour and alpha times the fragment's weight, `covering` what it takes of the light behind.
 fn sums_of(weighted: vec4f, covering: vec3f) -> Sums {
     @if(packed) return Sums(vec4f(weighted.xw, 0.0, covering.x));

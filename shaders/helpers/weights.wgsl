@@ -29,6 +29,11 @@ fn weight_inverse_power(z: f32, k: u32, epsilon: f32) -> f32 {
     return w;
 }
 
+fn weight_smoke(z: f32, k: f32) -> f32 {
+    let a = z * k;
+    return 10.0 / (1.0 + 10.0 * (a * a * a * a * a));
+}
+
 fn weight_papakostas(z: f32, alpha: f32) -> f32 {
     let a = (1.0 - z) / 200.0;
     return alpha * clamp(min(0.3 / (1e-5 + a * a * a * a), 8.0), 1e-2, 1.0);

@@ -111,9 +111,17 @@ fn cases() -> Vec<(&'static str, Vec<Fragment>)> {
     ]
 }
 
+/// The thesis's composite as printed and its reference, which no benchmark draws unasked.
+const PRINTED: [&str; 3] = [
+    "wboit-papakostas:composite=printed",
+    "deep-thesis:composite=printed",
+    "dual-peel:passes=4,colors=f16",
+];
+
 /// Every method with every point of its curve, and in 32 bits where it has the choice.
 fn specs() -> Vec<MethodSpec> {
     let mut all = MethodSpec::compared();
+    all.extend(PRINTED.map(|text| text.parse::<MethodSpec>().unwrap()));
     for spec in MethodSpec::compared() {
         if spec.method().has_targets() && spec.targets().is_none() {
             all.push(spec.with("targets", "f32").unwrap());
@@ -253,6 +261,49 @@ fn coplanar_walls() {
         if lost == 0 {
             for (got, want) in frame.image.pixels[5].iter().zip(want) {
                 assert!((got - want).abs() < 1e-6, "{name}");
+            }
+        }
+    }
+}
+
+/// An opaque silhouette inside smoke: all layers have one colour, so every normalised method, whatever its weights, shows
+/// `c (1 − (1−α)^k) + S (1−α)^k` behind k layers, and nothing of what lies behind the silhouette.
+#[test]
+fn a_silhouette_in_smoke_is_exact() {
+    const LAYERS: i32 = 30;
+    const ALPHA: f32 = 0.06;
+    const SILHOUETTE: [f32; 3] = [0.1, 0.02, 0.3];
+    let (gpu, smoke) = (gpu(), [0.7, 0.75, 0.8]);
+    for inside in [0, 7, 18, 30] {
+        let mut fragments: Vec<_> = (0..LAYERS)
+            .map(|i| Fragment::new(2.0 + 0.2 * i as f32, ALPHA, smoke))
+            .collect();
+        fragments.push(Fragment::new(1.9 + 0.2 * inside as f32, 1.0, SILHOUETTE));
+        let mut scene = walls(&fragments, [1.0, 0.5, 0.0]);
+        let silhouette = scene.objects.last_mut().unwrap();
+        silhouette.materials[0].blend = false;
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        let t = (1.0 - ALPHA).powi(inside);
+        let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+        for method in drawn {
+            let spec = MethodSpec::representative(method);
+            // Random samples hit their mean only in the mean.
+            if !spec.promises().normalised || spec.promises().noisy {
+                continue;
+            }
+            let network = network_of(&spec);
+            let learned = network.as_ref().map(|(text, _)| text);
+            let options = MethodOptions::sized([4, 4]).with(learned);
+            let mut prepared = renderer.method(&spec, options).unwrap();
+            let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
+            let bound = bound(&spec, LAYERS as usize).unwrap_or(MOMENTS);
+            for k in 0..3 {
+                let want = smoke[k] * (1.0 - t) + SILHOUETTE[k] * t;
+                let got = frame.image.pixels[5][k];
+                assert!(
+                    (got - want).abs() <= bound,
+                    "{spec}, {inside}: {got} for {want}"
+                );
             }
         }
     }

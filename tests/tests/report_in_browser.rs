@@ -68,6 +68,7 @@ fn bench() -> Results<Bench> {
     let bench = Bench {
         load: [None; 2],
         settings: None,
+        trained_on: Vec::new(),
         rows,
     };
     Results::new(machine, "peelnet bench", bench)

@@ -24,18 +24,24 @@ pub enum Weight {
         /// Offset in scene units.
         epsilon: f32,
     },
+    /// `10 / (1 + 10 (z k)⁵)`, which the paper uses for smoke.
+    Smoke {
+        /// The inverse of the depth, in scene units, around which the weight falls.
+        k: f32,
+    },
     /// The variant in the shader of Papakostas' thesis (Ioannina 2022).
     Papakostas,
 }
 
 impl Weight {
     /// Every named weight with its defaults, in the order in which reports list them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Eq7,
         Self::Eq8,
         Self::Eq9,
         Self::Eq10 { factor: 3e3 },
         Self::InversePower { k: 2, epsilon: 5.0 },
+        Self::Smoke { k: 0.1 },
         Self::Papakostas,
     ];
 
@@ -47,6 +53,7 @@ impl Weight {
             Self::Eq9 => "eq9",
             Self::Eq10 { .. } => "eq10",
             Self::InversePower { .. } => "inverse-power",
+            Self::Smoke { .. } => "smoke",
             Self::Papakostas => "papakostas",
         }
     }
@@ -85,6 +92,10 @@ impl Weight {
                 }
                 w
             }
+            Self::Smoke { k } => {
+                let a = z * k;
+                10.0 / (1.0 + 10.0 * (a * a * a * a * a))
+            }
             Self::Papakostas => {
                 let a = (1.0 - z) / 200.0;
                 alpha * (0.3 / (1e-5 + a * a * a * a)).min(8.0).clamp(1e-2, 1.0)
@@ -115,9 +126,57 @@ mod tests {
             Weight::InversePower { k: 2, epsilon: 5.0 }.eval(5.0, 0.3, 0.0),
             0.01,
         );
+        // z k = 1/2: 10 / (1 + 10/32).
+        close(Weight::Smoke { k: 0.1 }.eval(5.0, 0.3, 0.0), 320.0 / 42.0);
+        close(
+            Weight::InversePower { k: 4, epsilon: 0.0 }.eval(2.0, 0.3, 0.0),
+            1.0 / 16.0,
+        );
+        close(Weight::Eq10 { factor: 3e4 }.eval(0.0, 0.5, 0.5), 1875.0);
         // (1 − z)/200 = −1 at z = 201: 0.3/1.00001, between its clamps.
         close(Weight::Papakostas.eval(201.0, 1.0, 0.0), 0.3 / 1.00001);
         close(Weight::Papakostas.eval(1.0, 0.5, 0.0), 0.5);
+    }
+
+    /// The published flaw of weights of depth in scene units: moved along z with all that lies between them kept, two surfaces
+    /// mix anew. The share of the nearer one is `w₁ / (w₁ + w₂)`, here by closed forms of each weight at 2 and 4, and at 102 and 104.
+    /// The thesis's weight is exactly α up to a depth of 149, so it does not see the move, nor the order.
+    #[test]
+    fn a_move_along_z_changes_the_mix() {
+        let share = |w: Weight, z: f32| {
+            let [a, b] = [z, z + 2.0].map(|z| f64::from(w.eval(z, 0.5, 0.0)));
+            a / (a + b)
+        };
+        // Weights of 32 bits: a few roundings.
+        let close = |w: Weight, z: f32, want: f64| {
+            let got = share(w, z);
+            assert!(
+                (got - want).abs() < 1e-5,
+                "{} at {z}: {got} for {want}",
+                w.name()
+            );
+        };
+        let ratio = |a: f64, b: f64| 1.0 / (1.0 + a / b);
+        // Eq 7: 10/(z/5)² but for a sixth power of z/200.
+        let eq7 = |z: f64| 10.0 / (1e-5 + (z / 5.0).powi(2) + (z / 200.0).powi(6));
+        close(Weight::Eq7, 2.0, ratio(eq7(4.0), eq7(2.0)));
+        close(Weight::Eq7, 102.0, ratio(eq7(104.0), eq7(102.0)));
+        assert!(share(Weight::Eq7, 2.0) > 0.79 && share(Weight::Eq7, 102.0) < 0.52);
+        let eq9 = |z: f64| 0.03 / (1e-5 + (z / 200.0).powi(4));
+        close(Weight::Eq9, 2.0, ratio(eq9(4.0), eq9(2.0)));
+        close(Weight::Eq9, 102.0, ratio(eq9(104.0), eq9(102.0)));
+        let z4 = Weight::InversePower { k: 4, epsilon: 0.0 };
+        close(z4, 2.0, 16.0 / 17.0);
+        close(z4, 102.0, ratio(102f64.powi(4), 104f64.powi(4)));
+        let smoke = Weight::Smoke { k: 0.1 };
+        close(smoke, 2.0, ratio(1.0 / 1.1024, 1.0 / 1.0032));
+        close(smoke, 102.0, ratio(102f64.powi(5), 104f64.powi(5)));
+        for z in [2.0, 102.0] {
+            assert_eq!(share(Weight::Papakostas, z), 0.5);
+        }
+        // Beyond 200·(0.3 − 1e−5)^¼ + 1 = 149.01 it falls.
+        assert_eq!(Weight::Papakostas.eval(149.0, 0.5, 0.0), 0.5);
+        assert!(Weight::Papakostas.eval(149.1, 0.5, 0.0) < 0.5);
     }
 
     #[test]

@@ -6,9 +6,10 @@ use crate::{
     load,
 };
 use peelnet_gpu::Gpu;
+use peelnet_model::Model;
 use peelnet_scene::Scene;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::AtomicBool;
+use std::{collections::BTreeSet, sync::atomic::AtomicBool};
 
 /// A comparison of methods.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,8 +20,28 @@ pub struct Bench {
     /// Hash of the settings that it was measured with, by which a run that is resumed finds that it has finished.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settings: Option<String>,
+    /// Scenes among them that a learned method was trained on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trained_on: Vec<String>,
     /// One row per method, scene and view.
     pub rows: Vec<Row>,
+}
+
+/// The scenes that some of the models were trained on.
+pub fn trained_on<'a>(
+    scenes: &[Scene],
+    models: impl IntoIterator<Item = &'a Model>,
+) -> Vec<String> {
+    let all: BTreeSet<&str> = models
+        .into_iter()
+        .filter_map(|model| model.meta.dataset.as_ref())
+        .flat_map(|dataset| dataset.scenes.iter().map(String::as_str))
+        .collect();
+    let names = scenes.iter().map(|s| s.name.as_str());
+    names
+        .filter(|n| all.contains(n))
+        .map(str::to_owned)
+        .collect()
 }
 
 /// What a watched comparison reports.
@@ -138,6 +159,7 @@ pub fn bench_watched(
     Ok(Bench {
         load: [load_before, load()],
         settings: None,
+        trained_on: trained_on(scenes, plan.models),
         rows: partial.finish(),
     })
 }

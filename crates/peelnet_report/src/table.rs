@@ -83,6 +83,15 @@ impl Table {
     }
 }
 
+/// A scene's name in a table, marked where a learned method was trained on it.
+pub(crate) fn scene_heading(scene: &str, trained_on: &[String]) -> String {
+    if trained_on.iter().any(|name| name == scene) {
+        format!("{scene} (trained on)")
+    } else {
+        scene.to_owned()
+    }
+}
+
 /// A number with some digits, or a dash.
 pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"))

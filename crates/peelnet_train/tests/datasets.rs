@@ -286,9 +286,9 @@ fn whole_scenes_are_set_aside() {
     let names = ["a", "b", "c", "d", "e", "f"];
     let mut scenes: Vec<SceneEntry> = names.iter().map(|n| scene(n, false)).collect();
     scenes.push(scene("held", true));
-    let dataset = write(&folder.path().join("rows"), scenes);
+    let dataset = write_views(&folder.path().join("rows"), scenes, |k| stacks(k, 6));
     let datasets = std::slice::from_ref(&dataset);
-    let rows = 3 * (SIDE * SIDE) as usize;
+    let rows = 6 * (SIDE * SIDE) as usize;
     for recipe in [Recipe::THESIS, Recipe::MEDIUM] {
         let config = Config {
             held_out: 1.0 / 3.0,

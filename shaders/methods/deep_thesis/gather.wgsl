@@ -1,4 +1,6 @@
-// deep-thesis (Papakostas 2022), pass 2: eq 6 with the weight that the exported network gives.
+// deep-thesis (Papakostas 2022), pass 2: eq 6 with the weight that the exported network gives, or the sums as printed.
+// Variants: none | printed
+@if(printed) import package::helpers::sums::{Sums, printed_sums};
 import package::learned::weight::peelnet_fragment;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
@@ -6,6 +8,7 @@ import package::scene::visible::visible;
 
 @group(1) @binding(0) var statistics: texture_2d<f32>;
 
+@if(!printed)
 struct Sums {
     @location(0) color: vec4f,
     // Blended multiplicatively: dst * (1 - src).
@@ -19,5 +22,7 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let color = shade(surface);
     let sums = textureLoad(statistics, vec2u(surface.position.xy), 0).xy;
-    return Sums(color * peelnet_fragment(surface.depth_linear, sums), color.a);
+    let weight = peelnet_fragment(surface.depth_linear, sums);
+    @if(printed) return printed_sums(color, weight);
+    @else return Sums(color * weight, color.a);
 }

@@ -10,7 +10,7 @@ use crate::progress::Bar;
 use crate::summary_text::{self, summary_text};
 use peelnet_chart::Svg;
 use peelnet_dataset::{Dataset, Format, SplitBy, Summary};
-use peelnet_eval::bench::{self, bench_watched};
+use peelnet_eval::bench::{self, bench_watched, trained_on};
 use peelnet_eval::compare::{EXACT, Plan};
 use peelnet_eval::front;
 use peelnet_eval::{Machine, Partial, Row};
@@ -154,6 +154,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let rows = run.compare(learned, &images)?;
     let mut results = Results::of_rows(Machine::of(&run.gpu), command_line(), rows);
     results.measured.settings = run.settings(share, &outcome.model);
+    results.measured.trained_on = trained_on(&run.scenes, [&outcome.model]);
     results.measured.stages = run.clock.stages;
     results.measured.showcase = showcase;
     results.write(

@@ -47,6 +47,29 @@ mod tests {
             .prop_map(|(z, a, c)| Fragment::new(z, a, c))
     }
 
+    /// What opacity means as coverage of a pixel (McGuire & Bavoil 2013, figure 2): two layers that each cover half of it, at random with
+    /// respect to one another, let a quarter of the light through, as compositing says. Layers whose holes coincide let half of it
+    /// through, layers whose holes are covered by one another none: the correlation is lost in α, for every method alike.
+    #[test]
+    fn compositing_is_right_for_layers_without_correlation() {
+        const SIDE: u32 = 16;
+        let seen = |covers: [fn(u32, u32) -> bool; 2]| {
+            let samples = (0..SIDE * SIDE).map(|k| {
+                let fragments = [0, 1].map(|i| {
+                    let alpha = f32::from(u8::from(covers[i](k % SIDE, k / SIDE)));
+                    Fragment::new(1.0 + i as f32, alpha, [0.0; 3])
+                });
+                composite(&fragments, [1.0; 3])[0]
+            });
+            samples.sum::<f32>() / (SIDE * SIDE) as f32
+        };
+        let half = [1.0, 2.0].map(|z| Fragment::new(z, 0.5, [0.0; 3]));
+        assert_eq!(composite(&half, [1.0; 3]), [0.25; 3]);
+        assert_eq!(seen([|x, _| x % 2 == 0, |_, y| y % 2 == 0]), 0.25);
+        assert_eq!(seen([|x, _| x % 2 == 0, |x, _| x % 2 == 0]), 0.5);
+        assert_eq!(seen([|x, _| x % 2 == 0, |x, _| x % 2 == 1]), 0.0);
+    }
+
     proptest! {
         #[test]
         fn under_and_over_agree(f in prop::collection::vec(any_fragment(), 0..512), c0 in prop::array::uniform3(0.0f32..=1.0)) {

@@ -34,6 +34,28 @@ impl Sums {
     }
 }
 
+/// What the shader of Papakostas' thesis (Ioannina 2022) accumulates as it is printed: `Σ C_i w_i` against `Σ w_i`, and
+/// `∏ (1 − w_i)` in the place of `T_∞`. A weight above 1 lets no light through, as one that is blended into a fixed-point target.
+///
+/// ```
+/// use peelnet_core::{fragment::Fragment, methods::wboit};
+///
+/// // One surface with w = α: its colour is darkened by α once more.
+/// let surface = Fragment::new(2.0, 0.5, [0.8, 0.4, 0.0]);
+/// let sums = wboit::printed(&[surface], |f| f.alpha);
+/// assert_eq!(wboit::normalised(&sums, [1.0; 3]), [0.7, 0.6, 0.5]);
+/// ```
+pub fn printed(fragments: &[Fragment], mut weight: impl FnMut(&Fragment) -> f32) -> Sums {
+    let mut sums = Sums::of(fragments, &mut weight);
+    (sums.alpha, sums.transmittance) = (0.0, 1.0);
+    for f in fragments {
+        let w = weight(f);
+        sums.alpha += w;
+        sums.transmittance *= 1.0 - w.clamp(0.0, 1.0);
+    }
+    sums
+}
+
 /// The resolve that all normalised methods share: `(Σ C w / Σ α w)(1 − T_∞) + C_0 T_∞`.
 ///
 /// A pixel with `T_∞ = 1` keeps `C_0` bit for bit.

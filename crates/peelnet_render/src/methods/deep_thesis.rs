@@ -5,31 +5,40 @@ use super::{
     compositor::{Build, Compositor},
     learned::learned_transmittances,
     method::{Method, Promises, Role},
-    parameter::TARGETS,
-    weighted::{SUMS, TRANSMITTANCE},
+    parameter::{Parameter, TARGETS},
+    weighted::{COMPOSITE, SUMS, TRANSMITTANCE, is_printed},
 };
 use crate::{
     error::RenderError,
     flaw::{Flaw, Property, half_sums},
 };
-use peelnet_core::methods::deep;
+use peelnet_core::{
+    fragment::Fragment,
+    methods::{deep, wboit},
+};
 
 const IN_SCENE_UNITS: &str = "reads depth in scene units (Papakostas 2022)";
 
 pub(super) const METHOD: Method = Method {
-    parameters: &[TARGETS],
+    parameters: &[TARGETS, Parameter::Word(COMPOSITE)],
     learned: true,
-    promises: |_| Promises {
+    promises: |s| Promises {
         close_estimate: true,
+        normalised: !is_printed(s),
         ..Promises::NORMALISED
     },
     roles: &[(Role::ThesisNetwork, "deep-thesis")],
-    twin: Some(|_, p| {
+    twin: Some(|s, p| {
         let model = p.model?;
-        Some(deep::composite(p.fragments, p.background, |f| {
+        let weight = |f: &Fragment| {
             let row = deep::Row::of(f, p.fragments);
             model.forward_raw(&[row.linear_depth, row.alpha_sum, row.fragment_count])[0]
-        }))
+        };
+        Some(if is_printed(s) {
+            wboit::normalised(&wboit::printed(p.fragments, weight), p.background)
+        } else {
+            deep::composite(p.fragments, p.background, weight)
+        })
     }),
     transmittances: Some(learned_transmittances),
     flaws: &[
@@ -106,6 +115,11 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
                 Gather {
                     label: "gather",
                     shader: "methods::deep_thesis::gather",
+                    features: if is_printed(b.spec) {
+                        &["printed"]
+                    } else {
+                        &[]
+                    },
                     extra: &extra,
                     writes: &[0, 1],
                     reads: &[2],

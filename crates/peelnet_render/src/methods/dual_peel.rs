@@ -5,8 +5,9 @@ use super::{
     compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
     depth_peel::PASSES,
     method::{Method, Promises},
-    parameter::Parameter,
+    parameter::{Parameter, Precision, Word},
     peeling::Passes,
+    spec::MethodSpec,
 };
 use crate::{
     error::RenderError,
@@ -21,15 +22,31 @@ use peelnet_raster::{
 };
 use std::ops::Range;
 
+/// Precision of the colours that layers are blended into; peeled depths have 32 bits always.
+const COLORS: Word = Word {
+    name: "colors",
+    about: "f32 (default) or f16: what layers are blended into",
+    words: &["f32", "f16"],
+};
+
+fn colors(spec: &MethodSpec) -> Precision {
+    if COLORS.of(spec) == "f16" {
+        Precision::Half
+    } else {
+        Precision::Full
+    }
+}
+
 const fn coplanar(property: Property) -> Flaw {
     let reason = "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)";
     Flaw::new(property, &["coplanar"], reason).when(|s| PASSES.given(s).is_none())
 }
 
 pub(super) const METHOD: Method = Method {
-    parameters: &[Parameter::Count(PASSES)],
+    parameters: &[Parameter::Count(PASSES), Parameter::Word(COLORS)],
     promises: |s| Promises {
-        exact: PASSES.given(s).is_none(),
+        exact: PASSES.given(s).is_none() && colors(s) == Precision::Full,
+        sums: colors(s),
         sorted: PASSES.given(s).is_none(),
         ..Promises::EXACT
     },
@@ -64,13 +81,18 @@ struct Dual {
     blend: [[FullscreenPass; 2]; 2],
     resolve: FullscreenPass,
     passes: Passes,
+    /// Bytes a pixel of fronts and backs.
+    blended_bytes: f64,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     use wgpu::BlendFactor::{DstAlpha, One, OneMinusSrcAlpha, Zero};
     let (gpu, frame) = (b.gpu, b.frame);
     let peel = DualPeel::new(gpu, b.scene, frame, &[])?;
-    let format = wgpu::TextureFormat::Rgba32Float;
+    let (format, bytes) = match colors(b.spec) {
+        Precision::Half => (wgpu::TextureFormat::Rgba16Float, 8.0),
+        Precision::Full => (wgpu::TextureFormat::Rgba32Float, 16.0),
+    };
     let texture =
         |label: &str| gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty());
     let (fronts, backs) = (texture("fronts")?, texture("backs")?);
@@ -133,6 +155,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         backs,
         resolve,
         passes,
+        blended_bytes: 2.0 * bytes,
     }))
 }
 
@@ -170,7 +193,7 @@ impl Compositor for Dual {
             tiles: 1,
             geometry_passes: passes + 1,
             fullscreen_passes: passes + 2,
-            bytes_per_pixel: dual::BYTES_PER_PIXEL + 2.0 * 16.0,
+            bytes_per_pixel: dual::BYTES_PER_PIXEL + self.blended_bytes,
             ..Default::default()
         })
     }

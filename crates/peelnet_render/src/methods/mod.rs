@@ -61,6 +61,7 @@ pub const METHODS: &[Method] = &[
     wboit::EQ10,
     wboit::PAPAKOSTAS,
     wboit::INVERSE_POWER,
+    wboit::SMOKE,
     mboit::FOUR,
     mboit::SIX,
     mboit::EIGHT,

@@ -5,13 +5,13 @@ use super::{
     compositor::{Build, Compositor},
     method::{Method, Promises, Role},
     parameter::{Number, Parameter, TARGETS, Whole},
-    weighted::{build_sums, gather},
+    weighted::{COMPOSITE, build_sums, gather, is_printed},
 };
 use crate::{
     error::RenderError,
     flaw::{Flaw, Property, half_sums},
 };
-use peelnet_core::{methods::wboit, weights::Weight};
+use peelnet_core::{fragment::Fragment, methods::wboit, weights::Weight};
 use std::ops::Bound;
 
 const FACTOR: Number = Number {
@@ -34,6 +34,14 @@ const EPSILON: Number = Number {
     about: "offset in scene units, 5 by default",
     default: 5.0,
     // At 0 the weight of depth 0 is infinite.
+    least: Bound::Excluded(0.0),
+    most: 1e9,
+};
+
+const FALL: Number = Number {
+    name: "k",
+    about: "the inverse of the depth around which the weight falls, 0.1 by default (ours)",
+    default: 0.1,
     least: Bound::Excluded(0.0),
     most: 1e9,
 };
@@ -94,6 +102,8 @@ pub(super) const EQ9: Method = Method {
 
 pub(super) const EQ10: Method = Method {
     parameters: &[TARGETS, Parameter::Number(FACTOR)],
+    // One translation of the paper prints 3e4.
+    curve: &["", ":targets=f32", ":factor=30000,targets=f32"],
     flaws: &[
         Flaw::swallowed(&["alpha-tiny", "deep"]),
         Flaw::overflowing(&["near-overflow"]),
@@ -109,6 +119,21 @@ pub(super) const EQ10: Method = Method {
 };
 
 pub(super) const PAPAKOSTAS: Method = Method {
+    parameters: &[TARGETS, Parameter::Word(COMPOSITE)],
+    promises: |s| Promises {
+        tinted: !is_printed(s),
+        normalised: !is_printed(s),
+        own_weight: true,
+        ..Promises::NORMALISED
+    },
+    twin: Some(|s, p| {
+        let weight = |f: &Fragment| Weight::Papakostas.eval(f.depth, f.alpha, f.window_depth);
+        Some(if is_printed(s) {
+            wboit::normalised(&wboit::printed(p.fragments, weight), p.background)
+        } else {
+            wboit::composite(p.fragments, p.background, Weight::Papakostas)
+        })
+    }),
     roles: &[(Role::ThesisWeight, "wboit-papakostas")],
     flaws: &[Flaw::swallowed(&["deep", "near-overflow"]), Flaw::BLIND],
     ..wboit!(
@@ -117,6 +142,11 @@ pub(super) const PAPAKOSTAS: Method = Method {
         |_| Weight::Papakostas
     )
 };
+
+const fn faint(property: Property, cases: &'static [&'static str]) -> Flaw {
+    let reason = "half floats lose digits below 6e-5 and end at 6e-8, where 10 / (1 + 10 (z k)^5) comes at depths of 70 and 280";
+    Flaw::new(property, cases, reason).when(half_sums)
+}
 
 const fn vanishing(property: Property) -> Flaw {
     let reason = "half floats end at 6e-8: weights of (z + 5)^-2 vanish from depth 4,000 on";
@@ -129,6 +159,8 @@ pub(super) const INVERSE_POWER: Method = Method {
         Parameter::Whole(EXPONENT),
         Parameter::Number(EPSILON),
     ],
+    // The paper's figures use z^-4, too; at a depth of 0 it would be infinite.
+    curve: &["", ":targets=f32", ":k=4,epsilon=0.001,targets=f32"],
     flaws: &[
         Flaw::swallowed(&["deep", "near-overflow"]),
         vanishing(Property::Hull),
@@ -144,11 +176,30 @@ pub(super) const INVERSE_POWER: Method = Method {
     })
 };
 
+pub(super) const SMOKE: Method = Method {
+    parameters: &[TARGETS, Parameter::Number(FALL)],
+    flaws: &[
+        Flaw::swallowed(&["deep", "near-overflow"]),
+        faint(Property::Hull, &["far", "isolated"]),
+        faint(Property::Dark, &["far"]),
+        faint(Property::Single, &["far", "isolated"]),
+        Flaw::BLIND,
+    ],
+    ..wboit!(
+        "wboit-smoke",
+        "eq 6 with 10 / (1 + 10 (z k)^5), the paper's weight of smoke",
+        |s| Weight::Smoke {
+            k: FALL.of(s) as f32
+        }
+    )
+};
+
 fn build(b: &Build<'_>, weight: Weight) -> Result<Box<dyn Compositor>, RenderError> {
     let (mut factor, mut power, mut offset) = (0.0, 0, 0.0);
     match weight {
         Weight::Eq10 { factor: f } => factor = f,
         Weight::InversePower { k, epsilon } => (power, offset) = (k, epsilon),
+        Weight::Smoke { k } => offset = k,
         _ => {}
     }
     // `{:?}` prints a float with a point or exponent, and as the shortest text that reads back the same.
@@ -156,10 +207,13 @@ fn build(b: &Build<'_>, weight: Weight) -> Result<Box<dyn Compositor>, RenderErr
         "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
     );
     let feature = weight.name().replace('-', "_");
+    let features = [&*feature, "printed"];
+    // Only the thesis's weight has the parameter.
+    let printed = weight == Weight::Papakostas && is_printed(b.spec);
     build_sums(
         b,
         Gather {
-            features: &[&feature],
+            features: &features[..1 + usize::from(printed)],
             extra: &[("parameters", &parameters)],
             ..gather("methods::wboit::gather", &[])
         },

@@ -4,6 +4,7 @@ use super::{
     commutative::{self, Blend, Gather, Plan, TINTED, Target},
     compositor::{Build, Compositor},
 };
+use super::{parameter::Word, spec::MethodSpec};
 use crate::error::RenderError;
 
 /// `Σ C w` and `Σ α w`.
@@ -13,6 +14,20 @@ pub(super) const SUMS: Target = Target {
     full: false,
     blend: Blend::Add,
 };
+
+/// How the thesis's methods composite.
+pub(super) const COMPOSITE: Word = Word {
+    name: "composite",
+    about: "eq6 (default), or printed: the sums of the thesis's shader as they stand in print",
+    words: &["eq6", PRINTED],
+};
+
+const PRINTED: &str = "printed";
+
+/// Whether a method of the thesis composites as printed.
+pub(super) fn is_printed(spec: &MethodSpec) -> bool {
+    COMPOSITE.of(spec) == PRINTED
+}
 
 /// `T_∞`.
 pub(super) const TRANSMITTANCE: Target = Target {

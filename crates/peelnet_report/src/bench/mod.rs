@@ -5,7 +5,7 @@ pub(crate) mod page;
 use crate::{
     ReportError, Results, Table,
     files::{write_csv, write_file},
-    table::number,
+    table::{number, scene_heading},
 };
 use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
@@ -113,7 +113,10 @@ impl Results<Bench> {
             let times: Vec<String> = points.iter().map(time).collect();
             std::iter::once(r.method).chain(times).collect()
         }));
-        let headings = std::iter::once("time / hardware blending").chain(scenes);
+        let named = scenes
+            .iter()
+            .map(|s| scene_heading(s, &self.measured.trained_on));
+        let headings = std::iter::once("time / hardware blending".to_owned()).chain(named);
         Table::new(headings, lines)
     }
 

@@ -5,7 +5,7 @@ use crate::{
     ReportError, Results, Table,
     page::{self, SORT_SCRIPT},
     picture::{data_uri, figure, read},
-    table::number,
+    table::{number, scene_heading},
 };
 use image::{DynamicImage, RgbImage};
 use maud::{Markup, html};
@@ -34,7 +34,7 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
     let by_size = front::points(rows, None, Mean::Arithmetic);
     let by_scene = scenes
         .iter()
-        .map(|scene| of_scene(rows, scene, images))
+        .map(|scene| of_scene(&results.measured, scene, images))
         .collect::<Result<Vec<Markup>, _>>()?;
     let views = rows.iter().filter(|r| r.method == EXACT).count();
     let body = html! {
@@ -83,15 +83,20 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
 }
 
 /// Chart, table and pictures of one scene.
-fn of_scene(rows: &[Row], scene: &str, images: &Path) -> Result<Markup, ReportError> {
-    let own: Vec<Row> = rows.iter().filter(|r| r.scene == scene).cloned().collect();
+fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportError> {
+    let own: Vec<Row> = bench
+        .rows
+        .iter()
+        .filter(|r| r.scene == scene)
+        .cloned()
+        .collect();
     let points = front::points(&own, None, Mean::Geometric);
     let first = own.iter().find(|r| r.method == EXACT);
     let (fragments, most) = first.map_or((None, None), |r| (r.fragments, r.max_layers));
     let count = |x: Option<u64>| x.map_or_else(|| "–".to_owned(), |x| x.to_string());
     Ok(html! {
         details {
-            summary { (scene) }
+            summary { (scene_heading(scene, &bench.trained_on)) }
             p.note {
                 "View 0: " (count(fragments)) " fragments, at most " (count(most.map(u64::from))) " in a pixel, "
                 (format!("{:.2}", first.map_or(0.0, mean_depth))) " per pixel on average."
@@ -298,6 +303,7 @@ mod tests {
         let bench = Bench {
             load: [Some(0.5), None],
             settings: None,
+            trained_on: Vec::new(),
             rows,
         };
         let results = Results::new(machine(), "peelnet bench \"a&b\"", bench);

@@ -32,6 +32,9 @@ pub struct ThesisRun {
     pub settings: Vec<(String, String)>,
     /// What the rows say, computed from them.
     pub findings: Vec<String>,
+    /// Scenes among them that the learned method was trained on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trained_on: Vec<String>,
     /// All rows.
     pub rows: Vec<Row>,
     /// Rows of one more scene, with shipped networks beside the trained one and timed frames.
@@ -60,6 +63,7 @@ impl Results<ThesisRun> {
             stages: Vec::new(),
             settings: Vec::new(),
             findings: findings(&rows),
+            trained_on: Vec::new(),
             rows,
             showcase: Vec::new(),
         };
@@ -68,7 +72,8 @@ impl Results<ThesisRun> {
 
     /// Weighted and learned weighted blending on every scene, beside the thesis's figures.
     pub fn table(&self) -> Table {
-        table::like_the_thesis(&ByScene::of(&self.measured.rows))
+        let errors = ByScene::of(&self.measured.rows);
+        table::like_the_thesis(&errors, &self.measured.trained_on)
     }
 
     /// Writes `results.json`, `table.md` and `report.html` into a folder.
@@ -91,8 +96,8 @@ impl Results<ThesisRun> {
             "# Weighted and learned weighted blending against the exact image\n\n{EXPLANATION}\n\n{}\n## Findings\n\n{findings}\n\
              ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
              Measured on {} ({}) with `{}`.\n",
-            table::like_the_thesis(&errors).markdown(),
-            table::all_methods(&errors).markdown(),
+            table::like_the_thesis(&errors, &self.measured.trained_on).markdown(),
+            table::all_methods(&errors, &self.measured.trained_on).markdown(),
             self.machine.adapter,
             self.machine.cpu,
             self.command,

@@ -30,11 +30,11 @@ pub(super) fn page(
         h2 { "The thesis's promise" }
         ul { @for finding in &run.findings { li { (finding) } } }
         h3 { "The thesis's table" }
-        (table::like_the_thesis(&errors).html("", |_| false))
+        (table::like_the_thesis(&errors, &run.trained_on).html("", |_| false))
         p.note { (EXPLANATION.replace('`', "")) }
         h2 { "All methods" }
         p.note { "Mean squared error (0–255), mean over the views." }
-        (table::all_methods(&errors).html("", |_| false))
+        (table::all_methods(&errors, &run.trained_on).html("", |_| false))
         h2 { "Cost" }
         (costs(&run.rows, &errors.methods).html("", |_| false))
         p.note { "One frame per view, without warm-up: an order of magnitude, not a benchmark." }

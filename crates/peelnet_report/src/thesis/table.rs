@@ -1,13 +1,16 @@
 //! The tables of a run.
 
-use crate::{Table, table::number};
+use crate::{
+    Table,
+    table::{number, scene_heading},
+};
 use peelnet_eval::{
     by_scene::{ByScene, SceneErrors},
     ratios, thesis,
 };
 
 /// Like the thesis's table 4.1: weighted blending and learned weighted blending on every scene.
-pub(super) fn like_the_thesis(errors: &ByScene) -> Table {
+pub(super) fn like_the_thesis(errors: &ByScene, trained_on: &[String]) -> Table {
     let best = errors.best_published.as_deref();
     let best_heading = best.map_or_else(
         || "best published".to_owned(),
@@ -29,7 +32,7 @@ pub(super) fn like_the_thesis(errors: &ByScene) -> Table {
         let error = |m: &str| number(scene.mse255.get(m).copied(), 2);
         let measured = thesis::line(&scene.scene);
         vec![
-            scene.scene.clone(),
+            scene_heading(&scene.scene, trained_on),
             error(thesis::WEIGHTED),
             error(ratios::WEIGHTED),
             error(best),
@@ -47,9 +50,10 @@ pub(super) fn like_the_thesis(errors: &ByScene) -> Table {
 }
 
 /// Every method (a row each) on every scene (a column each), `mse255`.
-pub(super) fn all_methods(errors: &ByScene) -> Table {
-    let scenes = errors.scenes.iter().map(|s| s.scene.as_str());
-    let headings = std::iter::once("method").chain(scenes);
+pub(super) fn all_methods(errors: &ByScene, trained_on: &[String]) -> Table {
+    let scenes = errors.scenes.iter();
+    let scenes = scenes.map(|s| scene_heading(&s.scene, trained_on));
+    let headings = std::iter::once("method".to_owned()).chain(scenes);
     let line = |method: &String| {
         let cells = errors
             .scenes
@@ -72,11 +76,14 @@ mod tests {
 
     #[test]
     fn the_thesis_stands_beside_our_figures() {
-        let table = like_the_thesis(&ByScene::of(&[
-            row("sixteen-050", "wboit-papakostas", 20.0),
-            row("sixteen-050", "wboit-eq9", 5.0),
-            row("sixteen-050", "deep-thesis", 10.0),
-        ]));
+        let table = like_the_thesis(
+            &ByScene::of(&[
+                row("sixteen-050", "wboit-papakostas", 20.0),
+                row("sixteen-050", "wboit-eq9", 5.0),
+                row("sixteen-050", "deep-thesis", 10.0),
+            ]),
+            &[],
+        );
         assert_eq!(
             table.rows[0],
             [
@@ -96,8 +103,24 @@ mod tests {
 
     #[test]
     fn missing_methods_are_dashes() {
-        let table = like_the_thesis(&ByScene::of(&[row("cups", "blended", 1.0)]));
+        let errors = ByScene::of(&[row("cups", "blended", 1.0)]);
+        let table = like_the_thesis(&errors, &[]);
         assert_eq!(table.rows[0][1..4], ["–", "–", "–"]);
         assert_eq!(table.rows[0][7], "not measured");
+    }
+
+    /// A figure of a scene that the network learned from says so, in both tables.
+    #[test]
+    fn scenes_of_training_are_marked() {
+        let rows = [
+            row("cups", "blended", 1.0),
+            row("cups-held", "blended", 1.0),
+        ];
+        let (errors, trained) = (ByScene::of(&rows), ["cups".to_owned()]);
+        let table = like_the_thesis(&errors, &trained);
+        assert_eq!(table.rows[0][0], "cups (trained on)");
+        assert_eq!(table.rows[1][0], "cups-held");
+        let headings = all_methods(&errors, &trained).headings;
+        assert_eq!(headings, ["method", "cups (trained on)", "cups-held"]);
     }
 }
