@@ -1,5 +1,6 @@
 // kbuffer and hybrid, pass 2: a fragment among the K nearest stores its colour in its place, any other one is blended.
-// Variants: unweighted | eq7 | eq8 | eq9
+// Variants: unweighted | eq7 | eq8 | eq9 | unweighted half_colors | eq9 byte_colors
+import package::helpers::stored::{Stored, stored};
 import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9};
 import package::methods::kbuffer::key::{first_place, nearness};
 import package::parameters::K;
@@ -10,7 +11,7 @@ import package::scene::visible::visible;
 @group(1) @binding(0) var<storage, read> nearest: array<u32>;
 // Triangle + 1 of the fragment in each place; 0 while it is free.
 @group(1) @binding(1) var<storage, read_write> triangles: array<atomic<u32>>;
-@group(1) @binding(2) var<storage, read_write> colors: array<vec4f>;
+@group(1) @binding(2) var<storage, read_write> colors: array<Stored>;
 
 struct Tail {
     @location(0) color: vec4f,
@@ -19,7 +20,7 @@ struct Tail {
 }
 
 // Takes a place of this nearness; coplanar fragments have several. False where all are taken.
-fn stored(first: u32, own: u32, triangle: u32, color: vec4f) -> bool {
+fn placed(first: u32, own: u32, triangle: u32, color: vec4f) -> bool {
     for (var i = first; i < first + K; i++) {
         if nearest[i] != own {
             continue;
@@ -27,7 +28,7 @@ fn stored(first: u32, own: u32, triangle: u32, color: vec4f) -> bool {
         loop {
             let claim = atomicCompareExchangeWeak(&triangles[i], 0u, triangle + 1u);
             if claim.exchanged {
-                colors[i] = color;
+                colors[i] = stored(color);
                 return true;
             }
             // Weak: it may fail though the place is free.
@@ -47,7 +48,7 @@ fn fragment_main(surface: Surface) -> Tail {
     let color = shade(surface);
     let first = first_place(surface);
     let own = nearness(surface);
-    if own >= nearest[first + K - 1u] && stored(first, own, surface.triangle, color) {
+    if own >= nearest[first + K - 1u] && placed(first, own, surface.triangle, color) {
         return Tail(vec4f(0.0), 0.0);
     }
     @if(unweighted) let weight = 1.0;

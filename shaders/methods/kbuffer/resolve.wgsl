@@ -1,6 +1,8 @@
 // kbuffer and hybrid: the K nearest exactly, in front of the blended tail, in front of C_0.
+// Variants: none | half_colors | byte_colors
 import package::helpers::resolve::normalised;
 import package::helpers::screen::screen_corner;
+import package::helpers::stored::{Stored, restored};
 import package::parameters::K;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
@@ -8,7 +10,7 @@ import package::parameters::K;
 @group(0) @binding(2) var transmittances: texture_2d<f32>;
 @group(0) @binding(3) var<storage, read> nearest: array<u32>;
 @group(0) @binding(4) var<storage, read> triangles: array<u32>;
-@group(0) @binding(5) var<storage, read> colors: array<vec4f>;
+@group(0) @binding(5) var<storage, read> colors: array<Stored>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -38,7 +40,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             }
         }
         last = least;
-        let fragment = colors[place];
+        let fragment = restored(colors[place]);
         color += transmittance * fragment.rgb;
         transmittance *= 1.0 - fragment.a;
     }

@@ -1,5 +1,6 @@
 // linked-list, the one geometry pass: every fragment becomes a node of its pixel's list (Yang et al. 2010).
-// Variants: none | tinted
+// Variants: none | tinted | half_colors | byte_colors | tinted half_colors
+import package::helpers::stored::{Stored, stored};
 import package::scene::camera::camera;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
@@ -14,7 +15,7 @@ import package::scene::visible::visible;
 @group(1) @binding(3) var<storage, read_write> depths: array<f32>;
 @group(1) @binding(4) var<storage, read_write> triangles: array<u32>;
 // Where light takes a colour two of a node: its colour, and what it covers of each channel.
-@group(1) @binding(5) var<storage, read_write> colors: array<vec4f>;
+@group(1) @binding(5) var<storage, read_write> colors: array<Stored>;
 
 @fragment
 fn fragment_main(surface: Surface) {
@@ -29,10 +30,10 @@ fn fragment_main(surface: Surface) {
     let pixel = vec2u(surface.position.xy);
     depths[node] = surface.depth_linear;
     triangles[node] = surface.triangle;
-    @if(!tinted) colors[node] = shade(surface);
+    @if(!tinted) colors[node] = stored(shade(surface));
     @if(tinted) {
-        colors[2u * node] = shade(surface);
-        colors[2u * node + 1u] = vec4f(covering(surface), 0.0);
+        colors[2u * node] = stored(shade(surface));
+        colors[2u * node + 1u] = stored(vec4f(covering(surface), 0.0));
     }
     next[node] = atomicExchange(&heads[pixel.y * camera.frame_size.x + pixel.x], node + 1u);
 }

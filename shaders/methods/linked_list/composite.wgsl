@@ -1,6 +1,7 @@
 // linked-list: sorts each pixel's list by (linear depth, triangle) and composites it front to back over C_0.
-// Variants: none | tinted
+// Variants: none | tinted | half_colors | byte_colors | tinted half_colors
 import package::helpers::screen::screen_corner;
+import package::helpers::stored::{Stored, restored};
 import package::scene::camera::Camera;
 
 @group(0) @binding(0) var<uniform> camera: Camera;
@@ -8,7 +9,7 @@ import package::scene::camera::Camera;
 @group(0) @binding(2) var<storage, read_write> next: array<u32>;
 @group(0) @binding(3) var<storage, read> depths: array<f32>;
 @group(0) @binding(4) var<storage, read> triangles: array<u32>;
-@group(0) @binding(5) var<storage, read> colors: array<vec4f>;
+@group(0) @binding(5) var<storage, read> colors: array<Stored>;
 @group(0) @binding(6) var background: texture_2d<f32>;
 
 // Whether one node comes before another; nodes are counted from 1.
@@ -81,13 +82,13 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var node = sorted(heads[index]);
     while node != 0u {
         @if(!tinted) {
-            let fragment = colors[node - 1u];
+            let fragment = restored(colors[node - 1u]);
             color += transmittance * fragment.rgb;
             transmittance *= 1.0 - fragment.a;
         }
         @if(tinted) {
-            color += transmittance * colors[2u * node - 2u].rgb;
-            transmittance *= 1.0 - colors[2u * node - 1u].rgb;
+            color += transmittance * restored(colors[2u * node - 2u]).rgb;
+            transmittance *= 1.0 - restored(colors[2u * node - 1u]).rgb;
         }
         node = next[node - 1u];
     }

@@ -3,6 +3,7 @@
 //! The commutative methods take fragments in any order; [`over`] sorts first. `background` is `C_0`, linear RGB.
 
 pub mod anchored;
+pub mod avboit;
 pub mod bins;
 pub mod blended;
 pub mod deep;

@@ -16,7 +16,7 @@ use peelnet_gpu::{
 };
 use peelnet_raster::{
     GeometryPass, GeometryPipelines, Order, Sorted, Surfaces,
-    count::{unwritten, unwritten_attachment, unwritten_texture},
+    count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
     frame::clear_color,
     fullscreen::FullscreenPass,
 };
@@ -82,11 +82,27 @@ pub(crate) struct Target {
     pub blend: Blend,
 }
 
-/// A buffer of so many bytes a pixel, zero at the start of every frame.
+/// A buffer, zero at the start of every frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Storage {
     pub label: &'static str,
+    /// Of each pixel.
     pub bytes: u32,
+    /// Of the frame, besides those of its pixels.
+    pub of_frame: u64,
+}
+
+/// A compute shader between two geometry passes. Bindings: the frame's size as `vec4u`, and the storage.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kernel<'a> {
+    /// The geometry pass that it follows.
+    pub after: usize,
+    pub shader: &'a str,
+    pub extra: &'a [(&'a str, &'a str)],
+    /// The storage that it rewrites.
+    pub storage: usize,
+    /// Workgroups have 64 of them.
+    pub threads: u64,
 }
 
 /// One geometry pass: its shader and what it writes and reads. In bind group 1: targets (of earlier passes) that it reads,
@@ -123,6 +139,8 @@ pub(crate) struct Plan<'a> {
     pub targets: &'a [Target],
     pub storage: &'a [Storage],
     pub passes: &'a [Gather<'a>],
+    /// What is computed between two of them.
+    pub kernel: Option<Kernel<'a>>,
     /// In which order surfaces are drawn.
     pub order: Order,
     pub resolve: &'static str,
@@ -152,6 +170,7 @@ impl Plan<'_> {
         targets: &[],
         storage: &[],
         passes: &[],
+        kernel: None,
         order: Order::Scene,
         resolve: "",
         resolve_features: &[],
@@ -171,6 +190,15 @@ struct BuiltPass {
 }
 
 #[derive(Debug)]
+struct BuiltKernel {
+    label: String,
+    after: usize,
+    pipeline: wgpu::ComputePipeline,
+    group: Bound,
+    groups: [u32; 2],
+}
+
+#[derive(Debug)]
 struct Commutative {
     targets: Vec<(wgpu::TextureView, Blend)>,
     storage: Vec<wgpu::Buffer>,
@@ -178,6 +206,7 @@ struct Commutative {
     attachment: Option<wgpu::TextureView>,
     sorted: Option<Sorted>,
     passes: Vec<BuiltPass>,
+    kernel: Option<BuiltKernel>,
     resolve: FullscreenPass,
     bytes_per_pixel: f64,
 }
@@ -239,7 +268,10 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     let storage = plan
         .storage
         .iter()
-        .map(|s| b.gpu.storage(s.label, pixels * u64::from(s.bytes)))
+        .map(|s| {
+            let bytes = pixels * u64::from(s.bytes) + s.of_frame;
+            b.gpu.storage(s.label, bytes)
+        })
         .collect::<Result<Vec<_>, _>>()?;
     let bare = plan.passes.iter().any(|p| p.writes.is_empty());
     let attachment = bare
@@ -251,6 +283,7 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         let tinted = (tinting == Some(number)).then_some(plan.targets.len());
         passes.push(build_pass(b, gather, &targets, &storage, &states, tinted)?);
     }
+    let kernel = plan.kernel.map(|k| build_kernel(b, &k, &storage));
     let mut entries = vec![Bind::Texture(&b.frame.background)];
     entries.extend(
         plan.resolve_reads
@@ -276,16 +309,41 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
     let blended: u32 = all_targets.iter().map(|t| t.bytes(is_full(t))).sum();
     let stored: u32 = plan.storage.iter().map(|s| s.bytes).sum();
     let sorted = Sorted::new(b.gpu, b.scene, plan.order)?;
-    let order = sorted.as_ref().map_or(0, Sorted::bytes) as f64 / pixels as f64;
+    let of_frame: u64 = plan.storage.iter().map(|s| s.of_frame).sum();
+    let of_frame = of_frame + sorted.as_ref().map_or(0, Sorted::bytes);
     Ok(Box::new(Commutative {
         targets,
         storage,
         attachment,
         sorted,
         passes,
+        kernel: kernel.transpose()?,
         resolve,
-        bytes_per_pixel: f64::from(blended + stored + u32::from(bare)) + order,
+        bytes_per_pixel: f64::from(blended + stored + u32::from(bare))
+            + of_frame as f64 / pixels as f64,
     }))
+}
+
+/// Makes what is computed between two passes ready.
+fn build_kernel(
+    b: &Build<'_>,
+    kernel: &Kernel<'_>,
+    storage: &[wgpu::Buffer],
+) -> Result<BuiltKernel, RenderError> {
+    let [width, height] = b.frame.size;
+    let usage = wgpu::BufferUsages::UNIFORM;
+    let size = b.gpu.upload("frame size", &[width, height, 0, 0], usage);
+    let entries = [Bind::Uniform(&size), Bind::Write(&storage[kernel.storage])];
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let group = b.gpu.bind(kernel.shader, stages, &entries);
+    let wgsl = peelnet_shaders::link(kernel.shader, &[], kernel.extra)?;
+    Ok(BuiltKernel {
+        label: kernel.shader.to_owned(),
+        after: kernel.after,
+        pipeline: b.gpu.compute(kernel.shader, &wgsl, &group),
+        group,
+        groups: groups_2d(u32::try_from(kernel.threads).unwrap_or(u32::MAX)),
+    })
 }
 
 /// Makes one geometry pass ready. `tinted` is the target that it also writes where transmission is coloured.
@@ -341,7 +399,7 @@ impl Compositor for Commutative {
         for buffer in &self.storage {
             cx.recorder.encoder().clear_buffer(buffer, 0, None);
         }
-        for p in &self.passes {
+        for (number, p) in self.passes.iter().enumerate() {
             let mut colors: Vec<_> = p
                 .writes
                 .iter()
@@ -363,13 +421,20 @@ impl Compositor for Commutative {
                     .scene
                     .draw(&mut pass, cx.frame, Surfaces::Transparent, &p.pipelines),
             }
+            drop(pass);
+            if let Some(kernel) = self.kernel.as_ref().filter(|k| k.after == number) {
+                let mut pass = cx.recorder.compute(&kernel.label);
+                pass.set_pipeline(&kernel.pipeline);
+                pass.set_bind_group(0, &kernel.group.group, &[]);
+                pass.dispatch_workgroups(kernel.groups[0], kernel.groups[1], 1);
+            }
         }
         let output = cx.output();
         self.resolve.draw(cx.recorder, &[output]);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: self.passes.len() as u32,
-            fullscreen_passes: 1,
+            fullscreen_passes: 1 + u32::from(self.kernel.is_some()),
             bytes_per_pixel: self.bytes_per_pixel,
             ..Default::default()
         })

@@ -7,6 +7,7 @@ use super::{
     method::{Method, Numbered},
     parameter::{Parameter, TARGETS, Word},
     spec::MethodSpec,
+    stored::{self, COLORS},
     weighted::{SUMS, TRANSMITTANCE},
 };
 use crate::{
@@ -41,8 +42,8 @@ const TOO_FEW_PLACES: Flaw = Flaw::new(
 
 pub(super) const PLAIN: Method = Method {
     numbered: K,
-    parameters: &[TARGETS],
-    curve: &["-2", "-4", "-8"],
+    parameters: &[TARGETS, Parameter::Word(COLORS)],
+    curve: &["-2", "-4", "-8", "-4:colors=f16", "-4:colors=u8"],
     twin: Some(|s, p| {
         let places = s.number() as usize;
         Some(kbuffer::composite(p.fragments, p.background, places, None))
@@ -60,7 +61,7 @@ pub(super) const PLAIN: Method = Method {
 
 pub(super) const HYBRID: Method = Method {
     numbered: K,
-    parameters: &[TARGETS, Parameter::Word(WEIGHT)],
+    parameters: &[TARGETS, Parameter::Word(WEIGHT), Parameter::Word(COLORS)],
     curve: &["-2", "-4", "-8"],
     twin: Some(|s, p| {
         let places = s.number() as usize;
@@ -98,10 +99,13 @@ fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError
     let k = b.spec.number();
     let parameters = format!("const K: u32 = {k}u;\n");
     let extra = [("parameters", parameters.as_str())];
+    let layout = stored::features(b.spec);
+    let gathering = [&[weight], layout].concat();
     let (nearest, triangles, colors) = (0, 1, 2);
     let storage = |label, bytes| Storage {
         label,
         bytes: bytes * k,
+        of_frame: 0,
     };
     commutative::build(
         b,
@@ -110,7 +114,7 @@ fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError
             storage: &[
                 storage("nearest depths", 4),
                 storage("nearest triangles", 4),
-                storage("nearest colours", 16),
+                storage("nearest colours", stored::bytes(b.spec)),
             ],
             passes: &[
                 Gather {
@@ -122,7 +126,7 @@ fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError
                 },
                 Gather {
                     shader: "methods::kbuffer::gather",
-                    features: &[weight],
+                    features: &gathering,
                     extra: &extra,
                     writes: &[0, 1],
                     loads: &[nearest],
@@ -131,6 +135,7 @@ fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError
                 },
             ],
             resolve: "methods::kbuffer::resolve",
+            resolve_features: layout,
             resolve_extra: &extra,
             resolve_reads: &[0, 1],
             resolve_loads: &[nearest, triangles, colors],

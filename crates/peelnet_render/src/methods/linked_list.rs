@@ -7,6 +7,7 @@ use super::{
     compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
     method::{Method, Promises},
     parameter::{Count, Parameter},
+    stored::{self, COLORS},
 };
 use crate::error::RenderError;
 use peelnet_core::methods::over;
@@ -19,7 +20,6 @@ use peelnet_raster::{
     FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces,
     count::{unwritten, unwritten_attachment, unwritten_texture},
     fullscreen::FullscreenPass,
-    sbuffer::{FragmentStorage, bytes_per_fragment},
 };
 use std::ops::Range;
 
@@ -30,11 +30,13 @@ const NODES: Count = Count {
 };
 
 pub(super) const METHOD: Method = Method {
-    parameters: &[Parameter::Count(NODES)],
-    promises: |_| Promises {
+    parameters: &[Parameter::Count(NODES), Parameter::Word(COLORS)],
+    promises: |s| Promises {
+        exact: stored::is_full(s),
         tinted: true,
         ..Promises::EXACT
     },
+    curve: &["", ":colors=f16", ":colors=u8"],
     twin: Some(|_, p| Some(over::composite(p.fragments, p.background))),
     ..Method::new(
         "linked-list",
@@ -57,6 +59,9 @@ struct Shared {
     heads: wgpu::Buffer,
     used: wgpu::Buffer,
     background: wgpu::TextureView,
+    /// How colours are stored: features of the shaders, and bytes of a fragment's.
+    features: Vec<&'static str>,
+    color_bytes: u64,
 }
 
 #[derive(Debug)]
@@ -69,11 +74,18 @@ struct Pool {
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
-    let pixels = frame.pixels();
+    let (pixels, tinted) = (frame.pixels(), b.scene.tinted);
     let shared = Shared {
         heads: gpu.storage("list heads", u64::from(pixels) * 4)?,
         used: gpu.storage("nodes used", 4)?,
         background: frame.background.clone(),
+        features: [
+            stored::features(b.spec),
+            if tinted { &["tinted"] } else { &[] },
+        ]
+        .concat(),
+        // Where light takes a colour two of a fragment.
+        color_bytes: u64::from(stored::bytes(b.spec)) * if tinted { 2 } else { 1 },
     };
     let nodes = NODES.given(b.spec);
     let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);
@@ -93,9 +105,11 @@ impl Pool {
         shared: &Shared,
         nodes: u64,
     ) -> Result<Self, RenderError> {
-        let features: &[&str] = if scene.tinted { &["tinted"] } else { &[] };
+        let features = &shared.features;
         let next = gpu.storage("list links", nodes * 4)?;
-        let storage = FragmentStorage::new(gpu, nodes, scene.tinted)?;
+        let depths = gpu.storage("fragment depths", nodes * 4)?;
+        let triangles = gpu.storage("fragment triangles", nodes * 4)?;
+        let colors = gpu.storage("fragment colours", nodes * shared.color_bytes)?;
         let build_group = gpu.bind(
             "build",
             wgpu::ShaderStages::FRAGMENT,
@@ -103,9 +117,9 @@ impl Pool {
                 Bind::Write(&shared.heads),
                 Bind::Write(&shared.used),
                 Bind::Write(&next),
-                Bind::Write(&storage.depths),
-                Bind::Write(&storage.triangles),
-                Bind::Write(&storage.colors),
+                Bind::Write(&depths),
+                Bind::Write(&triangles),
+                Bind::Write(&colors),
             ],
         );
         let build = scene.pipelines(
@@ -130,9 +144,9 @@ impl Pool {
                 Bind::Uniform(scene.camera_buffer()),
                 Bind::Read(&shared.heads),
                 Bind::Write(&next),
-                Bind::Read(&storage.depths),
-                Bind::Read(&storage.triangles),
-                Bind::Read(&storage.colors),
+                Bind::Read(&depths),
+                Bind::Read(&triangles),
+                Bind::Read(&colors),
                 Bind::Texture(&shared.background),
             ],
             frame.output,
@@ -162,8 +176,8 @@ impl Compositor for LinkedList {
         let output = cx.output();
         self.pool.composite.draw(cx.recorder, &[output]);
         let pixels = f64::from(cx.frame.pixels());
-        // The fragment and a link.
-        let node = bytes_per_fragment(cx.scene.tinted) + 4;
+        // Depth, triangle, link, and colours.
+        let node = 3 * 4 + self.shared.color_bytes;
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: 1,

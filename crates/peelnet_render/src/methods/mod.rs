@@ -5,6 +5,7 @@
 
 pub mod abuffer;
 mod anchored;
+mod avboit;
 mod bins;
 mod blended;
 mod commutative;
@@ -29,6 +30,7 @@ mod peeling;
 mod range;
 pub(crate) mod spec;
 mod stochastic;
+mod stored;
 mod wavelet;
 mod wboit;
 mod weighted;
@@ -68,6 +70,7 @@ pub const METHODS: &[Method] = &[
     mboit_trig::METHOD,
     wavelet::METHOD,
     bins::METHOD,
+    avboit::METHOD,
     kbuffer::PLAIN,
     kbuffer::HYBRID,
     mlab::METHOD,

@@ -57,6 +57,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             storage: &[Storage {
                 label: "sample depths",
                 bytes: 4 * samples,
+                of_frame: 0,
             }],
             passes: &[
                 Gather {
