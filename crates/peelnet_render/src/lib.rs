@@ -26,6 +26,7 @@
 
 mod error;
 pub mod flaw;
+mod frame;
 mod image;
 pub mod methods;
 mod renderer;
@@ -34,8 +35,9 @@ mod target;
 
 pub use error::RenderError;
 pub use flaw::{Flaw, Property};
+pub use frame::{Frame, Profile, of_method};
 pub use image::{Image, ImageFormat};
 pub use methods::{FrameStats, METHODS, Method, MethodSpec, Role, layers::LayerView};
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
-pub use renderer::{Frame, Prepared, Profile, Renderer, of_method};
+pub use renderer::{Prepared, Renderer};
 pub use target::{FrameStatus, LearnedWeight, MethodOptions, Target};

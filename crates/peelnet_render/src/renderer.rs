@@ -2,6 +2,7 @@
 
 use crate::{
     error::RenderError,
+    frame::{Frame, PROFILED, Profile},
     image::Image,
     methods::{
         self,
@@ -16,12 +17,12 @@ use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
     Gpu,
     readback::Download,
-    record::{PassTime, Recorder, Timer},
+    record::{Recorder, Timer},
     wgpu,
 };
 use peelnet_raster::{
-    BACKGROUND_PASS, FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers,
-    Submission, frame::Output,
+    FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers, Submission,
+    frame::Output,
 };
 use peelnet_scene::{Camera, Light, Material, Scene};
 use std::collections::VecDeque;
@@ -32,43 +33,6 @@ const MOST_TRIES: u32 = 8;
 
 /// Frames whose counts may be on their way at one time.
 const FRAMES_IN_FLIGHT: usize = 3;
-
-/// A finished frame.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    /// Linear colour and coverage.
-    pub image: Image,
-    /// GPU time of every pass, where the adapter measures it.
-    pub times: Vec<PassTime>,
-    /// What the method reports.
-    pub stats: FrameStats,
-    /// Clock time from the first command to the last result, read-back of the image not included.
-    pub wall_micros: f64,
-}
-
-/// A frame that was drawn for its time alone.
-#[derive(Clone, Debug)]
-pub struct Profile {
-    /// GPU time of every pass, where the adapter measures it.
-    pub times: Vec<PassTime>,
-    /// What the method reports.
-    pub stats: FrameStats,
-    /// Clock time from the first command to the last result, microseconds.
-    pub wall_micros: f64,
-}
-
-/// The passes of the method itself, with its work on the CPU: without the first pass of that name that draws the background and the opaque
-/// surfaces, whatever the method.
-pub fn of_method(times: &[PassTime]) -> Vec<PassTime> {
-    let mut times = times.to_vec();
-    if let Some(place) = times.iter().position(|t| t.label == BACKGROUND_PASS) {
-        times.remove(place);
-    }
-    times
-}
-
-/// Format of the target of a [`Renderer::profile`], as engines draw transparency onto before they map tones.
-const PROFILED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What draws: a method by name, or the view of layers.
 #[derive(Clone, Debug)]

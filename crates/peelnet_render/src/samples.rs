@@ -3,7 +3,7 @@
 //! Every sample is composited by itself: statistics and sums are never averaged over samples, which would mix what belongs to different
 //! surfaces at their edges.
 
-use crate::{error::RenderError, methods::compositor::FrameStats};
+use crate::{error::RenderError, frame::PROFILED, methods::compositor::FrameStats};
 use peelnet_gpu::{
     Gpu,
     bind::Bind,
@@ -72,9 +72,6 @@ pub(crate) struct Mean {
     view: wgpu::TextureView,
 }
 
-/// Of the 16-bit target of profiles.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-
 /// Bytes a pixel of the target that repetitions are averaged in.
 pub(crate) const MEAN_BYTES: f64 = 8.0;
 
@@ -89,7 +86,7 @@ impl Mean {
             operation: wgpu::BlendOperation::Add,
         };
         let target = wgpu::ColorTargetState {
-            format: FORMAT,
+            format: PROFILED,
             blend: Some(wgpu::BlendState {
                 color: add,
                 alpha: add,
@@ -106,7 +103,7 @@ impl Mean {
                 &[Bind::Texture(canvas)],
                 &[Some(target)],
             )?,
-            view: gpu.texture("mean", FORMAT, size, 1, wgpu::TextureUsages::empty())?,
+            view: gpu.texture("mean", PROFILED, size, 1, wgpu::TextureUsages::empty())?,
         })
     }
 

@@ -50,7 +50,7 @@ pub struct Settings<'a> {
 }
 
 /// Bytes that a path may keep.
-const MOST_BYTES: u64 = 1 << 31;
+const MAX_PATH_BYTES: u64 = 1 << 31;
 
 /// Bytes of a pixel of a frame that are kept: the exact image in linear light (16), as it is shown (4) and as the metric sees it (12), and a
 /// method's frame as the metric sees it (12).
@@ -66,12 +66,12 @@ impl Settings<'_> {
 
     fn check(&self) -> Result<(), EvalError> {
         let needed = self.bytes();
-        if needed > MOST_BYTES {
+        if needed > MAX_PATH_BYTES {
             return Err(EvalError::LongPath {
                 frames: self.frames,
                 size: self.size,
                 needed,
-                most: MOST_BYTES,
+                most: MAX_PATH_BYTES,
             });
         }
         Ok(())
