@@ -21,6 +21,9 @@ pub struct MethodOptions {
     pub size: [u32; 2],
     /// The network of a learned method; by default the one that ships for it.
     pub learned: Option<LearnedWeight>,
+    /// Whether images hold the sums of weighted, premultiplied colour and opacity that a method blends, instead of the colour that it
+    /// makes of them. Of methods that blend weighted sums with a fixed number of passes; others draw as usual.
+    pub sums: bool,
 }
 
 impl Default for MethodOptions {
@@ -35,7 +38,15 @@ impl MethodOptions {
         Self {
             size,
             learned: None,
+            sums: false,
         }
+    }
+
+    /// For images of the sums that a method blends, to look at its weights.
+    #[must_use]
+    pub const fn showing_sums(mut self) -> Self {
+        self.sums = true;
+        self
     }
 
     /// With a network.
