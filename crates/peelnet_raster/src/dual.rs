@@ -59,24 +59,7 @@ impl DualPeel {
         features: &[&str],
         found: Option<&wgpu::Buffer>,
     ) -> Result<Self, RasterError> {
-        const HINT: &str = "use S-buffer or single peeling, or the methods abuffer or depth-peel";
-        gpu.need(
-            wgpu::Features::FLOAT32_BLENDABLE,
-            "float32-blendable",
-            "dual depth peeling",
-            HINT,
-        )?;
-        const SAMPLE_BYTES: u32 = 8 + 16 + 16;
-        if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
-            return Err(RasterError::Gpu(GpuError::TooLarge {
-                what: "dual depth peeling with its colour targets".into(),
-                needed: u64::from(SAMPLE_BYTES),
-                limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
-                unit: "bytes a sample",
-                adapter: gpu.info.name.clone(),
-                hint: HINT,
-            }));
-        }
+        check_adapter(gpu)?;
         let texture = |label: &str, format| {
             gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty())
         };
@@ -186,4 +169,27 @@ impl DualPeel {
         pass.set_bind_group(1, &peel.groups[from].group, &[]);
         scene.draw(&mut pass, frame, Surfaces::Transparent, &peel.pipelines);
     }
+}
+
+/// Refuses adapters that cannot blend in 32 bits, or not into all targets at once.
+fn check_adapter(gpu: &Gpu) -> Result<(), RasterError> {
+    const HINT: &str = "use S-buffer or single peeling, or the methods abuffer or depth-peel";
+    gpu.need(
+        wgpu::Features::FLOAT32_BLENDABLE,
+        "float32-blendable",
+        "dual depth peeling",
+        HINT,
+    )?;
+    const SAMPLE_BYTES: u32 = 8 + 16 + 16;
+    if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
+        return Err(RasterError::Gpu(GpuError::TooLarge {
+            what: "dual depth peeling with its colour targets".into(),
+            needed: u64::from(SAMPLE_BYTES),
+            limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
+            unit: "bytes a sample",
+            adapter: gpu.info.name.clone(),
+            hint: HINT,
+        }));
+    }
+    Ok(())
 }
