@@ -369,7 +369,6 @@ fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
                     &[
                         ("3.0", "return vec4f(cubic(", "of three moments"),
                         ("3.0", "return vec4f(cubic(", "of three moments"),
-                        ("1e-4", "if total < 1e-4 {", FAINT),
                         ("1.0", "return select(1.0, min(t, 1.0), t >= 0.0);", NEVER),
                     ]
                 } else {
@@ -377,6 +376,7 @@ fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
                         ("2.0", "return vec4f(quadratic(", "of two moments"),
                         ("4.0", "return vec4f(quadratic(", "of two moments"),
                         ("2.0", "return vec4f(quadratic(", "of two moments"),
+                        ("1e-4", "if total < 1e-4 {", FAINT),
                         ("1.0", "return select(1.0, min(t, 1.0), t >= 0.0);", NEVER),
                     ]
                 },

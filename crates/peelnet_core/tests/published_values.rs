@@ -7,13 +7,14 @@
 
 use num_complex::Complex64;
 use peelnet_core::{
-    absorbance::{ABSORBANCE_MAX, absorbance},
+    absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance},
     guards,
     methods::{
         bins, mboit_trig,
         mboit4::{self, Settings},
         mboit6, mboit8, range,
     },
+    weights::Weight,
 };
 use std::f64::consts::PI;
 
@@ -164,6 +165,100 @@ fn trigonometric_moments_have_their_closed_form() {
         // Half a zone lies before the nearest depth's angle and after the farthest's.
         assert!((angle(1.0) - angle(-1.0) - (2.0 * PI - 0.1 * PI)).abs() < 1e-12);
         assert_eq!(mboit_trig::WRAPPING_ZONE, 0.1 * PI);
+    }
+}
+
+/// Two fragments, asked fragment by fragment: without their own share nothing lies in front of the nearer, and the nearer before the farther;
+/// with it a quarter more of each.
+#[test]
+fn two_fragments_see_each_other() {
+    let points = [(1.0, 0.5), (4.0, 0.25)];
+    let warp = DepthWarp::new(0.5, 8.0);
+    for own_share_out in [false, true] {
+        let of = |paper: Settings| Settings {
+            own_share_out,
+            ..paper
+        };
+        let trigonometric = Settings {
+            bias: mboit_trig::BIAS,
+            ..Settings::PAPER
+        };
+        let own = if own_share_out { 0.0 } else { 0.25f64 };
+        let want = [0.5f64.powf(own), 0.5 * 0.75f64.powf(own)];
+        for found in [
+            mboit4::transmittances(&points, &warp, &of(Settings::PAPER)),
+            mboit6::transmittances(&points, &warp, &of(mboit6::PAPER)),
+            mboit8::transmittances(&points, &warp, &of(mboit8::PAPER)),
+            mboit_trig::transmittances(&points, &warp, 2, &of(trigonometric)),
+            mboit_trig::transmittances(&points, &warp, 3, &of(trigonometric)),
+        ] {
+            assert_eq!(found.len(), 2);
+            for (found, want) in found.into_iter().zip(want) {
+                // Biases of up to 1e-4 and what they blur over a third of the range.
+                assert!((found - want).abs() < 2e-3, "{found} for {want}");
+            }
+        }
+    }
+}
+
+/// Published weights at α = 1, by their formulas in 64 bits: at either clamp, next to it, and where the last term just counts.
+#[test]
+fn weights_are_those_published() {
+    const DEPTHS: [f32; 8] = [0.05, 0.3, 1.5, 5.0, 20.0, 60.0, 160.0, 300.0];
+    const VALUES: [(Weight, [f64; 8]); 4] = [
+        (
+            Weight::Eq7,
+            [
+                3000.0,
+                2770.0831,
+                111.098_767,
+                9.9999,
+                0.624_999_57,
+                0.069_444_088_1,
+                0.01,
+                0.01,
+            ],
+        ),
+        (
+            Weight::Eq8,
+            [
+                3000.0,
+                3000.0,
+                2954.209_75,
+                79.993_600_4,
+                1.249_998_28,
+                0.046_296_137_9,
+                0.01,
+                0.01,
+            ],
+        ),
+        (
+            Weight::Eq9,
+            [
+                3000.0,
+                2999.998_48,
+                2999.051_08,
+                2887.218_05,
+                272.727_273,
+                3.699_136_87,
+                0.073_240_399_4,
+                0.01,
+            ],
+        ),
+        (
+            Weight::Papakostas,
+            [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.751_003_339, 0.060_055_891],
+        ),
+    ];
+    for (weight, values) in VALUES {
+        for (z, want) in DEPTHS.into_iter().zip(values) {
+            let found = f64::from(weight.eval(z, 1.0, 0.0));
+            // A dozen roundings in 32 bits.
+            assert!(
+                (found / want - 1.0).abs() < 2e-6,
+                "{weight:?} at {z}: {found}"
+            );
+        }
     }
 }
 
