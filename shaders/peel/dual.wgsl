@@ -2,17 +2,20 @@
 //
 // `range` holds (-nearest, farthest) of what was left before this pass; MAX blending forms the next one. A fragment
 // that is neither goes on to the next pass; the first pass has an open range and only initialises it.
-// Variants: none | dataset
+// Variants: none | counted | dataset
 @if(dataset) import package::scene::shade::radiance as shade;
 @if(!dataset) import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
 @group(1) @binding(0) var range: texture_2d<f32>;
+// 1: how much was peeled.
+@if(counted) @group(1) @binding(1) var<storage, read_write> found: array<atomic<u32>, 2>;
 
 struct Peeled {
     @location(0) range: vec2f,
-    // Un-premultiplied radiance and alpha; MAX blending over zero keeps the one fragment that matches.
+    // Blended under what the layer holds of coincident fragments, dst.a * src + dst, alpha dst.a * (1 - src.a): zero changes nothing.
+    // In a dataset un-premultiplied radiance and alpha, of which MAX blending over zero keeps that of the one fragment that matches.
     @location(1) front: vec4f,
     @location(2) back: vec4f,
 }
@@ -40,6 +43,8 @@ fn fragment_main(surface: Surface) -> Peeled {
         out.back = shade(surface);
     } else {
         out.range = vec2f(-depth, depth);
+        return out;
     }
+    @if(counted) atomicAdd(&found[1], 1u);
     return out;
 }

@@ -1,9 +1,10 @@
 //! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
 
+pub mod literals;
 pub mod readers;
 
 use glam::{Vec2, Vec3};
-use peelnet_core::{fragment::Fragment, scanline};
+use peelnet_core::fragment::Fragment;
 use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
@@ -146,28 +147,4 @@ pub fn walls(fragments: &[Fragment], background: [f32; 3]) -> Scene {
             .map(|f| wall(f.depth, Material::unlit(f.color, f.alpha)))
             .collect(),
     )
-}
-
-/// A scene's triangles in a view's clip space, in 64 bits, numbered as the renderer numbers them.
-pub fn clip_triangles(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<scanline::Triangle> {
-    let clip = camera
-        .clip_from_view(size[0] as f32 / size[1] as f32)
-        .as_dmat4()
-        * camera.view_from_world().as_dmat4();
-    let mut triangles = Vec::new();
-    for object in &scene.objects {
-        for triangle in &object.mesh.triangles {
-            let vertices = triangle.map(|i| {
-                let world = object
-                    .world_from_object
-                    .transform_point3(object.mesh.positions[i as usize]);
-                (clip * world.as_dvec3().extend(1.0)).to_array()
-            });
-            triangles.push(scanline::Triangle {
-                clip: vertices,
-                id: triangles.len() as u32,
-            });
-        }
-    }
-    triangles
 }

@@ -22,10 +22,10 @@ fn half_bound(n: usize, peak: f32) -> f32 {
     (n as f32 + 2.0) * HALF * peak
 }
 
-/// Bound for moments in 32 bits against 64: rounding of the moments (2⁻²⁴ each) is divided by the smallest pivot that the
-/// bias of 5e−7 leaves (about 2e−7 for coinciding points), and the root of a polynomial answers with its square
-/// root; as a colour error far below the method's own.
-const MOMENTS: f32 = 2e-2;
+/// Bound for moments in 32 bits against 64. Of four, where layers are apart, they err by some roundings; of more, points are cosines and
+/// roots of cubics, good to 1e-5 each, and what lies at them is divided by pivots down to 1e-3. `constants.rs` has cases on the scale of
+/// the bias, where a tenth of it shows.
+const MOMENTS: f32 = 2e-4;
 
 /// The largest difference between a frame of `n` layers and the twin; `None` where the error of 16-bit statistics has no simple
 /// bound, because roots of them are taken.
@@ -34,7 +34,8 @@ fn bound(spec: &MethodSpec, n: usize) -> Option<f32> {
     match (promises.root, promises.statistics, promises.sums) {
         _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
         (Some(_), Precision::Half, _) => None,
-        (Some(_), Precision::Full, _) => Some(MOMENTS),
+        (Some(_), Precision::Full, Precision::Full) => Some(MOMENTS),
+        (Some(_), Precision::Full, Precision::Half) => Some(MOMENTS + half_bound(n, 1.0)),
         // Shaders may contract or reorder; divisions and pow are allowed 2.5 and 16 units: 1e-4 is 800 units.
         (None, _, Precision::Full) => Some(1e-4),
         // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
@@ -222,45 +223,54 @@ fn every_method_has_a_twin() {
     }
 }
 
-/// Peeling's known flaw and its remedy: of coplanar walls dual peeling keeps one of two an end and says so, while the
-/// S-buffer and single peeling keep all.
+/// Of coincident walls every method that is exact there keeps all, in the order of their triangles: coincident in front, behind and
+/// alone, of colours whose maximum by channel is none of them.
 #[test]
 fn coplanar_walls() {
     let gpu = gpu();
     let c0 = [1.0; 3];
-    let fragments: Vec<_> = (0..3)
-        .map(|i| {
+    let three = |depth: f32| {
+        (0..3).map(move |i| {
             let mut color = [0.0; 3];
             color[i] = 1.0;
-            Fragment {
-                triangle: i as u32,
-                ..Fragment::new(2.0, 0.5, color)
-            }
+            Fragment::new(depth, 0.5, color)
         })
-        .collect();
-    let scene = walls(&fragments, c0);
-    let renderer = Renderer::new(&gpu, &scene).unwrap();
-    let want = over::composite(&fragments, c0);
-    for (name, lost) in [
-        ("abuffer", 0),
-        ("linked-list", 0),
-        ("depth-peel", 0),
-        ("dual-peel", 2),
-        ("kbuffer-3", 0),
-        ("hybrid-5", 0),
-    ] {
-        let spec: MethodSpec = name.parse().unwrap();
-        let mut prepared = renderer
-            .method(&spec, MethodOptions::sized([4, 4]))
-            .unwrap();
-        let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
-        if let Some(fragments) = frame.stats.fragments {
-            assert_eq!(fragments, 48, "{name}");
+    };
+    let one = |depth: f32| std::iter::once(Fragment::new(depth, 0.25, [0.4, 0.2, 0.1]));
+    let stacks: [Vec<Fragment>; 4] = [
+        three(2.0).collect(),
+        three(2.0).chain(one(3.0)).chain(three(4.0)).collect(),
+        one(1.0).chain(three(2.0)).chain(one(3.0)).collect(),
+        three(2.0).chain(three(4.0)).chain(three(3.0)).collect(),
+    ];
+    for mut fragments in stacks {
+        for (f, i) in fragments.iter_mut().zip(0..) {
+            f.triangle = i;
         }
-        assert_eq!(frame.stats.lost, lost * 16, "{name}");
-        if lost == 0 {
+        let scene = walls(&fragments, c0);
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        let want = over::composite(&over::sorted(&fragments), c0);
+        for name in [
+            "abuffer",
+            "linked-list",
+            "depth-peel",
+            "dual-peel",
+            "kbuffer-9",
+            "hybrid-12",
+        ] {
+            let spec: MethodSpec = name.parse().unwrap();
+            let mut prepared = renderer
+                .method(&spec, MethodOptions::sized([4, 4]))
+                .unwrap();
+            let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
+            if let Some(found) = frame.stats.fragments {
+                assert_eq!(found, 16 * fragments.len() as u64, "{name}");
+            }
+            assert_eq!(frame.stats.lost, 0, "{name}");
             for (got, want) in frame.image.pixels[5].iter().zip(want) {
-                assert!((got - want).abs() < 1e-6, "{name}");
+                let error = f64::from((got - want).abs());
+                let bound = peelnet_core::tolerance::composite(fragments.len(), 1.0);
+                assert!(error <= bound, "{name}: {got} for {want}");
             }
         }
     }
@@ -450,5 +460,35 @@ fn opaque_walls_hide() {
                 "{spec}: {got} {want:?}"
             );
         }
+    }
+}
+
+/// The biases that go with the precision of the moments, as the paper and `peelnet_core` state them.
+#[test]
+fn biases_go_with_the_precision() {
+    let points = [(0.5, 0.3), (2.0, 0.6), (2.01, 0.4), (7.0, 0.5)];
+    let warp = DepthWarp::new(0.5, 10.0);
+    let estimate = |name: &str| {
+        let spec: MethodSpec = name.parse().unwrap();
+        spec.transmittances(&points, &warp, None).unwrap()
+    };
+    for (method, targets, bias) in [
+        ("mboit4", "f32", 5e-7),
+        ("mboit4", "f16", 6e-5),
+        ("mboit6", "f32", 5e-6),
+        ("mboit6", "f16", 6e-4),
+        ("mboit8", "f32", 5e-5),
+        ("mboit8", "f16", 2.5e-3),
+        ("mboit-trig-2", "f32", 1e-4),
+        ("mboit-trig-2", "f16", 1e-3),
+    ] {
+        let with = |bias: f64| {
+            estimate(&format!(
+                "{method}:targets={targets},bias={bias},overestimation=0.25"
+            ))
+        };
+        let default = estimate(&format!("{method}:targets={targets}"));
+        assert_eq!(default, with(bias), "{method} in {targets}");
+        assert_ne!(default, with(1.1 * bias), "{method} in {targets}");
     }
 }

@@ -148,37 +148,45 @@ fn the_ends_are_recognised() {
                         "{spec}: {p:?} for {exact:?}"
                     );
                 }
+                // Every colour is pure, over black: together they are the coverage, of which the ends leave the rest to green. Sums of
+                // 42 terms in halves err by as many roundings towards zero, of colours and of weights, and those of absorbance by as
+                // many of 3.2, times the transmittance.
+                let (shown, covered) = (p[0] + p[1] + p[2], exact[0] + exact[1] + exact[2]);
+                let rounding = if spec.to_string().ends_with("f16") {
+                    2.0 * HALF as f32
+                } else {
+                    2.0 * f32::EPSILON
+                };
+                let bound = 44.0 * rounding * covered;
+                assert!((shown - p[3]).abs() <= bound, "{spec}: {p:?}");
+                let bound = 44.0 * rounding * 3.2 * (1.0 - covered) + 2.0 * f32::EPSILON;
+                assert!(
+                    (p[3] - covered).abs() <= bound,
+                    "{spec}: {p:?} for {covered}"
+                );
             }
         }
     }
 }
 
-/// A scene that is a thousand times as large, or as small, looks the same: within one step of an 8-bit display.
+/// A scene that is 1,024 times as large, or as small, looks the same: within one step of an 8-bit display, in every pixel.
 ///
-/// But for a pixel in ten thousand, by sixteen steps at most: a thousand is no power of two, so that depths are rounded
-/// otherwise, a sum in 16 bits falls on the other side of a rounding, and where little is left of it without the fragment's
-/// own share and the ends that is a large part. docs/learned-weights.md reports what was measured and tried.
+/// A power of two rounds no depth otherwise. A thousand does: where two fragments are a rounding apart they swap, and a sum in 16 bits falls
+/// on the other side of a rounding. The hard cases judge that, pixel by pixel, and `high-alpha` declares it for half floats;
+/// docs/learned-weights.md reports what was measured and tried.
 #[test]
 fn scale_changes_nothing_visible() {
     let gpu = gpu();
-    let (mut total, mut visible, mut worst) = (0, 0, 0.0f32);
     for file in ["boxes-held", "foliage-held", "panes-held"] {
         let base = suite::load(file).unwrap();
+        let exact = draw_exact(&gpu, &base);
         for recipe in ANCHORED {
             let model = shipped(recipe);
-            for spec in specs(recipe) {
-                let reference = draw(&gpu, &base, &spec, &model, [256, 192]);
-                let exact = draw_exact(&gpu, &base);
-                for factor in [1e-3f32, 1e3] {
+            for spec in &specs(recipe) {
+                let reference = draw(&gpu, &base, spec, &model, [256, 192]);
+                for factor in [1.0 / 1024.0, 1024.0] {
                     let scene = base.scaled(factor);
-                    let image = draw(&gpu, &scene, &spec, &model, [256, 192]);
-                    let difference = |a: &[f32; 4], b: &[f32; 4]| {
-                        let display =
-                            |x: f32| peelnet_core::srgb::encode(x.clamp(0.0, 1.0)) * 255.0;
-                        (0..3).fold(0.0, |d: f32, k| {
-                            d.max((display(a[k]) - display(b[k])).abs())
-                        })
-                    };
+                    let image = draw(&gpu, &scene, spec, &model, [256, 192]);
                     // At a silhouette the scaled triangle may miss a pixel's centre: the exact image shows it.
                     let same: Vec<bool> = exact
                         .pixels
@@ -188,22 +196,23 @@ fn scale_changes_nothing_visible() {
                         .collect();
                     assert!(same.iter().filter(|s| **s).count() > same.len() * 9 / 10);
                     let pairs = reference.pixels.iter().zip(&image.pixels);
-                    for ((a, b), same) in pairs.zip(&same) {
-                        let d = difference(a, b);
-                        if *same && d > 1.0 {
-                            visible += 1;
-                            worst = worst.max(d);
-                            println!("{file}, {spec}, times {factor}: {a:?} {b:?}");
-                        }
-                        total += 1;
-                    }
+                    let display = |x: f32| peelnet_core::srgb::encode(x.clamp(0.0, 1.0)) * 255.0;
+                    let differences =
+                        pairs
+                            .zip(&same)
+                            .filter(|(_, same)| **same)
+                            .map(|((a, b), _)| {
+                                (0..3).fold(0.0, |d: f32, k| {
+                                    d.max((display(a[k]) - display(b[k])).abs())
+                                })
+                            });
+                    let worst = differences.fold(0.0, f32::max);
+                    println!("{file}, {spec}, times {factor}: {worst}/255");
+                    assert!(worst <= 1.0, "{file}, {spec}, times {factor}: {worst}/255");
                 }
             }
         }
     }
-    println!("{visible} of {total} pixels differ by more than 1/255, by {worst}/255 at most");
-    assert!(visible * 10_000 <= total, "{visible} of {total}");
-    assert!(worst <= 16.0, "{worst}/255");
 }
 
 /// Every shipped scene and the hardest stacks: no pixel that is not finite, negative, or brighter than the brightest colour in

@@ -4,11 +4,12 @@
 
 use glam::Vec3;
 use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
+use peelnet_eval::stress::judge::clip_triangles;
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::PixelSample;
 use peelnet_scene::{Light, Lighting, Material, Object, Scene, Source, Texture};
-use peelnet_tests::{clip_triangles, gpu, scene, wall};
+use peelnet_tests::{gpu, scene, wall};
 use std::sync::Arc;
 
 const SIZE: [u32; 2] = [61, 47];

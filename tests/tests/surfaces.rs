@@ -78,13 +78,7 @@ fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], ma
     let image = draw(gpu, &scene, "abuffer", size);
     let lights: Vec<shading::Light> = lights
         .iter()
-        .map(|l| shading::Light {
-            source: match l.source {
-                Source::Point(p) => shading::Source::Point(p.as_dvec3().to_array()),
-                Source::Toward(d) => shading::Source::Toward(d.as_dvec3().to_array()),
-            },
-            color: l.color.map(|c| f64::from(c) * f64::from(l.intensity)),
-        })
+        .map(peelnet_eval::stress::judge::light)
         .collect();
     for (i, pixel) in image.pixels.iter().enumerate() {
         let (x, y) = (i as u32 % size[0], i as u32 / size[0]);

@@ -53,8 +53,9 @@ pub struct Added {
     pub typical: f64,
     /// The largest error of the method itself with 32-bit targets, for comparison.
     pub own_error: f64,
-    /// The bound of a weighted mean of `n` terms: each of two sums and of the coverage rounds `n` times. None for moments, which
-    /// are read through the roots of a polynomial.
+    /// The bound of a weighted mean of `n` terms: both sums round `n` times, and in one direction, so that their quotient errs by `n`
+    /// roundings of itself; so does the transmittance, and what it takes from the one it gives to the other. None for moments, which are
+    /// read through the roots of a polynomial, and where the bound is more than a tenth of the brightest colour: it says nothing there.
     pub bound: Option<f64>,
 }
 
@@ -65,16 +66,6 @@ pub struct Numerics {
     pub blended: Vec<Blended>,
     /// Methods in 16 bits against 32.
     pub added: Vec<Added>,
-}
-
-/// What one rounding changes at most, relative for floats and absolute for R8. Adapters may round to the nearest number, or
-/// towards zero, as blending in halves does in software here; R8 rounds the source as well.
-fn roundoff(format: TextureFormat) -> f64 {
-    match format {
-        TextureFormat::R8Unorm => 1.0 / 255.0,
-        TextureFormat::R16Float | TextureFormat::Rgba16Float => 0.5f64.powi(10),
-        _ => 0.5f64.powi(23),
-    }
 }
 
 /// Where a format ends.
@@ -96,24 +87,84 @@ fn name(format: TextureFormat) -> &'static str {
     }
 }
 
-/// `T` after `n` layers of one opacity. Every product rounds once; in R8 absolutely, so that an error of one step shrinks with all
-/// later ones, in floats relatively.
-fn transmittance_bound(format: TextureFormat, alpha: f64, n: f64) -> f64 {
-    let (left, u) = ((1.0 - alpha).powf(n), roundoff(format));
+/// How an adapter rounds what it blends: the specifications leave it open.
+#[derive(Clone, Copy, Debug)]
+struct Rounding {
+    /// Of results: to the nearest number of the format, else towards zero, as blending in halves does in software here.
+    to_nearest: bool,
+    /// Whether the source is first rounded to the format. It always is in R8, to the nearest.
+    source: bool,
+}
+
+const ROUNDINGS: [Rounding; 4] = {
+    const fn of(to_nearest: bool, source: bool) -> Rounding {
+        Rounding { to_nearest, source }
+    }
+    [
+        of(true, true),
+        of(true, false),
+        of(false, true),
+        of(false, false),
+    ]
+};
+
+/// The distance between a format's numbers at a value: constant, or that of a significand of so many bits.
+fn step(format: TextureFormat, x: f64) -> f64 {
+    let floating = |bits: i32, least: i32| {
+        // The least exponent of normal numbers, which 0 has too.
+        let exponent = x.log2().max(f64::from(least)).floor();
+        2f64.powi(exponent as i32 - bits)
+    };
     match format {
-        TextureFormat::R8Unorm => (u * (1.0 - left) / alpha).min(1.0),
-        // Below 2⁻¹⁴ halves are absolute again.
-        TextureFormat::R16Float => (n * u).min(1.0) * left + n.min(1.0 / alpha) * 0.5f64.powi(24),
-        // The source is rounded once more.
-        _ => 2.0 * n * u * left,
+        TextureFormat::R8Unorm => 1.0 / 255.0,
+        TextureFormat::R16Float | TextureFormat::Rgba16Float => floating(10, -14),
+        _ => floating(23, -126),
     }
 }
 
-/// The sum of `n` equal terms: every addition rounds once, relative to the sum so far; beyond the format's end it is lost.
-fn sum_bound(format: TextureFormat, term: f64, n: f64) -> f64 {
-    let sum = n * term;
-    let rounded = (n * (n + 1.0) / 2.0 + n) * term * roundoff(format);
-    (sum - largest(format)).max(0.0) + rounded.min(sum)
+/// The number of a format that a value becomes.
+fn rounded(format: TextureFormat, x: f64, to_nearest: bool) -> f64 {
+    let x = x.min(largest(format));
+    let step = step(format, x);
+    let steps = x / step;
+    // What 64 bits left just below a number of the format is that number.
+    let cut = (steps * (1.0 + 1e-12)).floor();
+    (if to_nearest {
+        steps.round_ties_even()
+    } else {
+        cut
+    }) * step
+}
+
+/// What a target holds after blending `n` times with one way of rounding.
+fn emulated(format: TextureFormat, product: bool, source: f64, n: u32, rounding: Rounding) -> f64 {
+    let source = if rounding.source || format == TextureFormat::R8Unorm {
+        rounded(
+            format,
+            source,
+            rounding.to_nearest || format == TextureFormat::R8Unorm,
+        )
+    } else {
+        source
+    };
+    let start = f64::from(u8::from(product));
+    (0..n).fold(start, |held, _| {
+        let next = if product {
+            held * (1.0 - source)
+        } else {
+            held + source
+        };
+        rounded(format, next, rounding.to_nearest)
+    })
+}
+
+/// The most that a target can be off: what the worst way of rounding gives, and one step more.
+fn bound(format: TextureFormat, product: bool, source: f64, n: u32, exact: f64) -> f64 {
+    let off = ROUNDINGS.map(|r| {
+        let held = emulated(format, product, source, n, r);
+        (held - exact).abs() + step(format, held)
+    });
+    off.into_iter().fold(0.0, f64::max)
 }
 
 /// Measures all formats and methods.
@@ -170,11 +221,13 @@ pub fn blended(gpu: &Gpu) -> Result<Vec<Blended>, EvalError> {
                 layers,
                 exact: if product { (1.0 - s).powf(n) } else { s * n },
                 measured: measured.is_finite().then_some(measured.into()),
-                bound: if product {
-                    transmittance_bound(format, s, n)
-                } else {
-                    sum_bound(format, s, n)
-                },
+                bound: bound(
+                    format,
+                    product,
+                    s,
+                    layers,
+                    if product { (1.0 - s).powf(n) } else { s * n },
+                ),
             });
         }
     }
@@ -315,6 +368,9 @@ const LAYERS: [u32; 4] = [4, 16, 64, 256];
 /// Stacks of each number of layers: one a pixel.
 const STACKS: [u32; 2] = [8, 8];
 
+/// A bound of more, of colours up to 1, is not worth its name.
+const LARGEST_BOUND: f64 = 0.1;
+
 fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
     let mut all = Vec::new();
     if !gpu.has(wgpu::Features::FLOAT32_BLENDABLE) {
@@ -356,7 +412,8 @@ fn added(gpu: &Gpu) -> Result<Vec<Added>, EvalError> {
                 typical: (squares / (3 * exact.len()) as f64).sqrt(),
                 own_error,
                 // Roots of the statistics have no bound as simple.
-                bound: (spec.promises().root.is_none()).then(|| 3.0 * (n + 1.0) * 0.5f64.powi(10)),
+                bound: Some((n + 1.0) * 0.5f64.powi(10))
+                    .filter(|bound| spec.promises().root.is_none() && *bound <= LARGEST_BOUND),
             });
         }
     }
@@ -415,4 +472,52 @@ fn stacks(layers: u32) -> (Scene, Vec<[f64; 3]>) {
     let name = format!("{layers} layers");
     let scene = Scene::generated(&name, "the precision study", background, camera, objects);
     (scene, exact)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The emulation against numbers that are known: halves stop at 2,048 ones, and end; R8 loses opacities below half a step.
+    #[test]
+    fn formats_round_as_they_are_known_to() {
+        use TextureFormat as F;
+        let nearest = ROUNDINGS[1];
+        let cut = ROUNDINGS[3];
+        assert_eq!(emulated(F::Rgba16Float, false, 1.0, 3000, nearest), 2048.0);
+        assert_eq!(
+            emulated(F::Rgba16Float, false, 3000.0, 64, nearest),
+            65_504.0
+        );
+        assert_eq!(emulated(F::Rgba32Float, false, 1.0, 3000, cut), 3000.0);
+        assert_eq!(emulated(F::R8Unorm, true, 0.001, 256, cut), 1.0);
+        assert_eq!(emulated(F::R8Unorm, true, 1.0, 1, nearest), 0.0);
+        for x in [1.0, 0.333, 6e-8, 1e-5, 1000.7, 65_000.0] {
+            let half = f64::from(half::f16::from_f64(x));
+            assert_eq!(rounded(F::R16Float, x, true), half, "{x}");
+            let cut = rounded(F::R16Float, x, false);
+            assert!(cut <= x && x - cut < step(F::R16Float, x), "{x}: {cut}");
+            assert_eq!(rounded(F::R32Float, x, true), f64::from(x as f32), "{x}");
+        }
+    }
+
+    /// A bound reaches the whole value only where a way of rounding loses the whole value.
+    #[test]
+    fn bounds_are_of_what_is_lost() {
+        use TextureFormat as F;
+        let of = |format, alpha: f64, n: u32| {
+            let exact = (1.0 - alpha).powf(n.into());
+            bound(format, true, alpha, n, exact) / exact
+        };
+        assert!(of(F::R16Float, 0.3, 8) < 0.01 && of(F::R16Float, 0.9, 4) < 0.01);
+        assert!(of(F::R32Float, 0.0001, 1024) < 2e-4);
+        assert!(of(F::R8Unorm, 0.3, 8) < 0.3);
+        let sum = |term: f64, n: u32| {
+            let exact = term * f64::from(n);
+            bound(F::Rgba16Float, false, term, n, exact) / exact
+        };
+        assert!(sum(1.0, 1000) < 1e-3 && sum(3000.0, 21) < 0.02);
+        // All beyond 2,048 are lost, where a step is 2.
+        assert!((sum(1.0, 3000) - 954.0 / 3000.0).abs() < 1e-9);
+    }
 }

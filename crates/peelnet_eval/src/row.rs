@@ -23,7 +23,7 @@ pub struct Row {
     pub fragments: Option<u64>,
     /// The most fragments of one pixel.
     pub max_layers: Option<u32>,
-    /// Fragments that the method did not composite: coplanar ones in dual peeling, those beyond a cap on passes. `null` where it
+    /// Fragments that the method did not composite: those beyond a cap on passes. `null` where it
     /// does not count them.
     #[serde(default)]
     pub lost: Option<u64>,

@@ -152,26 +152,6 @@ impl Stacks {
     }
 }
 
-/// The largest `|T̂_i − T_i|` of those of a pixel's fragments that `counts` names, nearest first as (linear depth, α); `None` as
-/// for [`Stacks::error`].
-pub fn worst(
-    method: &MethodSpec,
-    points: &[(f32, f32)],
-    warp: &DepthWarp,
-    model: Option<&Model>,
-    counts: &dyn Fn(usize) -> bool,
-) -> Option<f64> {
-    let estimates = method.transmittances(points, warp, model)?;
-    let (mut exact, mut worst) = (1.0, 0.0f64);
-    for (i, (estimate, &(_, alpha))) in estimates.iter().zip(points).enumerate() {
-        if counts(i) {
-            worst = worst.max((estimate - exact).abs());
-        }
-        exact *= 1.0 - f64::from(alpha);
-    }
-    Some(worst)
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]

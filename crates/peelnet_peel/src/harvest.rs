@@ -129,7 +129,7 @@ impl Harvester {
         let frame = scene.targets(gpu, size, Output::Image, None)?;
         let peeler = match peel {
             Peel::SBuffer => Peeler::SBuffer,
-            Peel::Dual => Peeler::Dual(DualPeel::new(gpu, &scene, &frame, features)?),
+            Peel::Dual => Peeler::Dual(DualPeel::new(gpu, &scene, &frame, features, None)?),
             Peel::Single => Peeler::Single(SinglePeel::new(gpu, &scene, &frame, features)?),
         };
         Ok(Self {
@@ -240,7 +240,9 @@ impl Harvester {
         };
         for pass_index in 0..passes.min(cap.unwrap_or(u32::MAX)) {
             match &self.peeler {
-                Peeler::Dual(dual) => dual.peel(recorder, &self.scene, &self.frame, pass_index),
+                Peeler::Dual(dual) => {
+                    dual.peel(recorder, &self.scene, &self.frame, pass_index, false);
+                }
                 Peeler::Single(single) => {
                     single.peel(recorder, &self.scene, &self.frame, pass_index);
                 }

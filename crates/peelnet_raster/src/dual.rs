@@ -1,8 +1,10 @@
 //! Dual depth peeling (Bavoil & Myers, NVIDIA 2008): the geometry passes.
 //!
-//! One RG32F target holds `(−nearest, farthest)` under MAX blending; each pass peels both ends of what is left. Two
-//! coplanar fragments match the same end, and blending keeps the component-wise maximum of their colours: the known
-//! flaw, which callers count as fragments found less than there are.
+//! One RG32F target holds `(−nearest, farthest)` under MAX blending; each pass peels both ends of what is left. Coplanar fragments match
+//! the same end. The original keeps the component-wise maximum of their colours. Here a layer composites them one under the other in the
+//! order of drawing, which is that of the triangles' numbers: it is the exact composite of all of them, and none is lost.
+//!
+//! A dataset needs fragments one by one, not composited. Its layers keep the maximum, and callers count what is found less than there is.
 
 use crate::{
     FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
@@ -26,17 +28,27 @@ pub const BYTES_PER_PIXEL: f64 = 2.0 * 8.0 + 2.0 * 16.0;
 pub struct DualPeel {
     /// `(−nearest, farthest)` of what is left, written in turn.
     pub ranges: [wgpu::TextureView; 2],
-    /// The layer peeled from the front in the last pass.
+    /// The layer peeled from the front in the last pass: premultiplied colour and transmittance. In a dataset's passes radiance and alpha.
     pub front: wgpu::TextureView,
     /// The layer peeled from the back.
     pub back: wgpu::TextureView,
     init: GeometryPipelines,
-    peel: GeometryPipelines,
+    peel: Peel,
+    /// The same passes, which also count the fragments they peel.
+    counting: Option<Peel>,
+    /// What layers are cleared to.
+    start: [f64; 4],
+}
+
+/// The peeling passes, which read the two ranges in turn.
+#[derive(Debug)]
+struct Peel {
+    pipelines: GeometryPipelines,
     groups: [Bound; 2],
 }
 
 impl DualPeel {
-    /// Builds the passes.
+    /// Builds the passes. `found` is where counting passes add the number of fragments that they peel, in its second word.
     ///
     /// # Errors
     /// Adapters without 32-bit blending or with fewer than 40 bytes of colour a sample are refused, with the way out.
@@ -45,25 +57,9 @@ impl DualPeel {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
+        found: Option<&wgpu::Buffer>,
     ) -> Result<Self, RasterError> {
-        const HINT: &str = "use S-buffer or single peeling, or the methods abuffer or depth-peel";
-        gpu.need(
-            wgpu::Features::FLOAT32_BLENDABLE,
-            "float32-blendable",
-            "dual depth peeling",
-            HINT,
-        )?;
-        const SAMPLE_BYTES: u32 = 8 + 16 + 16;
-        if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
-            return Err(RasterError::Gpu(GpuError::TooLarge {
-                what: "dual depth peeling with its colour targets".into(),
-                needed: u64::from(SAMPLE_BYTES),
-                limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
-                unit: "bytes a sample",
-                adapter: gpu.info.name.clone(),
-                hint: HINT,
-            }));
-        }
+        check_adapter(gpu)?;
         let texture = |label: &str, format| {
             gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty())
         };
@@ -75,28 +71,30 @@ impl DualPeel {
             texture("depth range", range_format)?,
             texture("depth range", range_format)?,
         ];
-        let groups = [0, 1].map(|i| {
-            gpu.bind(
-                "depth range",
-                wgpu::ShaderStages::FRAGMENT,
-                &[Bind::Texture(&ranges[i])],
-            )
-        });
-        // Min and max blending require both factors to be one.
-        let component = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Max,
-        };
-        let max = |format| {
+        use wgpu::{BlendFactor as F, BlendOperation as O};
+        let blended = |format, color: [F; 2], alpha: [F; 2], operation| {
+            let component = |[src_factor, dst_factor]: [F; 2]| wgpu::BlendComponent {
+                src_factor,
+                dst_factor,
+                operation,
+            };
             Some(wgpu::ColorTargetState {
                 format,
                 blend: Some(wgpu::BlendState {
-                    color: component,
-                    alpha: component,
+                    color: component(color),
+                    alpha: component(alpha),
                 }),
                 write_mask: wgpu::ColorWrites::ALL,
             })
+        };
+        // Min and max blending require both factors to be one.
+        let max = |format| blended(format, [F::One; 2], [F::One; 2], O::Max);
+        let (layer, start) = if features.contains(&"dataset") {
+            (max(layer_format), [0.0; 4])
+        } else {
+            let under = ([F::DstAlpha, F::One], [F::Zero, F::OneMinusSrcAlpha]);
+            let layer = blended(layer_format, under.0, under.1, O::Add);
+            (layer, [0.0, 0.0, 0.0, 1.0])
         };
         let init = scene.pipelines(
             gpu,
@@ -110,26 +108,35 @@ impl DualPeel {
                 ..GeometryPass::NONE
             },
         )?;
-        let peel = scene.pipelines(
-            gpu,
-            frame,
-            Surfaces::Transparent,
-            &GeometryPass {
+        let peel = |found: Option<&wgpu::Buffer>| -> Result<Peel, RasterError> {
+            let groups = [0, 1].map(|i| {
+                let range = [Bind::Texture(&ranges[i])].into_iter();
+                let entries: Vec<_> = range.chain(found.map(Bind::Write)).collect();
+                gpu.bind("depth range", wgpu::ShaderStages::FRAGMENT, &entries)
+            });
+            let mut features = features.to_vec();
+            features.extend(found.map(|_| "counted"));
+            let pass = GeometryPass {
                 label: "dual peel",
                 shader: "peel::dual",
-                features,
+                features: &features,
                 group: Some(&groups[0]),
-                targets: &[max(range_format), max(layer_format), max(layer_format)],
+                targets: &[max(range_format), layer.clone(), layer.clone()],
                 ..GeometryPass::NONE
-            },
-        )?;
+            };
+            Ok(Peel {
+                pipelines: scene.pipelines(gpu, frame, Surfaces::Transparent, &pass)?,
+                groups,
+            })
+        };
         Ok(Self {
-            ranges,
+            init,
+            peel: peel(None)?,
+            counting: found.map(|found| peel(Some(found))).transpose()?,
+            start,
             front: texture("front layer", layer_format)?,
             back: texture("back layer", layer_format)?,
-            init,
-            peel,
-            groups,
+            ranges,
         })
     }
 
@@ -140,22 +147,49 @@ impl DualPeel {
         scene.draw(&mut pass, frame, Surfaces::Transparent, &self.init);
     }
 
-    /// Peeling pass `index` (from 0): reads `ranges[index % 2]`, writes the other one and both layers.
+    /// Peeling pass `index` (from 0): reads `ranges[index % 2]`, writes the other one and both layers, and with `counts` counts what it
+    /// peels where the passes were built to.
     pub fn peel(
         &self,
         recorder: &mut Recorder<'_>,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         index: u32,
+        counts: bool,
     ) {
         let from = (index % 2) as usize;
         let targets = [
             clear_color(&self.ranges[1 - from], [NOTHING; 4]),
-            clear_color(&self.front, [0.0; 4]),
-            clear_color(&self.back, [0.0; 4]),
+            clear_color(&self.front, self.start),
+            clear_color(&self.back, self.start),
         ];
+        let peel = self.counting.as_ref().filter(|_| counts);
+        let peel = peel.unwrap_or(&self.peel);
         let mut pass = recorder.render("dual peel", &targets, None);
-        pass.set_bind_group(1, &self.groups[from].group, &[]);
-        scene.draw(&mut pass, frame, Surfaces::Transparent, &self.peel);
+        pass.set_bind_group(1, &peel.groups[from].group, &[]);
+        scene.draw(&mut pass, frame, Surfaces::Transparent, &peel.pipelines);
     }
+}
+
+/// Refuses adapters that cannot blend in 32 bits, or not into all targets at once.
+fn check_adapter(gpu: &Gpu) -> Result<(), RasterError> {
+    const HINT: &str = "use S-buffer or single peeling, or the methods abuffer or depth-peel";
+    gpu.need(
+        wgpu::Features::FLOAT32_BLENDABLE,
+        "float32-blendable",
+        "dual depth peeling",
+        HINT,
+    )?;
+    const SAMPLE_BYTES: u32 = 8 + 16 + 16;
+    if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
+        return Err(RasterError::Gpu(GpuError::TooLarge {
+            what: "dual depth peeling with its colour targets".into(),
+            needed: u64::from(SAMPLE_BYTES),
+            limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
+            unit: "bytes a sample",
+            adapter: gpu.info.name.clone(),
+            hint: HINT,
+        }));
+    }
+    Ok(())
 }

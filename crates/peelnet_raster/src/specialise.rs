@@ -86,8 +86,7 @@ pub(crate) fn reads(label: &str, text: &str) -> Result<Reads, RasterError> {
     if let Some(reads) = known().get_or_insert_default().get(text) {
         return Ok(reads.clone());
     }
-    let (module, info) =
-        peelnet_shaders::validate(label, text, naga::valid::Capabilities::empty())?;
+    let (module, info) = peelnet_shaders::validate(label, text, peelnet_shaders::PORTABLE)?;
     let reads = of_module(&module, &info);
     known()
         .get_or_insert_default()

@@ -131,6 +131,23 @@ impl Flaw {
             .seen_on_llvmpipe()
     }
 
+    /// Sums of half floats that depend on the order in which they are rounded.
+    pub(crate) const fn reordered(cases: &'static [&'static str]) -> Self {
+        let reason =
+            "half floats: every order of drawing rounds a sum of many or of large terms otherwise";
+        Self::new(Property::Order, cases, reason)
+            .when(half_sums)
+            .seen_on_llvmpipe()
+    }
+
+    /// Statistics in half floats, whose roundings are magnified where a transmittance is made of them.
+    pub(crate) const fn unsettled(property: Property, cases: &'static [&'static str]) -> Self {
+        let reason = "16-bit statistics: what is reconstructed from them magnifies their roundings, and every order of drawing has others";
+        Self::new(property, cases, reason)
+            .when(half_statistics)
+            .seen_on_llvmpipe()
+    }
+
     /// Sums of large weights in half floats.
     pub(crate) const fn overflowing(cases: &'static [&'static str]) -> Self {
         let reason = "half floats end at 65,504: after 22 layers of weight 3e3 nothing is left but the coverage (McGuire & Bavoil 2013)";

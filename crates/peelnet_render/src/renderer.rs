@@ -257,6 +257,7 @@ impl Renderer {
                 frame: &frame,
                 spec,
                 learned: method.options.learned.as_ref(),
+                sums: method.options.sums,
             })?,
             Kind::Layers(view) => methods::layers::build(&self.gpu, &self.scene, &frame, *view)?,
         };

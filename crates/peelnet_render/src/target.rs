@@ -24,6 +24,9 @@ pub struct MethodOptions {
     /// Samples a pixel of [`crate::Renderer::image`]s and [`crate::Renderer::profile`]s: 1, or 4 where WebGPU's multisampling has them. The
     /// method composites every sample by itself, and the pixel is their mean in linear light.
     pub samples: u32,
+    /// Whether images hold the sums of weighted, premultiplied colour and opacity that a method blends, instead of the colour that it
+    /// makes of them. Of methods that blend weighted sums with a fixed number of passes; others draw as usual.
+    pub sums: bool,
 }
 
 impl Default for MethodOptions {
@@ -39,6 +42,7 @@ impl MethodOptions {
             size,
             learned: None,
             samples: 1,
+            sums: false,
         }
     }
 
@@ -46,6 +50,13 @@ impl MethodOptions {
     #[must_use]
     pub const fn sampled(mut self, samples: u32) -> Self {
         self.samples = samples;
+        self
+    }
+
+    /// For images of the sums that a method blends, to look at its weights.
+    #[must_use]
+    pub const fn showing_sums(mut self) -> Self {
+        self.sums = true;
         self
     }
 

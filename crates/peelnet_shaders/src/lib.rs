@@ -127,6 +127,10 @@ fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
         .map_err(|_| ShaderError::Path(path.to_owned()))
 }
 
+/// What of naga's capabilities every WebGPU device has: WGSL's own `pack2x16float`, which only old OpenGL lacks.
+pub const PORTABLE: naga::valid::Capabilities =
+    naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+
 /// Parses and validates WGSL with naga, with the portable capabilities and those given. Returns naga's module and what it knows of it.
 ///
 /// # Errors
@@ -314,9 +318,8 @@ mod tests {
                     ("learned::weight", learned.as_str()),
                     ("parameters", parameters.as_str()),
                 ];
-                let result = link(path, &features, &extra).and_then(|wgsl| {
-                    validate(path, &wgsl, naga::valid::Capabilities::empty()).map(drop)
-                });
+                let result = link(path, &features, &extra)
+                    .and_then(|wgsl| validate(path, &wgsl, PORTABLE).map(drop));
                 if let Err(e) = result {
                     failures.push(format!("{path} {features:?}: {e}"));
                 }

@@ -1,10 +1,10 @@
 // Dual depth peeling: blends the two layers of one pass, the front one under, the back one over.
-// Variants: none | counted
 import package::helpers::screen::screen_corner;
 
 // What was left before the pass, and what is left after it.
 @group(0) @binding(0) var before: texture_2d<f32>;
 @group(0) @binding(1) var after: texture_2d<f32>;
+// rgb: colour, a: transmittance of the coincident fragments of a layer.
 @group(0) @binding(2) var front: texture_2d<f32>;
 @group(0) @binding(3) var back: texture_2d<f32>;
 @group(0) @binding(4) var<storage, read_write> found: array<atomic<u32>, 2>;
@@ -31,13 +31,10 @@ fn fragment_main(@builtin(position) position: vec4f) -> Layers {
     if -next.x <= next.y {
         atomicStore(&found[0], 1u);
     }
-    @if(counted) {
-        atomicAdd(&found[1], select(1u, 2u, left.y > -left.x));
-    }
     let nearest = textureLoad(front, pixel, 0);
     let farthest = textureLoad(back, pixel, 0);
     return Layers(
-        nearest,
-        farthest,
+        vec4f(nearest.rgb, 1.0 - nearest.a),
+        vec4f(farthest.rgb, 1.0 - farthest.a),
     );
 }

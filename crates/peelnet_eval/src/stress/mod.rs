@@ -4,12 +4,13 @@
 //! [`stress`] draws a case with a list of methods and gives a [`Row`] for each method and property.
 //!
 //! ```text
-//! case ─► trials (scene, and the fragments of its pixels: known, or peeled)
-//!           ├─► exact frames, in 64 bits where fragments are known
+//! case ─► trials (scene, and the fragments of its pixels: known, or found by the 64-bit judge)
+//!           ├─► exact frames
 //!           └─► each method's frames: as listed, reversed, shuffled, scaled, moved ─► findings ─► rows
 //! ```
 
 mod catalogue;
+pub mod judge;
 mod network;
 mod properties;
 mod subject;
@@ -21,10 +22,9 @@ use peelnet_files::counted;
 pub use peelnet_render::{Flaw, MethodOptions, Property};
 pub use properties::Finding;
 pub use subject::Subject;
-pub use trial::{Kind, Stack, Trial, Truth};
+pub use trial::{Content, Kind, Stack, Trial, Truth};
 
-use crate::{EvalError, compare::EXACT, compare::image_name, transmittance};
-use peelnet_core::fragment::Fragment;
+use crate::{EvalError, compare::EXACT, compare::image_name};
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
 use peelnet_render::{Image, Renderer, Submission};
 use peelnet_scene::Camera;
@@ -281,7 +281,7 @@ impl<'a> Stage<'a> {
     fn new(gpu: &'a Gpu, trial: &'a Trial) -> Result<Self, EvalError> {
         let renderer = Renderer::new(gpu, &trial.scene);
         Ok(Self {
-            truth: trial.truth(gpu)?,
+            truth: trial.truth(),
             renderer: renderer.map_err(EvalError::render(&trial.scene.name, EXACT))?,
             scaled: Vec::new(),
             trial,
@@ -334,7 +334,7 @@ impl<'a> Stage<'a> {
             }
             self.renderer.submit(Submission::Listed);
         }
-        if let Some((text, model)) = &subject.learned {
+        if let Some((text, _)) = &subject.learned {
             self.scale()?;
             for (renderer, camera, exact_scaled) in &self.scaled {
                 let prepared = renderer.method(
@@ -347,10 +347,8 @@ impl<'a> Stage<'a> {
                 let exact = [&exact[0], exact_scaled];
                 properties::compare_scales([&first, &other], exact, note);
             }
-            self.transmittance(subject, case, Some(model), note);
-        } else {
-            self.transmittance(subject, case, None, note);
         }
+        self.transmittance(subject, case, note)?;
         Ok(first)
     }
 
@@ -371,31 +369,45 @@ impl<'a> Stage<'a> {
         Ok(())
     }
 
-    /// What the weights stand for, fragment by fragment, by the CPU twins.
+    /// The transmittance that the weights stand for, as the shaders draw it: a frame of the sums that they blend, in which fragments are
+    /// red, green or blue, holds `α T̂` of each.
     fn transmittance(
         &self,
         subject: &Subject,
         case: &Case,
-        model: Option<&peelnet_model::Model>,
         note: &mut Note<'_>,
-    ) {
-        let Some(limit) = properties::transmittance_limit(case.id, subject) else {
-            return;
+    ) -> Result<(), EvalError> {
+        let limit = properties::transmittance_limit(case.id, subject);
+        let is_estimate = subject.method.method().transmittances.is_some();
+        let (Some(limit), true, Some((scene, shown))) = (limit, is_estimate, self.trial.probe())
+        else {
+            return Ok(());
         };
-        let warp = self.renderer.depth_warp(&self.trial.scene.views[0]);
-        for kind in &self.truth.kinds {
-            let points: Vec<(f32, f32)> =
-                kind.fragments.iter().map(|f| (f.depth, f.alpha)).collect();
-            // What lies in front of coincident ones is a matter of the rule for ties, which no sum can know.
-            let alone = |i: usize| {
-                let same = |f: &Fragment| f.depth == points[i].0;
-                kind.fragments.iter().filter(|f| same(f)).count() == 1
+        let method = subject.method.to_string();
+        let failed = || EvalError::render(&scene.name, &method);
+        let renderer = Renderer::new(self.gpu, &scene).map_err(failed())?;
+        let learned = subject.learned.as_ref().map(|(text, _)| text);
+        let options = MethodOptions::sized(self.trial.size).with(learned);
+        let mut prepared = renderer
+            .method(&subject.method, options.showing_sums())
+            .map_err(failed())?;
+        let sums = renderer.image(&mut prepared, &scene.views[0]);
+        let sums = sums.map_err(failed())?.image;
+        for (content, sum) in self.truth.pixels.iter().zip(&sums.pixels) {
+            let Content::Kind(k) = *content else {
+                continue;
             };
-            let error = transmittance::worst(&subject.method, &points, &warp, model, &alone);
-            if let Some(error) = error {
-                note(Property::Transmittance, error, limit, &|| kind.name.clone());
+            let kind = &self.truth.kinds[k as usize];
+            for (i, sum) in shown[k as usize].iter().zip(sum) {
+                let Some(i) = *i else { continue };
+                let found = f64::from(*sum) / f64::from(kind.fragments[i].alpha);
+                let error = (found - kind.transmittance_at(i, subject.promises.own_share)).abs();
+                note(Property::Transmittance, error, limit, &|| {
+                    format!("{}, at depth {}", kind.name, kind.fragments[i].depth)
+                });
             }
         }
+        Ok(())
     }
 }
 
@@ -438,13 +450,13 @@ mod tests {
             outcome(
                 method,
                 "coplanar",
-                Property::Exact,
+                Property::Order,
                 value,
                 strict,
                 &llvmpipe(),
             )
         };
-        let coplanar = |value, strict| judge("dual-peel", value, strict);
+        let coplanar = |value, strict| judge("depth-peel", value, strict);
         assert_eq!(coplanar(2.0, true), Outcome::Declared);
         assert_eq!(coplanar(0.5, true), Outcome::Fail);
         assert_eq!(coplanar(0.5, false), Outcome::Pass);
@@ -466,8 +478,8 @@ mod tests {
         assert_eq!(rounding(0.5, &other), Outcome::Pass);
         // What follows from the mathematics is expected everywhere.
         let coplanar = |value, adapter: &AdapterInfo| {
-            let property = Property::Exact;
-            outcome("dual-peel", "coplanar", property, value, true, adapter)
+            let property = Property::Order;
+            outcome("depth-peel", "coplanar", property, value, true, adapter)
         };
         assert_eq!(coplanar(2.0, &other), Outcome::Declared);
         assert_eq!(coplanar(0.5, &other), Outcome::Fail);

@@ -55,10 +55,9 @@ impl Subject {
     /// What roundings of the statistics of `n` fragments may change, as a share of the colour. Positions are roots of a polynomial
     /// of the statistics: where roots coincide, a change of the statistics moves them by its root of the same degree.
     pub(super) fn reconstruction(&self, n: f64) -> f64 {
-        self.promises.root.map_or(0.0, |degree| {
-            let rounding = n * unit_roundoff(self.promises.statistics);
-            4.0 * rounding.powf(1.0 / f64::from(degree))
-        })
+        let degree = self.promises.root.unwrap_or(1);
+        let rounding = n * unit_roundoff(self.promises.statistics);
+        4.0 * rounding.powf(1.0 / f64::from(degree))
     }
 }
 

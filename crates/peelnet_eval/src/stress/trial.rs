@@ -1,16 +1,13 @@
-//! A scene with the fragments of each of its pixels: known beforehand, or peeled.
+//! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit judge.
 
-use super::catalogue::camera;
-use crate::EvalError;
+use super::{catalogue::camera, judge};
+
 use glam::Vec3;
 use peelnet_core::{
     fragment::{Fragment, sort_front_to_back},
     guards::EMISSIVE_ALPHA,
     methods::over,
 };
-use peelnet_gpu::Gpu;
-use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::PixelSample;
 use peelnet_scene::{Material, Object, Scene};
 
 /// Layers that cover some pixels of the frame whole.
@@ -48,13 +45,35 @@ pub struct Trial {
     known: Option<Truth>,
 }
 
+/// What is known of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// It holds no fragment and nothing opaque.
+    Nothing,
+    /// It is one of [`Truth::kinds`].
+    Kind(u32),
+    /// It lies on an edge: which fragments it holds depends on how vertices are snapped to the adapter's sub-pixel grid.
+    Unjudged,
+}
+
 /// The fragments of every pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
-    /// Which of `kinds` a pixel is, row by row; none where it holds no fragment and nothing opaque.
-    pub pixels: Vec<Option<u32>>,
+    /// Row by row.
+    pub pixels: Vec<Content>,
     /// Pixels that hold the same.
     pub kinds: Vec<Kind>,
+}
+
+impl Truth {
+    /// The name of what a pixel holds, for messages.
+    pub fn name(&self, content: Content) -> &str {
+        match content {
+            Content::Nothing => "no fragment",
+            Content::Kind(k) => &self.kinds[k as usize].name,
+            Content::Unjudged => "an edge",
+        }
+    }
 }
 
 /// What a pixel holds, and what follows from it.
@@ -72,27 +91,66 @@ pub struct Kind {
     pub transmittance: f64,
     /// `b_0`, the sum of absorbances.
     pub absorbance: f64,
-    /// The brightest component of any colour, at least 1.
-    pub peak: f64,
+    /// The brightest component of what the fragments show by themselves, un-premultiplied: `(exact − T_∞ C_0) / (1 − T_∞)`.
+    pub mean: f64,
+    /// How far `exact` may be off because geometry is snapped and shaded in 32 bits; 0 where nothing but compositing rounds.
+    pub uncertainty: f64,
 }
 
 impl Kind {
-    fn new(name: String, mut fragments: Vec<Fragment>, background: [f32; 3]) -> Self {
+    /// Of fragments in any order before `C_0`.
+    pub(super) fn new(name: String, mut fragments: Vec<Fragment>, background: [f32; 3]) -> Self {
         sort_front_to_back(&mut fragments);
         let alphas = fragments.iter().map(|f| f64::from(f.alpha));
-        let colors = fragments.iter().flat_map(|f| f.color).chain(background);
+        let transmittance: f64 = alphas.map(|a| 1.0 - a).product();
+        let exact = over::composite_f64(&fragments, background);
+        let own = exact.iter().zip(background);
+        let brightest = own.fold(0.0f64, |m, (&c, c0)| {
+            m.max(c - transmittance * f64::from(c0))
+        });
         Self {
-            exact: over::composite_f64(&fragments, background),
-            transmittance: alphas.map(|a| 1.0 - a).product(),
+            exact,
+            transmittance,
+            mean: if transmittance < 1.0 {
+                brightest / (1.0 - transmittance)
+            } else {
+                0.0
+            },
+            uncertainty: 0.0,
             absorbance: fragments
                 .iter()
                 .map(|f| peelnet_core::absorbance::absorbance(f.alpha))
                 .sum(),
-            peak: colors.fold(1.0, |m, c| m.max(f64::from(c))),
             name,
             fragments,
             background,
         }
+    }
+
+    /// The transmittance at the `i`-th fragment from the front, of which it counts this share of its own absorbance.
+    pub(super) fn transmittance_at(&self, i: usize, own_share: f64) -> f64 {
+        let passing = |f: &Fragment| 1.0 - f64::from(f.alpha);
+        let in_front: f64 = self.fragments[..i].iter().map(passing).product();
+        in_front * passing(&self.fragments[i]).powf(own_share)
+    }
+
+    /// Whether no other fragment has the depth of the `i`-th.
+    pub(super) fn is_alone(&self, i: usize) -> bool {
+        let depth = self.fragments[i].depth;
+        self.fragments.iter().filter(|f| f.depth == depth).count() == 1
+    }
+
+    /// The sum of what fragments show or hide, unnormalised: their opacities times their colours' brightest component, or `C_0`'s.
+    pub(super) fn terms(&self) -> f64 {
+        let brightest = |c: [f32; 3]| c.into_iter().fold(1.0, f32::max);
+        let behind = brightest(self.background);
+        let term = |f: &Fragment| f64::from(f.alpha * brightest(f.color).max(behind));
+        self.fragments.iter().map(term).sum::<f64>() + f64::from(behind)
+    }
+
+    /// The brightest component of the exact colour, at least 1: what errors of the pixel are measured against.
+    pub(super) fn scale(&self) -> f64 {
+        self.exact.into_iter().fold(1.0, f64::max)
     }
 }
 
@@ -109,15 +167,15 @@ fn material(layer: &Fragment) -> Material {
     }
 }
 
-/// Width and height of frames whose pixels are peeled.
-const PEELED_SIZE: [u32; 2] = [48, 36];
+/// Width and height of frames whose pixels the judge finds.
+const JUDGED_SIZE: [u32; 2] = [48, 36];
 
 impl Trial {
-    /// A scene whose pixels are peeled when it is drawn.
-    pub fn peeled(scene: Scene) -> Self {
+    /// A scene whose pixels the judge finds when it is drawn.
+    pub fn judged(scene: Scene) -> Self {
         Self {
             scene,
-            size: PEELED_SIZE,
+            size: JUDGED_SIZE,
             moves: false,
             known: None,
         }
@@ -136,7 +194,7 @@ impl Trial {
         let size = [columns * pitch + 1, rows * pitch + 1];
         let [width, height] = size.map(|n| n as f32);
         let mut truth = Truth {
-            pixels: vec![None; (size[0] * size[1]) as usize],
+            pixels: vec![Content::Nothing; (size[0] * size[1]) as usize],
             kinds: Vec::new(),
         };
         let mut objects = Vec::new();
@@ -180,7 +238,7 @@ impl Trial {
             truth.kinds.push(Kind::new(name, fragments, behind));
             for y in top..top + cover {
                 for x in left..left + cover {
-                    truth.pixels[(y * size[0] + x) as usize] = Some(kind);
+                    truth.pixels[(y * size[0] + x) as usize] = Content::Kind(kind);
                 }
             }
         }
@@ -194,50 +252,37 @@ impl Trial {
         }
     }
 
-    /// What the first view's pixels hold.
-    ///
-    /// # Errors
-    /// If it must be peeled and cannot be.
-    pub fn truth(&self, gpu: &Gpu) -> Result<Truth, EvalError> {
-        if let Some(known) = &self.known {
-            return Ok(known.clone());
+    /// What the first view's pixels hold: as the trial was made, or as the 64-bit judge finds.
+    pub fn truth(&self) -> Truth {
+        match &self.known {
+            Some(known) => known.clone(),
+            None => judge::truth(&self.scene, &self.scene.views[0], self.size),
         }
-        let mut harvester = Harvester::new(gpu, &self.scene, self.size, Peel::SBuffer, false, None)
-            .map_err(EvalError::peel(&self.scene.name))?;
-        let mut truth = Truth {
-            pixels: vec![None; (self.size[0] * self.size[1]) as usize],
-            kinds: Vec::new(),
-        };
-        let mut take = |tile: RawTile| {
-            let first = tile.first_pixel as usize;
-            for (run, pixel) in tile.offsets.windows(2).zip(first..) {
-                let run = run[0] as usize..run[1] as usize;
-                if run.is_empty() {
-                    continue;
+    }
+
+    /// The scene with colours that show weights: of each pixel's fragments whose depth no other has, the nearest three are red, green
+    /// and blue, and all others black, over black. `None` where the fragments are not known beforehand.
+    pub(super) fn probe(&self) -> Option<(Scene, Vec<[Option<usize>; 3]>)> {
+        let known = self.known.as_ref()?;
+        let mut scene = self.scene.clone();
+        scene.background = [0.0; 3];
+        for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
+            (material.color, material.emission) = ([0.0; 3], [0.0; 3]);
+        }
+        let shown = known.kinds.iter().map(|kind| {
+            let mut shown = [None; 3];
+            let alone = (0..kind.fragments.len()).filter(|&i| kind.is_alone(i));
+            for ((place, i), channel) in shown.iter_mut().zip(alone).zip(0..) {
+                *place = Some(i);
+                // A layer is an object of two triangles.
+                let object = kind.fragments[i].triangle as usize / 2;
+                for material in &mut scene.objects[object].materials {
+                    material.color[channel] = 1.0;
                 }
-                let found = tile.depths[run.clone()].iter().zip(&tile.colors[run]);
-                let fragments = found.zip(0..).map(|((&depth, c), i)| Fragment {
-                    // Storage is in the order of the exact methods.
-                    triangle: i,
-                    ..Fragment::new(depth, c[3], [c[0], c[1], c[2]])
-                });
-                let (x, y) = (pixel % self.size[0] as usize, pixel / self.size[0] as usize);
-                let name = format!("{} at ({x}, {y})", self.scene.name);
-                truth.pixels[pixel] = Some(truth.kinds.len() as u32);
-                let kind = Kind::new(name, fragments.collect(), self.scene.background);
-                truth.kinds.push(kind);
             }
-            Ok(())
-        };
-        harvester
-            .harvest(
-                &self.scene.views[0],
-                PixelSample::ALL,
-                None,
-                RawTile::default,
-                &mut take,
-            )
-            .map_err(EvalError::peel(&self.scene.name))?;
-        Ok(truth)
+            shown
+        });
+        let shown = shown.collect();
+        Some((scene, shown))
     }
 }

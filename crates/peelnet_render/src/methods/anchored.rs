@@ -2,7 +2,7 @@
 //! the exported text itself. The CPU twin is `peelnet_core::methods::anchored`.
 
 use super::{
-    commutative::{self, Blend, Gather, Plan, Target},
+    commutative::{self, Blend, ENDS, Gather, Plan, Target},
     compositor::{Build, Compositor},
     learned::learned_transmittances,
     method::{Method, Pixel, Promises},
@@ -54,6 +54,12 @@ macro_rules! anchored {
     };
 }
 
+/// Crossing and many layers, where what is left of a sum without the fragment's own share and the ends is a small part of it.
+const UNSETTLED: Flaw = Flaw::unsettled(
+    Property::Order,
+    &["high-alpha", "intersecting", "moving-camera"],
+);
+
 const BEHIND_COINCIDENT: Flaw = Flaw::new(
     Property::Transmittance,
     &["coplanar"],
@@ -75,6 +81,8 @@ pub(super) const SMALL: Method = Method {
     flaws: &[
         Flaw::swallowed(&["deep"]),
         ROUNDED_OTHERWISE,
+        UNSETTLED,
+        Flaw::unsettled(Property::Order, &["near-overflow"]),
         BEHIND_COINCIDENT,
     ],
     ..anchored!(
@@ -90,6 +98,8 @@ pub(super) const MEDIUM: Method = Method {
     flaws: &[
         Flaw::swallowed(&["deep"]),
         ROUNDED_OTHERWISE,
+        UNSETTLED,
+        Flaw::unsettled(Property::Order, &["near-overflow"]),
         BEHIND_COINCIDENT,
     ],
     ..anchored!(
@@ -104,7 +114,9 @@ pub(super) const LARGE: Method = Method {
     curve: &["", ":targets=f16", ":scale=0.5"],
     flaws: &[
         Flaw::swallowed(&["deep"]).when(half_statistics),
-        BEHIND_COINCIDENT,
+        UNSETTLED,
+        Flaw::unsettled(Property::Order, &["deep"]),
+        BEHIND_COINCIDENT.when(|s| !half_statistics(s)),
     ],
     ..anchored!(
         "deep-large",
@@ -134,7 +146,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         sums.push(targets.len());
         resolve_reads.push(targets.len());
         targets.push(Target {
-            label: "ends",
+            label: ENDS,
             ..SUMS
         });
     }

@@ -156,6 +156,9 @@ pub(crate) struct Plan<'a> {
     pub tinted_by: Option<usize>,
 }
 
+/// The sums of a pixel's nearest and farthest fragment, where they stand apart from the others'.
+pub(super) const ENDS: &str = "ends";
+
 /// `T_∞` of red, green and blue.
 pub(super) const TINTED: Target = Target {
     label: "tinted transmittance",
@@ -284,28 +287,15 @@ pub(super) fn build(b: &Build<'_>, plan: &Plan<'_>) -> Result<Box<dyn Compositor
         passes.push(build_pass(b, gather, &targets, &storage, &states, tinted)?);
     }
     let kernel = plan.kernel.map(|k| build_kernel(b, &k, &storage));
-    let mut entries = vec![Bind::Texture(&b.frame.background)];
-    entries.extend(
-        plan.resolve_reads
-            .iter()
-            .map(|&i| Bind::Texture(&targets[i].0)),
-    );
-    entries.extend(tinting.map(|_| Bind::Texture(&targets[plan.targets.len()].0)));
-    entries.extend(plan.resolve_loads.iter().map(|&i| Bind::Read(&storage[i])));
-    let mut resolve_features = plan.resolve_features.to_vec();
-    resolve_features.extend(tinting.map(|_| "tinted"));
-    let full_sums = |t: &Target| t.label == super::weighted::SUMS.label && is_full(t);
-    if all_targets.iter().any(full_sums) {
-        resolve_features.push("full_sums");
-    }
-    let resolve = FullscreenPass::resolve(
-        b.gpu,
-        plan.resolve,
-        &resolve_features,
-        plan.resolve_extra,
-        &entries,
-        b.frame.output,
-    )?;
+    let full_sums = all_targets
+        .iter()
+        .any(|t| t.label == super::weighted::SUMS.label && is_full(t));
+    let tinted = tinting.map(|_| &targets[plan.targets.len()].0);
+    let resolve = if b.sums {
+        build_sums(b, plan, &targets)?
+    } else {
+        build_resolve(b, plan, &targets, &storage, tinted, full_sums)?
+    };
     let blended: u32 = all_targets.iter().map(|t| t.bytes(is_full(t))).sum();
     let stored: u32 = plan.storage.iter().map(|s| s.bytes).sum();
     let sorted = Sorted::new(b.gpu, b.scene, plan.order)?;
@@ -344,6 +334,60 @@ fn build_kernel(
         group,
         groups: groups_2d(u32::try_from(kernel.threads).unwrap_or(u32::MAX)),
     })
+}
+
+/// Makes the resolve ready. `tinted` is the target of what fragments cover where transmission is coloured.
+fn build_resolve(
+    b: &Build<'_>,
+    plan: &Plan<'_>,
+    targets: &[(wgpu::TextureView, Blend)],
+    storage: &[wgpu::Buffer],
+    tinted: Option<&wgpu::TextureView>,
+    full_sums: bool,
+) -> Result<FullscreenPass, RenderError> {
+    let reads = plan
+        .resolve_reads
+        .iter()
+        .map(|&i| Bind::Texture(&targets[i].0));
+    let loads = plan.resolve_loads.iter().map(|&i| Bind::Read(&storage[i]));
+    let entries: Vec<_> = [Bind::Texture(&b.frame.background)]
+        .into_iter()
+        .chain(reads)
+        .chain(tinted.map(Bind::Texture))
+        .chain(loads)
+        .collect();
+    let mut features = plan.resolve_features.to_vec();
+    features.extend(tinted.map(|_| "tinted"));
+    features.extend(full_sums.then_some("full_sums"));
+    let (gpu, extra, output) = (b.gpu, plan.resolve_extra, b.frame.output);
+    let pass = FullscreenPass::resolve(gpu, plan.resolve, &features, extra, &entries, output)?;
+    Ok(pass)
+}
+
+/// Makes a pass ready that shows the sums instead: the first target, and that of the pixel's ends where they stand apart.
+fn build_sums(
+    b: &Build<'_>,
+    plan: &Plan<'_>,
+    targets: &[(wgpu::TextureView, Blend)],
+) -> Result<FullscreenPass, RenderError> {
+    let ends = plan.targets.iter().position(|t| t.label == ENDS);
+    let mut entries = vec![Bind::Texture(&targets[0].0)];
+    entries.extend(ends.map(|i| Bind::Texture(&targets[i].0)));
+    let features: &[&str] = if ends.is_some() {
+        &["separate_ends"]
+    } else {
+        &[]
+    };
+    let (gpu, output) = (b.gpu, b.frame.output);
+    let pass = FullscreenPass::resolve(
+        gpu,
+        "methods::sums::resolve",
+        features,
+        &[],
+        &entries,
+        output,
+    )?;
+    Ok(pass)
 }
 
 /// Makes one geometry pass ready. `tinted` is the target that it also writes where transmission is coloured.

@@ -14,7 +14,7 @@ pub struct FrameStats {
     pub fragments: Option<u64>,
     /// Fragments of the fullest pixel, where the method counts them.
     pub max_layers: Option<u32>,
-    /// Fragments that the method did not composite: coplanar ones in dual peeling, those beyond a cap on passes.
+    /// Fragments that the method did not composite: those beyond a cap on passes.
     pub lost: u64,
     /// Tiles that the frame was drawn in.
     pub tiles: u32,
@@ -133,4 +133,6 @@ pub(crate) struct Build<'a> {
     pub frame: &'a FrameTargets,
     pub spec: &'a MethodSpec,
     pub learned: Option<&'a LearnedWeight>,
+    /// Whether the image holds the blended sums, not the colour.
+    pub sums: bool,
 }

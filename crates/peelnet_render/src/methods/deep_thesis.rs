@@ -43,6 +43,7 @@ pub(super) const METHOD: Method = Method {
     transmittances: Some(learned_transmittances),
     flaws: &[
         Flaw::swallowed(&["alpha-tiny", "deep", "near-overflow"]),
+        Flaw::reordered(&["deep"]),
         Flaw::BLIND,
         Flaw::new(
             Property::Scale,

@@ -29,7 +29,7 @@ pub(super) const PASSES: Count = Count {
 pub(super) const COINCIDENT: Flaw = Flaw::new(
     Property::Order,
     &["coplanar"],
-    "coincident fragments are separated by a depth test that keeps the first drawn, so that they must be drawn in the order of their numbers",
+    "coincident fragments are separated by a depth test that keeps the first drawn, because portable WebGPU can compare no triangle beside the depth; they must be drawn in the order of their numbers, as the renderer does, or some are lost",
 );
 
 pub(super) const METHOD: Method = Method {

@@ -37,10 +37,11 @@ fn colors(spec: &MethodSpec) -> Precision {
     }
 }
 
-const fn coplanar(property: Property) -> Flaw {
-    let reason = "keeps one coincident fragment at either end and counts the rest as lost (Bavoil & Myers 2008)";
-    Flaw::new(property, &["coplanar"], reason).when(|s| PASSES.given(s).is_none())
-}
+const COINCIDENT: Flaw = Flaw::new(
+    Property::Order,
+    &["coplanar"],
+    "coincident fragments are blended into one layer, so that they must be drawn in the order of their numbers",
+);
 
 pub(super) const METHOD: Method = Method {
     parameters: &[Parameter::Count(PASSES), Parameter::Word(COLORS)],
@@ -60,16 +61,8 @@ pub(super) const METHOD: Method = Method {
         reached.drain(front..n - back);
         Some(over::composite(&reached, p.background))
     }),
-    flaws: &[
-        coplanar(Property::Background),
-        coplanar(Property::Exact),
-        coplanar(Property::Hull),
-    ],
-    ..Method::new(
-        "dual-peel",
-        "exact but for coplanar fragments: both ends, two layers a pass",
-        build,
-    )
+    flaws: &[COINCIDENT.when(|s| PASSES.given(s).is_none())],
+    ..Method::new("dual-peel", "exact: both ends, two layers a pass", build)
 };
 
 #[derive(Debug)]
@@ -77,8 +70,8 @@ struct Dual {
     peel: DualPeel,
     fronts: wgpu::TextureView,
     backs: wgpu::TextureView,
-    /// By parity of the pass, without and with counting.
-    blend: [[FullscreenPass; 2]; 2],
+    /// By parity of the pass.
+    blend: [FullscreenPass; 2],
     resolve: FullscreenPass,
     passes: Passes,
     /// Bytes a pixel of fronts and backs.
@@ -88,7 +81,6 @@ struct Dual {
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     use wgpu::BlendFactor::{DstAlpha, One, OneMinusSrcAlpha, Zero};
     let (gpu, frame) = (b.gpu, b.frame);
-    let peel = DualPeel::new(gpu, b.scene, frame, &[])?;
     let (format, bytes) = match colors(b.spec) {
         Precision::Half => (wgpu::TextureFormat::Rgba16Float, 8.0),
         Precision::Full => (wgpu::TextureFormat::Rgba32Float, 16.0),
@@ -97,6 +89,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         |label: &str| gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty());
     let (fronts, backs) = (texture("fronts")?, texture("backs")?);
     let passes = Passes::new(gpu, 2, PASSES.given(b.spec))?;
+    let peel = DualPeel::new(gpu, b.scene, frame, &[], Some(&passes.found))?;
     let component = |src_factor, dst_factor| wgpu::BlendComponent {
         src_factor,
         dst_factor,
@@ -117,11 +110,11 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         target(component(DstAlpha, One)),
         target(component(One, OneMinusSrcAlpha)),
     ];
-    let blend = |features: &[&str], from: usize| {
+    let blend = |from: usize| {
         FullscreenPass::new(
             gpu,
             "methods::dual_peel::blend",
-            features,
+            &[],
             &[],
             &[
                 Bind::Texture(&peel.ranges[from]),
@@ -146,10 +139,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         frame.output,
     )?;
     Ok(Box::new(Dual {
-        blend: [
-            [blend(&[], 0)?, blend(&[], 1)?],
-            [blend(&["counted"], 0)?, blend(&["counted"], 1)?],
-        ],
+        blend: [blend(0)?, blend(1)?],
         peel,
         fronts,
         backs,
@@ -177,8 +167,9 @@ impl Compositor for Dual {
         ));
         for number in 0..passes {
             self.passes.before(cx);
-            self.peel.peel(cx.recorder, cx.scene, cx.frame, number);
-            self.blend[usize::from(cx.counting)][(number % 2) as usize].draw(
+            self.peel
+                .peel(cx.recorder, cx.scene, cx.frame, number, cx.counting);
+            self.blend[(number % 2) as usize].draw(
                 cx.recorder,
                 &[
                     attachment(&self.fronts, wgpu::LoadOp::Load),

@@ -36,7 +36,7 @@ fn long_tails(spec: &MethodSpec) -> bool {
 const TOO_FEW_PLACES: Flaw = Flaw::new(
     Property::Order,
     &["coplanar"],
-    "of more coincident fragments than places, those drawn first are kept",
+    "of more coincident fragments than places, those that arrive first are kept: places are ordered by depth in one atomic word, and portable WebGPU has no atomics of 64 bits, which the triangle would need beside it",
 )
 .when(|s| s.number() < 16);
 
@@ -76,6 +76,7 @@ pub(super) const HYBRID: Method = Method {
     flaws: &[
         TOO_FEW_PLACES,
         Flaw::swallowed(&["deep"]).when(long_tails),
+        Flaw::reordered(&["deep"]).when(long_tails),
         Flaw::overflowing(&["near-overflow"]).when(long_tails),
     ],
     ..Method::new(

@@ -4,10 +4,7 @@
 use super::{
     commutative::{self, Gather, Plan},
     compositor::{Build, Compositor},
-    mboit::{
-        BLURRED, OVERESTIMATION, OWN, OWN_SHARE, bias, moments, own_out, own_share, promises,
-        settings,
-    },
+    mboit::{BLURRED, OVERESTIMATION, OWN, bias, moments, own_out, own_share, promises, settings},
     method::{Method, Numbered},
     parameter::{MOMENT_TARGETS, Number, Parameter},
     spec::MethodSpec,
@@ -15,7 +12,7 @@ use super::{
 };
 use crate::{
     error::RenderError,
-    flaw::{Flaw, half_statistics},
+    flaw::{Flaw, Property, half_statistics, half_sums},
 };
 use peelnet_core::methods::{mboit_trig, mboit4::Settings};
 use std::ops::Bound;
@@ -44,7 +41,7 @@ pub(super) const METHOD: Method = Method {
         Parameter::Number(BIAS),
         Parameter::Word(OWN),
     ],
-    promises: |s| promises(s.number()),
+    promises: |s| promises(s, s.number()),
     curve: &["-2", "-3", "-3:own=out", "-2:targets=f16"],
     twin: Some(|s, p| {
         let (fragments, c0, count) = (p.fragments, p.background, s.number() as usize);
@@ -63,7 +60,28 @@ pub(super) const METHOD: Method = Method {
         Flaw::swallowed(&["deep", "near-overflow"]),
         Flaw::swallowed(&["alpha-tiny"]).when(|s| s.number() == 2 && half_statistics(s)),
         BLURRED.when(|s| !own_out(s) && (s.number() != 3 || half_statistics(s))),
-        OWN_SHARE,
+        Flaw::new(
+            Property::Transmittance,
+            &["two-layers"],
+            "sines and cosines of close layers in 32 bits: roundings of the sums move the points; a bias of 1e-3 hides it",
+        )
+        .when(|s| !own_out(s) && !half_statistics(s))
+        .seen_on_llvmpipe(),
+        Flaw::new(
+            Property::Order,
+            &["coplanar"],
+            "sines and cosines of coincident pairs in 32 bits: roundings of the sums move the points",
+        )
+        .when(|s| !half_statistics(s))
+        .seen_on_llvmpipe(),
+        Flaw::new(
+            Property::Order,
+            &["intersecting", "moving-camera"],
+            "roundings of the sums move the points where surfaces cross, in 32 bits as well",
+        )
+        .seen_on_llvmpipe(),
+        Flaw::unsettled(Property::Order, &["deep", "emissive", "high-alpha", "passing"]),
+        Flaw::reordered(&["near-overflow"]).when(|s| half_sums(s) && !half_statistics(s)),
     ],
     ..Method::new(
         "mboit-trig",

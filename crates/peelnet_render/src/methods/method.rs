@@ -80,7 +80,7 @@ pub struct Numbered {
 }
 
 /// What a method promises.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Promises {
     /// Every pixel equals the composite of its sorted fragments in 64 bits.
     pub exact: bool,
@@ -107,6 +107,8 @@ pub struct Promises {
     pub root: Option<u32>,
     /// Its estimate of transmittance is held to a fraction of the limits that published methods are held to.
     pub close_estimate: bool,
+    /// How much of its own absorbance a fragment counts as in front of it, given exact statistics.
+    pub own_share: f64,
     /// A fragment's weight is a formula of its own depth and opacity (McGuire & Bavoil 2013).
     pub own_weight: bool,
 }
@@ -126,6 +128,7 @@ impl Promises {
         statistics: Precision::Full,
         root: None,
         close_estimate: false,
+        own_share: 0.0,
         own_weight: false,
     };
 

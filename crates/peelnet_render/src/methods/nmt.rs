@@ -38,6 +38,8 @@ pub(super) const METHOD: Method = Method {
     transmittances: Some(learned_transmittances),
     flaws: &[
         Flaw::swallowed(&["deep", "near-overflow"]),
+        Flaw::unsettled(Property::Order, &["deep", "near-overflow"]),
+        Flaw::unsettled(Property::Transmittance, &["isolated"]),
         Flaw::new(
             Property::Opaque,
             &["alpha-near-one"],

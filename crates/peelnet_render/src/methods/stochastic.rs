@@ -32,6 +32,7 @@ pub(super) const METHOD: Method = Method {
     }),
     flaws: &[
         Flaw::swallowed(&["deep", "near-overflow"]),
+        Flaw::reordered(&["deep", "near-overflow"]),
         Flaw::swallowed(&["alpha-tiny"]).when(|s| s.number() >= 64 && half_sums(s)),
         Flaw::new(
             Property::Opaque,

@@ -69,6 +69,7 @@ pub(super) const METHOD: Method = Method {
     }),
     flaws: &[
         Flaw::swallowed(&["deep"]),
+        Flaw::unsettled(Property::Order, &["deep", "near-overflow"]),
         Flaw::new(
             Property::Transmittance,
             &["two-layers"],

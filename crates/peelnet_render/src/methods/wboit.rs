@@ -63,10 +63,17 @@ macro_rules! wboit {
     };
 }
 
+/// A lamp of the least opacity, 1/1024, has with the least weight, 1e-2 α, a share of 1e-8 in the sum of weights.
+const fn unweighed_lamp(property: Property) -> Flaw {
+    let reason = "half floats end at 6e-8: opacity times weight of a faint lamp far from the near plane is less, and the lamp is gone";
+    Flaw::new(property, &["emissive"], reason).when(half_sums)
+}
+
 pub(super) const EQ7: Method = Method {
     flaws: &[
         Flaw::swallowed(&["alpha-tiny", "deep"]),
         Flaw::overflowing(&["near-overflow"]),
+        Flaw::reordered(&["deep"]),
         Flaw::BLIND,
     ],
     ..wboit!(
@@ -92,7 +99,11 @@ pub(super) const EQ8: Method = Method {
 pub(super) const EQ9: Method = Method {
     curve: &["", ":targets=f32", ":scale=0.5"],
     roles: &[(Role::WeightedBlending, "wboit-eq9")],
-    flaws: &[Flaw::overflowing(&["deep", "near-overflow"]), Flaw::BLIND],
+    flaws: &[
+        Flaw::overflowing(&["deep", "near-overflow"]),
+        Flaw::reordered(&["deep"]),
+        Flaw::BLIND,
+    ],
     ..wboit!(
         "wboit-eq9",
         "McGuire & Bavoil 2013, eq 6 with weight 9",
@@ -107,6 +118,8 @@ pub(super) const EQ10: Method = Method {
     flaws: &[
         Flaw::swallowed(&["alpha-tiny", "deep"]),
         Flaw::overflowing(&["near-overflow"]),
+        unweighed_lamp(Property::Hull),
+        unweighed_lamp(Property::Single),
         Flaw::BLIND,
     ],
     ..wboit!(
@@ -166,6 +179,7 @@ pub(super) const INVERSE_POWER: Method = Method {
         vanishing(Property::Hull),
         vanishing(Property::Dark),
         vanishing(Property::Single),
+        Flaw::reordered(&["deep"]),
         Flaw::BLIND,
     ],
     ..wboit!("wboit-inverse-power", "eq 6 with (z + epsilon)^-k", |s| {

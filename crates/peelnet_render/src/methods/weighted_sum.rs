@@ -21,6 +21,7 @@ pub(super) const METHOD: Method = Method {
     },
     twin: Some(|_, p| Some(weighted_sum::composite(p.fragments, p.background))),
     flaws: &[
+        Flaw::reordered(&["deep", "near-overflow"]),
         Flaw::new(
             Property::Background,
             &[

@@ -1,0 +1,100 @@
+//! Features of the rest of a pixel in closed form: every constant of theirs, a tenth larger, moves a value here by more than a rounding.
+
+use peelnet_core::{features::Rest, statistics::Statistics};
+
+const TOLERANCE: f64 = 1e-9;
+
+fn near(found: f64, want: f64) {
+    assert!((found - want).abs() < TOLERANCE, "{found} for {want}");
+}
+
+/// Absorbance and its moments of layers.
+fn moments(layers: &[(f64, f64)]) -> [f64; 5] {
+    std::array::from_fn(|k| layers.iter().map(|&(b, z)| b * z.powi(k as i32)).sum())
+}
+
+/// A rest seen from `zeta`, in a pixel of this much absorbance and this range.
+fn seen(layers: &[(f64, f64)], zeta: f64, absorbance: f64, range: [f64; 2]) -> Rest<f64> {
+    let s = Statistics {
+        moments: [absorbance, 0.0, 0.0, 0.0, 0.0],
+        nearest: range[0],
+        farthest: range[1],
+    };
+    Rest::new(&s, &moments(layers), zeta)
+}
+
+/// Two layers of a range one wide, in the middle of the frame's and beside it: 1 at −½ and 3 at ½ of the pixel's range.
+#[test]
+fn of_two_layers() {
+    for shift in [0.0, 0.25, -0.4] {
+        let layers = [(1.0, shift - 0.25), (3.0, shift + 0.25)];
+        let rest = seen(&layers, shift + 0.1, 9.0, [shift - 0.5, shift + 0.5]);
+        near(rest.root_absorbance(), 2.0);
+        near(rest.depth_fraction(), 0.6);
+        near(rest.mean_fraction(), 0.625);
+        // Mean powers of −½ once and ½ three times.
+        for (found, want) in rest.means.into_iter().zip([0.25, 0.25, 0.0625, 0.0625]) {
+            near(found, want);
+        }
+        // σ² = 3/16; the third central moment is 1/16 − ¼ (¾ − ⅛).
+        let deviation = f64::sqrt(3.0 / 16.0);
+        near(rest.depth_deviation(), (0.2 - 0.25) / deviation / 2.0);
+        near(rest.skewness(), -0.09375 / deviation.powi(3) / 2.0);
+    }
+}
+
+/// The least standard deviation is 1/32 of half the range, and 1/4 under the skewness; both features end at ±2.
+#[test]
+fn narrow_distributions() {
+    let range = [-1.0, 1.0];
+    let one = |zeta: f64| seen(&[(1.0, 0.0)], zeta, 2.0, range);
+    near(one(0.05).depth_deviation(), 0.05 * 32.0 / 2.0);
+    near(one(0.5).depth_deviation(), 2.0);
+    near(one(-0.5).depth_deviation(), -2.0);
+    // Mean 0, σ = √0.02, third moment 0.002.
+    let two = [(2.0, -0.1), (1.0, 0.2)];
+    near(seen(&two, 0.0, 4.0, range).skewness(), 0.002 * 64.0 / 2.0);
+}
+
+/// Less than a 1,024th of the pixel's absorbance, or than 1e-6, counts as that much.
+#[test]
+fn little_is_noise() {
+    let range = [-1.0, 1.0];
+    near(seen(&[(5e-4, 0.4)], 0.0, 1.024, range).mean_fraction(), 0.6);
+    near(seen(&[(5e-7, 0.4)], 0.0, 1e-5, range).mean_fraction(), 0.6);
+    near(seen(&[(2e-3, 0.4)], 0.0, 1.024, range).mean_fraction(), 0.7);
+}
+
+/// What the bound's measure has at `x` where all lies at 0: the Christoffel function of `(1 − ε) δ_0 + ε` times moments 0, ⅜, 0, ⅜, by hand.
+fn own(x: f64, bias: f64) -> f64 {
+    let (v, w) = (0.375 * bias, 0.375 * bias);
+    1.0 / (1.0 + x * x / v + (x * x - v).powi(2) / (w - v * v))
+}
+
+/// The bias of the bounds: 2^-10, 2^-16 for the fourth power of how much narrower than the frame's a pixel's range is, a quarter at most.
+#[test]
+fn narrow_pixels_have_more_bias() {
+    for (half_range, bias) in [
+        (1.0, 1.0 / 1024.0 + 1.0 / 65_536.0),
+        (0.25, 1.0 / 1024.0 + 256.0 / 65_536.0),
+        (0.0625, 0.25),
+    ] {
+        let x = 0.02;
+        let rest = seen(
+            &[(1.0, 0.0)],
+            x * half_range,
+            2.0,
+            [-half_range, half_range],
+        );
+        let (low, high) = rest.moment_bounds();
+        near(high - low, own(x, bias));
+    }
+}
+
+/// Mean powers of a pixel whose fragments are a rounding apart end at 65,536, and places at its ends.
+#[test]
+fn powers_are_finite() {
+    let rest = seen(&[(1.0, 0.9)], 1.0, 2.0, [0.0, 1e-9]);
+    assert_eq!(rest.means, [1.0, 65_536.0, 65_536.0, 65_536.0]);
+    assert_eq!(rest.place, 1.0);
+}

@@ -1,0 +1,298 @@
+//! Named constants against values that do not come from this code: definitions of formats, published numbers, and estimates of moments
+//! computed apart.
+//!
+//! The estimates are of canonical representations in 60 decimal digits: the Hankel system solved by elimination, roots by bisection
+//! between extrema, masses by a Vandermonde system, none of which this crate does. A bias, a neutral moment or an overestimation that is
+//! a tenth larger moves each table by more than its tolerance.
+
+use num_complex::Complex64;
+use peelnet_core::{
+    absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance},
+    guards,
+    methods::{
+        bins, mboit_trig,
+        mboit4::{self, Settings},
+        mboit6, mboit8, range,
+    },
+    weights::Weight,
+};
+use std::f64::consts::PI;
+
+/// Rounding in 64 bits, magnified by pivots of 1e-7 and by the square root of a double root.
+const TOLERANCE: f64 = 1e-7;
+
+/// Of each number of moments: the transmittance at −0.6, 0.3 and 0.9 times √bias from a lone layer of absorbance 2 at 0, with the paper's
+/// settings; and at −0.7, 0.2 and 0.6 among three layers, with a bias of 0.25.
+const ESTIMATES: [(usize, f64, [f64; 3], [f64; 3]); 3] = [
+    (
+        4,
+        5e-7,
+        [0.774_837_428_914, 0.453_698_369_412, 0.217_552_192_093],
+        [0.887_102_105_669, 0.394_346_278_839, 0.252_094_318_325],
+    ),
+    (
+        6,
+        5e-6,
+        [0.964_561_001_239, 0.193_188_868_520, 0.142_290_881_193],
+        [0.879_220_114_503, 0.349_375_184_288, 0.227_123_448_770],
+    ),
+    (
+        8,
+        5e-5,
+        [0.970_132_189_824, 0.184_070_385_394, 0.141_115_613_550],
+        [0.831_671_403_061, 0.352_406_416_644, 0.228_637_958_245],
+    ),
+];
+
+const THREE: [(f64, f64); 3] = [(0.7, -0.5), (0.9, 0.1), (0.4, 0.75)];
+
+fn transmittance(count: usize, layers: &[(f64, f64)], zeta: f64, settings: &Settings) -> f64 {
+    let (mut four, mut six, mut eight) = (
+        mboit4::Moments::default(),
+        mboit6::Moments::default(),
+        mboit8::Moments::default(),
+    );
+    for &(b, z) in layers {
+        four.add(b, z);
+        six.add(b, z);
+        eight.add(b, z);
+    }
+    match count {
+        4 => four.transmittance(zeta, settings),
+        6 => six.transmittance(zeta, settings),
+        _ => eight.transmittance(zeta, settings),
+    }
+}
+
+fn paper(count: usize) -> Settings {
+    match count {
+        4 => Settings::PAPER,
+        6 => mboit6::PAPER,
+        _ => mboit8::PAPER,
+    }
+}
+
+#[test]
+fn estimates_are_those_computed_apart() {
+    for (count, bias, lone, among) in ESTIMATES {
+        let settings = paper(count);
+        for (t, want) in [-0.6, 0.3, 0.9].into_iter().zip(lone) {
+            let found = transmittance(count, &[(2.0, 0.0)], t * f64::sqrt(bias), &settings);
+            assert!((found - want).abs() < TOLERANCE, "{count} at {t}: {found}");
+        }
+        let blurred = Settings {
+            bias: 0.25,
+            ..settings
+        };
+        for (zeta, want) in [-0.7, 0.2, 0.6].into_iter().zip(among) {
+            let found = transmittance(count, &THREE, zeta, &blurred);
+            assert!(
+                (found - want).abs() < TOLERANCE,
+                "{count} at {zeta}: {found}"
+            );
+        }
+    }
+}
+
+/// What a tenth of a constant is worth in that table.
+#[test]
+fn a_tenth_of_a_setting_shows() {
+    for (count, bias, lone, _) in ESTIMATES {
+        let settings = paper(count);
+        let changed = [
+            Settings {
+                bias: 1.1 * settings.bias,
+                ..settings
+            },
+            Settings {
+                overestimation: 1.1 * settings.overestimation,
+                ..settings
+            },
+        ];
+        for changed in changed {
+            let moved = [-0.6, 0.3, 0.9].into_iter().zip(lone).map(|(t, want)| {
+                let found = transmittance(count, &[(2.0, 0.0)], t * f64::sqrt(bias), &changed);
+                (found - want).abs()
+            });
+            let moved = moved.fold(0.0, f64::max);
+            assert!(moved > 1e4 * TOLERANCE, "{count}, {changed:?}: {moved:e}");
+        }
+    }
+}
+
+/// Less absorbance than 1e-4 counts as none.
+#[test]
+fn faint_pixels_have_no_estimate() {
+    for (count, ..) in ESTIMATES {
+        let behind = |b: f64| transmittance(count, &[(b, -0.5)], 0.5, &paper(count));
+        assert_eq!(behind(0.99e-4), 1.0);
+        assert!(behind(1.01e-4) < 1.0 - 0.9e-4);
+    }
+}
+
+/// One layer under trigonometric moments: with the uniform measure mixed in by the bias, what the bound's measure has at a depth is
+/// `1 / v* T⁻¹ v` of a Toeplitz matrix of rank one plus a multiple of the identity (Sherman & Morrison 1950).
+#[test]
+fn trigonometric_moments_have_their_closed_form() {
+    let angle = |zeta: f64| (zeta + 1.0) * (PI - 0.5 * 0.1 * PI);
+    for count in 2..=mboit_trig::MOST {
+        let size = count as f64 + 1.0;
+        for (bias, paper) in [(1e-4, mboit_trig::BIAS), (1e-3, mboit_trig::BIAS_HALF)] {
+            for zeta in [0.001, 0.004, 0.02] {
+                let mut m = mboit_trig::Moments::new(count);
+                m.add(2.0, 0.0);
+                let with = |overestimation: f64| {
+                    let settings = Settings {
+                        overestimation,
+                        bias: paper,
+                        own_share_out: false,
+                    };
+                    m.transmittance(zeta, &settings).ln()
+                };
+                let own = (with(0.0) - with(1.0)) / 2.0;
+                let turn = angle(zeta) - angle(0.0);
+                let together: Complex64 =
+                    (0..=count).map(|k| Complex64::cis(k as f64 * turn)).sum();
+                let left = 1.0 - bias;
+                let share = left * together.norm_sqr() / (bias + left * size);
+                let want = bias / (size - share);
+                assert!(
+                    (own / want - 1.0).abs() < 1e-6,
+                    "{count} {zeta}: {own} for {want}"
+                );
+            }
+        }
+        // Half a zone lies before the nearest depth's angle and after the farthest's.
+        assert!((angle(1.0) - angle(-1.0) - (2.0 * PI - 0.1 * PI)).abs() < 1e-12);
+        assert_eq!(mboit_trig::WRAPPING_ZONE, 0.1 * PI);
+    }
+}
+
+/// Two fragments, asked fragment by fragment: without their own share nothing lies in front of the nearer, and the nearer before the farther;
+/// with it a quarter more of each.
+#[test]
+fn two_fragments_see_each_other() {
+    let points = [(1.0, 0.5), (4.0, 0.25)];
+    let warp = DepthWarp::new(0.5, 8.0);
+    for own_share_out in [false, true] {
+        let of = |paper: Settings| Settings {
+            own_share_out,
+            ..paper
+        };
+        let trigonometric = Settings {
+            bias: mboit_trig::BIAS,
+            ..Settings::PAPER
+        };
+        let own = if own_share_out { 0.0 } else { 0.25f64 };
+        let want = [0.5f64.powf(own), 0.5 * 0.75f64.powf(own)];
+        for found in [
+            mboit4::transmittances(&points, &warp, &of(Settings::PAPER)),
+            mboit6::transmittances(&points, &warp, &of(mboit6::PAPER)),
+            mboit8::transmittances(&points, &warp, &of(mboit8::PAPER)),
+            mboit_trig::transmittances(&points, &warp, 2, &of(trigonometric)),
+            mboit_trig::transmittances(&points, &warp, 3, &of(trigonometric)),
+        ] {
+            assert_eq!(found.len(), 2);
+            for (found, want) in found.into_iter().zip(want) {
+                // Biases of up to 1e-4 and what they blur over a third of the range.
+                assert!((found - want).abs() < 2e-3, "{found} for {want}");
+            }
+        }
+    }
+}
+
+/// Published weights at α = 1, by their formulas in 64 bits: at either clamp, next to it, and where the last term just counts.
+#[test]
+fn weights_are_those_published() {
+    const DEPTHS: [f32; 8] = [0.05, 0.3, 1.5, 5.0, 20.0, 60.0, 160.0, 300.0];
+    const VALUES: [(Weight, [f64; 8]); 4] = [
+        (
+            Weight::Eq7,
+            [
+                3000.0,
+                2770.0831,
+                111.098_767,
+                9.9999,
+                0.624_999_57,
+                0.069_444_088_1,
+                0.01,
+                0.01,
+            ],
+        ),
+        (
+            Weight::Eq8,
+            [
+                3000.0,
+                3000.0,
+                2954.209_75,
+                79.993_600_4,
+                1.249_998_28,
+                0.046_296_137_9,
+                0.01,
+                0.01,
+            ],
+        ),
+        (
+            Weight::Eq9,
+            [
+                3000.0,
+                2999.998_48,
+                2999.051_08,
+                2887.218_05,
+                272.727_273,
+                3.699_136_87,
+                0.073_240_399_4,
+                0.01,
+            ],
+        ),
+        (
+            Weight::Papakostas,
+            [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.751_003_339, 0.060_055_891],
+        ),
+    ];
+    for (weight, values) in VALUES {
+        for (z, want) in DEPTHS.into_iter().zip(values) {
+            let found = f64::from(weight.eval(z, 1.0, 0.0));
+            // A dozen roundings in 32 bits.
+            assert!(
+                (found / want - 1.0).abs() < 2e-6,
+                "{weight:?} at {z}: {found}"
+            );
+        }
+    }
+}
+
+/// Guards are what they say they are: ends of half and single floats, half a step of a display, and the squares they keep finite.
+#[test]
+fn guards_are_ends_of_formats() {
+    use half::f16;
+    assert_eq!(guards::WEIGHT_FLOOR, f16::MIN_POSITIVE.to_f32());
+    assert_eq!(guards::SUM_FLOOR, f16::MIN_POSITIVE_SUBNORMAL.to_f32());
+    assert_eq!(guards::HALF_MAX, f16::MAX.to_f32());
+    // The distance of half floats above 1, less than half a step of an 8-bit display.
+    assert_eq!(guards::EMISSIVE_ALPHA, f16::EPSILON.to_f32());
+    assert!(guards::EMISSIVE_ALPHA < 0.5 / 255.0);
+    assert_eq!(
+        guards::ROOT_ABSORBANCE_LIMIT * guards::ROOT_ABSORBANCE_LIMIT,
+        65_536.0
+    );
+    assert_eq!(guards::FILL_MAX, 16.0);
+    assert_eq!(guards::INPUT_LIMIT, 1e4);
+    assert_eq!(guards::RAW_LIMIT, 1e18);
+    assert!((guards::RAW_LIMIT * guards::RAW_LIMIT).is_finite());
+}
+
+/// Caps of absorbance, as published and as shipped.
+#[test]
+fn caps_of_absorbance() {
+    assert_eq!([ABSORBANCE_MAX, absorbance(1.0)], [16.0; 2]);
+    // One and a half and two steps of 32-bit floats below 1.
+    assert!(absorbance(1.0 - 1.2e-7) < 16.0 && absorbance(1.0 - 6e-8) == 16.0);
+    assert_eq!((bins::ABSORBANCE_CAP, bins::OPAQUE), (4.0, 0.99));
+    assert_eq!(range::LEAST_EXTENT, 1e-6);
+    let place = |apart: f64| {
+        let zetas = [0.0, apart];
+        range::Range::of(range::Bounds::Pixel, zetas.into_iter()).place(apart)
+    };
+    assert_eq!([place(0.95e-6), place(1.05e-6)], [0.0, 1.0]);
+}
