@@ -6,7 +6,11 @@
 // `color` is premultiplied. Bytes hold its square root, which spends them on dark colours; light beyond 1 is cut off there.
 fn stored(color: vec4f) -> Stored {
     @if(half_colors) return vec2u(pack2x16float(color.rg), pack2x16float(color.ba));
-    @if(byte_colors) return pack4x8unorm(vec4f(sqrt(max(color.rgb, vec3f(0.0))), color.a));
+    @if(byte_colors) {
+        // pack4x8unorm may round halves either way.
+        let bytes = vec4u(clamp(vec4f(sqrt(max(color.rgb, vec3f(0.0))), color.a), vec4f(0.0), vec4f(1.0)) * 255.0 + 0.5);
+        return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+    }
     @if(!half_colors && !byte_colors) return color;
 }
 

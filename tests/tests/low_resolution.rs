@@ -23,7 +23,8 @@ fn half_the_resolution_takes_a_quarter_of_the_bytes() {
     let walls = walls(&worked_example(), [0.0; 3]);
     let renderer = Renderer::new(&gpu, &walls).unwrap();
     let bytes = |spec: &MethodSpec| {
-        let options = MethodOptions::sized([32, 24]);
+        // Blocks of 8 pixels fit into half of it.
+        let options = MethodOptions::sized([64, 48]);
         let mut method = renderer.method(spec, options).unwrap();
         let drawn = renderer.image(&mut method, &walls.views[0]).unwrap();
         drawn.stats.bytes_per_pixel
@@ -32,7 +33,7 @@ fn half_the_resolution_takes_a_quarter_of_the_bytes() {
         let (full, low) = (bytes(&spec), bytes(&spec.with("scale", "0.5").unwrap()));
         let want = 0.25 * (full + 36.0);
         // Sorted triangles keep their indices at any resolution: 12 bytes for each of eight.
-        let indices = 0.75 * 96.0 / (32.0 * 24.0);
+        let indices = 0.75 * 96.0 / (64.0 * 48.0);
         let apart = low - want;
         assert!(
             apart.abs() < 1e-9 || (apart - indices).abs() < 1e-9,

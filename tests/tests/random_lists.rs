@@ -109,8 +109,13 @@ struct Normalised {
 static POINTS: LazyLock<Vec<MethodSpec>> = LazyLock::new(|| {
     let all = MethodSpec::compared().into_iter();
     // Twins know no precision of targets.
-    all.filter(|s| s.promises().normalised && !s.needs_model() && s.targets().is_none())
-        .collect()
+    all.filter(|s| {
+        s.promises().normalised
+            && !s.promises().rounds_fragments
+            && !s.needs_model()
+            && s.targets().is_none()
+    })
+    .collect()
 });
 
 /// Every normalised method's colour, and that of the learned weights with a network that predicts anything.

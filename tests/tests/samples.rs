@@ -111,6 +111,10 @@ fn a_pixel_is_the_mean_of_its_samples() {
     let mut judged = 0;
     for spec in MethodSpec::all() {
         let promises = spec.promises();
+        // Its neighbours hold other surfaces, which twins know nothing of.
+        if !promises.per_pixel {
+            continue;
+        }
         let mean = || -> Option<[f32; 3]> {
             let mut mean = [0.0; 3];
             for sample in 0..4 {

@@ -131,7 +131,7 @@ fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
 pub const PORTABLE: naga::valid::Capabilities =
     naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
 
-/// Parses and validates WGSL with naga, with the portable capabilities and those given. Returns naga's module and what it knows of it.
+/// Parses and validates WGSL with naga, with these capabilities. Returns naga's module and what it knows of it.
 ///
 /// # Errors
 /// [`ShaderError::Invalid`] with the source lines naga points at.

@@ -2,14 +2,15 @@
 
 use crate::{fragment::Fragment, weights::Weight};
 
-use super::{blended, over, wboit};
+use super::{blended, over, stored::Colors, wboit};
 
-/// Composites a pixel. The tail is blended by eq 5 (`None`), or by eq 6 with a weight.
+/// Composites a pixel whose nearest fragments are stored as `colors` says. The tail is blended by eq 5 (`None`), or by eq 6 with a weight.
 pub fn composite(
     fragments: &[Fragment],
     background: [f32; 3],
     k: usize,
     tail: Option<Weight>,
+    colors: Colors,
 ) -> [f32; 3] {
     let sorted = over::sorted(fragments);
     let (front, rest) = sorted.split_at(k.min(sorted.len()));
@@ -17,7 +18,8 @@ pub fn composite(
         None => blended::composite(rest, background),
         Some(weight) => wboit::composite(rest, background, weight),
     };
-    over::composite(front, behind)
+    let front: Vec<Fragment> = front.iter().map(|f| colors.kept(f)).collect();
+    over::composite(&front, behind)
 }
 
 #[cfg(test)]
@@ -37,13 +39,19 @@ mod tests {
             }
         };
         for tail in [None, Some(Weight::Eq9)] {
-            close(composite(&f, c0, 9, tail), over::composite(&f, c0));
+            close(
+                composite(&f, c0, 9, tail, Colors::Full),
+                over::composite(&f, c0),
+            );
             // A tail of one fragment is exact as well.
             close(
-                composite(&f, c0, f.len() - 1, tail),
+                composite(&f, c0, f.len() - 1, tail, Colors::Full),
                 over::composite(&f, c0),
             );
         }
-        close(composite(&f, c0, 0, None), blended::composite(&f, c0));
+        close(
+            composite(&f, c0, 0, None, Colors::Full),
+            blended::composite(&f, c0),
+        );
     }
 }

@@ -19,6 +19,7 @@ pub mod over;
 pub mod range;
 mod roots;
 pub mod stochastic;
+pub mod stored;
 pub mod wavelet;
 pub mod wboit;
 pub mod weighted_average;

@@ -4,7 +4,7 @@
 use super::{
     commutative::{self, Gather, Plan, Storage},
     compositor::{Build, Compositor},
-    method::{Method, Numbered},
+    method::{Method, Numbered, Promises},
     parameter::{Parameter, TARGETS, Word},
     spec::MethodSpec,
     stored::{self, COLORS},
@@ -43,10 +43,17 @@ const TOO_FEW_PLACES: Flaw = Flaw::new(
 pub(super) const PLAIN: Method = Method {
     numbered: K,
     parameters: &[TARGETS, Parameter::Word(COLORS)],
+    promises: |s| stored::promises(s, Promises::NORMALISED),
     curve: &["-2", "-4", "-8", "-4:colors=f16", "-4:colors=u8"],
     twin: Some(|s, p| {
         let places = s.number() as usize;
-        Some(kbuffer::composite(p.fragments, p.background, places, None))
+        Some(kbuffer::composite(
+            p.fragments,
+            p.background,
+            places,
+            None,
+            stored::colors(s),
+        ))
     }),
     flaws: &[
         TOO_FEW_PLACES,
@@ -62,6 +69,7 @@ pub(super) const PLAIN: Method = Method {
 pub(super) const HYBRID: Method = Method {
     numbered: K,
     parameters: &[TARGETS, Parameter::Word(WEIGHT), Parameter::Word(COLORS)],
+    promises: |s| stored::promises(s, Promises::NORMALISED),
     curve: &["-2", "-4", "-8"],
     twin: Some(|s, p| {
         let places = s.number() as usize;
@@ -71,7 +79,13 @@ pub(super) const HYBRID: Method = Method {
             _ => Weight::Eq9,
         };
         let tail = Some(weight);
-        Some(kbuffer::composite(p.fragments, p.background, places, tail))
+        Some(kbuffer::composite(
+            p.fragments,
+            p.background,
+            places,
+            tail,
+            stored::colors(s),
+        ))
     }),
     flaws: &[
         TOO_FEW_PLACES,
@@ -100,7 +114,8 @@ fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError
     let k = b.spec.number();
     let parameters = format!("const K: u32 = {k}u;\n");
     let extra = [("parameters", parameters.as_str())];
-    let layout = stored::features(b.spec);
+    let kept = stored::colors(b.spec);
+    let layout = stored::features(kept);
     let gathering = [&[weight], layout].concat();
     let (nearest, triangles, colors) = (0, 1, 2);
     let storage = |label, bytes| Storage {
@@ -115,7 +130,7 @@ fn build(b: &Build<'_>, weight: &str) -> Result<Box<dyn Compositor>, RenderError
             storage: &[
                 storage("nearest depths", 4),
                 storage("nearest triangles", 4),
-                storage("nearest colours", stored::bytes(b.spec)),
+                storage("nearest colours", stored::bytes(kept)),
             ],
             passes: &[
                 Gather {

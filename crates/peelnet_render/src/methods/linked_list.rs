@@ -32,12 +32,15 @@ const NODES: Count = Count {
 pub(super) const METHOD: Method = Method {
     parameters: &[Parameter::Count(NODES), Parameter::Word(COLORS)],
     promises: |s| Promises {
-        exact: stored::is_full(s),
         tinted: true,
-        ..Promises::EXACT
+        ..stored::promises(s, Promises::EXACT)
     },
     curve: &["", ":colors=f16", ":colors=u8"],
-    twin: Some(|_, p| Some(over::composite(p.fragments, p.background))),
+    twin: Some(|s, p| {
+        let colors = stored::colors(s);
+        let kept: Vec<_> = p.fragments.iter().map(|f| colors.kept(f)).collect();
+        Some(over::composite(&kept, p.background))
+    }),
     ..Method::new(
         "linked-list",
         "exact: one pass into a list for each pixel, sorted by relinking",
@@ -75,17 +78,18 @@ struct Pool {
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (b.gpu, b.frame);
     let (pixels, tinted) = (frame.pixels(), b.scene.tinted);
+    let colors = stored::colors(b.spec);
     let shared = Shared {
         heads: gpu.storage("list heads", u64::from(pixels) * 4)?,
         used: gpu.storage("nodes used", 4)?,
         background: frame.background.clone(),
         features: [
-            stored::features(b.spec),
+            stored::features(colors),
             if tinted { &["tinted"] } else { &[] },
         ]
         .concat(),
         // Where light takes a colour two of a fragment.
-        color_bytes: u64::from(stored::bytes(b.spec)) * if tinted { 2 } else { 1 },
+        color_bytes: u64::from(stored::bytes(colors)) * if tinted { 2 } else { 1 },
     };
     let nodes = NODES.given(b.spec);
     let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);

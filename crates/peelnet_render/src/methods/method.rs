@@ -109,6 +109,8 @@ pub struct Promises {
     pub close_estimate: bool,
     /// How much of its own absorbance a fragment counts as in front of it, given exact statistics.
     pub own_share: f64,
+    /// Fragments are rounded before they are composited, by its twin too.
+    pub rounds_fragments: bool,
     /// A fragment's weight is a formula of its own depth and opacity (McGuire & Bavoil 2013).
     pub own_weight: bool,
 }
@@ -129,6 +131,7 @@ impl Promises {
         root: None,
         close_estimate: false,
         own_share: 0.0,
+        rounds_fragments: false,
         own_weight: false,
     };
 

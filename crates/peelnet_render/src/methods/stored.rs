@@ -1,6 +1,11 @@
 //! How methods that store fragments or layers keep their colours: what `colors=WORD` means. The shader side is `helpers/stored.wgsl`.
 
-use super::{parameter::Word, spec::MethodSpec};
+use super::{
+    method::Promises,
+    parameter::{Precision, Word},
+    spec::MethodSpec,
+};
+use peelnet_core::methods::stored::Colors;
 
 /// `colors`, in 32 bits by default.
 pub(super) const COLORS: Word = Word {
@@ -9,25 +14,43 @@ pub(super) const COLORS: Word = Word {
     words: &["f32", "f16", "u8"],
 };
 
-/// Whether nothing of a colour is rounded.
-pub(super) fn is_full(spec: &MethodSpec) -> bool {
-    COLORS.of(spec) == "f32"
+/// What colours are kept in.
+pub(super) fn colors(spec: &MethodSpec) -> Colors {
+    match COLORS.of(spec) {
+        "f16" => Colors::Half,
+        "u8" => Colors::Bytes,
+        _ => Colors::Full,
+    }
+}
+
+/// What a method still promises where its colours are rounded. Bytes leave the hull of the colours by half a step.
+pub(super) fn promises(spec: &MethodSpec, full: Promises) -> Promises {
+    match colors(spec) {
+        Colors::Full => full,
+        rounded => Promises {
+            exact: false,
+            sums: Precision::Half,
+            normalised: full.normalised && rounded == Colors::Half,
+            rounds_fragments: true,
+            ..full
+        },
+    }
 }
 
 /// Bytes of a colour and its alpha.
-pub(super) fn bytes(spec: &MethodSpec) -> u32 {
-    match COLORS.of(spec) {
-        "f16" => 8,
-        "u8" => 4,
-        _ => 16,
+pub(super) const fn bytes(colors: Colors) -> u32 {
+    match colors {
+        Colors::Full => 16,
+        Colors::Half => 8,
+        Colors::Bytes => 4,
     }
 }
 
 /// Features of the shaders that write and read them.
-pub(super) fn features(spec: &MethodSpec) -> &'static [&'static str] {
-    match COLORS.of(spec) {
-        "f16" => &["half_colors"],
-        "u8" => &["byte_colors"],
-        _ => &[],
+pub(super) const fn features(colors: Colors) -> &'static [&'static str] {
+    match colors {
+        Colors::Full => &[],
+        Colors::Half => &["half_colors"],
+        Colors::Bytes => &["byte_colors"],
     }
 }
