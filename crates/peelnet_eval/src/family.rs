@@ -155,11 +155,11 @@ mod tests {
 
     #[test]
     fn the_least_error_within_twice_the_fastest_is_chosen() {
-        // The fastest is worse, the best is too slow; what takes exactly twice the time may be chosen.
+        // The fastest is worse, the best is too slow.
         let all = rows(&[
             (BASE, 1.0, Some(0.5)),
             ("mboit4", 4e-3, Some(1.0)),
-            ("mboit6", 1e-3, Some(2.0)),
+            ("mboit6", 1e-3, Some(1.9)),
             ("mboit8", 1e-4, Some(2.1)),
             ("mboit4:own=out", 2e-3, Some(1.5)),
         ]);
@@ -168,18 +168,19 @@ mod tests {
         assert_eq!(chosen(&all, "learned, ours"), None);
     }
 
-    /// One bad scene does not choose for all: means are geometric, 3 · 3 = 9 against 1 · 10.
+    /// One bad scene does not choose for all: 1 · 8 is less than 3 · 3, although 1 + 8 is more than 3 + 3.
     #[test]
     fn means_are_geometric() {
         let mut all = Vec::new();
-        for (method, errors) in [("nmt", [3e-3, 3e-3]), ("dfaoit", [1e-3, 10e-3])] {
+        for (method, errors) in [("nmt", [3e-3, 3e-3]), ("dfaoit", [1e-3, 8e-3])] {
             for (scene, error) in ["a", "b"].into_iter().zip(errors) {
                 let mut r = row(scene, 0, method, 0.0);
                 (r.mse_linear, r.time_ms) = (error, Some(1.0));
                 all.push(r);
             }
         }
-        assert_eq!(chosen(&all, "learned, published").as_deref(), Some("nmt"));
+        let published = chosen(&all, "learned, published");
+        assert_eq!(published.as_deref(), Some("dfaoit"));
     }
 
     #[test]
