@@ -376,21 +376,29 @@ fn a_layer_is_highlighted() {
     let front = &mut holed.objects[0].materials[0];
     front.maps.color = even([255, 255, 255, 90]);
     (front.alpha_cutoff, front.blend) = (Some(0.5), false);
-    let holed = holed.layer_view(1, false).unwrap();
-    let renderer = Renderer::new(&gpu, &holed).unwrap();
-    let view = LayerView {
-        highlight: 1,
-        increasing: false,
-        formula: LayerFormula::Front,
-    };
-    let mut prepared = renderer.layers(view, [4, 3]).unwrap();
-    let image = renderer
-        .image(&mut prepared, &holed.views[0])
-        .unwrap()
-        .image;
-    let found = image.pixels[5];
-    for k in 0..3 {
-        assert!((found[k] - colors[1][k]).abs() < 1e-6, "{found:?}");
+    // Where the highlighted layer itself has the hole, the other ones share the pixel; as printed, what is left of them is a half.
+    for (highlight, formula, share) in [
+        (1, LayerFormula::Front, 1.0),
+        (0, LayerFormula::Front, 1.0),
+        (0, LayerFormula::Printed, 0.5),
+    ] {
+        let holed = holed.layer_view(highlight, false).unwrap();
+        let renderer = Renderer::new(&gpu, &holed).unwrap();
+        let view = LayerView {
+            highlight,
+            increasing: false,
+            formula,
+        };
+        let mut prepared = renderer.layers(view, [4, 3]).unwrap();
+        let image = renderer
+            .image(&mut prepared, &holed.views[0])
+            .unwrap()
+            .image;
+        let found = image.pixels[5];
+        for k in 0..3 {
+            let want = colors[1][k] * share;
+            assert!((found[k] - want).abs() < 1e-6, "{highlight}: {found:?}");
+        }
     }
     let e = of(&[0, 1]).layer_view(7, false).unwrap_err().to_string();
     assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
