@@ -112,17 +112,13 @@ fn cases() -> Vec<(&'static str, Vec<Fragment>)> {
     ]
 }
 
-/// The thesis's composite as printed and its reference, which no benchmark draws unasked.
-const PRINTED: [&str; 3] = [
-    "wboit-papakostas:composite=printed",
-    "deep-thesis:composite=printed",
-    "dual-peel:passes=4,colors=f16",
-];
+/// The thesis's reference, which no benchmark draws unasked.
+const THESIS_REFERENCE: &str = "dual-peel:passes=4,colors=f16";
 
 /// Every method with every point of its curve, and in 32 bits where it has the choice.
 fn specs() -> Vec<MethodSpec> {
     let mut all = MethodSpec::compared();
-    all.extend(PRINTED.map(|text| text.parse::<MethodSpec>().unwrap()));
+    all.push(THESIS_REFERENCE.parse().unwrap());
     for spec in MethodSpec::compared() {
         if spec.method().has_targets() && spec.targets().is_none() {
             all.push(spec.with("targets", "f32").unwrap());

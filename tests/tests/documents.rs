@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_eval::{bench::Bench, effects::Effects, numerics::Numerics};
+use peelnet_eval::{
+    bench::Bench, effects::Effects, family::FAMILIES, numerics::Numerics, scenes_of,
+};
 use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
 use std::{
@@ -270,6 +272,61 @@ fn benchmarks_show_the_committed_run() {
     generated("docs/benchmarks.md", "methods", &want);
 }
 
+/// The table of families in the README is what the rule chooses on the committed rows of the validation scenes. As long as these are not
+/// committed there is nothing to choose by, and no table; from then on the README must have it: `PEELNET_UPDATE=1` puts it before the
+/// list of pages.
+#[test]
+fn the_readme_shows_one_setting_of_each_family() {
+    let begin = "<!-- families:begin -->\n";
+    let readme = read("README.md");
+    let validation = format!("{RESULTS}/validation/results.json");
+    if !root().join(&validation).exists() {
+        assert!(
+            !readme.contains(begin),
+            "README.md has a table of families, but {validation} is not committed"
+        );
+        return;
+    }
+    let validation: Results<Bench> = serde_json::from_str(&read(&validation)).unwrap();
+    let held_out = held_out_run();
+    let (chosen_on, shown) = (
+        scenes_of(&validation.measured.rows),
+        scenes_of(&held_out.measured.rows),
+    );
+    assert_eq!(
+        chosen_on,
+        ["intersecting", "sixteen-050", "sixteen-random-color"],
+        "docs/benchmarks.md states the scenes of the rule"
+    );
+    assert!(shown.iter().all(|s| !chosen_on.contains(s)), "{shown:?}");
+    if !readme.contains(begin) {
+        assert!(
+            std::env::var_os("PEELNET_UPDATE").is_some(),
+            "README.md has no table of families: PEELNET_UPDATE=1 writes it"
+        );
+        let marks = format!("{begin}<!-- families:end -->\n\n## Documentation\n");
+        let text = readme.replace("## Documentation\n", &marks);
+        fs::write(root().join("README.md"), text).unwrap();
+    }
+    let want = format!(
+        "## The best of each family\n\n\
+         One setting of each family of methods, by [a rule that was fixed before](docs/benchmarks.md#which-setting-stands-for-a-family):\n\n{}",
+        held_out.families(&validation.measured)
+    );
+    generated("README.md", "families", &want);
+}
+
+/// The families of docs/benchmarks.md are those that the rule is applied to.
+#[test]
+fn families_are_documented() {
+    let page = read("docs/benchmarks.md");
+    for family in &FAMILIES {
+        let members: Vec<String> = family.members.iter().map(|m| format!("`{m}`")).collect();
+        let line = format!("| {} | {} |", family.name, members.join(", "));
+        assert!(page.contains(&line), "{line}");
+    }
+}
+
 /// The committed rows are sound: finite, and exact methods are exact. Whether any are missing is checked by
 /// `cargo xtask results --check`.
 #[test]
@@ -328,6 +385,21 @@ fn nothing_failed_in_the_committed_stress() {
     assert!(read(&format!("{RESULTS}/stress/stress.md")).contains(" 0 failures"));
 }
 
+/// The table of shading and transparency, each alone; nothing where the committed run is older than these rows.
+fn parts(measured: &Effects) -> String {
+    if measured.parts.is_empty() {
+        return String::new();
+    }
+    let mut text = "Frame times relative to those of both together, from the same run:\n\n\
+                    | scene | shading alone | transparency alone |\n|---|---:|---:|\n"
+        .to_owned();
+    for p in &measured.parts {
+        let [shading, transparency] = [p.ms_shading, p.ms_transparency].map(|ms| ms / p.ms_both);
+        text += &format!("| `{}` | {shading:.2} | {transparency:.2} |\n", p.scene);
+    }
+    text
+}
+
 /// What docs/effects.md says of costs is what the committed run measured.
 #[test]
 fn costs_of_effects_are_those_measured() {
@@ -359,6 +431,7 @@ fn costs_of_effects_are_those_measured() {
         layers += &format!("| {} | {:.2} |\n", l.layers, l.ratio);
     }
     generated(page, "layers", &layers);
+    generated(page, "parts", &parts(&measured));
     let old = block_of(&read(page), "fills");
     let mut fills: String = old.lines().take(2).map(|l| format!("{l}\n")).collect();
     let first = measured.fills[0].ms_one;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use glam::Vec3;
+use peelnet_eval::effects::{Settings, parts};
 use peelnet_render::{MethodOptions, Renderer};
 use peelnet_scene::{Census, Effect, Light, Lighting, Maps, Material, Scene, Source, Texture};
 use peelnet_tests::{draw, even, gpu, light, scene, wall};
@@ -275,4 +276,41 @@ fn neutral_values_change_nothing() {
             assert_eq!(stripped, draw(&gpu, &plain, "wboit-eq9", size), "{effect}");
         }
     }
+}
+
+/// Shading alone has every effect of the surfaces and nothing transparent; transparency alone has the same transparent surfaces and no
+/// lighting. Both are timed where a scene has both.
+#[test]
+fn shading_and_transparency_come_apart() {
+    let lit = [Effect::Lighting, Effect::Pbr];
+    for scene in peelnet_scene::suite::EFFECTS {
+        let scene = peelnet_scene::suite::load(scene.name).unwrap();
+        let on = |scene: &Scene, effect: &Effect| Census::of(scene).has(*effect);
+        let (opaque, unlit) = (scene.opaque(), scene.unlit());
+        let name = &scene.name;
+        assert_eq!(opaque.transparent_bounds(), None, "{name}");
+        assert_eq!(
+            unlit.transparent_bounds(),
+            scene.transparent_bounds(),
+            "{name}"
+        );
+        for effect in lit.iter().chain(&Effect::MAPS) {
+            let read = on(&scene, effect);
+            assert_eq!(on(&opaque, effect), read, "{name}: {effect}");
+        }
+        assert!(lit.iter().all(|e| !on(&unlit, e)), "{name}");
+    }
+    let gpu = gpu();
+    let settings = Settings {
+        method: "wboit-eq9".parse().unwrap(),
+        size: [4, 3],
+        frames: 1,
+    };
+    let times = |scene: &Scene| parts(&gpu, scene, &settings).unwrap();
+    let both = scene_with(Some(Effect::Lighting));
+    let found = times(&both).unwrap();
+    let all = [found.ms_both, found.ms_shading, found.ms_transparency];
+    assert!(all.iter().all(|ms| *ms > 0.0), "{found:?}");
+    assert_eq!(times(&both.opaque()), None);
+    assert_eq!(times(&both.unlit()), None);
 }

@@ -11,7 +11,9 @@ use peelnet_core::{
     srgb,
 };
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision};
+use peelnet_render::{
+    Image, LayerFormula, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision,
+};
 use peelnet_scene::{Light, Lighting, Maps, Material, Source, Texture};
 use peelnet_tests::{draw, even, gpu, light, scene, wall};
 use std::sync::Arc;
@@ -279,12 +281,13 @@ fn a_layer_is_highlighted() {
         });
         scene("layers", [0.5; 3], walls.collect())
     };
-    let look = |layers: &[u32], highlight: u32, increasing: bool| {
+    let look = |layers: &[u32], highlight: u32, increasing: bool, formula: LayerFormula| {
         let scene = of(layers).layer_view(highlight, false).unwrap();
         let renderer = Renderer::new(&gpu, &scene).unwrap();
         let view = LayerView {
             highlight,
             increasing,
+            formula,
         };
         let mut prepared = renderer.layers(view, [4, 3]).unwrap();
         let image = renderer
@@ -321,11 +324,50 @@ fn a_layer_is_highlighted() {
         ),
         (&[0, 1, 0, 2], 2, true, &[(0, 0.25), (1, 0.25), (2, 0.5)]),
     ] {
-        let (found, want) = (look(layers, highlight, increasing), mix(parts));
+        let found = look(layers, highlight, increasing, LayerFormula::Front);
+        let want = mix(parts);
         for k in 0..3 {
             assert!(
                 (found[k] - want[k]).abs() < 1e-6,
                 "{layers:?} {highlight}: {found:?} {want:?}"
+            );
+        }
+    }
+    // As printed: the nearest of the layer weighs a half, each other one a half over the number of all, in front or behind.
+    for (layers, highlight, increasing, parts) in [
+        (
+            &[0, 1, 2][..],
+            1,
+            false,
+            &[(0, 1.0 / 6.0), (1, 0.5), (2, 1.0 / 6.0)][..],
+        ),
+        (
+            &[0, 1, 2],
+            0,
+            false,
+            &[(0, 0.5), (1, 1.0 / 6.0), (2, 1.0 / 6.0)],
+        ),
+        // A second fragment of the layer is one of the others.
+        (
+            &[0, 1, 0, 2],
+            0,
+            false,
+            &[(0, 0.625), (1, 0.125), (2, 0.125)],
+        ),
+        (
+            &[0, 1, 0, 2],
+            0,
+            true,
+            &[(0, 0.5), (1, 1.0 / 6.0), (2, 1.0 / 6.0)],
+        ),
+        (&[2], 2, false, &[(2, 0.5)]),
+    ] {
+        let found = look(layers, highlight, increasing, LayerFormula::Printed);
+        let want = mix(parts);
+        for k in 0..3 {
+            assert!(
+                (found[k] - want[k]).abs() < 1e-6,
+                "printed, {layers:?} {highlight}: {found:?} {want:?}"
             );
         }
     }
@@ -339,6 +381,7 @@ fn a_layer_is_highlighted() {
     let view = LayerView {
         highlight: 1,
         increasing: false,
+        formula: LayerFormula::Front,
     };
     let mut prepared = renderer.layers(view, [4, 3]).unwrap();
     let image = renderer

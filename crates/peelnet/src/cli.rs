@@ -337,6 +337,18 @@ pub struct RenderArgs {
     /// With --highlight: omit surfaces whose layer is not deeper than that of the surface in front, such as an object's far side
     #[arg(long, requires = "highlight")]
     pub increasing: bool,
+    /// With --highlight: which other surfaces are seen
+    #[arg(long, value_name = "FORMULA", value_enum, default_value_t = LayersChoice::Front, requires = "highlight")]
+    pub layers: LayersChoice,
+}
+
+/// Which surfaces are seen besides the highlighted one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LayersChoice {
+    /// Those in front of it share half of the pixel
+    Front,
+    /// All of them, by the formula of the ageing renderer (2018) as it is printed
+    Printed,
 }
 
 /// `peelnet bench`.

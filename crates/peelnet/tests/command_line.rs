@@ -53,6 +53,8 @@ fn wrong_usage_is_exit_code_2() {
         "stress --methods mboit4:overestimation=-5",
         "render a.toml --out a.png --method wboit-eq9 --highlight 1",
         "render a.toml --out a.png --increasing",
+        "render a.toml --out a.png --layers printed",
+        "render a.toml --out a.png --highlight 1 --layers ours",
         "bench a.toml --out d --effects --scaling",
         "bench a.toml --out d --path --scaling",
         "bench a.toml --out d --samples 2",
@@ -347,6 +349,7 @@ fn the_vase_shows_its_layers_and_its_age() {
         "render --size 64x48 --highlight 1 --time 40",
         "render --size 64x48 --highlight 1 --time 55 --increasing",
         "render --size 64x48 --time 55",
+        "render --size 64x48 --highlight 1 --time 40 --layers printed",
     ]
     .iter()
     .enumerate()
@@ -355,8 +358,13 @@ fn the_vase_shows_its_layers_and_its_age() {
         let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let words: Vec<&str> = line.split_whitespace().collect();
         let layer = words.iter().position(|w| *w == "--highlight");
+        let printed = if words.contains(&"printed") {
+            " (formula as printed)"
+        } else {
+            ""
+        };
         let method = layer.map_or("abuffer".to_owned(), |at| {
-            format!("layer {}", words[at + 1])
+            format!("layer {}{printed}", words[at + 1])
         });
         assert_eq!(answer["method"], method, "{line}");
         assert!(answer["time"].is_number(), "{line}");
@@ -409,6 +417,8 @@ fn the_vase_shows_its_layers_and_its_age() {
     );
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let costs = answer["costs"].as_array().unwrap();
+    // Unlit: nothing is shaded that could be left out.
+    assert_eq!(answer["parts"].as_array().map(Vec::len), Some(0));
     let names: Vec<&str> = costs.iter().filter_map(|c| c["effect"].as_str()).collect();
     assert_eq!(names, ["opaque", "monochrome", "low-resolution"]);
     let page = std::fs::read_to_string(dir.path().join("e/report.html")).unwrap();

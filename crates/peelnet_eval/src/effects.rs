@@ -1,11 +1,11 @@
-//! What effects cost: each effect of a scene with and without it, shading of one layer against all, and how the view of layers
-//! grows with triangles and with the part of the frame that it fills.
+//! What effects cost: each effect of a scene with and without it, shading and transparency each alone, shading of one layer against all,
+//! and how the view of layers grows with triangles and with the part of the frame that it fills.
 
 use crate::{EvalError, compare};
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
 use peelnet_render::{
-    Image, LayerView, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
+    Image, LayerFormula, LayerView, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
 };
 use peelnet_scene::{Camera, Census, Effect, Scene};
 use serde::{Deserialize, Serialize};
@@ -40,6 +40,19 @@ pub struct Cost {
     pub bytes_with: f64,
     /// The same without.
     pub bytes_without: f64,
+}
+
+/// Shading alone, transparency alone, and both together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parts {
+    /// The scene.
+    pub scene: String,
+    /// Median time of a frame, milliseconds.
+    pub ms_both: f64,
+    /// The same with every surface opaque, shaded with all effects ([`Scene::opaque`]), drawn in turn.
+    pub ms_shading: f64,
+    /// The same with every surface transparent as before and unlit ([`Scene::unlit`]), drawn in turn.
+    pub ms_transparency: f64,
 }
 
 /// The view of layers with one layer shaded, and with all of them shaded.
@@ -83,6 +96,9 @@ pub struct Effects {
     pub frames: u32,
     /// Effects by scene.
     pub costs: Vec<Cost>,
+    /// Scenes that are shaded and transparent; none in a measurement of an older version.
+    #[serde(default)]
+    pub parts: Vec<Parts>,
     /// Shading of one layer against all.
     pub layers: Vec<LayerCost>,
     /// Triangles against the part of the frame filled.
@@ -122,24 +138,23 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
         Renderer::new(gpu, scene).map_err(failed())?,
         Renderer::new(gpu, &plain).map_err(failed())?,
     ];
-    let mut frames = Vec::new();
+    let prepare = |renderer: &Renderer| {
+        renderer.method(&settings.method, MethodOptions::sized(settings.size))
+    };
+    let [mut with, mut without] = [
+        prepare(&renderers[0]).map_err(failed())?,
+        prepare(&renderers[1]).map_err(failed())?,
+    ];
     let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
-    for (k, renderer) in renderers.iter().enumerate() {
-        let mut prepared = renderer
-            .method(&settings.method, MethodOptions::sized(settings.size))
-            .map_err(failed())?;
-        let drawn = renderer
-            .image(&mut prepared, &scene.views[0])
+    for (k, prepared) in [&mut with, &mut without].into_iter().enumerate() {
+        let drawn = renderers[k]
+            .image(prepared, &scene.views[0])
             .map_err(failed())?;
         bytes[k] = drawn.stats.bytes_per_pixel;
         passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
-        frames.push(prepared);
     }
-    let [a, b] = &mut frames[..] else {
-        unreachable!("two renderers were made");
-    };
     let [ms_with, ms_without] = in_turn(
-        [(&renderers[0], a), (&renderers[1], b)],
+        [(&renderers[0], &mut with), (&renderers[1], &mut without)],
         &scene.views[0],
         settings.frames,
     )
@@ -157,13 +172,49 @@ fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result
     })
 }
 
-/// Median times of two frames that are drawn in turn, so that both see the same machine load; the first of each warms up.
-fn in_turn(
-    mut frames: [(&Renderer, &mut Prepared); 2],
+/// Times shading alone, transparency alone and both together, of a scene that has both: `None` of any other.
+///
+/// # Errors
+/// What drawing meets.
+pub fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>, EvalError> {
+    let census = Census::of(scene);
+    let lit = census.has(Effect::Lighting) || census.has(Effect::Pbr);
+    if !lit || scene.transparent_bounds().is_none() {
+        return Ok(None);
+    }
+    let times = || {
+        let (opaque, unlit) = (scene.opaque(), scene.unlit());
+        let renderers = [
+            Renderer::new(gpu, scene)?,
+            Renderer::new(gpu, &opaque)?,
+            Renderer::new(gpu, &unlit)?,
+        ];
+        let prepare = |renderer: &Renderer| {
+            renderer.method(&settings.method, MethodOptions::sized(settings.size))
+        };
+        let [a, b, c] = &renderers;
+        let [mut both, mut shading, mut transparency] = [prepare(a)?, prepare(b)?, prepare(c)?];
+        let frames = [(a, &mut both), (b, &mut shading), (c, &mut transparency)];
+        in_turn(frames, &scene.views[0], settings.frames)
+    };
+    let method = settings.method.to_string();
+    let times = times().map_err(EvalError::render(&scene.name, &method))?;
+    let [ms_both, ms_shading, ms_transparency] = times;
+    Ok(Some(Parts {
+        scene: scene.name.clone(),
+        ms_both,
+        ms_shading,
+        ms_transparency,
+    }))
+}
+
+/// Median times of frames that are drawn in turn, so that all see the same machine load; the first of each warms up.
+fn in_turn<const N: usize>(
+    mut frames: [(&Renderer, &mut Prepared); N],
     camera: &Camera,
     count: u32,
-) -> Result<[f64; 2], RenderError> {
-    let mut times = [Vec::new(), Vec::new()];
+) -> Result<[f64; N], RenderError> {
+    let mut times: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
     for i in 0..=count {
         for ((renderer, prepared), times) in frames.iter_mut().zip(&mut times) {
             let frame = renderer.profile(prepared, camera)?;
@@ -191,6 +242,7 @@ fn layer_times(
     let view = LayerView {
         highlight: layers[layers.len() / 2],
         increasing: false,
+        formula: LayerFormula::Front,
     };
     let scenes = [
         scene.layer_view(view.highlight, false)?,
@@ -239,6 +291,7 @@ fn filling(
     let view = LayerView {
         highlight: layers[0],
         increasing: false,
+        formula: LayerFormula::Front,
     };
     let scene = scene.layer_view(view.highlight, false)?;
     let failed = || EvalError::render(&scene.name, "layers");
@@ -289,6 +342,7 @@ pub fn measure(
         size: settings.size,
         frames: settings.frames,
         costs: Vec::new(),
+        parts: Vec::new(),
         layers: Vec::new(),
         fills: Vec::new(),
     };
@@ -319,6 +373,9 @@ pub fn measure(
                 &picture_of(folder, &scene.name, effect.name(), false),
             )?;
         }
+        go_on()?;
+        tick(&format!("{}: shading and transparency", scene.name));
+        found.parts.extend(parts(gpu, scene, settings)?);
     }
     for scene in scenes.iter().filter(|s| s.layers().len() > 1) {
         for times in 1..=3 {

@@ -1,7 +1,7 @@
 //! Measures methods: errors against the exact image, times, memory, hard cases and number formats.
 //!
 //! ```text
-//! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► front, ratios, by_scene ─► recommend
+//! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► front, ratios, by_scene ─► recommend, family
 //! hard cases ─► stress ─► rows (method × case × property)
 //! path: every frame of a moving camera and moving objects ─► rows (method × scene, and × frame)
 //! effects, scaling, numerics, learning ─► rows of their own
@@ -19,6 +19,7 @@ pub mod by_scene;
 pub mod compare;
 pub mod effects;
 mod error;
+pub mod family;
 pub mod front;
 pub mod learning;
 mod machine;

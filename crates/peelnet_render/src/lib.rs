@@ -37,7 +37,10 @@ pub use error::RenderError;
 pub use flaw::{Flaw, Property};
 pub use frame::{Frame, Profile, of_method};
 pub use image::{Image, ImageFormat};
-pub use methods::{FrameStats, METHODS, Method, MethodSpec, Role, layers::LayerView};
+pub use methods::{
+    FrameStats, METHODS, Method, MethodSpec, Role,
+    layers::{LayerFormula, LayerView},
+};
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
 pub use renderer::{Prepared, Renderer};
 pub use target::{FrameStatus, LearnedWeight, MethodOptions, Target};

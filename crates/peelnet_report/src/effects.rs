@@ -8,7 +8,7 @@ use crate::{
 };
 use maud::{Markup, html};
 use peelnet_chart::{Line, LineChart, Scale, Svg};
-use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, picture_of};
+use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
 use std::path::Path;
 
 /// Width of the pictures, pixels.
@@ -18,6 +18,11 @@ const PICTURE_WIDTH: u32 = 320;
 const EFFECTS: (&str, &str) = (
     "What each effect costs",
     "Time of a frame of the scene as it is, over that of the same scene without the effect. Both are drawn in turn in one run.",
+);
+const PARTS: (&str, &str) = (
+    "Shading and transparency, each alone",
+    "Times relative to the frame as it is, all drawn in turn. Shading alone: every surface is opaque, with all effects. Transparency alone: \
+     every surface is unlit, and as transparent as before.",
 );
 const LAYERS: (&str, &str) = (
     "One layer shaded, or all",
@@ -66,6 +71,25 @@ impl Results<Effects> {
         Table::new(headings, self.measured.costs.iter().map(line))
     }
 
+    /// Shading and transparency, each alone, relative to both together.
+    pub fn parts_table(&self) -> Table {
+        let line = |p: &Parts| {
+            vec![
+                p.scene.clone(),
+                format!("{:.2}", p.ms_both),
+                format!("{:.2}", p.ms_shading / p.ms_both),
+                format!("{:.2}", p.ms_transparency / p.ms_both),
+            ]
+        };
+        let headings = [
+            "scene",
+            "both, ms",
+            "shading alone / both",
+            "transparency alone / both",
+        ];
+        Table::new(headings, self.measured.parts.iter().map(line))
+    }
+
     /// Shading one layer against all.
     pub fn layer_table(&self) -> Table {
         let line = |l: &LayerCost| {
@@ -108,6 +132,7 @@ impl Results<Effects> {
     pub fn tables(&self) -> impl Iterator<Item = ((&'static str, &'static str), Table)> {
         [
             (EFFECTS, self.effects_table()),
+            (PARTS, self.parts_table()),
             (LAYERS, self.layer_table()),
             (FILLS, self.fill_table()),
         ]
@@ -252,6 +277,12 @@ mod tests {
                 bytes_with: 10.0,
                 bytes_without: 8.0,
             }],
+            parts: vec![Parts {
+                scene: "vase".into(),
+                ms_both: 4.0,
+                ms_shading: 3.0,
+                ms_transparency: 2.0,
+            }],
             layers: vec![layer(3, 2.0, 4.0), layer(6, 3.0, 9.0)],
             fills: vec![
                 fill(100, 0.5, 2.0, 4.0),
@@ -264,6 +295,7 @@ mod tests {
             results.effects_table().rows[0][4..],
             ["1.50", "10, without 8"]
         );
+        assert_eq!(results.parts_table().rows[0][2..], ["0.75", "0.50"]);
         assert_eq!(results.layer_table().rows[1][4], "0.33");
         assert_eq!(
             results.fill_table().rows[0][2..],

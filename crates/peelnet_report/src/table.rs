@@ -85,11 +85,17 @@ impl Table {
 
 /// A scene's name in a table, marked where a learned method was trained on it.
 pub(crate) fn scene_heading(scene: &str, trained_on: &[String]) -> String {
-    if trained_on.iter().any(|name| name == scene) {
-        format!("{scene} (trained on)")
-    } else {
-        scene.to_owned()
-    }
+    marked(scene, trained_on, " (trained on)")
+}
+
+/// The same inside of parentheses.
+pub(crate) fn scene_in_cell(scene: &str, trained_on: &[String]) -> String {
+    marked(scene, trained_on, ", trained on")
+}
+
+fn marked(scene: &str, trained_on: &[String], mark: &str) -> String {
+    let is_trained_on = trained_on.iter().any(|name| name == scene);
+    format!("{scene}{}", if is_trained_on { mark } else { "" })
 }
 
 /// A number with some digits, or a dash.

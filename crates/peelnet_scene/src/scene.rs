@@ -208,6 +208,27 @@ impl Scene {
         Ok(scene)
     }
 
+    /// The scene with every surface opaque, shaded as before: what shading takes without transparency. Holes of cut-outs stay.
+    pub fn opaque(&self) -> Self {
+        let mut scene = self.clone();
+        for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
+            (material.alpha, material.blend) = (1.0, false);
+            material.transmission = [0.0; 3];
+        }
+        scene
+    }
+
+    /// The scene with every surface as opaque as before, and unlit: what transparency takes without shading. Colour maps stay, because
+    /// they hold opacity.
+    pub fn unlit(&self) -> Self {
+        let mut scene = self.clone();
+        for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
+            material.lighting = Lighting::Unlit;
+            material.emission = [0.0; 3];
+        }
+        scene
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.objects.iter().map(|o| o.mesh.triangles.len()).sum()

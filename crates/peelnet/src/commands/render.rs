@@ -1,13 +1,15 @@
 //! `peelnet render`: one frame with one method.
 
 use super::Context;
-use crate::cli::RenderArgs;
+use crate::cli::{LayersChoice, RenderArgs};
 use crate::failure::{Failure, one_line};
 use crate::learned;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use peelnet_files::counted;
-use peelnet_render::{Frame, ImageFormat, LayerView, MethodOptions, RenderError, Renderer};
+use peelnet_render::{
+    Frame, ImageFormat, LayerFormula, LayerView, MethodOptions, RenderError, Renderer,
+};
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failure> {
@@ -25,6 +27,10 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     let layers = args.highlight.map(|highlight| LayerView {
         highlight,
         increasing: args.increasing,
+        formula: match args.layers {
+            LayersChoice::Front => LayerFormula::Front,
+            LayersChoice::Printed => LayerFormula::Printed,
+        },
     });
     if let Some(view) = layers {
         scene = scene.layer_view(view.highlight, false).map_err(|e| {
@@ -53,7 +59,10 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     };
     let method = layers.map_or_else(
         || args.method.to_string(),
-        |view| format!("layer {}", view.highlight),
+        |view| match view.formula {
+            LayerFormula::Front => format!("layer {}", view.highlight),
+            LayerFormula::Printed => format!("layer {} (formula as printed)", view.highlight),
+        },
     );
     let frame = renderer.image(&mut prepared, camera)?;
     context.check_interrupt()?;

@@ -21,6 +21,7 @@ const IN_SCENE_UNITS: &str = "reads depth in scene units (Papakostas 2022)";
 
 pub(super) const METHOD: Method = Method {
     parameters: &[TARGETS, Parameter::Word(COMPOSITE)],
+    curve: &["", ":composite=printed"],
     learned: true,
     promises: |s| Promises {
         close_estimate: true,

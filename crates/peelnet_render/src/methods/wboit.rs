@@ -133,6 +133,7 @@ pub(super) const EQ10: Method = Method {
 
 pub(super) const PAPAKOSTAS: Method = Method {
     parameters: &[TARGETS, Parameter::Word(COMPOSITE)],
+    curve: &["", ":targets=f32", ":composite=printed"],
     promises: |s| Promises {
         tinted: !is_printed(s),
         normalised: !is_printed(s),

@@ -5,13 +5,15 @@ pub(crate) mod page;
 use crate::{
     ReportError, Results, Table,
     files::{write_csv, write_file},
-    table::{number, scene_heading},
+    table::{number, scene_heading, scene_in_cell},
 };
 use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
+    family::{self, Choice, MOST_TIME},
     front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
-    ratios::{Bytes, Ratios, ratios},
+    geometric_mean,
+    ratios::{Bytes, MOMENTS, Ratios, ratios},
     scenes_of,
 };
 use std::path::Path;
@@ -63,16 +65,20 @@ impl Results<Bench> {
             "error / front at equal time",
         ];
         let points = front::points(&self.measured.rows, None, Mean::Geometric);
+        let trained_on = &self.measured.trained_on;
         let line = |r: Ratios| {
             let point = points.iter().find(|p| p.method == r.method);
-            let worst = r.worst.as_ref();
+            let worst = r
+                .worst
+                .as_ref()
+                .map(|(scene, x)| format!("{x:.2} ({})", scene_in_cell(scene, trained_on)));
             vec![
                 r.method.clone(),
                 r.mse_linear
                     .map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}")),
                 number(r.to_weighted, 3),
                 number(r.to_moments, 3),
-                worst.map_or_else(|| "–".to_owned(), |(scene, x)| format!("{x:.2} ({scene})")),
+                worst.unwrap_or_else(|| "–".to_owned()),
                 number(r.time_to_base, 3),
                 number(r.time_to_moments, 3),
                 number(r.time_to_weighted, 3),
@@ -120,6 +126,68 @@ impl Results<Bench> {
         Table::new(headings, lines)
     }
 
+    /// One setting of each family of methods, chosen by the rule of [`family::choose`] on rows of *other* scenes, with its figures on these;
+    /// and what was composited on the CPU, which has errors alone. `None` stands where these rows do not have it.
+    pub fn families(&self, validation: &Bench) -> String {
+        let all = ratios(&self.measured.rows);
+        let of = |method: &str| all.iter().find(|r| r.method == method);
+        // Errors of 0 have no logarithm; a method that is exact on some views only has a mean with the floor of errors.
+        let mean = |method: &str| {
+            let own = self.measured.rows.iter().filter(|r| r.method == method);
+            geometric_mean(own.map(|r| r.mse_linear.max(EXACT_MSE)))
+        };
+        let error = |method: &str| match (mean(method), mean(MOMENTS)) {
+            (Some(error), _) if error <= EXACT => "0".to_owned(),
+            (Some(error), Some(moments)) if error < LEAST_SHOWN * moments => {
+                format!("< {LEAST_SHOWN}")
+            }
+            (Some(error), Some(moments)) => format!("{:.3}", error / moments),
+            _ => "–".to_owned(),
+        };
+        let choices = family::choose(&validation.rows);
+        let line = |c: &Choice| {
+            let method = c.chosen.as_ref().map(|p| p.method.as_str());
+            let own = method.and_then(of);
+            let bytes = own.and_then(|r| r.bytes_per_pixel);
+            vec![
+                c.family.name.to_owned(),
+                method.map_or_else(|| "–".to_owned(), |m| format!("`{m}`")),
+                method.map_or_else(|| "–".to_owned(), error),
+                number(own.and_then(|r| r.time_to_base), 2),
+                bytes.map_or_else(|| "–".to_owned(), |b| self::bytes(&b)),
+            ]
+        };
+        let headings = [
+            "family",
+            "setting",
+            "error / mboit4",
+            "time / hardware blending",
+            "bytes a pixel (mean, median, most)",
+        ];
+        let mut text = Table::new(headings, choices.iter().map(line)).markdown();
+        for choice in choices.iter().filter(|c| !c.untimed.is_empty()) {
+            let errors = choice
+                .untimed
+                .iter()
+                .map(|(method, _)| format!("{} for `{method}`", error(method)));
+            text += &format!(
+                "\n{} also has {}, without a time: {}.\n",
+                capital(choice.family.name),
+                errors.collect::<Vec<_>>().join(", "),
+                choice.untimed[0].1
+            );
+        }
+        let scenes: Vec<String> = scenes_of(&validation.rows)
+            .iter()
+            .map(|s| format!("`{s}`"))
+            .collect();
+        text + &format!(
+            "\nEach is its family's least error in at most {MOST_TIME} times the time of its fastest, chosen on {}; figures are of the {} held-out scenes.\n",
+            scenes.join(", "),
+            scenes_of(&self.measured.rows).len()
+        )
+    }
+
     /// `table.md`.
     pub fn markdown(&self) -> String {
         let untimed = untimed(&self.measured.rows);
@@ -134,6 +202,19 @@ impl Results<Bench> {
             self.times_by_scene().markdown(),
         )
     }
+}
+
+/// Ratios below are shown as less than this: 0.000 would read as exact.
+const LEAST_SHOWN: f64 = 0.001;
+
+/// A geometric mean of floors, but for the roundings of logarithms.
+const EXACT: f64 = EXACT_MSE * (1.0 + 1e-9);
+
+/// With a capital letter, as at the beginning of a sentence.
+fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    let first = chars.next().map(|c| c.to_ascii_uppercase());
+    first.into_iter().chain(chars).collect()
 }
 
 /// Bytes a pixel: one number, or mean, median and most over the views.
@@ -184,6 +265,72 @@ pub(crate) fn chart(points: &[Point]) -> Svg {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::{machine, row};
+    use peelnet_eval::Row;
+
+    fn bench(rows: Vec<Row>, trained_on: &[&str]) -> Results<Bench> {
+        let measured = Bench {
+            load: [None, None],
+            settings: None,
+            trained_on: trained_on.iter().map(|&s| s.to_owned()).collect(),
+            rows,
+        };
+        Results::new(machine(), "peelnet bench", measured)
+    }
+
+    /// The worst scene is marked like a heading where a network was trained on it, and only there.
+    #[test]
+    fn the_worst_scene_says_that_it_was_trained_on() {
+        let mut rows = Vec::new();
+        for (scene, error) in [("cups", 8.0), ("panes", 2.0)] {
+            rows.push(row(scene, MOMENTS, 4.0));
+            rows.push(row(scene, "wboit-eq9", error));
+        }
+        let worst = |trained_on: &[&str]| {
+            let table = bench(rows.clone(), trained_on).table();
+            table.rows[1][4].clone()
+        };
+        assert_eq!(worst(&["cups"]), "2.00 (cups, trained on)");
+        assert_eq!(worst(&["panes"]), "2.00 (cups)");
+    }
+
+    /// Chosen on one set of rows, shown with the figures of another; what has no time stands below with its error.
+    #[test]
+    fn families_are_chosen_on_other_rows_than_those_shown() {
+        let timed = |scene: &str, method: &str, mse, ms| Row {
+            time_ms: Some(ms),
+            ..row(scene, method, mse)
+        };
+        let rows = |scene: &str, four, six, mlab| {
+            vec![
+                timed(scene, BASE, 90.0, 1.0),
+                timed(scene, MOMENTS, four, 2.0),
+                timed(scene, "mboit6", six, 3.0),
+                timed(scene, "linked-list", 0.0, 5.0),
+                Row {
+                    bytes_per_pixel: None,
+                    ..row(scene, "mlab-4", mlab)
+                },
+            ]
+        };
+        // On the scenes shown the other one would be chosen.
+        let mut b = rows("b", 4.0, 8.0, 2.0);
+        b.push(timed("b", "kbuffer-8", 1e-4, 6.0));
+        let mut a = rows("a", 8.0, 4.0, 1.0);
+        a.push(timed("a", "kbuffer-8", 1e-4, 6.0));
+        let validation = bench(a, &[]);
+        let shown = bench(b, &[]).families(&validation.measured);
+        for part in [
+            "| moments | `mboit6` | 2.000 | 3.00 | 10 |",
+            "| exact | `linked-list` | 0 | 5.00 | 10 |",
+            "| bounded exact | `kbuffer-8` | &lt; 0.001 | 6.00 | 10 |",
+            "| learned, ours | – | – | – | – |",
+            "Bounded exact also has 0.500 for `mlab-4`, without a time: ",
+            "at most 2 times the time of its fastest, chosen on `a`; figures are of the 1 held-out scenes.",
+        ] {
+            assert!(shown.contains(part), "{part} in\n{shown}");
+        }
+    }
 
     #[test]
     fn every_method_is_a_bubble_with_its_figures() {
