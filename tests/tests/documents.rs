@@ -370,6 +370,13 @@ fn numerics_shows_the_committed_measurement() {
     }
 }
 
+/// The table of the errors along a path is the committed one.
+#[test]
+fn the_path_is_the_committed_one() {
+    let want = read(&format!("{RESULTS}/path/path.md"));
+    generated("docs/benchmarks.md", "path", &want);
+}
+
 /// Nothing failed in the committed run over the hard cases.
 #[test]
 fn nothing_failed_in_the_committed_stress() {

@@ -234,11 +234,32 @@ impl Committed {
             ["held-out", "scenes"] => scenes_of(&self.rows).len() as f64,
             ["held-out", "settings"] => methods_of(&self.rows).len() as f64,
             ["stress", what] => self.stress(what),
+            ["path", field, method] => path_mean(method, field),
+            ["path", field, method, "-", other] => {
+                path_mean(method, field) - path_mean(other, field)
+            }
+            ["path", field, method, "/", other, below] => {
+                path_mean(method, field) / path_mean(other, below)
+            }
             ["json", file, pointer] => json(file, pointer),
             ["json", file, pointer, "/", other, below] => json(file, pointer) / json(other, below),
             _ => panic!("no such query: {query}"),
         }
     }
+}
+
+/// Mean over the scenes of a field along the committed path.
+fn path_mean(method: &str, field: &str) -> f64 {
+    let text = read(&format!("{RESULTS}/path/path.json"));
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let rows = value["rows"].as_array().unwrap();
+    let found: Vec<f64> = rows
+        .iter()
+        .filter(|r| r["method"] == method)
+        .map(|r| r[field].as_f64().unwrap())
+        .collect();
+    assert!(!found.is_empty(), "no path of {method}");
+    found.iter().sum::<f64>() / found.len() as f64
 }
 
 /// A number in a committed file.
@@ -342,6 +363,11 @@ fn figures(block: &str) -> Vec<String> {
     // Names in backticks hold numbers too.
     let mut named = false;
     while i < bytes.len() {
+        // Queries and marks.
+        if bytes[i..].starts_with(b"<!--") {
+            i += block[i..].find("-->").unwrap_or(0) + 3;
+            continue;
+        }
         if bytes[i] == b'`' {
             named = !named;
         }
@@ -428,6 +454,7 @@ fn figures_are_found() {
         ["12"]
     );
     assert!(figures("0.16<!-- =error deep-medium / mboit4 --> times").is_empty());
+    assert!(figures("0.16<!-- =error deep-medium:scale=0.5 / mboit4 --> times").is_empty());
     assert_eq!(shown(5922.4, "1"), "5,922");
     assert_eq!(shown(0.1549, "0.16"), "0.15");
 }

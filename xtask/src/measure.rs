@@ -68,6 +68,9 @@ const VALIDATION: &str = "<validation>";
 
 const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-random-color"];
 
+/// One or two of each family: sixty frames of sixty settings would take an hour.
+const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-small,deep-medium,deep-large";
+
 const BENCH_FILES: &[&str] = &[
     "results.json",
     "results.csv",
@@ -77,7 +80,7 @@ const BENCH_FILES: &[&str] = &[
 ];
 
 #[rustfmt::skip]
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 13] = [
     Step {
         name: "numerics",
         before: &[],
@@ -100,6 +103,18 @@ const STEPS: [Step; 11] = [
         name: "validation",
         before: &[],
         args: &["bench", VALIDATION, "--size", "512x384", "--views", "1", "--frames", "5"],
+        keep: &["results.json", "table.md"],
+    },
+    Step {
+        name: "path",
+        before: &[],
+        args: &["bench", "sixteen-held", "smoke-held", "--path", "--size", "256x192", "--methods", PATH_METHODS],
+        keep: &["path.json", "path.csv", "path.md", "path-error.svg", "path-change.svg"],
+    },
+    Step {
+        name: "samples",
+        before: &[],
+        args: &["bench", "cups-held", "foliage-held", "--samples", "4", "--size", "256x192", "--views", "1", "--frames", "3", "--methods", PATH_METHODS],
         keep: &["results.json", "table.md"],
     },
     Step {
