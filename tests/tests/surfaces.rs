@@ -14,7 +14,7 @@ use peelnet_gpu::Gpu;
 use peelnet_render::{
     Image, LayerFormula, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision,
 };
-use peelnet_scene::{Light, Lighting, Maps, Material, Source, Texture};
+use peelnet_scene::{Light, Lighting, Maps, Material, Scene, Source, Texture};
 use peelnet_tests::{draw, even, gpu, light, scene, wall};
 use std::sync::Arc;
 
@@ -268,140 +268,108 @@ fn stained_glass_tints_what_is_behind_it() {
     );
 }
 
+/// Colours of three layers.
+const LAYERS: [[f32; 3]; 3] = [[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.1, 0.3, 1.0]];
+
+/// Walls of these layers, one behind another.
+fn layered(layers: &[u32]) -> Scene {
+    let walls = layers.iter().zip(3..).map(|(layer, z)| {
+        let mut wall = wall(z as f32, Material::unlit(LAYERS[*layer as usize], 1.0));
+        wall.layer = Some(*layer);
+        wall
+    });
+    scene("layers", [0.5; 3], walls.collect())
+}
+
+/// The view of the layers shows these parts of their colours.
+fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: &[(usize, f32)]) {
+    let scene = scene.layer_view(view.highlight, false).unwrap();
+    let renderer = Renderer::new(gpu, &scene).unwrap();
+    let mut prepared = renderer.layers(view, [4, 3]).unwrap();
+    let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
+    for k in 0..3 {
+        let found = frame.image.pixels[5][k];
+        let parts = parts.iter().map(|(layer, share)| LAYERS[*layer][k] * share);
+        let want = parts.sum::<f32>();
+        // Roundings of a handful of products of numbers up to 1.
+        assert!((found - want).abs() < 1e-6, "{view:?}: {found} for {want}");
+    }
+}
+
+/// A layer, the number of which need not increase behind others.
+fn highlighted(highlight: u32, formula: LayerFormula) -> LayerView {
+    LayerView {
+        highlight,
+        increasing: false,
+        formula,
+    }
+}
+
 /// Layers seen one by one: the highlighted one takes half, those in front of it the other half in equal parts, what lies behind is gone.
 #[test]
 fn a_layer_is_highlighted() {
     let gpu = gpu();
-    let colors = [[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.1, 0.3, 1.0]];
-    let of = |layers: &[u32]| {
-        let walls = layers.iter().zip(3..).map(|(layer, z)| {
-            let mut wall = wall(z as f32, Material::unlit(colors[*layer as usize], 1.0));
-            wall.layer = Some(*layer);
-            wall
-        });
-        scene("layers", [0.5; 3], walls.collect())
+    let of = |highlight| highlighted(highlight, LayerFormula::Front);
+    let check = |layers: &[u32], view: LayerView, parts: &[(usize, f32)]| {
+        check_layers(&gpu, &layered(layers), view, parts);
     };
-    let look = |layers: &[u32], highlight: u32, increasing: bool, formula: LayerFormula| {
-        let scene = of(layers).layer_view(highlight, false).unwrap();
-        let renderer = Renderer::new(&gpu, &scene).unwrap();
-        let view = LayerView {
-            highlight,
-            increasing,
-            formula,
-        };
-        let mut prepared = renderer.layers(view, [4, 3]).unwrap();
-        let image = renderer
-            .image(&mut prepared, &scene.views[0])
-            .unwrap()
-            .image;
-        image.pixels[5]
+    // Two in front share the other half.
+    check(&[0, 1, 2], of(2), &[(0, 0.25), (1, 0.25), (2, 0.5)]);
+    // What is behind is not seen; nothing in front: all of it.
+    check(&[0, 1, 2], of(0), &[(0, 1.0)]);
+    check(&[0, 1, 2], of(1), &[(0, 0.5), (1, 0.5)]);
+    // A ray that leaves again meets the outer layers once more, unless only new layers count.
+    let again = [0, 1, 0, 2];
+    check(&again, of(2), &[(0, 1.0 / 3.0), (1, 1.0 / 6.0), (2, 0.5)]);
+    let increasing = LayerView {
+        increasing: true,
+        ..of(2)
     };
-    let mix = |parts: &[(usize, f32)]| {
-        [0, 1, 2].map(|k| {
-            parts
-                .iter()
-                .map(|(layer, share)| colors[*layer][k] * share)
-                .sum::<f32>()
-        })
+    check(&again, increasing, &[(0, 0.25), (1, 0.25), (2, 0.5)]);
+    let e = layered(&[0, 1]).layer_view(7, false).unwrap_err();
+    let e = e.to_string();
+    assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
+}
+
+/// As printed: the nearest fragment of the layer weighs a half, each other one a half over the number of all, in front or behind.
+#[test]
+fn layers_composite_as_printed() {
+    let gpu = gpu();
+    let of = |highlight| highlighted(highlight, LayerFormula::Printed);
+    let check = |layers: &[u32], view: LayerView, parts: &[(usize, f32)]| {
+        check_layers(&gpu, &layered(layers), view, parts);
     };
-    for (layers, highlight, increasing, parts) in [
-        // Two in front share the other half.
-        (
-            &[0, 1, 2][..],
-            2,
-            false,
-            &[(0, 0.25), (1, 0.25), (2, 0.5)][..],
-        ),
-        // What is behind is not seen; nothing in front: all of it.
-        (&[0, 1, 2], 0, false, &[(0, 1.0)]),
-        (&[0, 1, 2], 1, false, &[(0, 0.5), (1, 0.5)]),
-        // A ray that leaves again meets the outer layers once more, unless only new layers count.
-        (
-            &[0, 1, 0, 2],
-            2,
-            false,
-            &[(0, 1.0 / 3.0), (1, 1.0 / 6.0), (2, 0.5)],
-        ),
-        (&[0, 1, 0, 2], 2, true, &[(0, 0.25), (1, 0.25), (2, 0.5)]),
-    ] {
-        let found = look(layers, highlight, increasing, LayerFormula::Front);
-        let want = mix(parts);
-        for k in 0..3 {
-            assert!(
-                (found[k] - want[k]).abs() < 1e-6,
-                "{layers:?} {highlight}: {found:?} {want:?}"
-            );
-        }
-    }
-    // As printed: the nearest of the layer weighs a half, each other one a half over the number of all, in front or behind.
-    for (layers, highlight, increasing, parts) in [
-        (
-            &[0, 1, 2][..],
-            1,
-            false,
-            &[(0, 1.0 / 6.0), (1, 0.5), (2, 1.0 / 6.0)][..],
-        ),
-        (
-            &[0, 1, 2],
-            0,
-            false,
-            &[(0, 0.5), (1, 1.0 / 6.0), (2, 1.0 / 6.0)],
-        ),
-        // A second fragment of the layer is one of the others.
-        (
-            &[0, 1, 0, 2],
-            0,
-            false,
-            &[(0, 0.625), (1, 0.125), (2, 0.125)],
-        ),
-        (
-            &[0, 1, 0, 2],
-            0,
-            true,
-            &[(0, 0.5), (1, 1.0 / 6.0), (2, 1.0 / 6.0)],
-        ),
-        (&[2], 2, false, &[(2, 0.5)]),
-    ] {
-        let found = look(layers, highlight, increasing, LayerFormula::Printed);
-        let want = mix(parts);
-        for k in 0..3 {
-            assert!(
-                (found[k] - want[k]).abs() < 1e-6,
-                "printed, {layers:?} {highlight}: {found:?} {want:?}"
-            );
-        }
-    }
-    // Through a hole in a layer the next one is seen.
-    let mut holed = of(&[0, 1]);
+    let sixth = 1.0 / 6.0;
+    check(&[0, 1, 2], of(1), &[(0, sixth), (1, 0.5), (2, sixth)]);
+    check(&[0, 1, 2], of(0), &[(0, 0.5), (1, sixth), (2, sixth)]);
+    check(&[2], of(2), &[(2, 0.5)]);
+    // A second fragment of the layer is one of the others; unless only new layers count, then it is none.
+    let again = [0, 1, 0, 2];
+    check(&again, of(0), &[(0, 0.625), (1, 0.125), (2, 0.125)]);
+    let increasing = LayerView {
+        increasing: true,
+        ..of(0)
+    };
+    check(&again, increasing, &[(0, 0.5), (1, sixth), (2, sixth)]);
+}
+
+/// Through a hole in a layer the next one is seen. Where the highlighted layer itself has the hole, the others share the pixel; as
+/// printed, a half of them is left.
+#[test]
+fn layers_have_holes() {
+    let gpu = gpu();
+    let mut holed = layered(&[0, 1]);
     let front = &mut holed.objects[0].materials[0];
     front.maps.color = even([255, 255, 255, 90]);
     (front.alpha_cutoff, front.blend) = (Some(0.5), false);
-    // Where the highlighted layer itself has the hole, the other ones share the pixel; as printed, what is left of them is a half.
     for (highlight, formula, share) in [
         (1, LayerFormula::Front, 1.0),
         (0, LayerFormula::Front, 1.0),
         (0, LayerFormula::Printed, 0.5),
     ] {
-        let holed = holed.layer_view(highlight, false).unwrap();
-        let renderer = Renderer::new(&gpu, &holed).unwrap();
-        let view = LayerView {
-            highlight,
-            increasing: false,
-            formula,
-        };
-        let mut prepared = renderer.layers(view, [4, 3]).unwrap();
-        let image = renderer
-            .image(&mut prepared, &holed.views[0])
-            .unwrap()
-            .image;
-        let found = image.pixels[5];
-        for k in 0..3 {
-            let want = colors[1][k] * share;
-            assert!((found[k] - want).abs() < 1e-6, "{highlight}: {found:?}");
-        }
+        let view = highlighted(highlight, formula);
+        check_layers(&gpu, &holed, view, &[(1, share)]);
     }
-    let e = of(&[0, 1]).layer_view(7, false).unwrap_err().to_string();
-    assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
 }
 
 /// What is emitted comes beyond what is covered, for every method: a single surface is exact, down to an opacity of 0, where it
