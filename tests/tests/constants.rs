@@ -390,12 +390,12 @@ fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
 #[test]
 fn weights_have_no_number_that_does_not_matter() {
     let gpu = gpu();
-    let imports = "import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9, weight_eq10, weight_inverse_power, weight_papakostas};";
+    let imports = "import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9, weight_eq10, weight_inverse_power, weight_papakostas, weight_smoke};";
     let body = "
 fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
     return array<f32, 8>(
         weight_eq7(p.x, p.y), weight_eq8(p.x, p.y), weight_eq9(p.x, p.y), weight_eq10(p.z, p.y, 3e3),
-        weight_inverse_power(p.x, 2u, 5.0), weight_papakostas(p.x, p.y), 0.0, 0.0,
+        weight_inverse_power(p.x, 2u, 5.0), weight_papakostas(p.x, p.y), weight_smoke(p.x, 0.1), 0.0,
     );
 }";
     let samples = (0..4000)
@@ -412,6 +412,7 @@ fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
             Weight::Eq10 { factor: 3e3 },
             Weight::InversePower { k: 2, epsilon: 5.0 },
             Weight::Papakostas,
+            Weight::Smoke { k: 0.1 },
         ];
         let mut y = [0.0; VALUES];
         for (y, w) in y.iter_mut().zip(all) {
