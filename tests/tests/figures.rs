@@ -3,6 +3,8 @@
 //! `0.16<!-- =error deep-medium / mboit4 -->` is a number and the query that gives it from `docs/results`. The tests compare them, and find
 //! numbers that have neither a query nor a command in their paragraph. `PEELNET_UPDATE=1` writes the numbers anew.
 
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
 use peelnet_eval::{Row, bench::Bench, geometric_mean, methods_of, scenes_of};
 use peelnet_report::Results;
 use std::{collections::BTreeSet, fs, path::PathBuf};

@@ -287,8 +287,7 @@ fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: &[(usize, f32)
     let renderer = Renderer::new(gpu, &scene).unwrap();
     let mut prepared = renderer.layers(view, [4, 3]).unwrap();
     let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
-    for k in 0..3 {
-        let found = frame.image.pixels[5][k];
+    for (k, found) in frame.image.pixels[5][..3].iter().enumerate() {
         let parts = parts.iter().map(|(layer, share)| LAYERS[*layer][k] * share);
         let want = parts.sum::<f32>();
         // Roundings of a handful of products of numbers up to 1.

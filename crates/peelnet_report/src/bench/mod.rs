@@ -127,7 +127,7 @@ impl Results<Bench> {
     }
 
     /// One setting of each family of methods, chosen by the rule of [`family::choose`] on rows of *other* scenes, with its figures on these;
-    /// and what was composited on the CPU, which has errors alone. `None` stands where these rows do not have it.
+    /// and what was composited on the CPU, which has errors alone. A dash stands where these rows do not have a figure.
     pub fn families(&self, validation: &Bench) -> String {
         let all = ratios(&self.measured.rows);
         let of = |method: &str| all.iter().find(|r| r.method == method);
