@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_eval::{Row, bench::Bench, geometric_mean, methods_of, scenes_of};
+use peelnet_eval::{Row, bench::Bench, front::EXACT_MSE, geometric_mean, methods_of, scenes_of};
 use peelnet_report::Results;
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
@@ -219,9 +219,10 @@ impl Committed {
             all.sort_by(f64::total_cmp);
             all
         };
+        let error = |r: &Row| r.mse_linear.max(EXACT_MSE);
         match words[..] {
-            ["error", method] => self.mean(method, None, |r| r.mse_linear),
-            ["error", ref rest @ ..] => self.ratio(rest, |r| r.mse_linear),
+            ["error", method] => self.mean(method, None, error),
+            ["error", ref rest @ ..] => self.ratio(rest, error),
             ["worst", ref rest @ ..] => self.worst(rest),
             ["time", ref rest @ ..] => self.ratio(rest, time),
             ["mse255", method, scene] => {

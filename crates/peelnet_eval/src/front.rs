@@ -36,7 +36,7 @@ pub struct Point {
     pub on_front: bool,
     /// Its time over the front's at its error: 1 on the front.
     pub time_at_equal_error: f64,
-    /// Its error over the front's at its time: 1 on the front.
+    /// Its error over the front's at its time: 1 on the front; infinite where an exact method is as fast.
     pub error_at_equal_time: f64,
 }
 
@@ -110,7 +110,8 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
     points
 }
 
-/// Fills in how far each point is behind the front, which is interpolated between its neighbours in the logarithms of time and error.
+/// Fills in how far each point is behind the front, which is interpolated between its neighbours in the logarithms of time and error. No
+/// method errs half as an exact one does: between the last point with an error and the exact one the front stays at that error.
 fn measure_against_front(points: &mut [Point]) {
     // By time, and so from the largest error to the smallest.
     let front: Vec<[f64; 2]> = points
@@ -122,9 +123,15 @@ fn measure_against_front(points: &mut [Point]) {
         let [time, error] = [p.time.ln(), p.error.ln()];
         // No point is faster than the front's first, or more accurate than its last.
         let times = front.iter().map(|&[t, e]| [-e, t]);
-        let errors = front.iter().copied();
         p.time_at_equal_error = (time - interpolated(times, -error)).exp();
-        p.error_at_equal_time = (error - interpolated(errors, time)).exp();
+        let is_exact = |e: f64| e <= EXACT_MSE.ln();
+        let errors = front.iter().copied().filter(|&[_, e]| !is_exact(e));
+        let exact = front.iter().any(|&[t, e]| is_exact(e) && t <= time);
+        p.error_at_equal_time = match (exact, is_exact(error)) {
+            (true, true) => 1.0,
+            (true, false) => f64::INFINITY,
+            (false, _) => (error - interpolated(errors, time)).exp(),
+        };
     }
 }
 
@@ -190,6 +197,28 @@ mod tests {
         let worse = of("worse than all");
         assert!(close(worse.time_at_equal_error, 5.0));
         assert!(close(worse.error_at_equal_time, 100.0 * 25.0));
+    }
+
+    /// As long as the exact method is slower, the front's error is that of the last method before it; from then on there is none.
+    #[test]
+    fn an_exact_method_ends_the_front() {
+        let all = points(
+            &rows(&[
+                (BASE, 1e-2, 1.0),
+                ("last", 1e-4, 10.0),
+                ("exact", 0.0, 100.0),
+                ("before", 3e-4, 99.0),
+                ("after", 3e-4, 101.0),
+                ("exact and slow", 0.0, 200.0),
+            ]),
+            None,
+            Mean::Geometric,
+        );
+        let of = |name: &str| all.iter().find(|p| p.method == name).unwrap();
+        assert!((of("before").error_at_equal_time / 3.0 - 1.0).abs() < 1e-9);
+        assert_eq!(of("after").error_at_equal_time, f64::INFINITY);
+        assert_eq!(of("exact and slow").error_at_equal_time, 1.0);
+        assert!((of("exact and slow").time_at_equal_error / 2.0 - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -1,6 +1,10 @@
 //! Methods against one another: the errors of each as ratios to those of two references, over scenes and views.
 
-use crate::{Row, front::BASE, geometric_mean, methods_of};
+use crate::{
+    Row,
+    front::{BASE, EXACT_MSE},
+    geometric_mean, methods_of,
+};
 use peelnet_render::Role;
 use std::collections::BTreeMap;
 
@@ -14,7 +18,7 @@ pub const MOMENTS: &str = Role::MomentBlending.method();
 pub struct Ratios {
     /// The method's name with its parameters.
     pub method: String,
-    /// Geometric mean of `mse_linear` over scenes and views; `None` where one is 0.
+    /// Geometric mean of `mse_linear` over scenes and views, each at least [`EXACT_MSE`]; `None` where none is above that.
     pub mse_linear: Option<f64>,
     /// The same as a ratio to [`WEIGHTED`]'s.
     pub to_weighted: Option<f64>,
@@ -72,7 +76,7 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
         let values: Option<Vec<f64>> = of(method).into_iter().map(value).collect();
         geometric_mean(values?)
     };
-    let error = |r: &Row| Some(r.mse_linear);
+    let error = |r: &Row| Some(r.mse_linear.max(EXACT_MSE));
     let time = |r: &Row| r.time_ms;
     let by_scene = |method: &str| {
         let mut sums: BTreeMap<&str, f64> = BTreeMap::new();
@@ -86,7 +90,8 @@ pub fn ratios(rows: &[Row]) -> Vec<Ratios> {
     methods
         .iter()
         .map(|&method| {
-            let mse = mean(method, &error);
+            let exact = of(method).iter().all(|r| r.mse_linear <= EXACT_MSE);
+            let mse = mean(method, &error).filter(|_| !exact);
             let worst = by_scene(method)
                 .into_iter()
                 .filter_map(|(scene, sum)| {
@@ -125,6 +130,22 @@ mod tests {
         assert_eq!((bytes.mean, bytes.median, bytes.most), (4.0, 3.0, 7.0));
         assert!(!bytes.is_one());
         assert_eq!(Bytes::of(&[]), None);
+    }
+
+    /// A method that is exact on one view is not an exact method.
+    #[test]
+    fn one_exact_view_makes_no_exact_method() {
+        let of = |errors: [f64; 2]| {
+            let rows = [0, 1].map(|view: u32| Row {
+                view,
+                mse_linear: errors[view as usize],
+                ..row("a", view, "x", 0.0)
+            });
+            ratios(&rows)[0].mse_linear
+        };
+        assert_eq!(of([0.0, 0.0]), None);
+        let found = of([0.0, 1e-4]).expect("an error");
+        assert!((found / 1e-7 - 1.0).abs() < 1e-9);
     }
 
     /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.

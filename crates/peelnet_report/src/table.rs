@@ -98,9 +98,13 @@ fn marked(scene: &str, trained_on: &[String], mark: &str) -> String {
     format!("{scene}{}", if is_trained_on { mark } else { "" })
 }
 
-/// A number with some digits, or a dash.
+/// A number with some digits, or a dash; `∞` where there is no end.
 pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"))
+    match value {
+        None => "–".to_owned(),
+        Some(v) if v.is_infinite() => "∞".to_owned(),
+        Some(v) => format!("{v:.digits$}"),
+    }
 }
 
 #[cfg(test)]
