@@ -27,11 +27,27 @@ fn half_bound(n: usize, peak: f32) -> f32 {
 /// the bias, where a tenth of it shows.
 const MOMENTS: f32 = 2e-4;
 
+/// Bound for colours that are stored in fewer bits, of colours up to 1: a composite is linear in each premultiplied colour and each
+/// opacity, whose slopes are at most the transmittance in front, times what lies behind for an opacity. Half floats err by a share of the
+/// value, and what layers cover adds up to 1. Bytes err by half a step of opacity and of the colour's root, whatever the value: `n` times.
+fn stored_bound(spec: &MethodSpec, n: usize) -> f32 {
+    let text = spec.to_string();
+    if text.contains("colors=f16") {
+        2.0 * HALF
+    } else if text.contains("colors=u8") {
+        let step = 0.5 / 255.0;
+        n as f32 * (step + 2.0 * step + step * step)
+    } else {
+        0.0
+    }
+}
+
 /// The largest difference between a frame of `n` layers and the twin; `None` where the error of 16-bit statistics has no simple
 /// bound, because roots of them are taken.
 fn bound(spec: &MethodSpec, n: usize) -> Option<f32> {
     let promises = spec.promises();
-    match (promises.root, promises.statistics, promises.sums) {
+    let stored = stored_bound(spec, n);
+    let blended = match (promises.root, promises.statistics, promises.sums) {
         _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
         (Some(_), Precision::Half, _) => None,
         (Some(_), Precision::Full, Precision::Full) => Some(MOMENTS),
@@ -40,7 +56,8 @@ fn bound(spec: &MethodSpec, n: usize) -> Option<f32> {
         (None, _, Precision::Full) => Some(1e-4),
         // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
         (None, _, Precision::Half) => Some(half_bound(n, 3.0)),
-    }
+    };
+    blended.map(|bound| bound + stored)
 }
 
 /// What a pixel must show; `half` says which of a wall's two triangles covers it.

@@ -1,7 +1,7 @@
-//! Every number in the shaders of published formulas matters: a tenth more or less of it fails the comparison with the CPU twin.
+//! Every number in the functions of published formulas matters: a tenth more or less of it fails the comparison with the CPU twin. Passes are
+//! in `constants_of_passes.rs`.
 //!
-//! The texts are linked as they are and compared, then once more for every literal with that literal changed. A literal whose change is
-//! not seen must be listed with its reason, and one that is listed must not be seen: the list is what these tests cannot tell.
+//! The texts are linked as they are and compared, then once more for every literal with that literal changed; see `altered`.
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
@@ -16,19 +16,13 @@ use peelnet_core::{
     weights::Weight,
 };
 use peelnet_gpu::Gpu;
-use peelnet_tests::{gpu, literals::literals, run_text};
+use peelnet_tests::{
+    altered::{self, NEVER, Unseen, check},
+    gpu, run_text,
+};
 
 /// Why the least absorbance does not show.
 const FAINT: &str = "a tenth of it is 1e-5 of light; a test of peelnet_core holds the twin to it";
-
-/// Why a ceiling or a floor does not show.
-const NEVER: &str = "a guard that nothing here reaches";
-
-/// What a literal is multiplied by: by the second where the first does not show.
-const CHANGES: [f64; 2] = [1.1, 0.9];
-
-/// How many tolerances a change must show by, so that it is no matter of rounding.
-const CLEAR: f64 = 4.0;
 
 /// What of the camera the functions read.
 const CAMERA: &str = "struct Camera { warp_inverse_near: f32, warp_scale: f32 }
@@ -53,8 +47,8 @@ struct Function<'a> {
     /// Largest error as a share of the value, or of `least` where that is more.
     tolerance: f64,
     least: f64,
-    /// Literal, beginning of its line, and reason of what a change does not show.
-    unseen: &'a [(&'a str, &'a str, &'a str)],
+    /// What a change does not show.
+    unseen: &'a [Unseen<'a>],
 }
 
 impl Function<'_> {
@@ -96,56 +90,16 @@ impl Function<'_> {
         worst
     }
 
-    /// What is wrong: an error of the texts as they are, or literals that do not show and are not listed, or the other way round.
+    /// What is wrong of the texts or of the list; see [`altered::problem`].
     fn problem(&self, gpu: &Gpu) -> Option<String> {
-        let name = self.name;
-        let error = self.error(gpu, &[]);
-        if error > self.tolerance {
-            return Some(format!("{name}: {error:.2e}"));
-        }
         let texts = self
             .modules
             .iter()
-            .map(|m| (*m, peelnet_shaders::source(m).unwrap()));
-        let mut unseen = Vec::new();
-        for (module, text) in texts.chain([("parameters", self.parameters)]) {
-            for place in literals(text) {
-                let literal = &text[place.clone()];
-                let altered = |change: f64| {
-                    let changed = literal.parse::<f64>().unwrap() * change;
-                    let (before, after) = (&text[..place.start], &text[place.end..]);
-                    let altered = format!("{before}{changed:?}{after}");
-                    self.error(gpu, &[(module, &altered)])
-                };
-                let mut error = altered(CHANGES[0]);
-                if error <= CLEAR * self.tolerance {
-                    error = altered(CHANGES[1]);
-                }
-                if error <= CLEAR * self.tolerance {
-                    let line = text[..place.start].matches('\n').count();
-                    let line = text.lines().nth(line).unwrap_or_default().trim();
-                    println!("{name}: {literal} moves it by {error:.2e} only: {line}");
-                    unseen.push((literal, line));
-                }
-            }
-        }
-        let listed: Vec<_> = self
-            .unseen
-            .iter()
-            .map(|&(literal, line, _)| (literal, line))
-            .collect();
-        let is = |(a, b): (&(&str, &str), &(&str, &str))| a.0 == b.0 && a.1.starts_with(b.1);
-        let same = unseen.len() == listed.len() && unseen.iter().zip(&listed).all(is);
-        (!same).then(|| {
-            format!("{name}: changes that do not show are {unseen:#?}, listed are {listed:#?}")
-        })
+            .map(|m| (*m, peelnet_shaders::source(m).unwrap()))
+            .chain([("parameters", self.parameters)]);
+        let error = |altered: Option<(&str, &str)>| self.error(gpu, altered.as_slice());
+        altered::problem(self.name, texts, self.tolerance, self.unseen, error)
     }
-}
-
-/// Panics with all problems.
-fn check(functions: impl IntoIterator<Item = Option<String>>) {
-    let problems: Vec<String> = functions.into_iter().flatten().collect();
-    assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
 /// Up to three layers of warped depth −0.9 … 0.9 and a depth that is asked, at random: (b, ζ) twice, and (b, ζ, asked).
@@ -567,6 +521,77 @@ fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
                 "as the one before",
             ),
         ],
+    }
+    .problem(&gpu)]);
+}
+
+/// Zeros of polynomials are those that they were made of, also where the leading coefficient is the smallest of all.
+#[test]
+fn roots_have_no_number_that_does_not_matter() {
+    let gpu = gpu();
+    let driver = "
+import package::methods::mboit_trig::roots::{cubic, quadratic, quartic};
+fn ascending(x: vec4f) -> vec4f {
+    var y = vec4f(min(x.xz, x.yw), max(x.xz, x.yw)).xzyw;
+    y = vec4f(min(y.xy, y.zw), max(y.xy, y.zw));
+    return vec4f(y.x, min(y.y, y.z), max(y.y, y.z), y.w);
+}
+fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
+    // Coefficients of (t - p.x) (t - p.y), then of one zero more each time.
+    let two = vec3f(p.x * p.y, -p.x - p.y, 1.0);
+    let three = vec4f(0.0, two) - p.z * vec4f(two, 0.0);
+    let four = vec4f(0.0, three.xyz) - p.w * three;
+    let a = quadratic(q.x * two);
+    let b = cubic(q.x * three);
+    let c = ascending(quartic(q.x * four, q.x));
+    let d = ascending(vec4f(b, 1e5));
+    return array<f32, 8>(min(a.x, a.y), d.x, d.y, d.z, c.x, c.y, c.z, c.w);
+}";
+    let mut random = Random::new(22, &[]);
+    let samples = (0..400)
+        .map(|_| {
+            // Zeros of kernels are apart; a few lie far outside of the depths.
+            let mut at = |from: f32| random.between(from, from + 0.3);
+            let mut zeros = [at(-1.0), at(-0.5), at(0.0), at(0.5)];
+            let far = [1.0, 4.0, 20.0][random.below(3)];
+            zeros[random.below(4)] *= far;
+            let zeros = random.permutation(4).into_iter().map(|i| zeros[i as usize]);
+            let zeros: Vec<f32> = zeros.collect();
+            [
+                [zeros[0], zeros[1], zeros[2], zeros[3]],
+                [random.between(0.5, 2.0), 0.0, 0.0, 0.0],
+            ]
+        })
+        .collect();
+    let want = |p: [f64; 4], _: [f64; 4]| {
+        let ascending = |n: usize| {
+            let mut zeros = p[..n].to_vec();
+            zeros.sort_by(f64::total_cmp);
+            zeros
+        };
+        let (three, four) = (ascending(3), ascending(4));
+        [
+            ascending(2)[0],
+            three[0],
+            three[1],
+            three[2],
+            four[0],
+            four[1],
+            four[2],
+            four[3],
+        ]
+    };
+    check([Function {
+        name: "roots",
+        modules: &["methods::mboit_trig::roots"],
+        parameters: "",
+        driver,
+        samples,
+        want: &want,
+        // Cosines, which llvmpipe has to 1e-5, times the distance of the zeros.
+        tolerance: 5e-4,
+        least: 1.0,
+        unseen: &[],
     }
     .problem(&gpu)]);
 }

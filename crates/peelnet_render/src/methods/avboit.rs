@@ -10,6 +10,7 @@ use super::{
     weighted::{SUMS, TRANSMITTANCE},
 };
 use crate::error::RenderError;
+use peelnet_core::methods::avboit;
 
 const CELL: Count = Count {
     name: "cell",
@@ -39,7 +40,16 @@ pub(super) const METHOD: Method = Method {
         ..Promises::NORMALISED
     },
     curve: &["", ":cell=4", ":cell=2,slices=128"],
-    // What a pixel shows depends on its neighbours: there is no twin of a pixel alone.
+    // Where all pixels around hold the same fragments.
+    twin: Some(|s, p| {
+        let (fragments, c0) = (p.fragments, p.background);
+        Some(avboit::composite(
+            fragments,
+            c0,
+            &p.warp,
+            slices(s) as usize,
+        ))
+    }),
     ..Method::new(
         "avboit",
         "transmittance from a grid of blocks of pixels and slices of depth",
