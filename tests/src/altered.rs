@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use crate::{literals::literals, scene};
+use crate::{literals::literals, run_text, scene};
 use glam::Vec3;
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::Gpu;
@@ -93,7 +93,90 @@ pub fn check(problems: impl IntoIterator<Item = Option<String>>) {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
+/// What of the camera the functions read.
+const CAMERA: &str = "struct Camera { warp_inverse_near: f32, warp_scale: f32 }
+const camera = Camera(2.0, 0.5);
+";
+
+/// Values that one sample gives.
+pub const VALUES: usize = 8;
+
+/// A function of the shaders, and what it must give.
+#[allow(missing_debug_implementations, reason = "it holds a function")]
+pub struct Function<'a> {
+    /// For messages.
+    pub name: &'a str,
+    /// Modules whose literals are changed, beside the parameters.
+    pub modules: &'a [&'a str],
+    /// Text of `package::parameters`.
+    pub parameters: &'a str,
+    /// Imports, and `fn values(p: vec4f, q: vec4f) -> array<f32, 8>`.
+    pub driver: &'a str,
+    /// p and q of every sample.
+    pub samples: Vec<[[f32; 4]; 2]>,
+    /// The values of p and q in 64 bits.
+    pub want: &'a dyn Fn([f64; 4], [f64; 4]) -> [f64; VALUES],
+    /// Largest error as a share of the value, or of `least` where that is more.
+    pub tolerance: f64,
+    /// See `tolerance`.
+    pub least: f64,
+    /// What a change does not show.
+    pub unseen: &'a [Unseen<'a>],
+}
+
+impl Function<'_> {
+    /// The largest error, of texts with these modules in place of their own.
+    fn error(&self, gpu: &Gpu, altered: &[(&str, &str)]) -> f64 {
+        let root = format!(
+            "{}
+            @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
+            @group(0) @binding(1) var<storage, read_write> answers: array<array<f32, {VALUES}>>;
+            @compute @workgroup_size(64)
+            fn main(@builtin(global_invocation_id) id: vec3u) {{
+                if id.x >= arrayLength(&answers) {{ return; }}
+                answers[id.x] = values(inputs[2u * id.x], inputs[2u * id.x + 1u]);
+            }}",
+            self.driver
+        );
+        let mut sources = vec![
+            ("driver", root.as_str()),
+            ("parameters", self.parameters),
+            // Depths of 0.5 to 0.5 e^4.
+            ("scene::camera", CAMERA),
+        ];
+        sources.extend(altered);
+        let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
+        let inputs = self.samples.as_flattened();
+        let found: Vec<[f32; VALUES]> = run_text(gpu, &wgsl, inputs, self.samples.len());
+        let mut worst = 0.0f64;
+        for ([p, q], found) in self.samples.iter().zip(found) {
+            let want = (self.want)(p.map(f64::from), q.map(f64::from));
+            for (found, want) in found.into_iter().zip(want) {
+                let error = (f64::from(found) - want).abs() / want.abs().max(self.least);
+                worst = if error.is_nan() {
+                    f64::INFINITY
+                } else {
+                    worst.max(error)
+                };
+            }
+        }
+        worst
+    }
+
+    /// What is wrong of the texts or of the list; see [`problem`].
+    pub fn problem(&self, gpu: &Gpu) -> Option<String> {
+        let texts = self
+            .modules
+            .iter()
+            .map(|m| (*m, peelnet_shaders::source(m).unwrap()))
+            .chain([("parameters", self.parameters)]);
+        let error = |altered: Option<(&str, &str)>| self.error(gpu, altered.as_slice());
+        problem(self.name, texts, self.tolerance, self.unseen, error)
+    }
+}
+
 /// A frame one pixel high whose pixels hold these fragments, each a triangle around the pixel's centre.
+#[derive(Debug)]
 pub struct Columns {
     scene: Scene,
     columns: Vec<Vec<Fragment>>,
@@ -120,7 +203,7 @@ impl Columns {
         }
     }
 
-    /// The largest difference of any channel between a frame and the method's CPU twin.
+    /// The largest difference of any channel between a frame and the method's CPU twin, and of the coverage.
     pub fn error(
         &self,
         gpu: &Gpu,
@@ -143,7 +226,8 @@ impl Columns {
                 model: learned.map(|(_, model)| model),
             };
             let want = spec.twin(&pixel).unwrap();
-            for (p, want) in p.iter().zip(want) {
+            let t: f64 = fragments.iter().map(|f| 1.0 - f64::from(f.alpha)).product();
+            for (p, want) in p.iter().zip(want.into_iter().chain([(1.0 - t) as f32])) {
                 let error = f64::from((p - want).abs());
                 worst = if error.is_nan() {
                     f64::INFINITY

@@ -9,7 +9,7 @@ use super::{
     parameter::{Count, Parameter},
     stored::{self, COLORS},
 };
-use crate::error::RenderError;
+use crate::{error::RenderError, flaw::Property};
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
@@ -37,6 +37,54 @@ pub(super) const METHOD: Method = Method {
         ..Promises::EXACT
     },
     curve: &["", ":colors=f16", ":colors=u8"],
+    flaws: &[
+        stored::in_halves(Property::Single, &["intersecting", "moving-camera"]),
+        stored::in_bytes(
+            Property::Background,
+            &[
+                "alpha-tiny",
+                "alpha-zero",
+                "coplanar",
+                "emissive",
+                "far",
+                "grazing",
+                "intersecting",
+                "isolated",
+                "moving-camera",
+                "opaque-mix",
+                "thin-slab",
+                "two-layers",
+                "wide-range",
+            ],
+        ),
+        stored::in_bytes(
+            Property::Hull,
+            &[
+                "alpha-tiny",
+                "coplanar",
+                "deep",
+                "emissive",
+                "grazing",
+                "near-overflow",
+                "thin-slab",
+                "wide-range",
+            ],
+        ),
+        stored::in_bytes(
+            Property::Single,
+            &[
+                "alpha-one",
+                "emissive",
+                "far",
+                "grazing",
+                "intersecting",
+                "isolated",
+                "moving-camera",
+                "opaque-mix",
+                "passing",
+            ],
+        ),
+    ],
     twin: Some(|_, p| Some(over::composite(p.fragments, p.background))),
     ..Method::new(
         "linked-list",
