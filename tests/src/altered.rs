@@ -102,7 +102,6 @@ const camera = Camera(2.0, 0.5);
 pub const VALUES: usize = 8;
 
 /// A function of the shaders, and what it must give.
-#[allow(missing_debug_implementations, reason = "it holds a function")]
 pub struct Function<'a> {
     /// For messages.
     pub name: &'a str,
