@@ -1,7 +1,7 @@
-//! Every number in the shaders of published formulas matters: a tenth more or less of it fails the comparison with the CPU twin.
+//! Every number in the functions of published formulas matters: a tenth more or less of it fails the comparison with the CPU twin. Passes are
+//! in `constants_of_passes.rs`.
 //!
-//! The texts are linked as they are and compared, then once more for every literal with that literal changed. A literal whose change is
-//! not seen must be listed with its reason, and one that is listed must not be seen: the list is what these tests cannot tell.
+//! The texts are linked as they are and compared, then once more for every literal with that literal changed; see `altered`.
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
@@ -15,138 +15,13 @@ use peelnet_core::{
     random::Random,
     weights::Weight,
 };
-use peelnet_gpu::Gpu;
-use peelnet_tests::{gpu, literals::literals, run_text};
+use peelnet_tests::{
+    altered::{Function, NEVER, Unseen, VALUES, check},
+    gpu,
+};
 
 /// Why the least absorbance does not show.
 const FAINT: &str = "a tenth of it is 1e-5 of light; a test of peelnet_core holds the twin to it";
-
-/// Why a ceiling or a floor does not show.
-const NEVER: &str = "a guard that nothing here reaches";
-
-/// What a literal is multiplied by: by the second where the first does not show.
-const CHANGES: [f64; 2] = [1.1, 0.9];
-
-/// How many tolerances a change must show by, so that it is no matter of rounding.
-const CLEAR: f64 = 4.0;
-
-/// What of the camera the functions read.
-const CAMERA: &str = "struct Camera { warp_inverse_near: f32, warp_scale: f32 }
-const camera = Camera(2.0, 0.5);
-";
-
-/// Values that one sample gives.
-const VALUES: usize = 8;
-
-/// A function of the shaders, and what it must give.
-struct Function<'a> {
-    name: &'a str,
-    /// Modules whose literals are changed, beside the parameters.
-    modules: &'a [&'a str],
-    /// Text of `package::parameters`.
-    parameters: &'a str,
-    /// Imports, and `fn values(p: vec4f, q: vec4f) -> array<f32, 8>`.
-    driver: &'a str,
-    /// p and q of every sample.
-    samples: Vec<[[f32; 4]; 2]>,
-    want: &'a dyn Fn([f64; 4], [f64; 4]) -> [f64; VALUES],
-    /// Largest error as a share of the value, or of `least` where that is more.
-    tolerance: f64,
-    least: f64,
-    /// Literal, beginning of its line, and reason of what a change does not show.
-    unseen: &'a [(&'a str, &'a str, &'a str)],
-}
-
-impl Function<'_> {
-    /// The largest error, of texts with these modules in place of their own.
-    fn error(&self, gpu: &Gpu, altered: &[(&str, &str)]) -> f64 {
-        let root = format!(
-            "{}
-            @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
-            @group(0) @binding(1) var<storage, read_write> answers: array<array<f32, {VALUES}>>;
-            @compute @workgroup_size(64)
-            fn main(@builtin(global_invocation_id) id: vec3u) {{
-                if id.x >= arrayLength(&answers) {{ return; }}
-                answers[id.x] = values(inputs[2u * id.x], inputs[2u * id.x + 1u]);
-            }}",
-            self.driver
-        );
-        let mut sources = vec![
-            ("driver", root.as_str()),
-            ("parameters", self.parameters),
-            // Depths of 0.5 to 0.5 e^4.
-            ("scene::camera", CAMERA),
-        ];
-        sources.extend(altered);
-        let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
-        let inputs = self.samples.as_flattened();
-        let found: Vec<[f32; VALUES]> = run_text(gpu, &wgsl, inputs, self.samples.len());
-        let mut worst = 0.0f64;
-        for ([p, q], found) in self.samples.iter().zip(found) {
-            let want = (self.want)(p.map(f64::from), q.map(f64::from));
-            for (found, want) in found.into_iter().zip(want) {
-                let error = (f64::from(found) - want).abs() / want.abs().max(self.least);
-                worst = if error.is_nan() {
-                    f64::INFINITY
-                } else {
-                    worst.max(error)
-                };
-            }
-        }
-        worst
-    }
-
-    /// What is wrong: an error of the texts as they are, or literals that do not show and are not listed, or the other way round.
-    fn problem(&self, gpu: &Gpu) -> Option<String> {
-        let name = self.name;
-        let error = self.error(gpu, &[]);
-        if error > self.tolerance {
-            return Some(format!("{name}: {error:.2e}"));
-        }
-        let texts = self
-            .modules
-            .iter()
-            .map(|m| (*m, peelnet_shaders::source(m).unwrap()));
-        let mut unseen = Vec::new();
-        for (module, text) in texts.chain([("parameters", self.parameters)]) {
-            for place in literals(text) {
-                let literal = &text[place.clone()];
-                let altered = |change: f64| {
-                    let changed = literal.parse::<f64>().unwrap() * change;
-                    let (before, after) = (&text[..place.start], &text[place.end..]);
-                    let altered = format!("{before}{changed:?}{after}");
-                    self.error(gpu, &[(module, &altered)])
-                };
-                let mut error = altered(CHANGES[0]);
-                if error <= CLEAR * self.tolerance {
-                    error = altered(CHANGES[1]);
-                }
-                if error <= CLEAR * self.tolerance {
-                    let line = text[..place.start].matches('\n').count();
-                    let line = text.lines().nth(line).unwrap_or_default().trim();
-                    println!("{name}: {literal} moves it by {error:.2e} only: {line}");
-                    unseen.push((literal, line));
-                }
-            }
-        }
-        let listed: Vec<_> = self
-            .unseen
-            .iter()
-            .map(|&(literal, line, _)| (literal, line))
-            .collect();
-        let is = |(a, b): (&(&str, &str), &(&str, &str))| a.0 == b.0 && a.1.starts_with(b.1);
-        let same = unseen.len() == listed.len() && unseen.iter().zip(&listed).all(is);
-        (!same).then(|| {
-            format!("{name}: changes that do not show are {unseen:#?}, listed are {listed:#?}")
-        })
-    }
-}
-
-/// Panics with all problems.
-fn check(functions: impl IntoIterator<Item = Option<String>>) {
-    let problems: Vec<String> = functions.into_iter().flatten().collect();
-    assert!(problems.is_empty(), "{}", problems.join("\n"));
-}
 
 /// Up to three layers of warped depth −0.9 … 0.9 and a depth that is asked, at random: (b, ζ) twice, and (b, ζ, asked).
 fn stacks() -> Vec<[[f32; 4]; 2]> {
@@ -395,7 +270,8 @@ fn weights_have_no_number_that_does_not_matter() {
 fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
     return array<f32, 8>(
         weight_eq7(p.x, p.y), weight_eq8(p.x, p.y), weight_eq9(p.x, p.y), weight_eq10(p.z, p.y, 3e3),
-        weight_inverse_power(p.x, 2u, 5.0), weight_papakostas(p.x, p.y), weight_smoke(p.x, 0.1), 0.0,
+        weight_inverse_power(p.x, 2u, 5.0), weight_papakostas(p.x, p.y),
+        weight_smoke(p.x, 0.1), 0.0,
     );
 }";
     let samples = (0..4000)
@@ -568,6 +444,104 @@ fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
                 "as the one before",
             ),
         ],
+    }
+    .problem(&gpu)]);
+}
+
+/// Where Laguerre's iteration for the quartic begins, and terms of its step, in the order of the text.
+const CONVERGES: &str = "the iteration comes to the same zero from there, or with that step";
+
+/// See `CONVERGES`.
+const ROOTS_UNSEEN: [Unseen<'_>; 16] = [
+    ("1e-30", "let q = max(", NEVER),
+    ("1e4", "return clamp(select(roots,", NEVER),
+    ("1e4", "return clamp(select(roots,", NEVER),
+    ("1.0", "let side =", CONVERGES),
+    ("1.0", "let side =", CONVERGES),
+    ("0.25", "var x = -0.25", CONVERGES),
+    ("0.75", "var x = -0.25", CONVERGES),
+    ("8.0", "var x = -0.25", CONVERGES),
+    ("3.0", "var x = -0.25", CONVERGES),
+    ("12.0", "let bend =", CONVERGES),
+    ("6.0", "let bend =", CONVERGES),
+    ("2.0", "let bend =", CONVERGES),
+    ("9.0", "let root = sqrt(max(9.0", CONVERGES),
+    ("12.0", "let root = sqrt(max(9.0", CONVERGES),
+    ("4.0", "x -= 4.0", CONVERGES),
+    (
+        "1.0",
+        "if abs(x) > 1.0 {",
+        "both ways to divide hold near 1",
+    ),
+];
+
+/// Zeros of polynomials are those that they were made of, also where the leading coefficient is the smallest of all.
+#[test]
+fn roots_have_no_number_that_does_not_matter() {
+    let gpu = gpu();
+    let driver = "
+import package::methods::mboit_trig::roots::{cubic, quadratic, quartic};
+fn ascending(x: vec4f) -> vec4f {
+    var y = vec4f(min(x.xz, x.yw), max(x.xz, x.yw)).xzyw;
+    y = vec4f(min(y.xy, y.zw), max(y.xy, y.zw));
+    return vec4f(y.x, min(y.y, y.z), max(y.y, y.z), y.w);
+}
+fn values(p: vec4f, q: vec4f) -> array<f32, 8> {
+    // Coefficients of (t - p.x) (t - p.y), then of one zero more each time.
+    let two = vec3f(p.x * p.y, -p.x - p.y, 1.0);
+    let three = vec4f(0.0, two) - p.z * vec4f(two, 0.0);
+    let four = vec4f(0.0, three.xyz) - p.w * three;
+    let a = quadratic(q.x * two);
+    let b = cubic(q.x * three);
+    let c = ascending(quartic(q.x * four, q.x));
+    let d = ascending(vec4f(b, 1e5));
+    return array<f32, 8>(min(a.x, a.y), d.x, d.y, d.z, c.x, c.y, c.z, c.w);
+}";
+    let mut random = Random::new(22, &[]);
+    let samples = (0..400)
+        .map(|_| {
+            // Zeros of kernels are apart; some lie outside of the depths.
+            let mut at = |from: f32| random.between(from, from + 0.3);
+            let mut zeros = [at(-1.0), at(-0.5), at(0.0), at(0.5)];
+            let far = [1.0, 2.0, 4.0][random.below(3)];
+            zeros[random.below(4)] *= far;
+            let zeros = random.permutation(4).into_iter().map(|i| zeros[i as usize]);
+            let zeros: Vec<f32> = zeros.collect();
+            [
+                [zeros[0], zeros[1], zeros[2], zeros[3]],
+                [random.between(0.5, 2.0), 0.0, 0.0, 0.0],
+            ]
+        })
+        .collect();
+    let want = |p: [f64; 4], _: [f64; 4]| {
+        let ascending = |n: usize| {
+            let mut zeros = p[..n].to_vec();
+            zeros.sort_by(f64::total_cmp);
+            zeros
+        };
+        let (three, four) = (ascending(3), ascending(4));
+        [
+            ascending(2)[0],
+            three[0],
+            three[1],
+            three[2],
+            four[0],
+            four[1],
+            four[2],
+            four[3],
+        ]
+    };
+    check([Function {
+        name: "roots",
+        modules: &["methods::mboit_trig::roots"],
+        parameters: "",
+        driver,
+        samples,
+        want: &want,
+        // Cosines, which llvmpipe has to 1e-5, times the distance of the zeros.
+        tolerance: 5e-4,
+        least: 1.0,
+        unseen: &ROOTS_UNSEEN,
     }
     .problem(&gpu)]);
 }

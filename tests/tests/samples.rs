@@ -138,8 +138,9 @@ fn a_pixel_is_the_mean_of_its_samples() {
             }
             Some(mean)
         };
-        // Random numbers of a pixel's position are other ones in every row.
-        let Some(want) = mean().filter(|_| !promises.noisy) else {
+        // Random numbers of a pixel's position are other ones in every row, and twins know of no other pixels.
+        let alone = promises.per_pixel && !promises.noisy;
+        let Some(want) = mean().filter(|_| alone) else {
             continue;
         };
         let tolerance = match (promises.root, promises.sums, promises.statistics) {

@@ -8,6 +8,17 @@ use peelnet_tests::gpu;
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input.
 fn evaluate(gpu: &Gpu, imports: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    evaluate_with(gpu, &[], imports, body, inputs)
+}
+
+/// The same with features of the shaders.
+fn evaluate_with(
+    gpu: &Gpu,
+    features: &[&str],
+    imports: &str,
+    body: &str,
+    inputs: &[[f32; 4]],
+) -> Vec<[f32; 4]> {
     let root = format!(
         "{imports}
         @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
@@ -21,7 +32,7 @@ fn evaluate(gpu: &Gpu, imports: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f
             outputs[id.x] = y;
         }}"
     );
-    let wgsl = peelnet_shaders::link("driver", &[], &[("driver", &root)]).unwrap();
+    let wgsl = peelnet_shaders::link("driver", features, &[("driver", &root)]).unwrap();
     let input = gpu.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
     let bytes = inputs.len() as u64 * 16;
     let output = gpu.storage("outputs", bytes).unwrap();
@@ -110,4 +121,48 @@ fn guards_are_the_same_numbers() {
             guards::FILL_MAX
         ]
     );
+}
+
+/// Stored colours come back within half a step: of a half float, 2^-11 of the value, and of less than its normal numbers half of the least
+/// step, 2^-25; of a byte, 1/510 of alpha and of the colour's square root, so that the colour errs by that times twice the root.
+#[test]
+fn stored_colors_come_back_within_half_a_step() {
+    const HALF: f32 = 1.0 / 2048.0;
+    const LEAST: f32 = 1.0 / 33_554_432.0;
+    const BYTE: f32 = 0.5 / 255.0;
+    // Roots and squares in 32 bits.
+    const ROUNDING: f32 = 8.0 * f32::EPSILON;
+    let gpu = gpu();
+    let mut random = peelnet_core::random::Random::new(24, &[]);
+    let mut inputs: Vec<[f32; 4]> = (0..2000)
+        .map(|_| [(); 4].map(|()| random.unit() * random.unit()))
+        .collect();
+    inputs.extend([[0.0; 4], [1.0; 4], [1e-6, 1e-5, 1e-4, 1e-3]]);
+    let beyond = inputs.len();
+    inputs.push([1.5, 60_000.0, 1.25, 1.0]);
+    let stored = |feature: &str| {
+        evaluate_with(
+            &gpu,
+            &[feature],
+            "import package::helpers::stored::{Stored, restored, stored};",
+            "let kept: Stored = stored(x); y = restored(kept);",
+            &inputs,
+        )
+    };
+    assert_eq!(stored("full_colors"), inputs);
+    for (x, y) in inputs.iter().zip(stored("half_colors")) {
+        for (x, y) in x.iter().zip(y) {
+            assert!((x - y).abs() <= HALF * x + LEAST, "{y} for {x}");
+        }
+    }
+    let bytes = stored("byte_colors");
+    for (x, y) in inputs[..beyond].iter().zip(&bytes) {
+        for (x, y) in x[..3].iter().zip(y) {
+            let (x_root, y_root) = (x.sqrt(), y.sqrt());
+            assert!((x_root - y_root).abs() <= BYTE + ROUNDING, "{y} for {x}");
+        }
+        assert!((x[3] - y[3]).abs() <= BYTE + ROUNDING, "{y:?} for {x:?}");
+    }
+    // Light beyond 1 is cut off there, as `about` of the parameter says.
+    assert_eq!(bytes[beyond], [1.0; 4]);
 }

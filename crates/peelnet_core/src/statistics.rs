@@ -197,6 +197,16 @@ impl<F: Float> Statistics<F> {
 mod tests {
     use super::*;
 
+    /// Half floats have eleven bits: 1 is lost beside 4096, and a term is rounded before it is added.
+    #[test]
+    fn halves_round_terms_and_sums() {
+        let half = |sum, term| SumPrecision::Half.add(sum, term);
+        assert_eq!(half(1.5, 0.25), 1.75);
+        assert_eq!(half(4096.0, 1.0), 4096.0);
+        assert_eq!(half(0.0, 1.0 + 1.0 / 4096.0), 1.0);
+        assert_eq!(SumPrecision::Exact.add(4096.0, 1.0), 4097.0);
+    }
+
     /// Levels ascend as halves ascend, negating mirrors them, and every half is normal.
     #[test]
     fn half_codes_are_ordered_and_mirrored() {

@@ -10,6 +10,7 @@ pub use peelnet_wgsl::SOURCES;
 
 use std::{
     borrow::Cow,
+    cell::RefCell,
     collections::HashMap,
     sync::{Mutex, PoisonError},
 };
@@ -51,6 +52,26 @@ pub fn source(path: &str) -> Result<&'static str, ShaderError> {
         .ok_or_else(|| ShaderError::Path(path.to_owned()))
 }
 
+thread_local! {
+    /// The module that has another text on this thread, and that text.
+    static ALTERED: RefCell<Option<(String, String)>> = const { RefCell::new(None) };
+}
+
+/// Runs `work` with another text in place of one of the repository's modules, in all that this thread links meanwhile: for tests that change
+/// a shader and look whether it shows. Not to be nested.
+#[doc(hidden)]
+pub fn with_altered<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
+    struct Restore;
+    impl Drop for Restore {
+        fn drop(&mut self) {
+            ALTERED.set(None);
+        }
+    }
+    ALTERED.set(Some((path.to_owned(), text.to_owned())));
+    let _restore = Restore;
+    work()
+}
+
 /// Everything that decides a linked text.
 type LinkKey = (String, Vec<String>, Vec<(String, String)>);
 
@@ -62,6 +83,10 @@ type LinkKey = (String, Vec<String>, Vec<(String, String)>);
 /// An unknown module, a missing import, or WGSL that does not parse.
 pub fn link(root: &str, features: &[&str], extra: &[(&str, &str)]) -> Result<String, ShaderError> {
     static LINKED: Mutex<Option<HashMap<LinkKey, String>>> = Mutex::new(None);
+    let altered = ALTERED.with_borrow(Clone::clone);
+    let altered = altered.iter().map(|(p, t)| (p.as_str(), t.as_str()));
+    // Of a module's texts, the last counts.
+    let extra: Vec<_> = altered.chain(extra.iter().copied()).collect();
     let key: LinkKey = (
         root.to_owned(),
         features.iter().map(|&f| f.to_owned()).collect(),
@@ -78,7 +103,7 @@ pub fn link(root: &str, features: &[&str], extra: &[(&str, &str)]) -> Result<Str
     {
         return Ok(text.clone());
     }
-    let text = link_uncached(root, features, extra)?;
+    let text = link_uncached(root, features, &extra)?;
     LINKED
         .lock()
         .unwrap_or_else(PoisonError::into_inner)

@@ -55,6 +55,9 @@ pub fn composite(
 mod tests {
     use super::*;
 
+    /// Absorbances of up to two fragments, each rounded to half of 1/2048.
+    const ROUNDED: f64 = 1.0 / 2048.0;
+
     /// Slices of the logarithm: depth e^(s / 64) begins slice s.
     fn at(slice: f64) -> f32 {
         (slice / 64.0).exp() as f32
@@ -69,11 +72,10 @@ mod tests {
     fn slices_are_linear() {
         let behind = |slice: f64| {
             let t = transmittances(&[(at(10.5), 0.5), (at(slice), 0.5)], &warp(), 64);
-            // An absorbance is rounded to half a unit.
             assert_eq!(t[0], 1.0);
             t[1]
         };
-        let close = |a: f64, b: f64| (a - b).abs() < UNIT;
+        let close = |a: f64, b: f64| (a - b).abs() < ROUNDED;
         assert!(close(behind(12.5), 0.5));
         assert!(close(behind(60.0), 0.5));
         assert!(close(behind(11.25), 0.5f64.powf(0.25)));
@@ -85,6 +87,6 @@ mod tests {
     fn depths_at_the_far_end_are_in_the_last_slice() {
         let far = std::f32::consts::E * 2.0;
         let t = transmittances(&[(at(60.0), 0.75), (far, 0.5)], &warp(), 64);
-        assert!((t[1] - 0.25).abs() < UNIT);
+        assert!((t[1] - 0.25).abs() < ROUNDED);
     }
 }

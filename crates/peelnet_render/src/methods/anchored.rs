@@ -66,6 +66,13 @@ const BEHIND_COINCIDENT: Flaw = Flaw::new(
     "the network's own error at a layer between sixteen coincident ones and the end, up to 0.010; where the sixteen stand before one, it is exact",
 );
 
+/// Of no matter to what is drawn: exported texts have 32 bits.
+const MAGNIFIED: Flaw = Flaw::new(
+    Property::Half,
+    &["half-float"],
+    "weights of the hidden layers up to 10 magnify the roundings of half floats, which the limit counts in the last layer alone",
+);
+
 const ROUNDED_OTHERWISE: Flaw = Flaw::new(
     Property::Scale,
     &["high-alpha"],
@@ -82,8 +89,10 @@ pub(super) const SMALL: Method = Method {
         Flaw::swallowed(&["deep"]),
         ROUNDED_OTHERWISE,
         UNSETTLED,
-        Flaw::unsettled(Property::Order, &["near-overflow"]),
+        Flaw::unsettled(Property::Order, &["near-overflow", "deep"]),
+        Flaw::reordered(&["emissive"]),
         BEHIND_COINCIDENT,
+        MAGNIFIED,
     ],
     ..anchored!(
         "deep-small",
@@ -95,13 +104,7 @@ pub(super) const MEDIUM: Method = Method {
     parameters: &[TARGETS],
     promises: |_| promises(Precision::Half),
     curve: &["", ":targets=f32", ":scale=0.5"],
-    flaws: &[
-        Flaw::swallowed(&["deep"]),
-        ROUNDED_OTHERWISE,
-        UNSETTLED,
-        Flaw::unsettled(Property::Order, &["near-overflow"]),
-        BEHIND_COINCIDENT,
-    ],
+    flaws: &[ROUNDED_OTHERWISE, UNSETTLED, BEHIND_COINCIDENT],
     ..anchored!(
         "deep-medium",
         "the same with exact ends, 5-12-1: the one to ship"
@@ -113,10 +116,12 @@ pub(super) const LARGE: Method = Method {
     promises: |_| promises(Precision::Full),
     curve: &["", ":targets=f16", ":scale=0.5"],
     flaws: &[
-        Flaw::swallowed(&["deep"]).when(half_statistics),
+        Flaw::swallowed(&["deep"]),
+        Flaw::swallowed(&["alpha-tiny"]).when(|s| half_sums(s) && !half_statistics(s)),
         UNSETTLED,
-        Flaw::unsettled(Property::Order, &["deep"]),
+        Flaw::unsettled(Property::Order, &["deep", "grazing", "near-overflow"]),
         BEHIND_COINCIDENT.when(|s| !half_statistics(s)),
+        MAGNIFIED,
     ],
     ..anchored!(
         "deep-large",

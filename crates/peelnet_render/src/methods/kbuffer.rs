@@ -58,6 +58,35 @@ pub(super) const PLAIN: Method = Method {
     flaws: &[
         TOO_FEW_PLACES,
         Flaw::swallowed(&["alpha-tiny", "deep"]).when(long_tails),
+        stored::in_bytes(
+            Property::Background,
+            &[
+                "alpha-zero",
+                "coplanar",
+                "emissive",
+                "far",
+                "grazing",
+                "intersecting",
+                "isolated",
+                "moving-camera",
+                "opaque-mix",
+                "thin-slab",
+                "two-layers",
+                "wide-range",
+            ],
+        ),
+        stored::in_bytes(
+            Property::Hull,
+            &[
+                "coplanar",
+                "emissive",
+                "grazing",
+                "near-overflow",
+                "thin-slab",
+                "wide-range",
+            ],
+        ),
+        stored::in_bytes(Property::Single, &["emissive", "grazing"]),
     ],
     ..Method::new(
         "kbuffer",

@@ -9,7 +9,7 @@ use super::{
     parameter::{Count, Parameter},
     stored::{self, COLORS},
 };
-use crate::error::RenderError;
+use crate::{error::RenderError, flaw::Property};
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
@@ -36,6 +36,54 @@ pub(super) const METHOD: Method = Method {
         ..stored::promises(s, Promises::EXACT)
     },
     curve: &["", ":colors=f16", ":colors=u8"],
+    flaws: &[
+        stored::in_halves(Property::Single, &["intersecting", "moving-camera"]),
+        stored::in_bytes(
+            Property::Background,
+            &[
+                "alpha-tiny",
+                "alpha-zero",
+                "coplanar",
+                "emissive",
+                "far",
+                "grazing",
+                "intersecting",
+                "isolated",
+                "moving-camera",
+                "opaque-mix",
+                "thin-slab",
+                "two-layers",
+                "wide-range",
+            ],
+        ),
+        stored::in_bytes(
+            Property::Hull,
+            &[
+                "alpha-tiny",
+                "coplanar",
+                "deep",
+                "emissive",
+                "grazing",
+                "near-overflow",
+                "thin-slab",
+                "wide-range",
+            ],
+        ),
+        stored::in_bytes(
+            Property::Single,
+            &[
+                "alpha-one",
+                "emissive",
+                "far",
+                "grazing",
+                "intersecting",
+                "isolated",
+                "moving-camera",
+                "opaque-mix",
+                "passing",
+            ],
+        ),
+    ],
     twin: Some(|s, p| {
         let colors = stored::colors(s);
         let kept: Vec<_> = p.fragments.iter().map(|f| colors.kept(f)).collect();

@@ -5,6 +5,7 @@ use super::{
     parameter::{Precision, Word},
     spec::MethodSpec,
 };
+use crate::flaw::{Flaw, Property};
 use peelnet_core::methods::stored::Colors;
 
 /// `colors`, in 32 bits by default.
@@ -23,14 +24,13 @@ pub(super) fn colors(spec: &MethodSpec) -> Colors {
     }
 }
 
-/// What a method still promises where its colours are rounded. Bytes leave the hull of the colours by half a step.
+/// What a method still promises where its colours are rounded.
 pub(super) fn promises(spec: &MethodSpec, full: Promises) -> Promises {
     match colors(spec) {
         Colors::Full => full,
-        rounded => Promises {
+        Colors::Half | Colors::Bytes => Promises {
             exact: false,
             sums: Precision::Half,
-            normalised: full.normalised && rounded == Colors::Half,
             rounds_fragments: true,
             ..full
         },
@@ -53,4 +53,16 @@ pub(super) const fn features(colors: Colors) -> &'static [&'static str] {
         Colors::Half => &["half_colors"],
         Colors::Bytes => &["byte_colors"],
     }
+}
+
+/// What does not hold of colours in half floats.
+pub(super) const fn in_halves(property: Property, cases: &'static [&'static str]) -> Flaw {
+    let reason = "colours and opacities are stored in half floats, which err by 2^-11 of the value";
+    Flaw::new(property, cases, reason).when(|s| COLORS.of(s) == "f16")
+}
+
+/// What does not hold of colours in bytes.
+pub(super) const fn in_bytes(property: Property, cases: &'static [&'static str]) -> Flaw {
+    let reason = "opacities and roots of colours are stored in bytes, which err by 1/510 each, and light beyond 1 is cut off";
+    Flaw::new(property, cases, reason).when(|s| COLORS.of(s) == "u8")
 }

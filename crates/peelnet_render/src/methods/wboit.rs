@@ -195,6 +195,7 @@ pub(super) const SMOKE: Method = Method {
     parameters: &[TARGETS, Parameter::Number(FALL)],
     flaws: &[
         Flaw::swallowed(&["deep", "near-overflow"]),
+        Flaw::reordered(&["deep"]),
         faint(Property::Hull, &["far", "isolated"]),
         faint(Property::Dark, &["far"]),
         faint(Property::Single, &["far", "isolated"]),
