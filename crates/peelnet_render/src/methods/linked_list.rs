@@ -37,7 +37,6 @@ pub(super) const METHOD: Method = Method {
     },
     curve: &["", ":colors=f16", ":colors=u8"],
     flaws: &[
-        stored::in_halves(Property::Single, &["intersecting", "moving-camera"]),
         stored::in_bytes(
             Property::Background,
             &[
@@ -64,25 +63,12 @@ pub(super) const METHOD: Method = Method {
                 "deep",
                 "emissive",
                 "grazing",
-                "near-overflow",
-                "thin-slab",
-                "wide-range",
-            ],
-        ),
-        stored::in_bytes(
-            Property::Single,
-            &[
-                "alpha-one",
-                "emissive",
-                "far",
-                "grazing",
                 "intersecting",
-                "isolated",
                 "moving-camera",
-                "opaque-mix",
-                "passing",
+                "near-overflow",
             ],
         ),
+        stored::in_bytes(Property::Single, &["emissive", "grazing"]),
     ],
     twin: Some(|s, p| {
         let colors = stored::colors(s);

@@ -55,12 +55,6 @@ pub(super) const fn features(colors: Colors) -> &'static [&'static str] {
     }
 }
 
-/// What does not hold of colours in half floats.
-pub(super) const fn in_halves(property: Property, cases: &'static [&'static str]) -> Flaw {
-    let reason = "colours and opacities are stored in half floats, which err by 2^-11 of the value";
-    Flaw::new(property, cases, reason).when(|s| COLORS.of(s) == "f16")
-}
-
 /// What does not hold of colours in bytes.
 pub(super) const fn in_bytes(property: Property, cases: &'static [&'static str]) -> Flaw {
     let reason = "opacities and roots of colours are stored in bytes, which err by 1/510 each, and light beyond 1 is cut off";
