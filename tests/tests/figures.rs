@@ -131,7 +131,13 @@ impl Committed {
         let held_out: Results<Bench> =
             serde_json::from_str(&read(&format!("{RESULTS}/held-out/results.json"))).unwrap();
         let stress = read(&format!("{RESULTS}/stress/stress.csv"));
-        let fields = |line: &str| line.split(',').map(str::to_owned).collect();
+        // A method's name may hold commas and is quoted then.
+        let fields = |line: &str| -> Vec<String> {
+            let quoted = line.strip_prefix('"').and_then(|l| l.split_once("\","));
+            let (method, rest) = quoted.or_else(|| line.split_once(',')).unwrap();
+            let rest = rest.split(',').map(str::to_owned);
+            std::iter::once(method.to_owned()).chain(rest).collect()
+        };
         Self {
             rows: held_out.measured.rows,
             stress: stress.lines().map(fields).collect(),
