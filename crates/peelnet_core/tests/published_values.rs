@@ -224,7 +224,7 @@ fn weights_are_those_published() {
             [
                 3000.0,
                 3000.0,
-                2954.209_75,
+                2_954.209_75,
                 79.993_600_4,
                 1.249_998_28,
                 0.046_296_137_9,
@@ -236,9 +236,9 @@ fn weights_are_those_published() {
             Weight::Eq9,
             [
                 3000.0,
-                2999.998_48,
-                2999.051_08,
-                2887.218_05,
+                2_999.998_48,
+                2_999.051_08,
+                2_887.218_05,
                 272.727_273,
                 3.699_136_87,
                 0.073_240_399_4,
@@ -271,7 +271,7 @@ fn guards_are_ends_of_formats() {
     assert_eq!(guards::HALF_MAX, f16::MAX.to_f32());
     // The distance of half floats above 1, less than half a step of an 8-bit display.
     assert_eq!(guards::EMISSIVE_ALPHA, f16::EPSILON.to_f32());
-    assert!(guards::EMISSIVE_ALPHA < 0.5 / 255.0);
+    const { assert!(guards::EMISSIVE_ALPHA < 0.5 / 255.0) };
     assert_eq!(
         guards::ROOT_ABSORBANCE_LIMIT * guards::ROOT_ABSORBANCE_LIMIT,
         65_536.0

@@ -82,11 +82,11 @@ pub(super) fn truth(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Truth {
         .collect();
     let outlines = outlines(scene, camera, size);
     let mut truth = Truth::default();
-    for i in 0..width * height {
+    for (i, &outlined) in outlines.iter().enumerate() {
         let at = [i % width, i / width];
         let hits = |frame: usize| frames[frame].pixels[i].as_slice();
         let surfaces = |frame: usize| hits(frame).iter().map(|h| view.objects[h.id as usize]);
-        let is_edge = outlines[i] || (1..frames.len()).any(|k| !surfaces(k).eq(surfaces(0)));
+        let is_edge = outlined || (1..frames.len()).any(|k| !surfaces(k).eq(surfaces(0)));
         let kind = || {
             let mut kind = view.kind(hits(0), at, offsets[0])?;
             for (k, &offset) in offsets.iter().enumerate().skip(1) {
