@@ -7,26 +7,8 @@ import package::scene::camera::camera;
 @if(metallic_roughness_map) import package::scene::maps::roughness_metallic_at;
 @if(occlusion_map) import package::scene::maps::occlusion_at;
 @if(emissive_map) import package::scene::maps::emission_at;
+import package::scene::material::{Material, materials};
 import package::scene::surface::Surface;
-
-// Twin of peelnet_raster's `MaterialData`.
-struct Material {
-    // Linear RGB and alpha.
-    color: vec4f,
-    // Blinn-Phong: strength of the highlight and its exponent. Physically based: metallic and roughness.
-    specular_or_metallic: f32,
-    shininess_or_roughness: f32,
-    alpha_cutoff: f32,
-    layer: f32,
-    // Radiance emitted beyond what the opacity covers, linear RGB.
-    emission: vec3f,
-    // Share of the normal map's slopes.
-    normal_scale: f32,
-    // Share of the light behind that passes through what the opacity covers, linear RGB.
-    transmission: vec3f,
-    // Share of the occlusion map.
-    occlusion_strength: f32,
-}
 
 // Twin of peelnet_raster's `LightData`.
 @if(lit)
@@ -38,7 +20,6 @@ struct Light {
     color: vec3f,
 }
 
-@group(0) @binding(1) var<storage, read> materials: array<Material>;
 @if(lit) @group(0) @binding(2) var<storage, read> lights: array<Light>;
 
 @if(phong) const AMBIENT: f32 = 0.1;
@@ -58,7 +39,7 @@ struct Base {
 }
 
 fn base_of(surface: Surface, material: Material) -> Base {
-    var color = material.color;
+    var color = surface.material_color;
     @if(vertex_colors) color *= surface.color;
     @if(clear_map) color *= color_at(surface.uv);
     @if(color_map && !clear_map) color = vec4f(color.rgb * color_at(surface.uv).rgb, color.a);
@@ -92,10 +73,10 @@ fn opacity(surface: Surface) -> f32 {
         return mean_covering(base_of(surface, material));
     }
     @elif(emission) {
-        return max(material.color.a, EMISSIVE_ALPHA);
+        return max(surface.material_color.a, EMISSIVE_ALPHA);
     }
     @else {
-        return material.color.a;
+        return surface.material_color.a;
     }
 }
 
@@ -200,8 +181,8 @@ fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
         let toward = normalize(to_light(surface, lights[i]));
         let diffuse = max(dot(normal, toward), 0.0);
         let halfway = normalize(toward + view);
-        let highlight = select(0.0, pow(max(dot(normal, halfway), 0.0), material.shininess_or_roughness), diffuse > 0.0);
-        radiance += lights[i].color * (albedo * diffuse + material.specular_or_metallic * highlight);
+        let highlight = select(0.0, pow(max(dot(normal, halfway), 0.0), surface.finish.y), diffuse > 0.0);
+        radiance += lights[i].color * (albedo * diffuse + surface.finish.x * highlight);
     }
     return radiance;
 }
@@ -218,7 +199,7 @@ fn grazing(cosine: f32) -> f32 {
 fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
     let view = normalize(camera.eye - surface.world);
     let normal = facing_normal(surface, material, view);
-    var factors = vec2f(material.shininess_or_roughness, material.specular_or_metallic);
+    var factors = vec2f(surface.finish.y, surface.finish.x);
     @if(metallic_roughness_map) factors *= roughness_metallic_at(surface.uv);
     let metallic = factors.y;
     // Below that the highlight of a point light is smaller than any pixel, and its peak overflows.

@@ -4,13 +4,17 @@ struct Surface {
     // Linear depth: distance along the view axis in scene units. The sort key everywhere.
     @location(0) depth_linear: f32,
     @location(1) @interpolate(flat) material: u32,
+    // Of the material: linear RGB and alpha.
+    @location(2) @interpolate(flat) material_color: vec4f,
     // Index in the scene's list of triangles, object by object: the tie rule.
-    @if(numbered) @location(2) @interpolate(flat) triangle: u32,
-    // Nothing is lit: nobody asks where it is and which way it faces.
-    @if(lit) @location(3) world: vec3f,
-    @if(lit) @location(4) normal: vec3f,
-    @if(mapped) @location(5) uv: vec2f,
+    @if(numbered) @location(3) @interpolate(flat) triangle: u32,
+    // Nothing is lit: nobody asks where it is, which way it faces and how it shines.
+    @if(lit) @location(4) world: vec3f,
+    @if(lit) @location(5) normal: vec3f,
+    // Of the material: specular or metallic, and shininess or roughness.
+    @if(lit) @location(6) @interpolate(flat) finish: vec2f,
+    @if(mapped) @location(7) uv: vec2f,
     // Direction of u; w: which way the second tangent points.
-    @if(normal_map) @location(6) tangent: vec4f,
-    @if(vertex_colors) @location(7) color: vec4f,
+    @if(normal_map) @location(8) tangent: vec4f,
+    @if(vertex_colors) @location(9) color: vec4f,
 }

@@ -1,5 +1,6 @@
 // The only vertex shader of scene geometry: every pass shares it, so that depth comes out bit-identical in all of them.
 import package::scene::camera::camera;
+import package::scene::material::materials;
 import package::scene::surface::Surface;
 
 struct Vertex {
@@ -26,5 +27,8 @@ fn vertex_main(vertex: Vertex, @if(numbered) @builtin(vertex_index) index: u32) 
     out.depth_linear = out.position.w;
     @if(numbered) out.triangle = index / 3u;
     out.material = vertex.material;
+    let material = materials[vertex.material];
+    out.material_color = material.color;
+    @if(lit) out.finish = vec2f(material.specular_or_metallic, material.shininess_or_roughness);
     return out;
 }

@@ -6,7 +6,7 @@ use peelnet_gpu::{Gpu, wgpu};
 use peelnet_render::{
     FrameStatus, METHODS, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
 };
-use peelnet_scene::{Camera, Light, Lighting, Material, Scene, Source};
+use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source};
 use peelnet_tests::{gpu, network_of, scene, wall, walls};
 
 /// A texture to draw onto, cleared to a colour.
@@ -167,6 +167,58 @@ fn every_method_draws_over_what_a_target_holds() {
         let found = gpu.read_rgba32f(&view).expect("reads");
         assert_close(&format!("{spec} cleared"), &found, &image.pixels, BLENDED);
     }
+}
+
+/// The resolve covers every pixel that a transparent surface touches, wherever it stands: small ones all over the frame and across
+/// its edges, one that reaches behind the eye, and none at all.
+#[test]
+fn all_that_is_touched_is_resolved() {
+    let gpu = gpu();
+    let size = [24, 16];
+    let behind = [0.1, 0.2, 0.9];
+    let format = wgpu::TextureFormat::Rgba32Float;
+    let triangle = |points: [Vec3; 3]| {
+        let material = Material::unlit([0.9, 0.5, 0.1], 0.5);
+        Object::of_triangles("small", &[points], material)
+    };
+    let mut cases: Vec<Vec<Object>> = vec![Vec::new()];
+    for i in 0..7 {
+        for j in 0..5 {
+            let middle = Vec3::new(2.0 * i as f32 - 6.0, 2.0 * j as f32 - 4.0, -4.0);
+            let corners = [[-0.9, -0.6], [1.2, 0.0], [-0.3, 0.9]];
+            cases.push(vec![triangle(
+                corners.map(|[x, y]| middle + Vec3::new(x, y, 0.2 * x)),
+            )]);
+        }
+    }
+    let near = Vec3::new(0.4, 0.1, 3.0);
+    cases.push(vec![triangle([
+        near,
+        Vec3::new(0.5, 0.3, -3.0),
+        Vec3::new(0.9, -0.4, -3.0),
+    ])]);
+    let mut seen = 0;
+    for (number, objects) in cases.into_iter().enumerate() {
+        let scene = scene("touched", behind, objects);
+        let camera = scene.views[0];
+        let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+        for name in ["wboit-eq9:targets=f32", "dual-peel", "linked-list"] {
+            let spec = name.parse().expect("a name");
+            let mut method = renderer
+                .method(&spec, MethodOptions::sized(size))
+                .expect("a method");
+            let image = renderer.image(&mut method, &camera).expect("draws").image;
+            let mut found = Vec::new();
+            for _ in 0..2 {
+                let view = target(&gpu, format, size, 1, behind.map(f64::from));
+                draw(&renderer, &mut method, &camera, &Target::over(&view));
+                found = gpu.read_rgba32f(&view).expect("reads");
+            }
+            assert_close(&format!("{name} {number}"), &found, &image.pixels, BLENDED);
+            seen += usize::from(image.pixels.iter().any(|p| p[0] > 0.2));
+        }
+    }
+    assert!(seen > 3 * 25, "{seen} pictures show anything");
 }
 
 /// Targets of other formats hold the same picture in their encoding, within one step: the rounding of the background and of the blend.
@@ -511,36 +563,6 @@ fn an_applications_own_device() {
     let refused = renderer.method(&"dual-peel".parse().expect("a name"), options());
     let message = refused.expect_err("blends in 32 bits").to_string();
     assert!(message.contains("float32-blendable"), "{message}");
-}
-
-/// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.
-#[test]
-fn batches_hold_the_rows_of_the_dataset() {
-    let gpu = gpu();
-    let scene = peelnet_scene::suite::load("panes").expect("a shipped scene");
-    let folder = tempfile::tempdir().expect("temporary folder");
-    let options = peelnet_peel::ExtractOptions {
-        size: [64, 48],
-        ..peelnet_peel::ExtractOptions::new(folder.path().join("rows"))
-    };
-    let scenes = [scene];
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    peelnet_peel::extract(&gpu, &scenes, &options, &stop, &mut |_| ()).expect("extracts");
-    let dataset = peelnet_dataset::Dataset::open(&options.out).expect("opens");
-    let mut written = peelnet_dataset::FragmentBatch::default();
-    for batch in dataset.batches(1 << 16) {
-        let batch = batch.expect("reads");
-        written.extend_from(&batch, 0..batch.len());
-    }
-    let mut found = peelnet_dataset::FragmentBatch::default();
-    for batch in peelnet_peel::batches(&gpu, &scenes, &options).expect("begins") {
-        let batch = batch.expect("peels");
-        found.extend_from(&batch, 0..batch.len());
-    }
-    assert!(found.len() > 1000);
-    assert_eq!(found, written);
-    let mut dropped = peelnet_peel::batches(&gpu, &scenes, &options).expect("begins");
-    assert!(dropped.next().is_some_and(|batch| batch.is_ok()));
 }
 
 /// What can be drawn can be moved to another thread.

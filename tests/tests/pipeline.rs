@@ -333,3 +333,33 @@ fn the_exported_network_draws_what_the_model_says() {
         }
     }
 }
+
+/// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.
+#[test]
+fn batches_hold_the_rows_of_the_dataset() {
+    let gpu = gpu();
+    let scene = peelnet_scene::suite::load("panes").expect("a shipped scene");
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let options = ExtractOptions {
+        size: [64, 48],
+        ..ExtractOptions::new(folder.path().join("rows"))
+    };
+    let scenes = [scene];
+    let stop = AtomicBool::new(false);
+    extract(&gpu, &scenes, &options, &stop, &mut |_| ()).expect("extracts");
+    let dataset = Dataset::open(&options.out).expect("opens");
+    let mut written = peelnet_dataset::FragmentBatch::default();
+    for batch in dataset.batches(1 << 16) {
+        let batch = batch.expect("reads");
+        written.extend_from(&batch, 0..batch.len());
+    }
+    let mut found = peelnet_dataset::FragmentBatch::default();
+    for batch in peelnet_peel::batches(&gpu, &scenes, &options).expect("begins") {
+        let batch = batch.expect("peels");
+        found.extend_from(&batch, 0..batch.len());
+    }
+    assert!(found.len() > 1000);
+    assert_eq!(found, written);
+    let mut dropped = peelnet_peel::batches(&gpu, &scenes, &options).expect("begins");
+    assert!(dropped.next().is_some_and(|batch| batch.is_ok()));
+}

@@ -96,14 +96,30 @@ fn cargo() -> Command {
 
 /// Runs a command in the root with its output shown.
 fn run(command: &mut Command, name: &str) -> Result<(), String> {
+    let status = prepared(command)
+        .status()
+        .map_err(|e| format!("{name}: cannot start {:?}: {e}", command.get_program()))?;
+    ended(status, name)
+}
+
+/// The same, and what it prints to stdout.
+fn captured(command: &mut Command, name: &str) -> Result<Vec<u8>, String> {
+    let output = prepared(command)
+        .stderr(std::process::Stdio::inherit())
+        .output()
+        .map_err(|e| format!("{name}: cannot start {:?}: {e}", command.get_program()))?;
+    ended(output.status, name).map(|()| output.stdout)
+}
+
+fn prepared(command: &mut Command) -> &mut Command {
     // Graphics libraries complain on stderr where this is not set, as in containers.
     if env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", env::temp_dir());
     }
-    let status = command
-        .current_dir(root())
-        .status()
-        .map_err(|e| format!("{name}: cannot start {:?}: {e}", command.get_program()))?;
+    command.current_dir(root())
+}
+
+fn ended(status: std::process::ExitStatus, name: &str) -> Result<(), String> {
     if status.success() {
         Ok(())
     } else {

@@ -1,6 +1,6 @@
 //! Every committed result of a machine, by one command.
 
-use crate::{product, root, run, setup::ensure_driver};
+use crate::{captured, product, root, run, setup::ensure_driver};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -136,7 +136,7 @@ const STEPS: [Step; 13] = [
         keep: &["training.json", "training.csv", "training.md", "training-parameters.svg", "training-examples.svg", "training-epochs.svg", "training-seconds.svg"],
     },
     Step {
-        name: "thesis",
+        name: "thesis-full",
         before: &[],
         args: &["run", "--full"],
         keep: &["results.json", "table.md"],
@@ -202,7 +202,7 @@ pub fn measure(options: &Options) -> Result<(), String> {
         into.display()
     );
     println!(
-        "next: PEELNET_UPDATE=1 cargo nextest run --workspace -E 'test(figures)' puts them into the documents"
+        "next: PEELNET_UPDATE=1 cargo nextest run --workspace -E 'binary(figures) + binary(documents)', twice, puts them into the documents"
     );
     Ok(())
 }
@@ -240,15 +240,8 @@ fn take(program: &Path, step: &Step) -> Result<(), String> {
     if !step.keep.is_empty() {
         return run(&mut command, step.name);
     }
-    let output = command
-        .current_dir(root())
-        .stderr(std::process::Stdio::inherit())
-        .output()
-        .map_err(|e| format!("{}: {e}", step.name))?;
-    if !output.status.success() {
-        return Err(format!("{} failed ({})", step.name, output.status));
-    }
-    fs::write(root().join(&out).with_extension("json"), output.stdout)
+    let printed = captured(&mut command, step.name)?;
+    fs::write(root().join(&out).with_extension("json"), printed)
         .map_err(|e| format!("{out}.json: {e}"))
 }
 

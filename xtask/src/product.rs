@@ -1,7 +1,7 @@
 //! What runs the program itself: the demo, and the shipped networks.
 
 use crate::setup::ensure_driver;
-use crate::{cargo, root, run};
+use crate::{captured, cargo, root, run};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -186,22 +186,17 @@ fn finish(program: &Path, recipe: &str, data: &[&str], more: &[&str]) -> Result<
     ]);
     args.extend(more);
     println!("\n== peelnet {}", args.join(" "));
-    let output = Command::new(program)
-        .args(&args)
-        .current_dir(root())
-        .stderr(std::process::Stdio::inherit())
-        .output()
-        .map_err(|e| format!("train: {e}"))?;
-    if !output.status.success() {
-        return Err(format!("training {recipe} failed ({})", output.status));
-    }
+    let metrics = captured(
+        Command::new(program).args(&args),
+        &format!("training {recipe}"),
+    )?;
     let text = format!("models/{recipe}/model.wgsl");
     println!("== peelnet export {made} --out {text}");
     run(
         Command::new(program).args(["export", &made, "--out", &text]),
         "export",
     )?;
-    std::fs::write(shipped.join("metrics.json"), output.stdout).map_err(io)?;
+    std::fs::write(shipped.join("metrics.json"), metrics).map_err(io)?;
     std::fs::copy(root().join(made), shipped.join("model.safetensors")).map_err(io)?;
     Ok(())
 }

@@ -10,7 +10,7 @@ use peelnet_gpu::{Gpu, wgpu};
 use peelnet_scene::{Light, Material, Setting, Variant};
 
 impl SceneBuffers {
-    /// Moves an object: its vertices are uploaded again, nothing else.
+    /// Moves an object: its vertices are uploaded again, and which of them are the same; nothing else.
     ///
     /// # Errors
     /// An object that the scene does not have.
@@ -45,6 +45,10 @@ impl SceneBuffers {
             gpu.queue
                 .write_buffer(&self.vertices, offset, bytemuck::cast_slice(&vertices));
             let attributes = placement.attributes(triangles, part.run.variant);
+            let shared = placement.shared(triangles, &attributes, first as u32);
+            let offset = (first * size_of::<u32>()) as u64;
+            gpu.queue
+                .write_buffer(&self.shared, offset, bytemuck::cast_slice(&shared));
             write_attributes(
                 gpu,
                 &mut self.attributes,
@@ -127,8 +131,13 @@ impl SceneBuffers {
             return Ok(false);
         }
         if part.run.variant != variant {
-            let attributes = Placement::of(object).attributes(&triangles, variant);
+            let placement = Placement::of(object);
+            let attributes = placement.attributes(&triangles, variant);
             let first = part.run.vertices.start as usize;
+            let shared = placement.shared(&triangles, &attributes, first as u32);
+            let offset = (first * size_of::<u32>()) as u64;
+            gpu.queue
+                .write_buffer(&self.shared, offset, bytemuck::cast_slice(&shared));
             write_attributes(
                 gpu,
                 &mut self.attributes,

@@ -18,14 +18,31 @@ pub enum Surfaces {
 
 /// Pipelines of one geometry pass: one for each variant of the materials that it draws.
 #[derive(Debug)]
-pub struct GeometryPipelines(Vec<(Variant, wgpu::RenderPipeline)>);
+pub struct GeometryPipelines(Vec<OfVariant>);
+
+#[derive(Debug)]
+struct OfVariant {
+    variant: Variant,
+    pipeline: wgpu::RenderPipeline,
+    /// Whether it reads the number of a fragment's triangle.
+    numbered: bool,
+}
 
 impl GeometryPipelines {
     pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
         // Built for every run's variant.
-        if let Some((_, pipeline)) = self.0.iter().find(|(v, _)| *v == variant) {
-            pass.set_pipeline(pipeline);
+        if let Some(found) = self.of(variant) {
+            pass.set_pipeline(&found.pipeline);
         }
+    }
+
+    fn of(&self, variant: Variant) -> Option<&OfVariant> {
+        self.0.iter().find(|p| p.variant == variant)
+    }
+
+    /// Whether a variant's pipeline reads the number of a fragment's triangle.
+    pub(crate) fn is_numbered(&self, variant: Variant) -> bool {
+        self.of(variant).is_some_and(|p| p.numbered)
     }
 }
 
@@ -100,10 +117,11 @@ impl SceneBuffers {
             while groups.last().is_some_and(Option::is_none) {
                 groups.pop();
             }
-            all.push((
+            all.push(OfVariant {
                 variant,
-                pipeline(gpu, pass, &groups, &features, &fragment, variant.culled)?,
-            ));
+                pipeline: pipeline(gpu, pass, &groups, &features, &fragment, variant.culled)?,
+                numbered: features.contains(&"numbered"),
+            });
         }
         Ok(GeometryPipelines(all))
     }

@@ -46,6 +46,8 @@ pub struct SceneBuffers {
     pub(crate) scene: Scene,
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) vertex_count: usize,
+    /// For every vertex the first one that is the same.
+    pub(crate) shared: wgpu::Buffer,
     /// In the order of [`ATTRIBUTES`], for every vertex; each where any material reads it.
     pub(crate) attributes: [Option<wgpu::Buffer>; 4],
     pub(crate) maps: MapSets,
@@ -93,6 +95,7 @@ impl SceneBuffers {
         let mut attributes = AttributeData::default();
         let mut maps = MapSets::default();
         let mut vertices = Vec::with_capacity(triangles * 3);
+        let mut shared = Vec::with_capacity(triangles * 3);
         let mut materials = Vec::new();
         let mut parts = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
@@ -104,7 +107,9 @@ impl SceneBuffers {
                 let variant = Variant::of(material, object, setting);
                 let begin = vertices.len();
                 vertices.extend(placement.vertices(part.triangles.clone(), index));
-                attributes.extend(begin, placement.attributes(&part.triangles, variant));
+                let of_part = placement.attributes(&part.triangles, variant);
+                shared.extend(placement.shared(&part.triangles, &of_part, begin as u32));
+                attributes.extend(begin, of_part);
                 let mut buffers = PartBuffers {
                     place: (number, part_number),
                     run: DrawRun {
@@ -127,6 +132,7 @@ impl SceneBuffers {
             maps,
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
             vertex_count: vertices.len(),
+            shared: gpu.upload("shared vertices", &shared, wgpu::BufferUsages::INDEX),
             materials: gpu.upload("materials", &materials, wgpu::BufferUsages::STORAGE),
             lights: None,
             camera: gpu.upload(
@@ -252,8 +258,7 @@ impl SceneBuffers {
         sample: PixelSample,
         point: SamplePoint,
     ) {
-        let clip_from_world =
-            point.shift() * camera.clip_from_view(frame.aspect) * camera.view_from_world();
+        let clip_from_world = clip_from_world(camera, frame, point);
         let warp = self.depth_warp(camera);
         let uniform = CameraUniform {
             clip_from_world: clip_from_world.to_cols_array_2d(),
@@ -277,14 +282,8 @@ impl SceneBuffers {
     /// range is what moments get their precision from.
     pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
         let view = camera.view_from_world();
-        let boxes = self.transparent_parts().filter_map(|part| part.bounds);
-        let points = boxes.flat_map(|[lo, hi]| {
-            (0..8).map(move |i| {
-                let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
-                glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
-            })
-        });
-        let (near, far) = points
+        let (near, far) = self
+            .corners()
             .map(|p| (-view.transform_point3(p).z).clamp(camera.near, camera.far))
             .fold((f32::INFINITY, 0.0f32), |(a, b), z| (a.min(z), b.max(z)));
         if near <= far {
@@ -292,6 +291,40 @@ impl SceneBuffers {
         } else {
             DepthWarp::new(camera.near.into(), camera.far.into())
         }
+    }
+
+    /// The corners of the boxes around transparent parts, in world space.
+    fn corners(&self) -> impl Iterator<Item = glam::Vec3> {
+        let boxes = self.transparent_parts().filter_map(|part| part.bounds);
+        boxes.flat_map(|[lo, hi]| {
+            (0..8).map(move |i| {
+                let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
+                glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
+            })
+        })
+    }
+
+    /// A rectangle of pixels (x, y, width, height) outside which no transparent surface is seen: around the boxes of all of them, and the
+    /// whole frame where one reaches behind the eye. Never empty.
+    pub fn touched(&self, camera: &Camera, frame: &FrameTargets, point: SamplePoint) -> [u32; 4] {
+        let clip = clip_from_world(camera, frame, point);
+        let size = glam::Vec2::from_array(frame.size.map(|s| s as f32));
+        let (mut low, mut high) = (size, glam::Vec2::ZERO);
+        for corner in self.corners() {
+            let place = clip * corner.extend(1.0);
+            if place.w <= 0.0 {
+                (low, high) = (glam::Vec2::ZERO, size);
+                break;
+            }
+            let [x, y] = [place.x / place.w, place.y / place.w];
+            let pixel = glam::Vec2::new(0.5 + 0.5 * x, 0.5 - 0.5 * y) * size;
+            (low, high) = (low.min(pixel), high.max(pixel));
+        }
+        // A pixel more on every side than rounding can take.
+        let low = (low - 1.0).floor().clamp(glam::Vec2::ZERO, size - 1.0);
+        let high = (high + 1.0).ceil().clamp(low + 1.0, size);
+        let extent = high - low;
+        [low.x, low.y, extent.x, extent.y].map(|v| v as u32)
     }
 
     pub(crate) fn half<'a>(
@@ -316,8 +349,23 @@ impl SceneBuffers {
         let (group, runs) = self.half(frame, surfaces);
         self.set_vertices(pass, group);
         for run in runs {
-            self.set_run(pass, pipelines, run);
+            self.draw_run(pass, pipelines, run);
+        }
+    }
+
+    /// Draws a run of triangles, each vertex once where no pipeline asks for the number of its triangle.
+    pub(crate) fn draw_run(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipelines: &GeometryPipelines,
+        run: &DrawRun,
+    ) {
+        self.set_run(pass, pipelines, run);
+        if pipelines.is_numbered(run.variant) {
             pass.draw(run.vertices.clone(), 0..1);
+        } else {
+            pass.set_index_buffer(self.shared.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(run.vertices.clone(), 0, 0..1);
         }
     }
 
@@ -415,6 +463,10 @@ impl SceneBuffers {
         self.pipelines(gpu, frame, Surfaces::Opaque, &pass)
             .map(Some)
     }
+}
+
+fn clip_from_world(camera: &Camera, frame: &FrameTargets, point: SamplePoint) -> glam::Mat4 {
+    point.shift() * camera.clip_from_view(frame.aspect) * camera.view_from_world()
 }
 
 impl PartBuffers {

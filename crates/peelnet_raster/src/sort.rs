@@ -134,10 +134,11 @@ impl Sorted {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
         for run in &self.runs {
-            scene.set_run(pass, pipelines, run);
-            match self.order {
-                Order::Triangles => pass.draw_indexed(run.vertices.clone(), 0, 0..1),
-                _ => pass.draw(run.vertices.clone(), 0..1),
+            if self.order == Order::Triangles {
+                scene.set_run(pass, pipelines, run);
+                pass.draw_indexed(run.vertices.clone(), 0, 0..1);
+            } else {
+                scene.draw_run(pass, pipelines, run);
             }
         }
     }

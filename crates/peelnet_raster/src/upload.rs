@@ -5,8 +5,8 @@ use peelnet_gpu::{Gpu, wgpu};
 use peelnet_scene::{Object, Variant};
 use std::ops::Range;
 
-/// One vertex of a triangle. Vertices are not shared: `vertex_index / 3` is then the triangle's index in the scene's
-/// list, which portable WebGPU has no other way to learn.
+/// One vertex of a triangle. Every triangle has three of its own: `vertex_index / 3` is then the triangle's index in the scene's
+/// list, which portable WebGPU has no other way to learn. Passes that do not ask for it draw by [`Placement::shared`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Vertex {
@@ -83,6 +83,47 @@ impl<'a> Placement<'a> {
             position: world.transform_point3(positions[i]).to_array(),
             material,
         })
+    }
+
+    /// For every vertex of a run of triangles the number of the first one that is the same: one vertex of the mesh, with the same UVs
+    /// and tangents where `attributes` has them. `begin` is the number of the run's first vertex.
+    ///
+    /// Drawn by these numbers a vertex is transformed about once, and not once for each of its triangles.
+    pub fn shared(
+        &self,
+        triangles: &Range<usize>,
+        attributes: &[Vec<f32>; 4],
+        begin: u32,
+    ) -> Vec<u32> {
+        const NONE: u32 = u32::MAX;
+        let of_mesh: Vec<usize> = self.indices(triangles.clone()).collect();
+        let least = of_mesh.iter().copied().min().unwrap_or(0);
+        let most = of_mesh.iter().copied().max().unwrap_or(0);
+        let same = |a: usize, b: usize| {
+            attributes.iter().enumerate().take(2).all(|(k, all)| {
+                let bits = |i: usize| {
+                    let own = all.iter().skip(i * floats(k)).take(floats(k));
+                    own.map(|x| x.to_bits())
+                };
+                bits(a).eq(bits(b))
+            })
+        };
+        // Of every vertex of the mesh the latest found here, and of each of those the one found before it.
+        let mut latest = vec![NONE; most - least + 1];
+        let mut before = vec![NONE; of_mesh.len()];
+        let mut shared = Vec::with_capacity(of_mesh.len());
+        for (here, &i) in of_mesh.iter().enumerate() {
+            let mut found = latest[i - least];
+            while found != NONE && !same(found as usize, here) {
+                found = before[found as usize];
+            }
+            if found == NONE {
+                found = here as u32;
+                before[here] = std::mem::replace(&mut latest[i - least], found);
+            }
+            shared.push(begin + found);
+        }
+        shared
     }
 
     /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing.
@@ -203,6 +244,39 @@ pub(crate) fn bounding_box(vertices: &[Vertex]) -> Option<[glam::Vec3; 2]> {
 mod tests {
     use super::*;
     use peelnet_scene::{Material, Setting};
+
+    /// Two triangles of four vertices share two of them, unless an attribute differs there; mirrored ones turn round, and the numbers
+    /// follow.
+    #[test]
+    fn the_same_vertices_are_shared() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let mut object = Object::of_triangles("none", &[], Material::unlit([1.0; 3], 0.5));
+        let mesh = peelnet_scene::Mesh {
+            positions: points.map(|[x, y]| glam::Vec3::new(x, y, 0.0)).to_vec(),
+            normals: vec![glam::Vec3::Z; 4],
+            triangles: vec![[0, 1, 2], [2, 1, 3]],
+            ..(*object.mesh).clone()
+        };
+        object.mesh = std::sync::Arc::new(mesh);
+        let shared = |object: &Object, attributes: &[Vec<f32>; 4]| {
+            Placement::of(object).shared(&(0..2), attributes, 30)
+        };
+        let mut attributes: [Vec<f32>; 4] = Default::default();
+        assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 31, 35]);
+        // UVs of the corners in turn: at a seam vertex 2 has others in the second triangle.
+        attributes[0] = [0.0, 1.0, 2.0, 2.5, 1.0, 3.0].map(|u| [u, 0.0]).concat();
+        assert_eq!(shared(&object, &attributes), [30, 31, 32, 33, 31, 35]);
+        attributes[0].clear();
+        // Of tangents the last number may differ alone.
+        attributes[1] = [1.0, 1.0, 1.0, 1.0, -1.0, 1.0]
+            .map(|w| [1.0, 0.0, 0.0, w])
+            .concat();
+        assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 34, 35]);
+        attributes[1].clear();
+        // The second triangle is 2, 3, 1 then, and the first one 0, 2, 1.
+        object.world_from_object = glam::Mat4::from_scale(glam::Vec3::new(-1.0, 1.0, 1.0));
+        assert_eq!(shared(&object, &attributes), [30, 31, 32, 31, 34, 32]);
+    }
 
     #[test]
     fn runs_join_where_they_can() {

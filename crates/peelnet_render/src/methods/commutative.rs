@@ -473,8 +473,7 @@ impl Compositor for Commutative {
                 pass.dispatch_workgroups(kernel.groups[0], kernel.groups[1], 1);
             }
         }
-        let output = cx.output();
-        self.resolve.draw(cx.recorder, &[output]);
+        cx.resolve(&self.resolve);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: self.passes.len() as u32,

@@ -3,7 +3,7 @@
 use super::spec::MethodSpec;
 use crate::{error::RenderError, target::LearnedWeight};
 use peelnet_gpu::{Gpu, record::Recorder, wgpu};
-use peelnet_raster::{FrameTargets, SamplePoint, SceneBuffers};
+use peelnet_raster::{FrameTargets, SamplePoint, SceneBuffers, fullscreen::FullscreenPass};
 use peelnet_scene::Camera;
 use std::{fmt, ops::Range};
 
@@ -51,6 +51,17 @@ impl<'a> DrawContext<'a, '_> {
     /// The attachment that the finished picture is written to.
     pub fn output(&self) -> Option<wgpu::RenderPassColorAttachment<'a>> {
         self.frame.attachment(self.target)
+    }
+
+    /// Records the pass that writes finished pixels: over a target only those that a transparent surface can touch.
+    pub fn resolve(&mut self, pass: &FullscreenPass) {
+        let output = [self.output()];
+        if self.frame.output.is_over() {
+            let touched = self.scene.touched(self.camera, self.frame, self.point);
+            pass.draw_within(self.recorder, &output, touched);
+        } else {
+            pass.draw(self.recorder, &output);
+        }
     }
 }
 

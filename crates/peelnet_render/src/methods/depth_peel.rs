@@ -142,8 +142,7 @@ impl Compositor for DepthPeel {
             );
             self.passes.after(cx, number);
         }
-        let output = cx.output();
-        self.resolve[(passes % 2) as usize].draw(cx.recorder, &[output]);
+        cx.resolve(&self.resolve[(passes % 2) as usize]);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: passes,

@@ -195,8 +195,7 @@ impl Compositor for Dfaoit {
             cx.scene
                 .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.gather);
         }
-        let output = cx.output();
-        self.resolve.draw(cx.recorder, &[output]);
+        cx.resolve(&self.resolve);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: FRONT + 1,

@@ -178,8 +178,7 @@ impl Compositor for Dual {
             );
             self.passes.after(cx, number);
         }
-        let output = cx.output();
-        self.resolve.draw(cx.recorder, &[output]);
+        cx.resolve(&self.resolve);
         Ok(FrameStats {
             tiles: 1,
             geometry_passes: passes + 1,

@@ -211,8 +211,7 @@ impl Compositor for LinkedList {
             cx.scene
                 .draw(&mut pass, cx.frame, Surfaces::Transparent, build);
         }
-        let output = cx.output();
-        self.pool.composite.draw(cx.recorder, &[output]);
+        cx.resolve(&self.pool.composite);
         let pixels = f64::from(cx.frame.pixels());
         // Depth, triangle, link, and colours.
         let node = 3 * 4 + self.shared.color_bytes;
