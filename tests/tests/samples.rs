@@ -182,7 +182,7 @@ fn samples_change_nothing_away_from_edges() {
     }
 }
 
-/// What samples cost is told: four times the passes, the pass that averages them in a timed frame, and the target of the mean.
+/// What samples cost is reported: four times the passes, the pass that averages them in a timed frame, and the target of the mean.
 #[test]
 fn samples_have_their_cost() {
     let gpu = gpu();

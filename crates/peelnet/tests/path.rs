@@ -72,7 +72,7 @@ fn paths_that_cannot_be_measured() {
     );
 }
 
-/// A frame of four samples: told in text and JSON, with the fragments of all samples.
+/// A frame of four samples says so in text and JSON, with the fragments of all samples.
 #[test]
 fn samples_are_drawn_and_reported() {
     let dir = tempfile::tempdir().unwrap();

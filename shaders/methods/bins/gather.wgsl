@@ -3,6 +3,7 @@
 import package::helpers::guards::WEIGHT_FLOOR;
 @if(pixel_bounds) import package::helpers::range_of_pixel::place_in_pixel;
 @if(!pixel_bounds) import package::helpers::range_of_pixel::place_in_frame;
+import package::helpers::sums::{Sums, sums_of};
 import package::methods::bins::bin::{bin_of, capped_absorbance};
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
@@ -15,12 +16,6 @@ import package::scene::visible::visible;
 @if(pixel_bounds && !two) @group(1) @binding(1) var bounds: texture_2d<f32>;
 @if(pixel_bounds && two && !four) @group(1) @binding(2) var bounds: texture_2d<f32>;
 @if(pixel_bounds && four) @group(1) @binding(4) var bounds: texture_2d<f32>;
-
-struct Sums {
-    @location(0) color: vec4f,
-    // Blended multiplicatively: dst * (1 - src).
-    @location(1) alpha: f32,
-}
 
 // Absorbance up to the far end of a bin; nothing before the first.
 fn up_to(pixel: vec2u, bin: i32) -> f32 {
@@ -59,5 +54,5 @@ fn fragment_main(surface: Surface) -> Sums {
     // Without the fragment's own share, which its bin holds at its far end.
     let in_front = before + (after - before - capped_absorbance(color.a)) * bin.y;
     let weight = clamp(exp(-in_front), WEIGHT_FLOOR, 1.0);
-    return Sums(color * weight, color.a);
+    return sums_of(color * weight, vec3f(color.a));
 }

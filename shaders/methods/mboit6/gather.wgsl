@@ -1,22 +1,15 @@
 // mboit6, pass 2: eq 6 with the transmittance that follows from the moments.
 // Variants: none | own_share_out | tinted
 import package::helpers::absorbance::{absorbance, warped_depth};
-import package::helpers::guards::WEIGHT_FLOOR;
+import package::helpers::estimated::{Sums, sums_of};
 import package::methods::mboit6::reconstruct::transmittance_from_moments;
 import package::scene::shade::shade;
-@if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
 @group(1) @binding(0) var zeroth: texture_2d<f32>;
 @group(1) @binding(1) var lower: texture_2d<f32>;
 @group(1) @binding(2) var higher: texture_2d<f32>;
-
-struct Sums {
-    @location(0) color: vec4f,
-    // Blended multiplicatively: dst * (1 - src).
-    @if(tinted) @location(1) covering: vec4f,
-}
 
 @fragment
 fn fragment_main(surface: Surface) -> Sums {
@@ -37,7 +30,5 @@ fn fragment_main(surface: Surface) -> Sums {
         m1234 -= b * vec4f(z, z2, z2 * z, z4);
         m56 -= b * vec2f(z4 * z, z4 * z2);
     }
-    let weight = max(transmittance_from_moments(total, m1234, m56, z), WEIGHT_FLOOR);
-    @if(tinted) return Sums(color * weight, vec4f(covering(surface), 0.0));
-    @else return Sums(color * weight);
+    return sums_of(surface, color, transmittance_from_moments(total, m1234, m56, z));
 }

@@ -4,6 +4,7 @@ import package::helpers::absorbance::absorbance;
 import package::helpers::guards::WEIGHT_FLOOR;
 @if(pixel_bounds) import package::helpers::range_of_pixel::place_in_pixel;
 @if(!pixel_bounds) import package::helpers::range_of_pixel::place_in_frame;
+import package::helpers::sums::{Sums, sums_of};
 import package::methods::wavelet::haar::{Coefficients, average, in_bins};
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
@@ -15,12 +16,6 @@ import package::scene::visible::visible;
 @if(eighths) @group(1) @binding(3) var far_eighths: texture_2d<f32>;
 @if(pixel_bounds && !eighths) @group(1) @binding(2) var bounds: texture_2d<f32>;
 @if(pixel_bounds && eighths) @group(1) @binding(4) var bounds: texture_2d<f32>;
-
-struct Sums {
-    @location(0) color: vec4f,
-    // Blended multiplicatively: dst * (1 - src).
-    @location(1) alpha: f32,
-}
 
 @fragment
 fn fragment_main(surface: Surface) -> Sums {
@@ -48,5 +43,5 @@ fn fragment_main(surface: Surface) -> Sums {
     // The fragment itself: nothing before its bin, and what of its bin lies behind it.
     @if(own_share_out) in_front -= absorbance(color.a) * t * (1.0 - t);
     let weight = clamp(exp(-in_front), WEIGHT_FLOOR, 1.0);
-    return Sums(color * weight, color.a);
+    return sums_of(color * weight, vec3f(color.a));
 }

@@ -76,21 +76,10 @@ pub(super) fn outputs<'a>(
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     outputs(context, args, Results::<Scaling>::FILES)?.begin(&[])?;
     let gpu = context.gpu()?;
+    // Parameters change what a method costs, but hardly how that grows.
     let Chosen {
-        mut methods,
-        learned,
-        ..
-    } = chosen(
-        context,
-        &gpu,
-        &args.methods,
-        &args.models,
-        MethodSpec::curve,
-    )?;
-    if matches!(args.methods, MethodList::All) {
-        // Parameters change what a method costs, but hardly how that grows.
-        methods.dedup_by_key(|m| m.name());
-    }
+        methods, learned, ..
+    } = chosen(context, &gpu, &args.methods, &args.models, one_of_each)?;
     let bar = Bar::new(context.console, "scaling", 0);
     let settings = scaling::Settings {
         frames: args.frames,
@@ -233,6 +222,13 @@ pub(super) struct Chosen {
     pub(super) learned: Vec<LearnedWeight>,
     /// The models of those weights, those that were named first.
     pub(super) models: Vec<Model>,
+}
+
+/// Every method with one setting, the first of its curve.
+pub(super) fn one_of_each() -> Vec<MethodSpec> {
+    let mut all = MethodSpec::curve();
+    all.dedup_by_key(|m| m.name());
+    all
 }
 
 /// The methods to compare, with the models of the learned ones among them.

@@ -2,7 +2,7 @@
 
 use super::{
     Context,
-    bench::{Chosen, chosen, outputs},
+    bench::{Chosen, chosen, one_of_each, outputs},
 };
 use crate::cli::BenchArgs;
 use crate::failure::Failure;
@@ -13,7 +13,6 @@ use peelnet_eval::{
     bench::Progress,
     path::{self, Along, Settings},
 };
-use peelnet_render::MethodSpec;
 use peelnet_report::Results;
 use serde_json::json;
 
@@ -27,22 +26,10 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     let scenes = context.scenes(&args.scenes)?;
     outputs.begin(&scenes)?;
     let gpu = context.gpu()?;
+    // A path costs as much as sixty views.
     let Chosen {
-        mut methods,
-        learned,
-        ..
-    } = chosen(
-        context,
-        &gpu,
-        &args.methods,
-        &args.models,
-        MethodSpec::curve,
-    )?;
-    let all = matches!(args.methods, MethodList::All);
-    if all {
-        // One setting of each: a path costs as much as sixty views.
-        methods.dedup_by_key(|m| m.name());
-    }
+        methods, learned, ..
+    } = chosen(context, &gpu, &args.methods, &args.models, one_of_each)?;
     let images = args.out.join("images");
     let settings = Settings {
         size: args.size.0,
@@ -50,7 +37,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         frames: args.frames,
         methods: &methods,
         learned: &learned,
-        lenient: all,
+        lenient: matches!(args.methods, MethodList::All),
         images: Some(&images),
     };
     let bar = Bar::new(context.console, "path", 0);
