@@ -8,9 +8,8 @@
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     methods::{
-        bins, mboit_trig,
-        mboit4::{self, Settings},
-        mboit6, mboit8,
+        bins, mboit_trig, mboit4, mboit6, mboit8,
+        moments::{MomentSums, Settings},
     },
     random::Random,
     weights::Weight,

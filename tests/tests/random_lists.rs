@@ -9,7 +9,11 @@ use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     features::{self, Rest},
     fragment::{Fragment, transmittances},
-    methods::{anchored, mboit4, mboit6, over, wavelet},
+    methods::{
+        anchored, mboit4, mboit6,
+        moments::{MomentSums, Settings},
+        over, wavelet,
+    },
     random::Random,
     statistics::{Statistics, SumPrecision},
     tolerance,
@@ -230,7 +234,7 @@ proptest! {
         let at = f.iter().map(|f| warp.apply(f.depth.into())).take(8).chain([zeta]);
         for z in at {
             for t in [
-                four.transmittance(z, &mboit4::Settings::PAPER),
+                four.transmittance(z, &Settings::PAPER),
                 six.transmittance(z, &mboit6::PAPER),
                 (-haar.in_front(0.5 + 0.5 * z)).exp(),
             ] {

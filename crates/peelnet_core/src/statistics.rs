@@ -118,7 +118,7 @@ pub enum SumPrecision {
 
 impl SumPrecision {
     /// A sum with one more term.
-    fn add(self, sum: f64, term: f64) -> f64 {
+    pub(crate) fn add(self, sum: f64, term: f64) -> f64 {
         let half = |x: f64| f64::from(half::f16::from_f64(x));
         match self {
             Self::Exact => sum + term,

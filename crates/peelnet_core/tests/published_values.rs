@@ -10,9 +10,9 @@ use peelnet_core::{
     absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance},
     guards,
     methods::{
-        bins, mboit_trig,
-        mboit4::{self, Settings},
-        mboit6, mboit8, range,
+        bins, mboit_trig, mboit4, mboit6, mboit8,
+        moments::{MomentSums, Settings, transmittances},
+        range,
     },
     weights::Weight,
 };
@@ -186,11 +186,36 @@ fn two_fragments_see_each_other() {
         let own = if own_share_out { 0.0 } else { 0.25f64 };
         let want = [0.5f64.powf(own), 0.5 * 0.75f64.powf(own)];
         for found in [
-            mboit4::transmittances(&points, &warp, &of(Settings::PAPER)),
-            mboit6::transmittances(&points, &warp, &of(mboit6::PAPER)),
-            mboit8::transmittances(&points, &warp, &of(mboit8::PAPER)),
-            mboit_trig::transmittances(&points, &warp, 2, &of(trigonometric)),
-            mboit_trig::transmittances(&points, &warp, 3, &of(trigonometric)),
+            transmittances(
+                &points,
+                &warp,
+                mboit4::Moments::default(),
+                &of(Settings::PAPER),
+            ),
+            transmittances(
+                &points,
+                &warp,
+                mboit6::Moments::default(),
+                &of(mboit6::PAPER),
+            ),
+            transmittances(
+                &points,
+                &warp,
+                mboit8::Moments::default(),
+                &of(mboit8::PAPER),
+            ),
+            transmittances(
+                &points,
+                &warp,
+                mboit_trig::Moments::new(2),
+                &of(trigonometric),
+            ),
+            transmittances(
+                &points,
+                &warp,
+                mboit_trig::Moments::new(3),
+                &of(trigonometric),
+            ),
         ] {
             assert_eq!(found.len(), 2);
             for (found, want) in found.into_iter().zip(want) {

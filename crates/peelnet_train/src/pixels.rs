@@ -7,6 +7,7 @@ use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::features::{Feature, Rest};
 use peelnet_core::methods::anchored::{Place, seen};
 use peelnet_core::methods::dfaoit::{FRONT, Layers};
+use peelnet_core::methods::moments::{MomentSums, Settings};
 use peelnet_core::methods::{mboit4, nmt};
 use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
@@ -159,7 +160,7 @@ fn hardness(pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
         .iter()
         .zip(&zetas)
         .map(|((_, alpha), &zeta)| {
-            f64::from(*alpha) * moments.transmittance(zeta, &mboit4::Settings::PAPER)
+            f64::from(*alpha) * moments.transmittance(zeta, &Settings::PAPER)
         })
         .collect();
     let scale = (1.0 - pixel.behind()) / shares.iter().sum::<f64>().max(1e-12);

@@ -5,80 +5,18 @@
 //! absorbance lies, but they bound how much of it can lie in front of a depth; the bound's ends are met by measures
 //! of three points (the depth itself and two others), and the estimate lies between them.
 
-use crate::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::Fragment,
-    guards::WEIGHT_FLOOR,
-};
+use super::moments::{MomentSums, PowerMoments, Settings};
 use num_traits::Float;
-
-/// How moments are turned into transmittance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Where between the two bounds the estimate lies: 0 the most light, 1 the least; 0.25 in the paper.
-    pub overestimation: f64,
-    /// Pull towards moments of a measure that can always be inverted; 5e−7 for 32-bit power moments in the paper's
-    /// code, 6e−5 for 16-bit ones.
-    pub bias: f64,
-    /// Whether a fragment's own absorbance is taken out of the moments before it is asked what lies in front of it.
-    pub own_share_out: bool,
-}
-
-impl Settings {
-    /// The paper's, for 32-bit moments.
-    pub const PAPER: Self = Self {
-        overestimation: 0.25,
-        bias: 5e-7,
-        own_share_out: false,
-    };
-}
-
-/// The absorbance of a pixel and its power moments, `b_0 … b_{N−1}`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PowerMoments<const N: usize>(pub [f64; N]);
 
 /// `b_0 … b_4` of a pixel.
 pub type Moments = PowerMoments<5>;
 
-impl<const N: usize> Default for PowerMoments<N> {
-    fn default() -> Self {
-        Self([0.0; N])
-    }
-}
-
-impl<const N: usize> PowerMoments<N> {
-    /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
-    pub fn add(&mut self, b: f64, zeta: f64) {
-        let mut power = b;
-        for m in &mut self.0 {
-            *m += power;
-            power *= zeta;
-        }
+impl MomentSums for Moments {
+    fn add(&mut self, b: f64, zeta: f64) {
+        self.add_powers(b, zeta);
     }
 
-    /// The estimate of the transmittance in front of a depth, from the share of the absorbance that can lie there: its `bounds`
-    /// given `b_k / b_0`, `k` from 1.
-    pub(super) fn estimate<const M: usize>(
-        &self,
-        settings: &Settings,
-        bounds: impl FnOnce([f64; M]) -> (f64, f64),
-    ) -> f64 {
-        let total = self.0[0];
-        // Less than that is invisible (1 − e^−x ≈ x) and its normalised moments are noise.
-        if total < 1e-4 {
-            return 1.0;
-        }
-        let (low, high) = bounds(std::array::from_fn(|k| self.0[k + 1] / total));
-        let share = low + settings.overestimation * (high - low);
-        let t = (-total * share).exp();
-        // Degenerate points give NaN; nothing in front is the harmless answer.
-        if t.is_nan() { 1.0 } else { t.min(1.0) }
-    }
-}
-
-impl Moments {
-    /// The estimate of the transmittance in front of `zeta`.
-    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+    fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
         self.estimate(settings, |m| share_bounds(m, settings.bias, zeta))
     }
 }
@@ -124,57 +62,10 @@ pub fn share_bounds<F: Float>(moments: [F; 4], bias: F, zeta: F) -> (F, F) {
     (low, low + own)
 }
 
-/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
-pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
-    let estimate = |m: &Moments, zeta| m.transmittance(zeta, settings);
-    super::transmittances(
-        fragments,
-        warp,
-        Moments::default(),
-        settings.own_share_out,
-        Moments::add,
-        estimate,
-    )
-}
-
-/// Eq 6's composite with the estimated transmittance as the weight.
-pub fn composite(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    settings: &Settings,
-) -> [f32; 3] {
-    let mut moments = Moments::default();
-    for f in fragments {
-        moments.add(absorbance(f.alpha), warp.apply(f.depth.into()));
-    }
-    let total = moments.0[0];
-    if total == 0.0 {
-        return background;
-    }
-    let (mut color, mut alpha) = ([0.0f64; 3], 0.0f64);
-    for f in fragments {
-        let zeta = warp.apply(f.depth.into());
-        let mut seen = moments;
-        if settings.own_share_out {
-            seen.add(-absorbance(f.alpha), zeta);
-        }
-        let w = seen.transmittance(zeta, settings).max(WEIGHT_FLOOR.into());
-        for (sum, c) in color.iter_mut().zip(f.premultiplied()) {
-            *sum += f64::from(c) * w;
-        }
-        alpha += f64::from(f.alpha) * w;
-    }
-    let t = (-total).exp();
-    std::array::from_fn(|k| {
-        let average = color[k] / alpha.max(f64::MIN_POSITIVE);
-        (average * (1.0 - t) + f64::from(background[k]) * t) as f32
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{absorbance::DepthWarp, fragment::Fragment, methods::moments::composite};
 
     /// Two layers: a measure of two points, which four moments determine, so the estimate is sharp away from them.
     #[test]
@@ -212,7 +103,7 @@ mod tests {
                 let z = 0.1 * 1000f32.powf(i as f32 / 800.0);
                 for alpha in [0.01, 0.5, 0.99] {
                     let f = [Fragment::new(z, alpha, [0.9, 0.1, 0.4])];
-                    let got = composite(&f, [0.2; 3], &warp, &settings);
+                    let got = composite(&f, [0.2; 3], &warp, Moments::default(), &settings);
                     let want = crate::methods::over::composite(&f, [0.2; 3]);
                     for k in 0..3 {
                         assert!(

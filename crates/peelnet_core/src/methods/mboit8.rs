@@ -2,10 +2,9 @@
 //! 2018). As [`mboit6`](super::mboit6), with bounds that measures of five points meet. The shader twin is `methods/mboit8/`.
 
 use super::{
-    mboit4::{PowerMoments, Settings},
+    moments::{MomentSums, PowerMoments, Settings},
     roots,
 };
-use crate::{absorbance::DepthWarp, fragment::Fragment};
 
 /// The paper's settings for 32-bit moments.
 pub const PAPER: Settings = Settings {
@@ -23,9 +22,12 @@ pub type Moments = PowerMoments<9>;
 /// Moments of a measure with more than four points, as in the paper's code.
 const NEUTRAL: [f64; 8] = [0.0, 0.75, 0.0, 0.676_666_67, 0.0, 0.63, 0.0, 0.600_303_03];
 
-impl Moments {
-    /// The estimate of the transmittance in front of `zeta`.
-    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+impl MomentSums for Moments {
+    fn add(&mut self, b: f64, zeta: f64) {
+        self.add_powers(b, zeta);
+    }
+
+    fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
         self.estimate(settings, |m| share_bounds(m, settings.bias, zeta))
     }
 }
@@ -92,31 +94,6 @@ pub fn share_bounds(moments: [f64; 8], bias: f64, zeta: f64) -> (f64, f64) {
     let in_front = points.into_iter().filter(|&t| t < zeta);
     let low = in_front.map(|t| factors.mass(t)).sum();
     (low, low + factors.mass(zeta))
-}
-
-/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
-pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
-    let estimate = |m: &Moments, zeta| m.transmittance(zeta, settings);
-    super::transmittances(
-        fragments,
-        warp,
-        Moments::default(),
-        settings.own_share_out,
-        Moments::add,
-        estimate,
-    )
-}
-
-/// Eq 6's composite with the estimated transmittance as the weight.
-pub fn composite(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    settings: &Settings,
-) -> [f32; 3] {
-    super::composite_by(fragments, background, |points| {
-        transmittances(points, warp, settings)
-    })
 }
 
 #[cfg(test)]

@@ -13,8 +13,7 @@
 //! M whose zeros are real. The bias is ours: it mixes in the uniform measure, whose matrix is the identity, so that one
 //! bias serves all M.
 
-use super::mboit4::Settings;
-use crate::{absorbance::DepthWarp, fragment::Fragment};
+use super::moments::{MomentSums, Settings};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -54,9 +53,10 @@ impl Moments {
             count,
         }
     }
+}
 
-    /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
-    pub fn add(&mut self, b: f64, zeta: f64) {
+impl MomentSums for Moments {
+    fn add(&mut self, b: f64, zeta: f64) {
         self.absorbance += b;
         let turn = Complex64::cis(angle(zeta));
         let mut power = turn * b;
@@ -66,8 +66,7 @@ impl Moments {
         }
     }
 
-    /// The estimate of the transmittance in front of `zeta`.
-    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+    fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
         let total = self.absorbance;
         // Less than that is invisible, as with power moments.
         if total < 1e-4 {
@@ -179,37 +178,6 @@ fn real_roots(p: [Complex64; MOST + 1], count: usize) -> [f64; MOST] {
             ])
         }
     }
-}
-
-/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α), from `count` moments.
-pub fn transmittances(
-    fragments: &[(f32, f32)],
-    warp: &DepthWarp,
-    count: usize,
-    settings: &Settings,
-) -> Vec<f64> {
-    let estimate = |m: &Moments, zeta| m.transmittance(zeta, settings);
-    super::transmittances(
-        fragments,
-        warp,
-        Moments::new(count),
-        settings.own_share_out,
-        Moments::add,
-        estimate,
-    )
-}
-
-/// Eq 6's composite with the estimated transmittance as the weight.
-pub fn composite(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    count: usize,
-    settings: &Settings,
-) -> [f32; 3] {
-    super::composite_by(fragments, background, |points| {
-        transmittances(points, warp, count, settings)
-    })
 }
 
 #[cfg(test)]

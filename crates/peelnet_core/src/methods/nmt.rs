@@ -8,7 +8,7 @@
 //! where they divide zero by zero, has the depth 0 ([`EXTENT_FLOOR`]). Pixels of `b_0` below 0.001 are drawn as all others, where they
 //! sum no colour.
 
-use super::mboit4;
+use super::{mboit4, moments::MomentSums};
 use crate::{
     absorbance::{DepthWarp, absorbance},
     features::{About, Feature},

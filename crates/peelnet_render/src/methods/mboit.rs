@@ -13,8 +13,8 @@ use crate::{
     flaw::{Flaw, Property, half_statistics, half_sums},
 };
 use peelnet_core::methods::{
-    mboit4::{self, Settings},
-    mboit6, mboit8,
+    mboit4, mboit6, mboit8,
+    moments::{self, Settings},
 };
 use std::ops::Bound;
 
@@ -143,10 +143,23 @@ pub(super) const FOUR: Method = Method {
     roles: &[(Role::MomentBlending, "mboit4")],
     twin: Some(|s, p| {
         let (fragments, c0) = (p.fragments, p.background);
-        Some(mboit4::composite(fragments, c0, &p.warp, &settings_4(s)))
+        let empty = mboit4::Moments::default();
+        Some(moments::composite(
+            fragments,
+            c0,
+            &p.warp,
+            empty,
+            &settings_4(s),
+        ))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        Some(mboit4::transmittances(fragments, warp, &settings_4(s)))
+        let empty = mboit4::Moments::default();
+        Some(moments::transmittances(
+            fragments,
+            warp,
+            empty,
+            &settings_4(s),
+        ))
     }),
     flaws: &[
         Flaw::swallowed(&["deep", "near-overflow"]),
@@ -185,10 +198,12 @@ pub(super) const SIX: Method = Method {
     curve: &["", ":own=out"],
     twin: Some(|s, p| {
         let (fragments, c0) = (p.fragments, p.background);
-        Some(mboit6::composite(fragments, c0, &p.warp, &settings_6(s)))
+        let empty = mboit6::Moments::default();
+        Some(moments::composite(fragments, c0, &p.warp, empty, &settings_6(s)))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        Some(mboit6::transmittances(fragments, warp, &settings_6(s)))
+        let empty = mboit6::Moments::default();
+        Some(moments::transmittances(fragments, warp, empty, &settings_6(s)))
     }),
     flaws: &[
         Flaw::swallowed(&["deep"]),
@@ -231,10 +246,23 @@ pub(super) const EIGHT: Method = Method {
     curve: &["", ":own=out"],
     twin: Some(|s, p| {
         let (fragments, c0) = (p.fragments, p.background);
-        Some(mboit8::composite(fragments, c0, &p.warp, &settings_8(s)))
+        let empty = mboit8::Moments::default();
+        Some(moments::composite(
+            fragments,
+            c0,
+            &p.warp,
+            empty,
+            &settings_8(s),
+        ))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        Some(mboit8::transmittances(fragments, warp, &settings_8(s)))
+        let empty = mboit8::Moments::default();
+        Some(moments::transmittances(
+            fragments,
+            warp,
+            empty,
+            &settings_8(s),
+        ))
     }),
     flaws: &[
         Flaw::swallowed(&["deep"]),

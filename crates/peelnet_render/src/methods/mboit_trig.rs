@@ -14,7 +14,10 @@ use crate::{
     error::RenderError,
     flaw::{Flaw, Property, half_statistics, half_sums},
 };
-use peelnet_core::methods::{mboit_trig, mboit4::Settings};
+use peelnet_core::methods::{
+    mboit_trig::{self, Moments},
+    moments::{self, Settings},
+};
 use std::ops::Bound;
 
 const BIAS: Number = Number {
@@ -44,16 +47,22 @@ pub(super) const METHOD: Method = Method {
     promises: |s| promises(s, s.number()),
     curve: &["-2", "-3", "-3:own=out", "-2:targets=f16"],
     twin: Some(|s, p| {
-        let (fragments, c0, count) = (p.fragments, p.background, s.number() as usize);
-        let settings = settings_of(s);
-        Some(mboit_trig::composite(
-            fragments, c0, &p.warp, count, &settings,
+        let empty = Moments::new(s.number() as usize);
+        Some(moments::composite(
+            p.fragments,
+            p.background,
+            &p.warp,
+            empty,
+            &settings_of(s),
         ))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        let (count, settings) = (s.number() as usize, settings_of(s));
-        Some(mboit_trig::transmittances(
-            fragments, warp, count, &settings,
+        let empty = Moments::new(s.number() as usize);
+        Some(moments::transmittances(
+            fragments,
+            warp,
+            empty,
+            &settings_of(s),
         ))
     }),
     flaws: &[
