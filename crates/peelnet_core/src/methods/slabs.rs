@@ -459,10 +459,7 @@ mod tests {
             }
         }
         assert!(guessed > 1000, "only {guessed} fragments are guessed");
-        assert!(
-            width / f64::from(guessed as u32) < 0.5,
-            "{width} of {guessed}"
-        );
+        assert!(width < 0.75 * unbounded, "{width} of {unbounded}");
     }
 
     /// Without a network the largest design errs a tenth of four moments' squared error on random pixels, and each smaller one more.
