@@ -4,7 +4,7 @@ use crate::{
     RasterError, SceneBuffers,
     scene::set_of,
     uniforms::{LightData, MaterialData},
-    upload::{Placement, Vertex, write_attributes},
+    upload::{Placement, Sharing, Vertex, write_attributes},
 };
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_scene::{Light, Material, Setting, Variant};
@@ -31,6 +31,7 @@ impl SceneBuffers {
             .world_from_object = world_from_object;
         let object_data = &self.scene.objects[object];
         let placement = Placement::of(object_data);
+        let mut sharing = Sharing::of(placement);
         let parts = self.parts.iter_mut().enumerate();
         for (number, part) in parts.filter(|(_, p)| p.place.0 == object) {
             let triangles = &object_data.mesh.parts[part.place.1].triangles;
@@ -45,7 +46,7 @@ impl SceneBuffers {
             gpu.queue
                 .write_buffer(&self.vertices, offset, bytemuck::cast_slice(&vertices));
             let attributes = placement.attributes(triangles, part.run.variant);
-            let shared = placement.shared(triangles, &attributes, first as u32);
+            let shared = sharing.numbers(triangles, &attributes, first);
             let offset = (first * size_of::<u32>()) as u64;
             gpu.queue
                 .write_buffer(&self.shared, offset, bytemuck::cast_slice(&shared));
@@ -134,7 +135,7 @@ impl SceneBuffers {
             let placement = Placement::of(object);
             let attributes = placement.attributes(&triangles, variant);
             let first = part.run.vertices.start as usize;
-            let shared = placement.shared(&triangles, &attributes, first as u32);
+            let shared = Sharing::of(placement).numbers(&triangles, &attributes, first);
             let offset = (first * size_of::<u32>()) as u64;
             gpu.queue
                 .write_buffer(&self.shared, offset, bytemuck::cast_slice(&shared));

@@ -7,7 +7,8 @@ use crate::{
     maps::MapSets,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
     upload::{
-        ATTRIBUTES, AttributeData, DrawRun, Placement, Vertex, bounding_box, centroid, push_run,
+        ATTRIBUTES, AttributeData, DrawRun, Placement, Sharing, Vertex, bounding_box, centroid,
+        push_run,
     },
 };
 use bytemuck::Zeroable;
@@ -100,6 +101,7 @@ impl SceneBuffers {
         let mut parts = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
             let placement = Placement::of(object);
+            let mut sharing = Sharing::of(placement);
             let all = object.mesh.parts.iter().zip(&object.materials);
             for (part_number, (part, material)) in all.enumerate() {
                 let index = materials.len() as u32;
@@ -108,7 +110,7 @@ impl SceneBuffers {
                 let begin = vertices.len();
                 vertices.extend(placement.vertices(part.triangles.clone(), index));
                 let of_part = placement.attributes(&part.triangles, variant);
-                shared.extend(placement.shared(&part.triangles, &of_part, begin as u32));
+                shared.extend(sharing.numbers(&part.triangles, &of_part, begin));
                 attributes.extend(begin, of_part);
                 let mut buffers = PartBuffers {
                     place: (number, part_number),

@@ -6,7 +6,7 @@ use peelnet_scene::{Object, Variant};
 use std::ops::Range;
 
 /// One vertex of a triangle. Every triangle has three of its own: `vertex_index / 3` is then the triangle's index in the scene's
-/// list, which portable WebGPU has no other way to learn. Passes that do not ask for it draw by [`Placement::shared`].
+/// list, which portable WebGPU has no other way to learn. Passes that do not ask for it draw by [`Sharing::numbers`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Vertex {
@@ -85,47 +85,6 @@ impl<'a> Placement<'a> {
         })
     }
 
-    /// For every vertex of a run of triangles the number of the first one that is the same: one vertex of the mesh, with the same UVs
-    /// and tangents where `attributes` has them. `begin` is the number of the run's first vertex.
-    ///
-    /// Drawn by these numbers a vertex is transformed about once, and not once for each of its triangles.
-    pub fn shared(
-        &self,
-        triangles: &Range<usize>,
-        attributes: &[Vec<f32>; 4],
-        begin: u32,
-    ) -> Vec<u32> {
-        const NONE: u32 = u32::MAX;
-        let of_mesh: Vec<usize> = self.indices(triangles.clone()).collect();
-        let least = of_mesh.iter().copied().min().unwrap_or(0);
-        let most = of_mesh.iter().copied().max().unwrap_or(0);
-        let same = |a: usize, b: usize| {
-            attributes.iter().enumerate().take(2).all(|(k, all)| {
-                let bits = |i: usize| {
-                    let own = all.iter().skip(i * floats(k)).take(floats(k));
-                    own.map(|x| x.to_bits())
-                };
-                bits(a).eq(bits(b))
-            })
-        };
-        // Of every vertex of the mesh the latest found here, and of each of those the one found before it.
-        let mut latest = vec![NONE; most - least + 1];
-        let mut before = vec![NONE; of_mesh.len()];
-        let mut shared = Vec::with_capacity(of_mesh.len());
-        for (here, &i) in of_mesh.iter().enumerate() {
-            let mut found = latest[i - least];
-            while found != NONE && !same(found as usize, here) {
-                found = before[found as usize];
-            }
-            if found == NONE {
-                found = here as u32;
-                before[here] = std::mem::replace(&mut latest[i - least], found);
-            }
-            shared.push(begin + found);
-        }
-        shared
-    }
-
     /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing.
     pub fn attributes(&self, triangles: &Range<usize>, variant: Variant) -> [Vec<f32>; 4] {
         let mesh = &self.object.mesh;
@@ -159,6 +118,65 @@ impl<'a> Placement<'a> {
             normals.extend(of.flat_map(|i| turned(i).to_array()));
         }
         all
+    }
+}
+
+/// Finds which vertices of an object's triangles are the same.
+pub(crate) struct Sharing<'a> {
+    placement: Placement<'a>,
+    /// Of every vertex of the mesh the latest one found that stands for it in the part under way, counted from 1; 0 for none: memory
+    /// that is never touched costs nothing.
+    latest: Vec<u32>,
+}
+
+impl<'a> Sharing<'a> {
+    /// How many vertices that stand for one of the mesh are compared: of more, some are drawn as vertices of their own.
+    const MOST_COMPARED: usize = 8;
+
+    pub fn of(placement: Placement<'a>) -> Self {
+        Self {
+            placement,
+            latest: vec![0; placement.object.mesh.positions.len()],
+        }
+    }
+
+    /// For every vertex of a run of triangles the number of the first one that is the same: one vertex of the mesh, with the same UVs
+    /// and tangents where `attributes` has them. `begin` is the number of the run's first vertex.
+    ///
+    /// Drawn by these numbers a vertex is transformed about once, and not once for each of its triangles.
+    pub fn numbers(
+        &mut self,
+        triangles: &Range<usize>,
+        attributes: &[Vec<f32>; 4],
+        begin: usize,
+    ) -> Vec<u32> {
+        let same = |a: usize, b: usize| {
+            attributes.iter().enumerate().take(2).all(|(k, all)| {
+                let bits = |i: usize| {
+                    let own = all.iter().skip(i * floats(k)).take(floats(k));
+                    own.map(|x| x.to_bits())
+                };
+                bits(a).eq(bits(b))
+            })
+        };
+        let of_mesh: Vec<usize> = self.placement.indices(triangles.clone()).collect();
+        // Of each that stands for a vertex of the mesh the one found before it, counted from 1.
+        let mut before = vec![0u32; of_mesh.len()];
+        let mut numbers = Vec::with_capacity(of_mesh.len());
+        for (here, &i) in of_mesh.iter().enumerate() {
+            let place = |counted: u32| (counted as usize).checked_sub(1);
+            let mut known = std::iter::successors(place(self.latest[i]), |&k| place(before[k]))
+                .take(Self::MOST_COMPARED);
+            let found = known.find(|&k| same(k, here));
+            if found.is_none() {
+                before[here] = std::mem::replace(&mut self.latest[i], here as u32 + 1);
+            }
+            numbers.push((begin + found.unwrap_or(here)) as u32);
+        }
+        for i in of_mesh {
+            self.latest[i] = 0;
+        }
+        numbers
     }
 }
 
@@ -259,7 +277,7 @@ mod tests {
         };
         object.mesh = std::sync::Arc::new(mesh);
         let shared = |object: &Object, attributes: &[Vec<f32>; 4]| {
-            Placement::of(object).shared(&(0..2), attributes, 30)
+            Sharing::of(Placement::of(object)).numbers(&(0..2), attributes, 30)
         };
         let mut attributes: [Vec<f32>; 4] = Default::default();
         assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 31, 35]);
@@ -276,6 +294,32 @@ mod tests {
         // The second triangle is 2, 3, 1 then, and the first one 0, 2, 1.
         object.world_from_object = glam::Mat4::from_scale(glam::Vec3::new(-1.0, 1.0, 1.0));
         assert_eq!(shared(&object, &attributes), [30, 31, 32, 31, 34, 32]);
+    }
+
+    /// A fan whose middle has other UVs in every triangle, and twice: what stands for a vertex is the same, however many there are.
+    #[test]
+    fn vertices_of_many_seams_stay_themselves() {
+        let mut object = Object::of_triangles("fan", &[], Material::unlit([1.0; 3], 0.5));
+        let mesh = peelnet_scene::Mesh {
+            positions: vec![glam::Vec3::ZERO; 3],
+            normals: vec![glam::Vec3::Z; 3],
+            triangles: vec![[0, 1, 2]; 60],
+            ..(*object.mesh).clone()
+        };
+        object.mesh = std::sync::Arc::new(mesh);
+        let mut attributes: [Vec<f32>; 4] = Default::default();
+        let uv = |corner: usize| [(corner / 3 % 30 * usize::from(corner % 3 == 0)) as f32, 0.5];
+        attributes[0] = (0..180).flat_map(uv).collect();
+        let mut sharing = Sharing::of(Placement::of(&object));
+        let numbers = sharing.numbers(&(0..60), &attributes, 0);
+        for (corner, &number) in numbers.iter().enumerate() {
+            let number = number as usize;
+            assert_eq!((number % 3, uv(number)), (corner % 3, uv(corner)));
+        }
+        assert_eq!(numbers[1..3], [1, 2]);
+        assert!(numbers.chunks(3).all(|t| t[1..] == [1, 2]));
+        // The next part begins anew.
+        assert_eq!(sharing.numbers(&(0..1), &attributes, 7), [7, 8, 9]);
     }
 
     #[test]
