@@ -37,7 +37,10 @@ pub const FAMILIES: [Family; 7] = [
         &["weighted-sum", "weighted-average", "blended", "wboit-*"],
     ),
     family("moments", &["mboit4", "mboit6", "mboit8", "mboit-trig-*"]),
-    family("intervals of depth", &["wavelet-*", "bins-*", "avboit*"]),
+    family(
+        "intervals of depth",
+        &["wavelet-*", "bins-*", "avboit*", "slabs*"],
+    ),
     family(
         "bounded exact",
         &["kbuffer-*", "hybrid-*", "stochastic-*", "mlab-*"],

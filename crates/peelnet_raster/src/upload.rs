@@ -308,7 +308,12 @@ mod tests {
         };
         object.mesh = std::sync::Arc::new(mesh);
         let mut attributes: [Vec<f32>; 4] = Default::default();
-        let uv = |corner: usize| [(corner / 3 % 30 * usize::from(corner % 3 == 0)) as f32, 0.5];
+        let uv = |corner: usize| {
+            [
+                (corner / 3 % 30 * usize::from(corner.is_multiple_of(3))) as f32,
+                0.5,
+            ]
+        };
         attributes[0] = (0..180).flat_map(uv).collect();
         let mut sharing = Sharing::of(Placement::of(&object));
         let numbers = sharing.numbers(&(0..60), &attributes, 0);

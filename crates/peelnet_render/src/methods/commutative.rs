@@ -34,6 +34,10 @@ pub(crate) enum Blend {
     Over,
     /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
     MaxAdd,
+    /// `max(dst, src)`, from the smallest half.
+    Max,
+    /// `max(dst, src)` of 8-bit channels, 0 … 1, from 0.
+    MaxBytes,
 }
 
 impl Blend {
@@ -41,7 +45,8 @@ impl Blend {
     pub(crate) fn start(self) -> [f64; 4] {
         let least = -f64::from(HALF_MAX);
         match self {
-            Self::Add => [0.0; 4],
+            Self::Add | Self::MaxBytes => [0.0; 4],
+            Self::Max => [least; 4],
             Self::Over | Self::AddTransmit => [0.0, 0.0, 0.0, 1.0],
             Self::Transmit => [1.0; 4],
             Self::MaxAdd => [least, least, least, 0.0],
@@ -66,6 +71,10 @@ impl Blend {
             Self::Transmit => (transmit, transmit),
             Self::AddTransmit => (add, component(F::Zero, F::OneMinusSrcAlpha, O::Add)),
             Self::MaxAdd => (component(F::One, F::One, O::Max), add),
+            Self::Max | Self::MaxBytes => {
+                let max = component(F::One, F::One, O::Max);
+                (max, max)
+            }
         };
         wgpu::BlendState { color, alpha }
     }
@@ -217,6 +226,13 @@ struct Commutative {
 impl Target {
     pub(crate) fn format(&self, full: bool) -> wgpu::TextureFormat {
         use wgpu::TextureFormat as F;
+        if self.blend == Blend::MaxBytes {
+            return match self.channels {
+                1 => F::R8Unorm,
+                2 => F::Rg8Unorm,
+                _ => F::Rgba8Unorm,
+            };
+        }
         match (self.channels, full) {
             (1, false) => F::R16Float,
             (2, false) => F::Rg16Float,
@@ -229,7 +245,12 @@ impl Target {
 
     /// Bytes a pixel.
     pub(crate) const fn bytes(&self, full: bool) -> u32 {
-        self.channels * if full { 4 } else { 2 }
+        let of_channel = match (self.blend, full) {
+            (Blend::MaxBytes, _) => 1,
+            (_, false) => 2,
+            (_, true) => 4,
+        };
+        self.channels * of_channel
     }
 
     pub(crate) fn state(&self, full: bool) -> wgpu::ColorTargetState {

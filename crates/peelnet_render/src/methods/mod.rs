@@ -28,6 +28,7 @@ mod painter;
 pub(crate) mod parameter;
 mod peeling;
 mod range;
+mod slabs;
 pub(crate) mod spec;
 mod stochastic;
 mod stored;
@@ -74,6 +75,7 @@ pub const METHODS: &[Method] = &[
     kbuffer::PLAIN,
     kbuffer::HYBRID,
     mlab::METHOD,
+    slabs::METHOD,
     stochastic::METHOD,
     deep_thesis::METHOD,
     nmt::METHOD,

@@ -1,0 +1,37 @@
+// slabs: eq 6's resolve, or that of known fragments and guessed ones apart; the transmittance of the whole pixel is exp(-total absorbance).
+// Variants: none | apart | tinted | apart tinted
+@if(!apart && !tinted) import package::helpers::resolve::normalised;
+@if(!apart && tinted) import package::helpers::resolve::normalised_by_channel;
+@if(apart && !tinted) import package::learned::resolve_separate_ends::peelnet_resolve;
+@if(apart && tinted) import package::helpers::resolve::within;
+@if(apart && tinted) import package::learned::resolve_separate_ends::peelnet_composite;
+import package::helpers::screen::screen_corner;
+
+@group(0) @binding(0) var background: texture_2d<f32>;
+@group(0) @binding(1) var between: texture_2d<f32>;
+@group(0) @binding(2) var absorbances: texture_2d<f32>;
+@if(apart) @group(0) @binding(3) var ends: texture_2d<f32>;
+@if(tinted && !apart) @group(0) @binding(3) var tinted: texture_2d<f32>;
+@if(tinted && apart) @group(0) @binding(4) var tinted: texture_2d<f32>;
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return screen_corner(index);
+}
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
+    let behind = textureLoad(background, pixel, 0).rgb;
+    let sums = textureLoad(between, pixel, 0);
+    let slabs = textureLoad(absorbances, pixel, 0);
+    let absorbance = slabs.x + slabs.y + slabs.z + slabs.w;
+    @if(tinted) let passing = textureLoad(tinted, pixel, 0).rgb;
+    @if(!apart && !tinted) return normalised(sums, exp(-absorbance), behind);
+    @if(!apart && tinted) return normalised_by_channel(sums, passing, behind);
+    @if(apart && !tinted) return peelnet_resolve(sums, textureLoad(ends, pixel, 0), absorbance, behind);
+    @if(apart && tinted) {
+        let coverage = 1.0 - dot(passing, vec3f(1.0 / 3.0));
+        return peelnet_composite(within(sums), within(textureLoad(ends, pixel, 0)), coverage, passing, behind);
+    }
+}
