@@ -4,13 +4,13 @@ use crate::{
     RasterError, SceneBuffers,
     scene::set_of,
     uniforms::{LightData, MaterialData},
-    upload::{Placement, Sharing, Vertex, write_attributes},
+    upload::{Placement, Sharing, Vertex, write_attributes, write_shared},
 };
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_scene::{Light, Material, Setting, Variant};
 
 impl SceneBuffers {
-    /// Moves an object: its vertices are uploaded again, and which of them are the same; nothing else.
+    /// Moves an object: its vertices are uploaded again, and where a mirror or tangents may change it, which of them are the same.
     ///
     /// # Errors
     /// An object that the scene does not have.
@@ -22,16 +22,17 @@ impl SceneBuffers {
     ) -> Result<(), RasterError> {
         let count = self.scene.objects.len();
         let found = self.scene.objects.get_mut(object);
-        found
-            .ok_or(RasterError::NoSuch {
-                what: "object",
-                index: object,
-                count,
-            })?
-            .world_from_object = world_from_object;
+        let moved = found.ok_or(RasterError::NoSuch {
+            what: "object",
+            index: object,
+            count,
+        })?;
+        let was_mirrored = Placement::of(moved).mirrored;
+        moved.world_from_object = world_from_object;
         let object_data = &self.scene.objects[object];
         let placement = Placement::of(object_data);
-        let mut sharing = Sharing::of(placement);
+        let turned = placement.mirrored != was_mirrored;
+        let mut sharing = None;
         let parts = self.parts.iter_mut().enumerate();
         for (number, part) in parts.filter(|(_, p)| p.place.0 == object) {
             let triangles = &object_data.mesh.parts[part.place.1].triangles;
@@ -46,10 +47,11 @@ impl SceneBuffers {
             gpu.queue
                 .write_buffer(&self.vertices, offset, bytemuck::cast_slice(&vertices));
             let attributes = placement.attributes(triangles, part.run.variant);
-            let shared = sharing.numbers(triangles, &attributes, first);
-            let offset = (first * size_of::<u32>()) as u64;
-            gpu.queue
-                .write_buffer(&self.shared, offset, bytemuck::cast_slice(&shared));
+            // Positions and UVs are the same wherever the object stands.
+            if turned || part.run.variant.has_normal_map() {
+                let sharing = sharing.get_or_insert_with(|| Sharing::of(placement));
+                write_shared(gpu, &self.shared, sharing, triangles, &attributes, first);
+            }
             write_attributes(
                 gpu,
                 &mut self.attributes,
@@ -135,10 +137,8 @@ impl SceneBuffers {
             let placement = Placement::of(object);
             let attributes = placement.attributes(&triangles, variant);
             let first = part.run.vertices.start as usize;
-            let shared = Sharing::of(placement).numbers(&triangles, &attributes, first);
-            let offset = (first * size_of::<u32>()) as u64;
-            gpu.queue
-                .write_buffer(&self.shared, offset, bytemuck::cast_slice(&shared));
+            let sharing = &mut Sharing::of(placement);
+            write_shared(gpu, &self.shared, sharing, &triangles, &attributes, first);
             write_attributes(
                 gpu,
                 &mut self.attributes,

@@ -50,7 +50,8 @@ pub(crate) fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
 pub(crate) struct Placement<'a> {
     object: &'a Object,
     normal_matrix: glam::Mat3,
-    mirrored: bool,
+    /// Whether it is turned inside out.
+    pub mirrored: bool,
 }
 
 impl<'a> Placement<'a> {
@@ -240,6 +241,21 @@ pub(crate) fn write_attributes(
         gpu.queue
             .write_buffer(buffer, offset, bytemuck::cast_slice(part));
     }
+}
+
+/// Writes which of a part's vertices are the same.
+pub(crate) fn write_shared(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    sharing: &mut Sharing<'_>,
+    triangles: &Range<usize>,
+    part: &[Vec<f32>; 4],
+    first: usize,
+) {
+    let numbers = sharing.numbers(triangles, part, first);
+    let offset = (first * size_of::<u32>()) as u64;
+    gpu.queue
+        .write_buffer(buffer, offset, bytemuck::cast_slice(&numbers));
 }
 
 /// The middle of a triangle.

@@ -201,11 +201,6 @@ impl Slabs {
         }
     }
 
-    /// Absorbance of the whole pixel.
-    pub fn total(&self) -> f64 {
-        self.slabs.iter().map(|s| s.absorbance).sum()
-    }
-
     /// What is known of one of its fragments.
     pub fn seen(&self, absorbance: f64, zeta: f64, counts: bool) -> Seen {
         let place = self.place(absorbance, zeta);
