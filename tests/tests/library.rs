@@ -1,5 +1,7 @@
 //! The renderer as a library: frames encoded onto a caller's targets, scenes that change in place, devices of an application's own.
 
+use std::sync::Arc;
+
 use glam::{Mat4, Vec3};
 use peelnet_core::fragment::{Fragment, worked_example};
 use peelnet_gpu::{Gpu, wgpu};
@@ -419,6 +421,15 @@ fn lit_scene() -> Scene {
         color: [1.0, 0.9, 0.8],
         intensity: 2.0,
     }];
+    // Two triangles that share two of their vertices.
+    let mut object = all.objects[0].clone();
+    let mesh = Arc::make_mut(&mut object.mesh);
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [2.0, 1.0]];
+    mesh.positions = corners.map(|[x, y]| Vec3::new(x, y, -3.0)).to_vec();
+    mesh.normals = vec![Vec3::Z; 4];
+    mesh.triangles = vec![[0, 1, 2], [2, 1, 3]];
+    mesh.parts[0].triangles = 0..2;
+    all.objects.push(object);
     all
 }
 
@@ -459,6 +470,9 @@ fn scenes_change_in_place() {
     let mirrored = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     renderer.set_transform(0, mirrored).expect("moves");
     check(&renderer, "an object mirrored");
+    let last = scene.objects.len() - 1;
+    renderer.set_transform(last, mirrored).expect("moves");
+    check(&renderer, "an object of shared vertices mirrored");
     let mut material = renderer.scene().objects[2].materials[0].clone();
     (material.color, material.alpha) = ([0.7, 0.1, 0.4], 0.35);
     renderer.set_material(2, 0, material.clone()).expect("set");
