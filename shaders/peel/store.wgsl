@@ -1,9 +1,9 @@
 // S-buffer, pass 2: every fragment into its pixel's own run of slots.
-// Variants: none | tinted | layered | dataset
+// Variants: none | tinted | layered | named | dataset
 import package::scene::camera::camera;
 @if(dataset) import package::scene::shade::radiance as shade;
 @if(layered) import package::scene::shade::layered as shade;
-@if(!dataset && !layered) import package::scene::shade::shade;
+@if(!dataset && !layered && !named) import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -13,12 +13,12 @@ import package::peel::tile::Tile;
 @group(1) @binding(1) var<storage, read> offsets: array<u32>;
 @group(1) @binding(2) var<storage, read_write> depths: array<f32>;
 @group(1) @binding(3) var<storage, read_write> triangles: array<u32>;
-// Where light takes a colour two of a fragment: its colour, and what it covers of each channel.
+// Where light takes a colour two of a fragment: its colour, and what it covers of each channel. `named`: material and side instead.
 @group(1) @binding(4) var<storage, read_write> colors: array<vec4f>;
 @group(1) @binding(5) var<uniform> tile: Tile;
 
 @fragment
-fn fragment_main(surface: Surface) {
+fn fragment_main(surface: Surface, @if(named) @builtin(front_facing) is_front: bool) {
     if !visible(surface) {
         discard;
     }
@@ -35,7 +35,8 @@ fn fragment_main(surface: Surface) {
     }
     depths[slot] = surface.depth_linear;
     triangles[slot] = surface.triangle;
-    @if(!tinted) colors[slot] = shade(surface);
+    @if(named) colors[slot] = vec4f(f32(surface.material), f32(is_front), 0.0, 0.0);
+    @if(!tinted && !named) colors[slot] = shade(surface);
     @if(tinted) {
         colors[2u * slot] = shade(surface);
         colors[2u * slot + 1u] = vec4f(covering(surface), 0.0);

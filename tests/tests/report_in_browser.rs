@@ -25,6 +25,7 @@ fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
         ssim: Some(1.0 - mse),
         flip: Some(mse),
         transmittance_error: None,
+        contour_pairs: None,
         p99_error: 0.0,
         max_error: 0.0,
         covered_pixels: 64,

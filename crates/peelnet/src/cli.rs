@@ -385,8 +385,8 @@ pub struct BenchArgs {
     /// Measure nothing; write report, charts and tables again from DIR/results.json
     #[arg(long, conflicts_with_all = ["scenes", "scaling", "training"])]
     pub redraw: bool,
-    /// Move the camera and all objects along a path instead: error of every frame, its change from frame to frame, and the visible
-    /// difference of the video (ColorVideoVDP)
+    /// Move the camera and all objects along a path instead: error of every frame, its change from frame to frame, contour pairs
+    /// (neighbouring pixels with the same surfaces and different errors), and the visible difference of the video (ColorVideoVDP)
     #[arg(long, conflicts_with_all = ["scaling", "effects", "training", "redraw", "views", "resume"])]
     pub path: bool,
     /// Methods to compare, separated by commas; parameters follow a colon

@@ -29,6 +29,8 @@ fn a_path_is_measured() {
         assert!(rows[0]["mse_linear"].as_f64().unwrap() < 1e-10);
         assert!(rows[1]["jod"].as_f64().unwrap() < 10.0);
         assert!(rows[1]["change"].as_f64().unwrap() > 0.0);
+        assert_eq!(rows[0]["contour_pairs"], 0.0);
+        assert!(rows[1]["contour_pairs"].is_number());
         let frames = answer["by_frame"].as_array().unwrap();
         assert!(frames[0]["change"].is_null() && !frames[1]["change"].is_null());
     }

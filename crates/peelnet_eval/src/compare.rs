@@ -1,7 +1,7 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
 use crate::transmittance::Sample;
-use crate::{EvalError, Row, metrics, perceptual::Displayed, settings_hash};
+use crate::{EvalError, Row, contours::Pairs, metrics, perceptual::Displayed, settings_hash};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
@@ -14,6 +14,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The method that judges all others.
 pub const EXACT: &str = Role::Reference.method();
+
+/// What errors of the drawing of [`Pairs`] name in place of a method.
+pub(crate) const SURFACES: &str = "surfaces";
 
 /// What is drawn.
 #[derive(Clone, Debug)]
@@ -234,6 +237,16 @@ impl<'a> Stage<'a> {
         Ok(entries)
     }
 
+    /// The neighbours of a view that show the same surfaces; none where they need more memory than there is. What it takes is free again
+    /// before the methods draw.
+    fn pairs(&self, view: usize) -> Result<Option<Pairs>, EvalError> {
+        let (size, samples) = (self.plan.size, self.plan.samples);
+        match Pairs::drawn(&self.renderer, size, samples, &self.scene.views[view]) {
+            Err(e) if is_too_large(&e) => Ok(None),
+            pairs => pairs.map(Some).map_err(self.failed(SURFACES)),
+        }
+    }
+
     /// Draws a view with every method and compares it with the exact image: a row each. Methods that turn out too large are removed.
     fn draw(
         &self,
@@ -244,6 +257,7 @@ impl<'a> Stage<'a> {
     ) -> Result<Vec<Row>, EvalError> {
         let camera = &self.scene.views[view];
         let stacks = sample.peel(view)?;
+        let pairs = self.pairs(view)?;
         let mut exact: Option<(Image, Displayed)> = None;
         let mut rows: Vec<Row> = Vec::new();
         while let Some(entry) = entries.get_mut(rows.len()) {
@@ -275,6 +289,10 @@ impl<'a> Stage<'a> {
             let mut row = row(self.gpu, self.scene, name, view, &frame, differences);
             row.samples = self.plan.samples;
             row.ssim = shown.ssim(displayed);
+            if let Some(pairs) = &pairs {
+                let errors = metrics::error_image(&against.pixels, &frame.image.pixels)?;
+                row.contour_pairs = pairs.share(&errors)?;
+            }
             row.transmittance_error = stacks.error(&entry.method, entry.model);
             row.flip = Some(shown.flip(displayed));
             // Only the exact method knows the fragments of a view for certain.
@@ -426,6 +444,7 @@ fn row(
         ssim: None,
         flip: None,
         transmittance_error: None,
+        contour_pairs: None,
         p99_error: d.p99_error,
         max_error: d.max_error,
         covered_pixels: d.covered_pixels,

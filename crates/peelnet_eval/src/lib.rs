@@ -8,7 +8,7 @@
 //! ```
 //!
 //! [`fn@bench`] compares methods and returns a [`Row`] for each method, scene and view. [`compare`] draws every view exactly
-//! (`abuffer`) and with each method, and [`metrics`] and [`perceptual`] compute the differences. [`front`], [`ratios`] and [`by_scene`]
+//! (`abuffer`) and with each method, and [`metrics`], [`perceptual`] and [`contours`] compute the differences. [`front`], [`ratios`] and [`by_scene`]
 //! average the rows. The crate draws no charts and writes no pages: that is `peelnet_report`.
 //!
 //! A row is never left out because its result looks bad: components that are not finite are counted and enter the
@@ -17,6 +17,7 @@
 pub mod bench;
 pub mod by_scene;
 pub mod compare;
+pub mod contours;
 pub mod effects;
 mod error;
 pub mod family;

@@ -8,7 +8,7 @@
 //! *Covered* pixels are those that hold at least one transparent fragment: coverage above 0 in the exact image.
 
 use crate::EvalError;
-use peelnet_core::srgb::encode8;
+use peelnet_core::srgb::{encode, encode8};
 
 /// The sRGB encoding of a linear value in 64 bits, clamped to 0 … 1 first. What is not a number becomes black, as on
 /// a screen. A test compares it with the renderer's, which encodes pictures in 32 bits.
@@ -53,6 +53,31 @@ pub struct Differences {
     pub dark_pixels: u64,
     /// Pixels with a component that is not finite. Such a component enters every error as 0.
     pub non_finite_pixels: u64,
+}
+
+/// Rounding of a value of an [`error_image`] in 32 bits, on the 0–255 scale: a dozen roundings of 255 · 2⁻²⁴ each, of the encoding of two
+/// values up to 255, and of decoding where these come from 8-bit levels.
+pub const ERROR_ROUNDING: f64 = 12.0 * 255.0 / (1 << 24) as f64;
+
+/// The error image: signed differences of sRGB-encoded values, 0–255. What is not finite counts as black.
+///
+/// # Errors
+/// [`EvalError::Sizes`] if the images differ in size.
+pub fn error_image(
+    exact: &[[f32; 4]],
+    approximate: &[[f32; 4]],
+) -> Result<Vec<[f32; 3]>, EvalError> {
+    if exact.len() != approximate.len() {
+        return Err(EvalError::Sizes {
+            exact: exact.len(),
+            approximate: approximate.len(),
+        });
+    }
+    let level = |x: f32| 255.0 * encode(if x.is_finite() { x } else { 0.0 });
+    let pixels = exact.iter().zip(approximate);
+    Ok(pixels
+        .map(|(e, a)| std::array::from_fn(|k| level(a[k]) - level(e[k])))
+        .collect())
 }
 
 /// Peak signal-to-noise ratio of a mean squared error on the 0–255 scale, dB; `None` where there is no error.
@@ -240,6 +265,15 @@ mod tests {
         let d = differences(&exact, &[[f32::NAN, f32::INFINITY, 1.0, 1.0]]).unwrap();
         assert_eq!((d.non_finite_pixels, d.dark_pixels), (1, 1));
         assert!((d.mse_linear - 2.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_black_in_the_error_image() {
+        let exact = [[1.0; 4]; 6];
+        let errors = error_image(&exact, &[[f32::NAN; 4]; 6]).unwrap();
+        let is_white = |x: &f32| (f64::from(*x) + 255.0).abs() < ERROR_ROUNDING;
+        assert!(errors.as_flattened().iter().all(is_white), "{errors:?}");
+        assert!(error_image(&exact, &exact[1..]).is_err());
     }
 
     #[test]

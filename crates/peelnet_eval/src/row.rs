@@ -46,6 +46,10 @@ pub struct Row {
     /// Mean `|T̂ − T|` over fragments, see [`crate::transmittance`]; `null` for methods that estimate no transmittance.
     #[serde(default)]
     pub transmittance_error: Option<f64>,
+    /// Share of contour pairs among the pairs of neighbours that show the same transparent surfaces, 0–1, see [`crate::contours`]; `null` of
+    /// a view without such pairs, and where the surfaces need more memory than there is.
+    #[serde(default)]
+    pub contour_pairs: Option<f64>,
     /// 99th percentile of the pixel error, 0–255.
     pub p99_error: f64,
     /// The largest pixel error, 0–255.

@@ -166,7 +166,7 @@ struct Kernels {
 
 impl SBuffer {
     /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`, and one of
-    /// `dataset`, `tinted` and `layered`, which say what is kept of a fragment.
+    /// `dataset`, `tinted`, `layered` and `named`, which say what is kept of a fragment.
     ///
     /// # Errors
     /// See [`CountPass::new`].

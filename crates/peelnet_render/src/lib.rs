@@ -28,6 +28,7 @@ mod error;
 pub mod flaw;
 mod frame;
 mod image;
+mod kind;
 pub mod methods;
 mod renderer;
 mod samples;

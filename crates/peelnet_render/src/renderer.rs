@@ -4,9 +4,9 @@ use crate::{
     error::RenderError,
     frame::{Frame, PROFILED, Profile},
     image::Image,
+    kind::Kind,
     methods::{
-        self,
-        compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+        compositor::{Compositor, DrawContext, Fit, FrameStats, Learning},
         layers::LayerView,
         spec::MethodSpec,
     },
@@ -33,13 +33,6 @@ const MOST_TRIES: u32 = 8;
 
 /// Frames whose counts may be on their way at one time.
 const FRAMES_IN_FLIGHT: usize = 3;
-
-/// What draws: a method by name, or the view of layers.
-#[derive(Clone, Debug)]
-enum Kind {
-    Method(MethodSpec),
-    Layers(LayerView),
-}
 
 /// A method made ready for one renderer. It keeps its targets and counts from frame to frame; another size, target format or depth buffer
 /// makes targets anew, and takes pipelines from the device's cache.
@@ -198,6 +191,15 @@ impl Renderer {
         self.made(Kind::Layers(view), MethodOptions::sized(size))
     }
 
+    /// Makes an image ready that tells, instead of a colour, which transparent surfaces a pixel shows: see [`crate::methods::surfaces`].
+    ///
+    /// # Errors
+    /// A frame beyond the adapter's limits.
+    pub fn surfaces(&self, size: [u32; 2], samples: u32) -> Result<Prepared, RenderError> {
+        let options = MethodOptions::sized(size).sampled(samples);
+        self.made(Kind::Surfaces, options)
+    }
+
     fn made(&self, kind: Kind, options: MethodOptions) -> Result<Prepared, RenderError> {
         if !matches!(options.samples, 1 | 4) {
             return Err(RenderError::Samples(options.samples));
@@ -250,17 +252,8 @@ impl Renderer {
         depth: Option<&wgpu::TextureView>,
     ) -> Result<Ready, RenderError> {
         let frame = self.scene.targets(&self.gpu, size, output, depth)?;
-        let compositor = match &method.kind {
-            Kind::Method(spec) => methods::build(&Build {
-                gpu: &self.gpu,
-                scene: &self.scene,
-                frame: &frame,
-                spec,
-                learned: method.options.learned.as_ref(),
-                sums: method.options.sums,
-            })?,
-            Kind::Layers(view) => methods::layers::build(&self.gpu, &self.scene, &frame, *view)?,
-        };
+        let options = &method.options;
+        let compositor = method.kind.build(&self.gpu, &self.scene, &frame, options)?;
         Ok(Ready {
             generation: self.scene.generation(),
             callers_depth: depth.cloned(),

@@ -22,7 +22,8 @@ const STRIP_WIDTH: u32 = 1200;
 /// What the columns of the tables and the charts mean.
 const NOTE: &str = "JOD: just-objectionable differences by ColorVideoVDP, 10 for no visible difference. Error: mean absolute difference of \
     sRGB-encoded values from the exact image, 0–255. Change: mean absolute change of that difference from frame to frame, 0–255; an error \
-    that is glued to a moving surface changes as well. Worst step: the largest change between two frames. PSNR of 8-bit sRGB, ꟻLIP and MSE \
+    that is glued to a moving surface changes as well. Worst step: the largest change between two frames. Contour pairs: share of neighbouring \
+    pixels with the same transparent surfaces whose errors differ by more than 2 of 255; the mean of all frames that have such pixels. PSNR of 8-bit sRGB, ꟻLIP and MSE \
     in linear light are means over the frames.";
 
 impl Results<Along> {
@@ -80,6 +81,7 @@ impl Results<Along> {
                 number(of(|r| Some(r.error)), 3),
                 number(of(|r| r.change), 3),
                 number(worst, 3),
+                number(of(|r| r.contour_pairs), 5),
                 number(of(|r| r.psnr), 1),
                 number(of(|r| Some(r.flip)), 4),
                 format!("{mse:.2e}"),
@@ -91,6 +93,7 @@ impl Results<Along> {
             "error, 0–255",
             "change, 0–255",
             "worst step",
+            "contour pairs",
             "PSNR dB",
             "ꟻLIP",
             "MSE (linear)",
@@ -243,6 +246,7 @@ mod tests {
             error: 2.0,
             change: Some(0.5),
             change_max: Some(0.75),
+            contour_pairs: jod.map(|jod| jod / 1000.0),
             jod,
         }
     }
@@ -282,6 +286,7 @@ mod tests {
         assert_eq!(table.rows[1][..2], ["wboit-eq9", "8.50"]);
         let one = results.table_of(Some("<b>"));
         assert_eq!((one.rows.len(), one.rows[0][1].as_str()), (1, "9.00"));
+        assert_eq!([&table.rows[1][5], &one.rows[0][5]], ["0.00850", "0.00900"]);
         let folder = tempfile::tempdir().unwrap();
         let images = folder.path().join("images");
         std::fs::create_dir(&images).unwrap();

@@ -3,7 +3,8 @@
 //! A method with a small error may still pop (painters, where the order of objects changes) or swim (noise and stripes that stay on the
 //! screen while surfaces move). The *error image* of a frame is the difference of its sRGB-encoded values, on the 0–255 scale and not
 //! rounded, from those of the exact image; its *change* is the mean absolute difference from the frame before, over pixels and channels.
-//! An error that is glued to its surface changes as well, by as much as the surface moves: compare methods of like errors.
+//! An error that is glued to its surface changes as well, by as much as the surface moves: compare methods of like errors. Borders that the
+//! error image has inside surfaces are counted as [`contours`](crate::contours).
 //!
 //! The exact frames of a scene are kept, and the frames of one method at a time: see [`Settings::bytes`].
 
@@ -14,15 +15,17 @@ pub mod video;
 use crate::{
     EvalError,
     bench::{Progress, check_names},
-    compare::{self, EXACT, image_name},
-    metrics::{Differences, differences, psnr},
+    compare::{self, EXACT, SURFACES, image_name},
+    contours::Pairs,
+    metrics::{Differences, differences, error_image, psnr},
     perceptual::Displayed,
 };
 use colorvideovdp::Image as VideoFrame;
 use motion::{Moment, Motion};
-use peelnet_core::srgb;
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, RenderError, Renderer};
+use peelnet_render::{
+    Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
+};
 use peelnet_scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::Path as FilePath;
@@ -52,9 +55,9 @@ pub struct Settings<'a> {
 /// Bytes that a path may keep.
 const MAX_PATH_BYTES: u64 = 1 << 31;
 
-/// Bytes of a pixel of a frame that are kept: the exact image in linear light (16), as it is shown (4) and as the metric sees it (12), and a
-/// method's frame as the metric sees it (12).
-const BYTES_PER_PIXEL: u64 = 44;
+/// Bytes of a pixel of a frame that are kept: the exact image in linear light (16), as it is shown (4) and as the metric sees it (12), a
+/// method's frame as the metric sees it (12), and which of its neighbours show the same surfaces (1).
+const BYTES_PER_PIXEL: u64 = 45;
 
 impl Settings<'_> {
     /// Bytes that are kept: those of all frames of two videos.
@@ -99,6 +102,10 @@ pub struct PathRow {
     pub change: Option<f64>,
     /// The largest mean absolute change of one step.
     pub change_max: Option<f64>,
+    /// Share of contour pairs among the pairs of neighbours that show the same transparent surfaces, 0–1, see [`crate::contours`]; mean over
+    /// the frames that have such pairs, `null` where none has.
+    #[serde(default)]
+    pub contour_pairs: Option<f64>,
     /// Just-objectionable differences (ColorVideoVDP): 10 for no visible difference. `null` for frames under 4×4 pixels.
     pub jod: Option<f64>,
 }
@@ -122,6 +129,9 @@ pub struct FrameRow {
     pub error: f64,
     /// Mean absolute change of the error image since the frame before, 0–255; `null` in the first.
     pub change: Option<f64>,
+    /// Share of contour pairs, 0–1, see [`crate::contours`]; `null` of a frame without pairs.
+    #[serde(default)]
+    pub contour_pairs: Option<f64>,
 }
 
 /// A finished measurement.
@@ -141,27 +151,6 @@ pub struct Along {
     pub rows: Vec<PathRow>,
     /// One row per method, scene and frame.
     pub by_frame: Vec<FrameRow>,
-}
-
-/// The error image: differences of sRGB-encoded values, 0–255. What is not finite counts as black.
-///
-/// # Errors
-/// [`EvalError::Sizes`] if the images differ in size.
-pub fn error_image(
-    exact: &[[f32; 4]],
-    approximate: &[[f32; 4]],
-) -> Result<Vec<[f32; 3]>, EvalError> {
-    if exact.len() != approximate.len() {
-        return Err(EvalError::Sizes {
-            exact: exact.len(),
-            approximate: approximate.len(),
-        });
-    }
-    let level = |x: f32| 255.0 * srgb::encode(if x.is_finite() { x } else { 0.0 });
-    let pixels = exact.iter().zip(approximate);
-    Ok(pixels
-        .map(|(e, a)| std::array::from_fn(|k| level(a[k]) - level(e[k])))
-        .collect())
 }
 
 /// Mean absolute value over pixels and channels.
@@ -189,12 +178,13 @@ struct Video<'a> {
 }
 
 impl Video<'_> {
-    /// Adds the next frame. Returns its error image and how that changed.
+    /// Adds the next frame, with its ꟻLIP and its share of contour pairs. Returns its error image and how that changed.
     fn add(
         &mut self,
         errors: Vec<[f32; 3]>,
         found: &Differences,
         flip: f64,
+        contour_pairs: Option<f64>,
     ) -> (&[[f32; 3]], Option<Vec<[f32; 3]>>) {
         let change = self
             .before
@@ -210,6 +200,7 @@ impl Video<'_> {
             flip,
             error: mean_absolute(&errors),
             change: change.as_deref().map(mean_absolute),
+            contour_pairs,
         });
         (self.before.insert(errors), change)
     }
@@ -217,8 +208,12 @@ impl Video<'_> {
     fn row(&self, jod: Option<f64>) -> PathRow {
         let n = self.rows.len().max(1) as f64;
         let mean = |value: fn(&FrameRow) -> f64| self.rows.iter().map(value).sum::<f64>() / n;
-        let changes: Vec<f64> = self.rows.iter().filter_map(|r| r.change).collect();
-        let steps = changes.len() as f64;
+        let some = |value: fn(&FrameRow) -> Option<f64>| {
+            let values: Vec<f64> = self.rows.iter().filter_map(value).collect();
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            (!values.is_empty()).then_some(mean)
+        };
+        let changes = self.rows.iter().filter_map(|r| r.change);
         PathRow {
             method: self.method.to_owned(),
             scene: self.scene.to_owned(),
@@ -227,8 +222,9 @@ impl Video<'_> {
             psnr: psnr(self.squares_8bit / n),
             flip: mean(|r| r.flip),
             error: mean(|r| r.error),
-            change: (steps > 0.0).then(|| changes.iter().sum::<f64>() / steps),
-            change_max: changes.into_iter().reduce(f64::max),
+            change: some(|r| r.change),
+            change_max: changes.reduce(f64::max),
+            contour_pairs: some(|r| r.contour_pairs),
             jod,
         }
     }
@@ -238,6 +234,7 @@ impl Video<'_> {
 struct Exact {
     image: Image,
     shown: Displayed,
+    pairs: Pairs,
 }
 
 /// A scene's path under measurement.
@@ -269,23 +266,64 @@ impl Stage<'_, '_> {
         let name = method.to_string();
         let weight = learned.iter().find(|l| l.recipe.method == method.name());
         let options = MethodOptions::sized(size).sampled(samples).with(weight);
-        let mut prepared = self
-            .renderer
-            .method(method, options)
-            .map_err(self.failed(&name))?;
+        let prepared = self.renderer.method(method, options);
+        let mut prepared = prepared.map_err(self.failed(&name))?;
+        self.draw_prepared(&name, &mut prepared, take)
+    }
+
+    /// Draws all frames with what is ready under this name.
+    fn draw_prepared(
+        &mut self,
+        name: &str,
+        prepared: &mut Prepared,
+        take: &mut dyn FnMut(usize, Image) -> Result<(), EvalError>,
+    ) -> Result<(), EvalError> {
         for (k, moment) in self.moments.iter().enumerate() {
             if self.stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
             for (number, place) in moment.objects.iter().enumerate() {
                 let moved = self.renderer.set_transform(number, *place);
-                moved.map_err(EvalError::render(&self.scene.name, &name))?;
+                moved.map_err(self.failed(name))?;
             }
-            let frame = self.renderer.image(&mut prepared, &moment.camera);
-            let frame = frame.map_err(EvalError::render(&self.scene.name, &name))?;
-            take(k, frame.image)?;
+            let frame = self.renderer.image(prepared, &moment.camera);
+            take(k, frame.map_err(self.failed(name))?.image)?;
         }
         Ok(())
+    }
+
+    /// Draws all frames exactly, and finds which neighbours show the same surfaces. Returns them with the frames of the video.
+    fn draw_exact(
+        &mut self,
+        method: &MethodSpec,
+        tick: &mut dyn FnMut(),
+    ) -> Result<(Vec<Exact>, Vec<VideoFrame>), EvalError> {
+        let Settings { size, samples, .. } = *self.settings;
+        let mut pairs = Vec::with_capacity(self.moments.len());
+        let prepared = self.renderer.surfaces(size, samples);
+        let mut prepared = prepared.map_err(self.failed(SURFACES))?;
+        self.draw_prepared(SURFACES, &mut prepared, &mut |_, image| {
+            pairs.push(Pairs::of(&image));
+            Ok(())
+        })?;
+        drop(prepared);
+        let (mut exact, mut reference) = (Vec::new(), Vec::new());
+        let mut strip = Strip::new(size, pairs.len());
+        let mut pairs = pairs.into_iter();
+        self.draw(method, &mut |k, image| {
+            let shown = Displayed::new(&image);
+            strip.add_frame(k, &image);
+            reference.extend(video::frame(&shown)?);
+            exact.extend(pairs.next().map(|pairs| Exact {
+                image,
+                shown,
+                pairs,
+            }));
+            tick();
+            Ok(())
+        })?;
+        self.save(&strip, EXACT)?;
+        Ok((exact, reference))
     }
 
     fn save(&self, strip: &Strip, method: &str) -> Result<(), EvalError> {
@@ -320,11 +358,13 @@ impl Stage<'_, '_> {
             let Exact {
                 image: against,
                 shown: displayed,
+                pairs,
             } = &exact[k];
             let shown = Displayed::new(&image);
             let found = differences(&against.pixels, &image.pixels)?;
             let errors = error_image(&against.pixels, &image.pixels)?;
-            let (errors, change) = all.add(errors, &found, shown.flip(displayed));
+            let contours = pairs.share(&errors)?;
+            let (errors, change) = all.add(errors, &found, shown.flip(displayed), contours);
             strip.add_errors(k, errors, change.as_deref());
             if !reference.is_empty() {
                 video.extend(video::frame(&shown)?);
@@ -394,17 +434,8 @@ pub fn measure(
                 method,
             });
         };
-        let (mut exact, mut reference) = (Vec::new(), Vec::new());
-        let mut strip = Strip::new(settings.size, frames as usize);
-        stage.draw(&exact_method, &mut |k, image| {
-            let shown = Displayed::new(&image);
-            strip.add_frame(k, &image);
-            reference.extend(video::frame(&shown)?);
-            exact.push(Exact { image, shown });
-            tick(EXACT, report);
-            Ok(())
-        })?;
-        stage.save(&strip, EXACT)?;
+        let mut one = || tick(EXACT, report);
+        let (exact, reference) = stage.draw_exact(&exact_method, &mut one)?;
         for method in &methods {
             let name = method.to_string();
             if let (true, Some(why)) = (settings.lenient, method.method().cpu_only) {
@@ -442,9 +473,8 @@ pub fn measure(
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-
-    /// Rounding of sRGB encoding and decoding in 32 bits, on the 0–255 scale: a dozen roundings of 255 · 2⁻²⁴ each.
-    const ROUNDING: f64 = 12.0 * 255.0 / (1 << 24) as f64;
+    use crate::metrics::ERROR_ROUNDING;
+    use peelnet_core::srgb;
 
     fn gray(level: f32) -> Vec<[f32; 4]> {
         vec![[srgb::decode(level / 255.0); 4]; 6]
@@ -462,7 +492,9 @@ mod tests {
         for (&exact, &level) in exact.iter().zip(levels) {
             let errors = error_image(&gray(exact), &gray(level)).unwrap();
             let found = differences(&gray(exact), &gray(level)).unwrap();
-            video.add(errors, &found, 0.0);
+            let frame = video.rows.len();
+            let contour_pairs = (frame > 0).then_some(frame as f64 / 8.0);
+            video.add(errors, &found, 0.0, contour_pairs);
         }
         video.row(None)
     }
@@ -471,30 +503,25 @@ mod tests {
     #[test]
     fn changes_of_a_known_sequence() {
         let row = row_of(&[100.0; 4], &[110.0, 90.0, 110.0, 104.0]);
-        assert!((row.error - 8.5).abs() < ROUNDING, "{}", row.error);
-        assert!((row.change.unwrap() - 46.0 / 3.0).abs() < 2.0 * ROUNDING);
-        assert!((row.change_max.unwrap() - 20.0).abs() < 2.0 * ROUNDING);
+        assert!((row.error - 8.5).abs() < ERROR_ROUNDING, "{}", row.error);
+        assert!((row.change.unwrap() - 46.0 / 3.0).abs() < 2.0 * ERROR_ROUNDING);
+        assert!((row.change_max.unwrap() - 20.0).abs() < 2.0 * ERROR_ROUNDING);
         let want = 10.0 * (255.0f64 * 255.0 / 79.0).log10();
         assert!((row.psnr.unwrap() - want).abs() < 1e-9);
         assert_eq!(row.frames, 4);
+        // Of 1/8, 2/8 and 3/8; the first frame has no pairs.
+        assert_eq!(row.contour_pairs, Some(0.25));
     }
 
     /// An error that stays does not change, whatever moves below it; one frame has no change at all.
     #[test]
     fn a_steady_error_has_no_change() {
         let row = row_of(&[100.0, 120.0, 90.0], &[105.0, 125.0, 95.0]);
-        assert!(row.change.unwrap() < 2.0 * ROUNDING, "{row:?}");
-        assert!((row.error - 5.0).abs() < ROUNDING);
+        assert!(row.change.unwrap() < 2.0 * ERROR_ROUNDING, "{row:?}");
+        assert!((row.error - 5.0).abs() < ERROR_ROUNDING);
         let one = row_of(&[100.0], &[105.0]);
         assert_eq!((one.change, one.change_max), (None, None));
-    }
-
-    #[test]
-    fn what_is_not_finite_is_black() {
-        let exact = gray(255.0);
-        let errors = error_image(&exact, &[[f32::NAN; 4]; 6]).unwrap();
-        assert!((mean_absolute(&errors) - 255.0).abs() < ROUNDING);
-        assert!(error_image(&exact, &exact[1..]).is_err());
+        assert_eq!(one.contour_pairs, None);
     }
 
     /// A path that would not fit is refused before anything is drawn.

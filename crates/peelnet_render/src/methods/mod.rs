@@ -32,6 +32,7 @@ mod slabs;
 pub(crate) mod spec;
 mod stochastic;
 mod stored;
+pub mod surfaces;
 mod wavelet;
 mod wboit;
 mod weighted;

@@ -69,7 +69,8 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
              opaque surfaces. Time at equal error and error at equal time: how far a method is behind the front, interpolated between its \
              points in logarithms. Errors are against abuffer. SSIM: image-compare, windows of 8×8 on 8-bit luma. ꟻLIP: \
              nv-flip, 67 pixels per degree. T error: mean difference between the estimated and the exact transmittance, over the fragments \
-             of a sample of pixels."
+             of a sample of pixels. Contour pairs: share of neighbouring pixels with the same transparent surfaces whose errors differ by \
+             more than 2 of 255."
         }
     };
     let load = |x: Option<f64>| x.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.2}"));
@@ -133,6 +134,7 @@ fn points_table(rows: &[Row], points: &[Point]) -> Markup {
         "ꟻLIP",
         "99 % error",
         "T error",
+        "contour pairs",
         "passes",
         "bytes a pixel",
         "time / front at equal error",
@@ -164,6 +166,7 @@ fn points_table(rows: &[Row], points: &[Point]) -> Markup {
             number(mean(|r| r.flip), 4),
             number(mean(|r| Some(r.p99_error)), 1),
             number(mean(|r| r.transmittance_error), 4),
+            number(mean(|r| r.contour_pairs), 5),
             own.iter().map(|r| r.passes).max().unwrap_or(0).to_string(),
             bytes(&p.bytes),
             number(Some(p.time_at_equal_error), 2),

@@ -1,0 +1,184 @@
+//! False contours: borders at which a method's error jumps although the surfaces stay the same.
+//!
+//! A *pair* is two pixels that share a side and show the same transparent surfaces in the same order, at least one. A surface is one side of
+//! a part of an object with one material, see [`peelnet_render::methods::surfaces`]. A *contour pair* is a pair whose errors differ in some
+//! channel by more than [`THRESHOLD`]; the errors are those of [`crate::metrics::error_image`], which keep their sign. The figure is the
+//! number of contour pairs over the number of pairs, of the whole frame.
+//!
+//! An exact method has none. An error that follows the surfaces makes none at their edges, because pixels on both sides of an edge are no
+//! pair. Textures, highlights and what stands behind the transparent surfaces are not compared: where they jump inside a surface the error
+//! may jump as well, and then it counts. Compare methods on the same scene.
+
+use crate::{EvalError, metrics::ERROR_ROUNDING};
+use peelnet_render::{Image, RenderError, Renderer};
+use peelnet_scene::Camera;
+
+/// By how much the errors of a contour pair differ at least, on the 0–255 scale: more than two steps of an 8-bit display.
+pub const THRESHOLD: f64 = 2.0;
+
+/// What a difference of two errors must exceed: the threshold and the rounding of both errors, so that exactly two steps are no contour.
+const LIMIT: f64 = THRESHOLD + 2.0 * ERROR_ROUNDING;
+
+/// The pair with the next pixel of the row.
+const RIGHT: u8 = 1;
+
+/// The pair with the pixel below.
+const BELOW: u8 = 2;
+
+/// The pairs of a frame, a byte a pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pairs {
+    width: usize,
+    /// Which pairs begin at each pixel.
+    begins: Vec<u8>,
+}
+
+impl Pairs {
+    /// The pairs of an image of [`Renderer::surfaces`].
+    pub fn of(surfaces: &Image) -> Self {
+        let width = surfaces.width as usize;
+        let pixels = &surfaces.pixels;
+        let same = |a: usize, b: usize| pixels[a] == pixels[b] && pixels[a][3] > 0.0;
+        let begins = (0..pixels.len()).map(|i| {
+            let right = (i + 1) % width != 0 && same(i, i + 1);
+            let below = i + width < pixels.len() && same(i, i + width);
+            u8::from(right) * RIGHT + u8::from(below) * BELOW
+        });
+        Self {
+            width,
+            begins: begins.collect(),
+        }
+    }
+
+    /// Draws a view's surfaces and finds the pairs.
+    ///
+    /// # Errors
+    /// A frame beyond the adapter's limits, or a lost device.
+    pub fn drawn(
+        renderer: &Renderer,
+        size: [u32; 2],
+        samples: u32,
+        camera: &Camera,
+    ) -> Result<Self, RenderError> {
+        let mut prepared = renderer.surfaces(size, samples)?;
+        let frame = renderer.image(&mut prepared, camera)?;
+        Ok(Self::of(&frame.image))
+    }
+
+    /// The number of pairs.
+    pub fn count(&self) -> u64 {
+        self.begins.iter().map(|b| u64::from(b.count_ones())).sum()
+    }
+
+    /// The number of contour pairs of an error image.
+    ///
+    /// # Errors
+    /// [`EvalError::Sizes`] if it is of another size.
+    pub fn contours(&self, errors: &[[f32; 3]]) -> Result<u64, EvalError> {
+        if errors.len() != self.begins.len() {
+            return Err(EvalError::Sizes {
+                exact: self.begins.len(),
+                approximate: errors.len(),
+            });
+        }
+        let jumps = |a: usize, b: usize| {
+            let channels = errors[a].iter().zip(&errors[b]);
+            channels
+                .map(|(a, b)| f64::from(*a) - f64::from(*b))
+                .any(|difference| difference.abs() > LIMIT)
+        };
+        let of_pixel = |(i, begins): (usize, &u8)| {
+            let right = begins & RIGHT != 0 && jumps(i, i + 1);
+            let below = begins & BELOW != 0 && jumps(i, i + self.width);
+            u64::from(right) + u64::from(below)
+        };
+        Ok(self.begins.iter().enumerate().map(of_pixel).sum())
+    }
+
+    /// The share of contour pairs among all pairs, 0–1; `None` of a frame without pairs.
+    ///
+    /// # Errors
+    /// See [`Self::contours`].
+    pub fn share(&self, errors: &[[f32; 3]]) -> Result<Option<f64>, EvalError> {
+        let (contours, pairs) = (self.contours(errors)?, self.count());
+        Ok((pairs > 0).then(|| contours as f64 / pairs as f64))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use crate::metrics::error_image;
+    use peelnet_core::srgb;
+
+    /// The pairs of a frame whose pixels hold these lists of surfaces, by number; 0 is none.
+    fn pairs(width: u32, surfaces: &[u32]) -> Pairs {
+        let pixels = surfaces.iter();
+        Pairs::of(&Image {
+            width,
+            height: surfaces.len() as u32 / width,
+            pixels: pixels.map(|&s| [s as f32, 0.0, 0.0, s as f32]).collect(),
+        })
+    }
+
+    /// The contour pairs of a frame with errors of so many levels, in one channel each time.
+    fn contours(pairs: &Pairs, levels: &[f32]) -> [u64; 3] {
+        std::array::from_fn(|channel| {
+            let errors = levels.iter().map(|&level| {
+                let mut error = [0.0; 3];
+                error[channel] = level;
+                error
+            });
+            pairs.contours(&errors.collect::<Vec<_>>()).unwrap()
+        })
+    }
+
+    /// Rows do not run on into the next one, and pixels that hold nothing are no pair.
+    #[test]
+    fn pairs_share_a_side_and_their_surfaces() {
+        // Two across and three down of surface 1; one across of 2.
+        let frame = [1, 1, 2, 1, 1, 0, 1, 2, 2];
+        assert_eq!(pairs(3, &frame).count(), 2 + 3 + 1);
+        assert_eq!(pairs(1, &[1, 1, 1]).count(), 2);
+        assert_eq!(pairs(3, &[0, 0, 0]).count(), 0);
+        assert_eq!(pairs(3, &[1, 1, 2, 2, 1, 1]).count(), 3);
+    }
+
+    /// An error that jumps by three levels inside a surface is a contour, across and down; where the surfaces change it is none.
+    #[test]
+    fn an_error_that_jumps_inside_a_surface_is_a_contour() {
+        let inside = [0.0, 0.0, 3.0, 3.0];
+        assert_eq!(contours(&pairs(4, &[1, 1, 1, 1]), &inside), [1; 3]);
+        assert_eq!(contours(&pairs(1, &[1, 1, 1, 1]), &inside), [1; 3]);
+        assert_eq!(contours(&pairs(2, &[1, 1, 1, 1]), &inside), [2; 3]);
+        assert_eq!(contours(&pairs(4, &[1, 1, 2, 2]), &inside), [0; 3]);
+        // A background of no surface has no pairs, whatever its errors.
+        assert_eq!(contours(&pairs(4, &[0, 0, 0, 0]), &inside), [0; 3]);
+        // Signs count: from 1.5 below to 1.5 above.
+        let signs = [-1.5, 1.5, 1.5, -1.5];
+        assert_eq!(contours(&pairs(4, &[1, 1, 1, 1]), &signs), [2; 3]);
+        let share = |pairs: &Pairs| pairs.share(&inside.map(|x| [x; 3])).unwrap();
+        assert_eq!(share(&pairs(4, &[1, 1, 1, 1])), Some(1.0 / 3.0));
+        assert_eq!(share(&pairs(4, &[0, 0, 0, 0])), None);
+    }
+
+    /// Exactly two levels are no contour, three are one: for every level of an 8-bit display, as its linear light is drawn.
+    #[test]
+    fn two_levels_are_no_contour_and_three_are_one() {
+        let light = |level: u32| [srgb::decode(level as f32 / 255.0); 4];
+        let two = pairs(2, &[1, 1]);
+        for exact in 0..=252 {
+            for (levels, want) in [(2, 0), (3, 1)] {
+                let approximate = [light(exact), light(exact + levels)];
+                let errors = error_image(&[light(exact); 2], &approximate).unwrap();
+                assert_eq!(two.contours(&errors).unwrap(), want, "{exact} + {levels}");
+            }
+        }
+    }
+
+    #[test]
+    fn another_size_is_an_error() {
+        assert!(pairs(2, &[1, 1]).contours(&[[0.0; 3]; 3]).is_err());
+    }
+}

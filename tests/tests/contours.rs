@@ -1,0 +1,205 @@
+//! Which neighbours show the same surfaces, and contour pairs, of scenes whose regions are known.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use glam::Vec3;
+use peelnet_eval::{
+    bench,
+    compare::{EXACT, Plan},
+    contours::Pairs,
+    path,
+};
+use peelnet_gpu::Gpu;
+use peelnet_render::{MethodSpec, Renderer};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{even, gpu, scene};
+use std::sync::{Arc, atomic::AtomicBool};
+
+/// Pixels of a side of the frame.
+const SIDE: u32 = 16;
+
+/// The vertex above the top left of this pixel at this depth.
+fn vertex(z: f32, column: f32, row: f32) -> Vec3 {
+    let half = SIDE as f32 / 2.0;
+    Vec3::new(z * (column / half - 1.0), z * (1.0 - row / half), -z)
+}
+
+/// Two triangles that cover these columns and rows, at the depth `z[0]` on the left and `z[1]` on the right; counter-clockwise as seen.
+fn quad(z: [f32; 2], columns: [u32; 2], rows: [u32; 2]) -> [[Vec3; 3]; 2] {
+    let at = |k: usize, row: u32| vertex(z[k], columns[k] as f32, row as f32);
+    let (a, b, c, d) = (
+        at(0, rows[1]),
+        at(1, rows[1]),
+        at(1, rows[0]),
+        at(0, rows[0]),
+    );
+    [[a, b, c], [a, c, d]]
+}
+
+fn glass() -> Material {
+    Material::unlit([0.5; 3], 0.5)
+}
+
+fn object(triangles: &[[Vec3; 3]], material: Material) -> Object {
+    Object::of_triangles("quad", triangles, material)
+}
+
+fn pairs(gpu: &Gpu, objects: Vec<Object>, samples: u32) -> u64 {
+    let scene = scene("known", [0.0; 3], objects);
+    let renderer = Renderer::new(gpu, &scene).unwrap();
+    let found = Pairs::drawn(&renderer, [SIDE; 2], samples, &scene.views[0]);
+    found.unwrap().count()
+}
+
+/// Pairs inside a rectangle of pixels.
+fn inside(columns: u64, rows: u64) -> u64 {
+    (columns - 1) * rows + columns * (rows - 1)
+}
+
+const ALL: u64 = SIDE as u64;
+const FRAME: [u32; 2] = [0, SIDE];
+
+/// Columns 0–9 of one quad and 6–15 of another one, eight rows: three regions, and a background that has none. Four samples see the same.
+#[test]
+fn overlapping_quads_make_regions() {
+    let gpu = gpu();
+    let left = quad([2.0; 2], [0, 10], [4, 12]);
+    let right = quad([3.0; 2], [6, 16], [4, 12]);
+    let want = inside(6, 8) + inside(4, 8) + inside(6, 8);
+    for samples in [1, 4] {
+        let both = vec![object(&left, glass()), object(&right, glass())];
+        assert_eq!(pairs(&gpu, both, samples), want, "{samples} samples");
+    }
+    // Of one object the two outer regions show the same surface; where they overlap it is there twice.
+    let one = vec![object(&[left, right].concat(), glass())];
+    assert_eq!(pairs(&gpu, one, 1), want);
+}
+
+/// Two quads that cross in the middle: the same surfaces on both sides, in another order. One behind the other there is no border.
+#[test]
+fn the_order_counts() {
+    let gpu = gpu();
+    let crossing = |near: f32, far: f32| {
+        let one = quad([near, far], FRAME, FRAME);
+        let other = quad([3.0; 2], FRAME, FRAME);
+        pairs(
+            &gpu,
+            vec![object(&one, glass()), object(&other, glass())],
+            1,
+        )
+    };
+    assert_eq!(crossing(1.5, 2.0), inside(ALL, ALL));
+    let halves = crossing(1.5, 6.0);
+    // They cross where 1/z, which is linear on the screen, is 1/3.
+    let columns = ((1.0 / 1.5 - 1.0 / 3.0) / (1.0 / 1.5 - 1.0 / 6.0) * f64::from(SIDE)).round();
+    let columns = columns as u64;
+    assert_eq!(halves, inside(columns, ALL) + inside(ALL - columns, ALL));
+}
+
+/// The same object seen from the front on the left and from the back on the right.
+#[test]
+fn the_side_counts() {
+    let gpu = gpu();
+    let left = quad([2.0; 2], [0, 8], FRAME);
+    let right = quad([2.0; 2], [8, 16], FRAME);
+    let one = vec![object(&[left, right].concat(), glass())];
+    assert_eq!(pairs(&gpu, one, 1), inside(ALL, ALL));
+    let turned = right.map(|[a, b, c]| [a, c, b]);
+    let two = vec![object(&[left, turned].concat(), glass())];
+    assert_eq!(pairs(&gpu, two, 1), 2 * inside(8, ALL));
+}
+
+/// Opacity and light do not count, holes and what is hidden do.
+#[test]
+fn opacity_does_not_count_and_holes_do() {
+    let gpu = gpu();
+    let whole = quad([2.0; 2], FRAME, FRAME);
+    let left = quad([3.0; 2], [0, 8], FRAME);
+    let mut shaded = object(
+        &[
+            quad([2.0; 2], [0, 8], FRAME),
+            quad([2.0; 2], [8, 16], FRAME),
+        ]
+        .concat(),
+        glass(),
+    );
+    let mesh = Arc::make_mut(&mut shaded.mesh);
+    mesh.colors = vec![[1.0, 0.0, 1.0, 0.1]; 6];
+    mesh.colors.resize(12, [0.0; 4]);
+    assert_eq!(pairs(&gpu, vec![shaded], 1), inside(ALL, ALL));
+    // A wall of holes alone.
+    let mut holes = glass();
+    holes.maps.color = even([255, 255, 255, 10]);
+    (holes.alpha_cutoff, holes.blend) = (Some(0.25), true);
+    let mut wall = object(&left, holes);
+    let mesh = Arc::make_mut(&mut wall.mesh);
+    mesh.uvs = vec![[glam::Vec2::ZERO; 3]; 2];
+    let through = vec![object(&whole, glass()), wall];
+    assert_eq!(pairs(&gpu, through, 1), inside(ALL, ALL));
+    // An opaque wall in front of the left half.
+    let front = quad([1.0; 2], [0, 8], FRAME);
+    let hidden = vec![
+        object(&whole, glass()),
+        object(&front, Material::unlit([1.0; 3], 1.0)),
+    ];
+    assert_eq!(pairs(&gpu, hidden, 1), inside(8, ALL));
+}
+
+/// A wall of one colour before another one, which is black on the left and white on the right: blending in the wrong order errs by another
+/// amount on both sides. The border runs down the whole frame, inside the surfaces.
+fn bordered() -> Scene {
+    let near = object(&quad([2.0; 2], FRAME, FRAME), glass());
+    let halves = [
+        quad([3.0; 2], [0, 8], FRAME),
+        quad([3.0; 2], [8, 16], FRAME),
+    ];
+    let mut far = object(&halves.concat(), Material::unlit([1.0; 3], 0.5));
+    let mesh = Arc::make_mut(&mut far.mesh);
+    mesh.colors = vec![[0.0, 0.0, 0.0, 1.0]; 6];
+    mesh.colors.resize(12, [1.0; 4]);
+    scene("bordered", [0.0; 3], vec![near, far])
+}
+
+/// A bench and the first frame of a path count the border; exact methods have no contour.
+#[test]
+fn benches_count_the_border_of_an_error() {
+    let gpu = gpu();
+    let scene = bordered();
+    let methods: Vec<MethodSpec> = ["depth-peel", "weighted-average"]
+        .map(|m| m.parse().unwrap())
+        .to_vec();
+    let want = ALL as f64 / inside(ALL, ALL) as f64;
+    let plan = Plan {
+        frames: 0,
+        ..Plan::new([SIDE; 2], &methods)
+    };
+    let rows = bench(&gpu, &[scene.clone()], &plan).unwrap();
+    let found: Vec<_> = rows
+        .iter()
+        .map(|r| (r.method.as_str(), r.contour_pairs))
+        .collect();
+    let exact = Some(0.0);
+    assert_eq!(
+        found,
+        [
+            (EXACT, exact),
+            ("depth-peel", exact),
+            ("weighted-average", Some(want))
+        ]
+    );
+    let settings = path::Settings {
+        size: [SIDE; 2],
+        samples: 1,
+        frames: 1,
+        methods: &methods,
+        learned: &[],
+        lenient: false,
+        images: None,
+    };
+    let stop = AtomicBool::new(false);
+    let along = path::measure(&gpu, &[scene], &settings, &stop, &mut |_| {}).unwrap();
+    let found: Vec<_> = along.rows.iter().map(|r| r.contour_pairs).collect();
+    assert_eq!(found, [exact, Some(want)]);
+    let frames: Vec<_> = along.by_frame.iter().map(|r| r.contour_pairs).collect();
+    assert_eq!(frames, found);
+}
