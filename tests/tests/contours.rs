@@ -25,8 +25,8 @@ fn vertex(z: f32, column: f32, row: f32) -> Vec3 {
 }
 
 /// Two triangles that cover these columns and rows, at the depth `z[0]` on the left and `z[1]` on the right; counter-clockwise as seen.
-fn quad(z: [f32; 2], columns: [u32; 2], rows: [u32; 2]) -> [[Vec3; 3]; 2] {
-    let at = |k: usize, row: u32| vertex(z[k], columns[k] as f32, row as f32);
+fn quad(z: [f32; 2], columns: [f32; 2], rows: [f32; 2]) -> [[Vec3; 3]; 2] {
+    let at = |k: usize, row: f32| vertex(z[k], columns[k], row);
     let (a, b, c, d) = (
         at(0, rows[1]),
         at(1, rows[1]),
@@ -57,14 +57,14 @@ fn inside(columns: u64, rows: u64) -> u64 {
 }
 
 const ALL: u64 = SIDE as u64;
-const FRAME: [u32; 2] = [0, SIDE];
+const FRAME: [f32; 2] = [0.0, SIDE as f32];
 
 /// Columns 0–9 of one quad and 6–15 of another one, eight rows: three regions, and a background that has none. Four samples see the same.
 #[test]
 fn overlapping_quads_make_regions() {
     let gpu = gpu();
-    let left = quad([2.0; 2], [0, 10], [4, 12]);
-    let right = quad([3.0; 2], [6, 16], [4, 12]);
+    let left = quad([2.0; 2], [0.0, 10.0], [4.0, 12.0]);
+    let right = quad([3.0; 2], [6.0, 16.0], [4.0, 12.0]);
     let want = inside(6, 8) + inside(4, 8) + inside(6, 8);
     for samples in [1, 4] {
         let both = vec![object(&left, glass()), object(&right, glass())];
@@ -73,6 +73,26 @@ fn overlapping_quads_make_regions() {
     // Of one object the two outer regions show the same surface; where they overlap it is there twice.
     let one = vec![object(&[left, right].concat(), glass())];
     assert_eq!(pairs(&gpu, one, 1), want);
+    // Two objects that touch.
+    let halves = [[0.0, 8.0], [8.0, 16.0]].map(|columns| quad([2.0; 2], columns, FRAME));
+    let touching = halves.map(|half| object(&half, glass())).to_vec();
+    assert_eq!(pairs(&gpu, touching, 1), 2 * inside(8, ALL));
+}
+
+/// One object on the left of the middle of a column, another one on the right, and below the other way round: two of the column's four samples
+/// show each. The pixels above and below are a pair, because their samples show the same; their sums have the terms in another order.
+#[test]
+fn four_samples_show_the_same_in_any_order() {
+    let gpu = gpu();
+    let (left, right) = ([0.0, 4.5], [4.5, 16.0]);
+    let (above, below) = ([0.0, 8.0], [8.0, 16.0]);
+    let two = |first, second| {
+        let parts = [quad([2.0; 2], first, above), quad([2.0; 2], second, below)];
+        object(&parts.concat(), glass())
+    };
+    let objects = vec![two(left, right), two(right, left)];
+    let want = 2 * (inside(4, 8) + inside(11, 8)) + (ALL - 1);
+    assert_eq!(pairs(&gpu, objects, 4), want);
 }
 
 /// Two quads that cross in the middle: the same surfaces on both sides, in another order. One behind the other there is no border.
@@ -100,8 +120,8 @@ fn the_order_counts() {
 #[test]
 fn the_side_counts() {
     let gpu = gpu();
-    let left = quad([2.0; 2], [0, 8], FRAME);
-    let right = quad([2.0; 2], [8, 16], FRAME);
+    let left = quad([2.0; 2], [0.0, 8.0], FRAME);
+    let right = quad([2.0; 2], [8.0, 16.0], FRAME);
     let one = vec![object(&[left, right].concat(), glass())];
     assert_eq!(pairs(&gpu, one, 1), inside(ALL, ALL));
     let turned = right.map(|[a, b, c]| [a, c, b]);
@@ -114,11 +134,11 @@ fn the_side_counts() {
 fn opacity_does_not_count_and_holes_do() {
     let gpu = gpu();
     let whole = quad([2.0; 2], FRAME, FRAME);
-    let left = quad([3.0; 2], [0, 8], FRAME);
+    let left = quad([3.0; 2], [0.0, 8.0], FRAME);
     let mut shaded = object(
         &[
-            quad([2.0; 2], [0, 8], FRAME),
-            quad([2.0; 2], [8, 16], FRAME),
+            quad([2.0; 2], [0.0, 8.0], FRAME),
+            quad([2.0; 2], [8.0, 16.0], FRAME),
         ]
         .concat(),
         glass(),
@@ -137,11 +157,10 @@ fn opacity_does_not_count_and_holes_do() {
     let through = vec![object(&whole, glass()), wall];
     assert_eq!(pairs(&gpu, through, 1), inside(ALL, ALL));
     // An opaque wall in front of the left half.
-    let front = quad([1.0; 2], [0, 8], FRAME);
-    let hidden = vec![
-        object(&whole, glass()),
-        object(&front, Material::unlit([1.0; 3], 1.0)),
-    ];
+    let mut opaque = Material::unlit([1.0; 3], 1.0);
+    opaque.blend = false;
+    let front = object(&quad([1.0; 2], [0.0, 8.0], FRAME), opaque);
+    let hidden = vec![object(&whole, glass()), front];
     assert_eq!(pairs(&gpu, hidden, 1), inside(8, ALL));
 }
 
@@ -150,8 +169,8 @@ fn opacity_does_not_count_and_holes_do() {
 fn bordered() -> Scene {
     let near = object(&quad([2.0; 2], FRAME, FRAME), glass());
     let halves = [
-        quad([3.0; 2], [0, 8], FRAME),
-        quad([3.0; 2], [8, 16], FRAME),
+        quad([3.0; 2], [0.0, 8.0], FRAME),
+        quad([3.0; 2], [8.0, 16.0], FRAME),
     ];
     let mut far = object(&halves.concat(), Material::unlit([1.0; 3], 0.5));
     let mesh = Arc::make_mut(&mut far.mesh);
