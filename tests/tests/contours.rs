@@ -197,7 +197,7 @@ fn benches_count_the_border_of_an_error() {
         frames: 0,
         ..Plan::new([SIDE; 2], &methods)
     };
-    let rows = bench(&gpu, &[scene.clone()], &plan).unwrap();
+    let rows = bench(&gpu, std::slice::from_ref(&scene), &plan).unwrap();
     let found: Vec<_> = rows
         .iter()
         .map(|r| (r.method.as_str(), r.contour_pairs))
