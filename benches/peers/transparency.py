@@ -24,7 +24,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 CAMERA = {"position": [0.0, 0.4, 6.0], "target": [0.0, 0.0, 0.0], "up": [0.0, 1.0, 0.0], "fov_y": 45.0, "near": 0.1, "far": 100.0}
 BACKGROUND = [0.1, 0.2, 0.3]
-OURS = ["abuffer", "linked-list", "dual-peel", "depth-peel", "wboit-eq7", "wboit-eq9", "wboit-eq10", "mboit4", "deep-medium"]
+OURS = ["abuffer", "linked-list", "dual-peel", "depth-peel", "wboit-eq7", "wboit-eq9", "wboit-eq10", "mboit4", "deep-anchored-medium", "deep-medium"]
 PEERS = {"vtk": ["dual depth peeling", "weighted blending"], "pygfx": ["weighted blending"]}
 
 

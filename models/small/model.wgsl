@@ -1,27 +1,35 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
-// Network: 5-8-1 (Relu hidden, Sigmoid last), 57 parameters, 48 multiply-adds. Recipe small, seed 1, 80 epochs.
-// Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
-// Input 0: root_absorbance (root of the rest's absorbance), 0.0 .. 21.672869 in training.
-// Input 1: depth_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
-// Input 2: mean_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
-// Input 3: share_low (of the rest's absorbance), 0.0 .. 1.0 in training.
-// Input 4: share_high (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe small, seed 1, 40 epochs.
+// Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.180164 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
+// Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.5770967 in training.
+// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999871 in training.
+// Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000335, validation 0.000332, test 0.000339.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01790, cups-held 0.01706, foliage-held 0.00944, panes-held 0.00577, sixteen-held 0.01053, smoke-held 0.01513.
-// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(10.836434, 0.5, 0.5, 0.5, 0.5) = 2.9837398e-23
-// Self-test: peelnet_weight(21.672869, 1.0, 1.0, 1.0, 1.0) = 0.0
+// Loss: training 0.000247, validation 0.000245, test 0.000241.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00846, cups-held 0.00518, foliage-held 0.00198, panes-held 0.00059, sixteen-held 0.00182, smoke-held 0.00879.
+// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
+// Self-test: peelnet_weight(7.590082, 0.5, 0.5, 0.5, 0.5, 1.3043636, 0.5002604, 0.49999356, 0.5) = 3.0923538e-13
+// Self-test: peelnet_weight(15.180164, 1.0, 1.0, 1.0, 1.0, 2.5770967, 1.0, 0.9999871, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in both passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta);
-//    moments: rgba16float, cleared to 0, blending ADD, from s.moments
-//    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
-// 2. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, moments, extent).x;
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 1. Pass "range": draw all transparent surfaces, in any order. let r = peelnet_pixel_range(zeta);
+//    range: rg8unorm, cleared to 0, blending MAX, from r
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
+//    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
+//    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
+//    farthest: r16float, cleared to -65504, blending MAX, from s.farthest
+//    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
-// 3. Resolve: peelnet_resolve(sums, moments.x, background) is the colour of the pixel, and its coverage in alpha.
+// 4. Resolve: peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -64,63 +72,6 @@ fn peelnet_absorbance(alpha: f32) -> f32 {
     return -log(max(1.0 - alpha, 1.1253517e-7));
 }
 
-// Fragments of less opacity are composited, but are never a pixel's nearest or farthest.
-const PEELNET_FAINT: f32 = 0.003921569;
-// Levels of depth, less one.
-const PEELNET_TOP: f32 = 61439.0;
-// Bins of depth, and levels of opacity in each, that the nearest and the farthest fragment are kept with.
-const PEELNET_BINS: vec2f = vec2f(240.0, 1920.0);
-const PEELNET_OPACITIES: vec2f = vec2f(256.0, 32.0);
-const PEELNET_OPACITY_STEP: vec2f = 1.0 / (PEELNET_OPACITIES - 1.0);
-
-// Limits of a rest's mean powers. In narrow pixels, the rounding of the ends and of the sums takes the higher powers beyond 1;
-// bounds multiply up to seven of them, which 32 bits hold.
-const PEELNET_MEANS_MAX: vec4f = vec4f(1.0, 65536.0, 65536.0, 65536.0);
-
-struct PeelnetStatistics {
-    // Absorbance b and b zeta, b zeta^2, b zeta^3.
-    moments: vec4f,
-    // Depth of the nearest fragment, its opacity by coarse depth, the farthest's; b zeta^4.
-    extent: vec4f,
-}
-
-// A fragment's place among those of its pixel.
-struct PeelnetPlace {
-    // 1 for the nearest, 2 for the farthest, 0 between them.
-    end: f32,
-    // Absorbance in front as far as it is known: nothing, all others, or the nearest fragment.
-    in_front: f32,
-    // Absorbance of the fragment itself, of the nearest and of the farthest where they are known.
-    taken: vec3f,
-    // zeta of the same.
-    zeta: vec3f,
-}
-
-// The rest of a pixel, seen from a fragment: all fragments but that one and the pixel's known ends. Depths are over the pixel's
-// range, -1 at the nearest and 1 at the farthest fragment.
-struct PeelnetRest {
-    // Root of its absorbance.
-    root_absorbance: f32,
-    // Depth of the fragment.
-    place: f32,
-    // Mean powers 1 to 4 of the rest's depth.
-    means: vec4f,
-    // Pull of the moments towards those of a measure that can be inverted.
-    bias: f32,
-}
-
-fn peelnet_level(zeta: f32) -> f32 {
-    return floor((zeta * 0.5 + 0.5) * PEELNET_TOP + 0.5);
-}
-
-// A fragment's levels as its pixel's nearest and as its farthest: coarse depth, counted from the far end for the nearest,
-// then opacity, even in b / (1 + b), up to b = 16.
-fn peelnet_ends(b: f32, zeta: f32) -> vec2f {
-    let bins = min(floor((zeta * 0.5 + 0.5) * PEELNET_BINS), PEELNET_BINS - 1.0);
-    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
-    return vec2f(PEELNET_BINS.x - 1.0 - bins.x, bins.y) * PEELNET_OPACITIES + opacity;
-}
-
 // The half floats that stand for levels: all normal halves in ascending order, so that MAX blending of 16-bit targets
 // distinguishes 61440 levels. A step of a half's bits is 8192 in those of 32 bits; no step here rounds. No level is in the middle.
 fn peelnet_halves(levels: vec3f) -> vec3f {
@@ -133,87 +84,201 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
     return 30719.5 + sign(halves) * from_middle;
 }
 
-// What a fragment adds to its pixel's statistics.
-fn peelnet_statistics(alpha: f32, zeta: f32) -> PeelnetStatistics {
+// Fragments of less opacity are composited, but are never a slab's nearest or farthest.
+const PEELNET_FAINT: f32 = 0.003921569;
+// Levels of the range of depths, less one.
+const PEELNET_RANGE_TOP: f32 = 255.0;
+// Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
+const PEELNET_BINS: f32 = 1920.0;
+const PEELNET_OPACITIES: f32 = 32.0;
+// What targets of levels are cleared to: the least half.
+const PEELNET_EMPTY: f32 = -65504.0;
+
+// Where in its pixel's slabs a fragment lies.
+struct PeelnetPlace {
+    absorbance: f32,
+    // 0, the nearest, to 3.
+    slab: f32,
+    // In the slab, -1 .. 1.
+    inside: f32,
+    bin: f32,
+    // Levels as the slab's nearest, counted from the far end, and as its farthest.
+    near: f32,
+    far: f32,
+}
+
+// What lies in a fragment's slab besides the fragment and the slab's known ends. Depths are 0 at the nearer and 1 at the farther of the two.
+struct PeelnetBetween {
+    // Absorbance of it.
+    absorbance: f32,
+    // Depth of the fragment.
+    place: f32,
+    // Mean depth of the absorbance; a half where the slab does not keep it.
+    mean: f32,
+    // The least and the most of the absorbance that can lie in front of the fragment, as shares.
+    low: f32,
+    high: f32,
+    // Half of what the two ends are apart, in slabs.
+    extent: f32,
+    // Absorbance of the fragment.
+    own: f32,
+    // Absorbance of the nearer end; 0 where it does not lie in front.
+    nearest: f32,
+}
+
+// What a fragment writes of the pixel's range, into 8 bits under MAX: its level of depth counted from the far end, rounded down, and
+// from the near end, rounded up.
+fn peelnet_pixel_range(zeta: f32) -> vec2f {
+    let level = PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5);
+    return vec2f(PEELNET_RANGE_TOP - floor(level), ceil(level)) / PEELNET_RANGE_TOP;
+}
+
+fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
+    let ends = floor(range * PEELNET_RANGE_TOP + 0.5);
+    let low = PEELNET_RANGE_TOP - ends.x;
+    let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
     let b = peelnet_absorbance(alpha);
-    let square = zeta * zeta;
-    // The nearest is kept as the maximum of levels counted from the far end.
-    let halves = peelnet_halves(vec3f(PEELNET_TOP - peelnet_level(zeta), peelnet_ends(b, zeta)));
-    return PeelnetStatistics(
-        b * vec4f(1.0, zeta, square, square * zeta),
-        vec4f(select(halves, vec3f(-65504.0), alpha < PEELNET_FAINT), b * square * square),
+    // Borders at 0.2, 0.5 and 0.8.
+    let far_half = t >= 0.5;
+    let second = select(t >= 0.2, t >= 0.8, far_half);
+    let slab = select(0.0, 2.0, far_half) + select(0.0, 1.0, second);
+    let begin = select(select(0.0, 0.2, second), select(0.5, 0.8, second), far_half);
+    let end = select(select(0.2, 0.5, second), select(0.8, 1.0, second), far_half);
+    let inside = (t - begin) / (end - begin);
+    let bin = min(floor(inside * PEELNET_BINS), PEELNET_BINS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
+    let near = (PEELNET_BINS - 1.0 - bin) * PEELNET_OPACITIES + opacity;
+    return PeelnetPlace(b, slab, 2.0 * inside - 1.0, bin, near, bin * PEELNET_OPACITIES + opacity);
+}
+
+// The absorbance that a level stands for.
+fn peelnet_absorbance_of(level: f32) -> f32 {
+    let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
+    return share / (1.0625 - share);
+}
+
+// The depth in a slab in the middle of a bin.
+fn peelnet_middle_of(bin: f32) -> f32 {
+    return (bin + 0.5) * (2.0 / PEELNET_BINS) - 1.0;
+}
+
+// A slab's channel. Not by products: sums of 16 bits may be infinite.
+fn peelnet_of_slab(values: vec4f, slab: f32) -> f32 {
+    return select(select(values.x, values.y, slab == 1.0), select(values.z, values.w, slab == 3.0), slab >= 2.0);
+}
+
+fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
+    return vec4f(
+        select(elsewhere, value, slab == 0.0),
+        select(elsewhere, value, slab == 1.0),
+        select(elsewhere, value, slab == 2.0),
+        select(elsewhere, value, slab == 3.0),
     );
 }
 
-fn peelnet_place(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> PeelnetPlace {
-    let b = peelnet_absorbance(alpha);
-    let level = peelnet_level(zeta);
-    let levels = peelnet_levels(extent.xyz);
-    let first = PEELNET_TOP - levels.x;
-    let ends = levels.yz;
-    let own = peelnet_ends(b, zeta);
-    // Two passes may round one zeta to neighbouring levels.
-    let at_end = select(select(0.0, 2.0, own.y == ends.y), 1.0, level <= first + 1.0);
-    let end = select(at_end, 0.0, alpha < PEELNET_FAINT);
-    let bins = floor(ends / PEELNET_OPACITIES);
-    let share = (ends - bins * PEELNET_OPACITIES) * PEELNET_OPACITY_STEP;
-    let known = share / (1.0625 - share);
-    // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a more
-    // opaque one in the same bin), stays with the rest.
-    let nearest = select(0.0, known.x, level > first && own.x != ends.x);
-    let farthest = select(0.0, known.y, own.y < ends.y);
-    let others = max(moments.x - b, 0.0);
-    return PeelnetPlace(
-        end,
-        select(select(nearest, others, end == 2.0), 0.0, end == 1.0),
-        vec3f(b, nearest, farthest),
-        vec3f(zeta, first * (2.0 / PEELNET_TOP) - 1.0, (bins.y + 0.5) * (2.0 / PEELNET_BINS.y) - 1.0),
-    );
+// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none. keeps_mean: whether first is kept.
+fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
+    let b = place.absorbance;
+    let others = max(total - b, 0.0);
+    // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
+    let noise = max(total * 0.0009765625, 1e-6);
+    let near_back = floor(levels.x / PEELNET_OPACITIES);
+    let near_bin = PEELNET_BINS - 1.0 - near_back;
+    let near_level = levels.x + (near_bin - near_back) * PEELNET_OPACITIES;
+    let known = peelnet_absorbance_of(levels.x);
+    // All others, as far as the level's rounding and the sum's can tell.
+    let step = 0.6 / (PEELNET_OPACITIES - 1.0);
+    let all = known > others - (step * (1.0 + known) * (1.0 + known) + noise);
+    let near = select(select(known, others, all), 0.0, near_bin > place.bin);
+    let far_bin = floor(levels.y / PEELNET_OPACITIES);
+    let is_one = levels.y == near_level || levels.y < 0.0;
+    let far = select(peelnet_absorbance_of(levels.y), 0.0, is_one || far_bin < place.bin);
+    var begin = peelnet_middle_of(near_bin);
+    var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
+    let rest = total - b - near - far;
+    let moment = first - b * place.inside - near * begin - far * end;
+    begin = select(begin, -1.0, begin > place.inside);
+    end = select(end, 1.0, end < place.inside);
+    let extent = max(end - begin, 2.0 / PEELNET_BINS);
+    let x = clamp((place.inside - begin) / extent, 0.0, 1.0);
+    let depth = clamp(moment / max(rest, noise), begin, end);
+    let mean = select(0.5, clamp((depth - begin) / extent, 0.0, 1.0), keeps_mean);
+    // Markov's bounds of the share in front.
+    let before = x < mean;
+    let low = select((x - mean) / max(x, 1e-6), 0.0, before || !keeps_mean);
+    let high = select(1.0, (1.0 - mean) / max(1.0 - x, 1e-6), before && keeps_mean);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
 }
 
-fn peelnet_rest(place: PeelnetPlace, moments: vec4f, extent: vec4f) -> PeelnetRest {
-    let z = place.zeta;
-    let square = z * z;
-    let left = moments - vec4f(
-        place.taken.x + place.taken.y + place.taken.z,
-        dot(place.taken, z),
-        dot(place.taken, square),
-        dot(place.taken, square * z),
-    );
-    let absorbance = max(left.x, 0.0);
-    // Where the rest is no more than the rounding of 16-bit sums, its moments are noise.
-    let inverse_total = 1.0 / max(max(absorbance, moments.x * 0.0009765625), 1e-6);
-    let mean = vec4f(left.yzw, extent.w - dot(place.taken, square * square)) * inverse_total;
-    // Moments over the pixel's range as -1 .. 1: of (zeta - middle) * scale.
-    let middle = 0.5 * (z.y + z.z);
-    let scale = 2.0 / max(z.z - z.y, 2.0 / PEELNET_TOP);
-    let scale_square = scale * scale;
-    let means = vec4f(
-        (mean.x - middle) * scale,
-        (mean.y - middle * (2.0 * mean.x - middle)) * scale_square,
-        (mean.z - middle * (3.0 * mean.y - middle * (3.0 * mean.x - middle))) * scale * scale_square,
-        (mean.w - middle * (4.0 * mean.z - middle * (6.0 * mean.y - middle * (4.0 * mean.x - middle)))) * scale_square * scale_square,
-    );
-    return PeelnetRest(
-        sqrt(absorbance),
-        clamp((z.x - middle) * scale, -1.0, 1.0),
-        clamp(means, -PEELNET_MEANS_MAX, PEELNET_MEANS_MAX),
-        // Moved to a narrow pixel's range, moments lose their last bits.
-        min(0.0009765625 + scale_square * scale_square * 0.0000152587890625, 0.25),
-    );
-}
-
-// The weight of a fragment, and its end (see PeelnetPlace). The network's answer is not used for the ends, whose weights are known.
-// No branch around it: neighbouring fragments rarely all lie at an end, and then it only costs.
-fn peelnet_fragment(alpha: f32, zeta: f32, moments: vec4f, extent: vec4f) -> vec2f {
+// The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
+// nearest, farthest: by slab. keeps: how many of the nearer slabs keep a mean depth and a farthest fragment.
+fn peelnet_weigh(
+    place: PeelnetPlace,
+    counts: bool,
+    absorbances: vec4f,
+    firsts: vec4f,
+    nearest: vec4f,
+    farthest: vec4f,
+    keeps: vec2f,
+) -> vec2f {
     // Sums of 16-bit targets may become infinite.
-    let finite_moments = clamp(moments, vec4f(-65504.0), vec4f(65504.0));
-    let finite_extent = vec4f(extent.xyz, min(extent.w, 65504.0));
-    let place = peelnet_place(alpha, zeta, finite_moments, finite_extent);
-    let rest = peelnet_rest(place, finite_moments, finite_extent);
-    let share = peelnet_network(rest);
-    let between = select(rest.root_absorbance * rest.root_absorbance * share, 0.0, place.end > 0.0);
-    return vec2f(exp(-(place.in_front + between)), place.end);
+    let sums = min(absorbances, vec4f(65504.0));
+    let total = peelnet_of_slab(sums, place.slab);
+    let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
+    let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
+    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < keeps.y);
+    let before = select(0.0, sums.x, place.slab > 0.0)
+        + select(0.0, sums.y, place.slab > 1.0)
+        + select(0.0, sums.z, place.slab > 2.0);
+    let is_near = counts && place.near == levels.x;
+    let is_far = counts && place.far == levels.y && !is_near;
+    let known = is_near || is_far;
+    // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
+    let between = peelnet_between(place, total, first, levels, place.slab < keeps.x);
+    let share = between.low + (between.high - between.low) * peelnet_network(between);
+    let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
+    let inside = select(between.nearest + between.absorbance * share, at_end, known);
+    // The nearest fragment's weight is 1: their sum cannot vanish.
+    return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
+}
+
+struct PeelnetStatistics {
+    // Absorbance of each slab.
+    absorbances: vec4f,
+    // Levels of the slabs' nearest fragments, and of the farthest of the nearest slab.
+    nearest: vec4f,
+    farthest: f32,
+    // Absorbance times depth in the slab, of the two nearer slabs.
+    firsts: vec2f,
+}
+
+// What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
+fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, zeta, range);
+    let levels = peelnet_halves(vec3f(place.near, place.far, place.far)).xy;
+    let halves = select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
+    return PeelnetStatistics(
+        peelnet_in_slab(place.absorbance, place.slab, 0.0),
+        peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY),
+        select(halves.y, PEELNET_EMPTY, place.slab > 0.0),
+        peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0).xy,
+    );
+}
+
+// The weight of a fragment, and whether it is known without the network.
+fn peelnet_fragment(
+    alpha: f32,
+    zeta: f32,
+    range: vec2f,
+    absorbances: vec4f,
+    nearest: vec4f,
+    farthest: f32,
+    firsts: vec2f,
+) -> vec2f {
+    let place = peelnet_place(alpha, zeta, range);
+    let last = vec4f(farthest, vec3f(PEELNET_EMPTY));
+    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, vec4f(firsts, 0.0, 0.0), nearest, last, vec2f(2.0, 1.0));
 }
 
 // The colour and coverage of a pixel with 16-bit sums, which may become infinite. absorbance: the pixel's total.
@@ -229,65 +294,41 @@ fn peelnet_composite(sums: vec4f, coverage: f32, transmittance: vec3f, backgroun
     return vec4f(average * coverage + background * transmittance, coverage);
 }
 
-// The least and the most of the rest that can lie in front of the fragment, given its first four moments, as shares
-// (Muenstermann et al. 2018).
-fn peelnet_moment_bounds(rest: PeelnetRest) -> vec2f {
-    let x = rest.place;
-    let m = mix(rest.means, vec4f(0.0, 0.375, 0.0, 0.375), rest.bias);
-    // The kernel polynomial from the factors L D of the Hankel matrix, times all denominators: only its roots matter, and
-    // its value at x, which is one over what lies at x itself.
-    let variance = m.y - m.x * m.x;
-    let third = m.z - m.x * m.y;
-    let d = variance * (m.w - m.y * m.y) - third * third;
-    let linear = x - m.x;
-    let quadratic = (x * x - m.y) * variance - third * linear;
-    let determinant = variance * d;
-    let kc = quadratic * variance;
-    let kb = linear * d - third * quadratic;
-    let ka = determinant - m.x * kb - m.y * kc;
-    // Divisors are kept from 0, and shares of noise from infinity: no real pixel has such.
-    let whole = determinant + linear * linear * d + quadratic * quadratic;
-    let own = clamp(determinant / select(whole, 1e-20, abs(whole) < 1e-20), -1e4, 1e4);
-    // Its roots are the extreme measure's other points: the smaller one, and one over the larger, which may be infinite.
-    let half = 0.5 * kb;
-    let root = sqrt(max(half * half - ka * kc, 0.0));
-    let inverse = select(1.0, -1.0, half >= 0.0) / max(abs(half) + root, 1e-20);
-    let p = ka * inverse;
-    let q = kc * inverse;
-    // What lies at either.
-    let apart = 1.0 - p * q;
-    let at_p = clamp((1.0 - own - q * (m.x - own * x)) / select(apart, 1e-20, apart == 0.0), -1e4, 1e4);
-    let at_q = 1.0 - own - at_p;
-    let low = select(0.0, at_p, p < x) + select(0.0, at_q, (1.0 - x * q) * q < 0.0);
-    return clamp(vec2f(low, low + own), vec2f(0.0), vec2f(1.0));
-}
-
 // The network's answer for what is known of a fragment.
-fn peelnet_network(rest: PeelnetRest) -> f32 {
-    let bounds = peelnet_moment_bounds(rest);
+fn peelnet_network(between: PeelnetBetween) -> f32 {
     return peelnet_share(
-        rest.root_absorbance, 0.5 * rest.place + 0.5, 0.5 * rest.means.x + 0.5, bounds.x, bounds.y);
+        sqrt(between.absorbance), between.place, between.mean, between.low, between.high, sqrt(between.own), between.extent, between.absorbance / (between.absorbance + between.own + 1e-6), between.absorbance / (between.absorbance + between.nearest + 1e-6));
 }
 
-// The share of the rest's absorbance that lies in front, for inputs as peelnet_network evaluates them.
-fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
+// Where between its bounds the share of the absorbance lies that is in front, for inputs as peelnet_network evaluates them.
+fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
-    let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(1.1047144, 1.849467, 3.5545483, 2.0796857)
-        + mat4x4f(vec4f(-0.12509356, -0.27134025, 0.075288974, 0.016902275), vec4f(-2.9145207, -0.025625823, 6.2353363, 1.2241778), vec4f(3.008156, -2.4777772, -8.993284, -1.8112226), vec4f(9.307116, -1.7964908, 4.3009157, -8.272783)) * input_a
-        + vec4f(-1.2236272, 1.9222177, -10.95059, -3.7833261) * input_b.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(1.1297419, 0.39706963, 2.291806, 4.6951375)
-        + mat4x4f(vec4f(-0.036108997, 0.009941574, -0.037984435, -0.11034864), vec4f(-0.123014845, -9.519223, -1.2102827, -2.6268826), vec4f(-1.6250517, 0.17467181, -0.5107002, 3.9925249), vec4f(8.911847, -0.42574108, 5.523802, 1.2091862)) * input_a
-        + vec4f(-0.8865982, -0.08184909, -10.109496, -4.2235417) * input_b.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.04898545
-        + dot(vec4f(1.1670002, 0.15222679, 1.1740011, -1.21545), layer_a_a)
-        + dot(vec4f(-0.70567125, -2.6497583, -1.2541972, -0.7573858), layer_a_b)), 80.0)));
+    let input_b = vec4f(share_high, root_own, half_extent, of_own);
+    let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
+    let layer_a_a = max(vec4f(4.3870378, -3.1481946, 1.5653112, -2.5486934)
+        + mat4x4f(vec4f(-0.038064614, 0.12956722, -0.08249069, 0.049593743), vec4f(-2.184074, 0.6528872, -1.3558904, -0.6549371), vec4f(-1.4434578, 1.139601, 1.7173859, 2.5406518), vec4f(-3.7199156, 2.5418758, -10.912024, 3.452518)) * input_a
+        + mat4x4f(vec4f(-1.6210166, 3.6434636, -0.65800446, 2.1116688), vec4f(-0.38880306, 0.118607946, -0.25735825, 0.19663239), vec4f(0.052811857, -0.15819192, -1.5049752, 1.2155893), vec4f(-1.580114, -3.374838, -0.74399984, 2.5298684)) * input_b
+        + vec4f(-0.5954277, -0.11943602, 2.329258, -4.001528) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-5.9745197, -1.6991844, -1.3599768, 0.4069477)
+        + mat4x4f(vec4f(0.044722382, 0.08503355, -0.01799365, -0.022890177), vec4f(-2.3838089, 2.6616993, -3.9467218, 1.8633987), vec4f(-2.9856226, -0.15495747, 0.2751188, -2.278127), vec4f(0.73235846, 2.0453978, -0.76937807, -2.0170515)) * input_a
+        + mat4x4f(vec4f(4.036189, 2.605808, 0.22241142, -3.1245074), vec4f(0.62820494, -1.0188459, -0.23284175, -0.21839812), vec4f(-0.77978075, 0.96719825, -0.11354484, 0.33448932), vec4f(3.728693, -0.54611695, -0.9326957, 2.9692254)) * input_b
+        + vec4f(2.736754, -3.2759714, 3.057637, 1.4938148) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(1.1436791, -4.1215615, -5.1410356, -1.0105362)
+        + mat4x4f(vec4f(-0.045621857, 0.25930724, 0.19910528, 0.15113552), vec4f(-1.060544, -0.34296924, -0.9857747, -1.361313), vec4f(1.6615076, -5.146176, -2.0010464, 4.895669), vec4f(-5.948301, 1.3800168, -4.703556, -2.0764382)) * input_a
+        + mat4x4f(vec4f(0.23972362, 8.569383, 1.0412949, -5.509027), vec4f(0.64394176, -0.9237976, 0.78712654, -0.39736125), vec4f(0.14208785, -0.82956916, 1.5373014, 0.84947807), vec4f(-2.3245783, -2.7879527, 3.3806367, 2.2628253)) * input_b
+        + vec4f(-1.3399414, 1.5530819, -0.2107958, 1.6529081) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.12162175
+        + dot(vec4f(-1.8707377, 1.610801, -0.6729792, -0.62036836), layer_a_a)
+        + dot(vec4f(-0.4898581, 1.1253816, -2.5672278, 0.6794554), layer_a_b)
+        + dot(vec4f(-1.3401008, 0.9113712, -0.4494747, -0.50378335), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
 // Its transmittance, for any finite inputs.
-fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
+fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
-    return exp(-root * root * peelnet_share(
-        clamp(root_absorbance, -47025.832, 47039.44), clamp(depth_fraction, -2908.215, 2909.2307), clamp(mean_fraction, -1233.0591, 1234.0698), clamp(share_low, -2971.1763, 2971.7954), clamp(share_high, -2989.8162, 2991.2053)));
+    let share = peelnet_share(
+        clamp(root_absorbance, -28012.893, 28020.299), clamp(depth_fraction, -2979.964, 2980.988), clamp(mean_fraction, -1075.4502, 1076.4526), clamp(share_low, -1754.4419, 1754.6035), clamp(share_high, -1783.6151, 1785.4525), clamp(root_own, -5827.6797, 5829.3086), clamp(half_extent, -1524.9297, 1526.7095), clamp(of_own, -2095.4434, 2097.184), clamp(of_nearest, -2089.3865, 2091.1277));
+    let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
+    return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -203,7 +203,7 @@ fn links_lead_somewhere() {
 const HELD_OUT: &str = "docs/results/llvmpipe-epyc-2cores/held-out";
 
 /// The methods that the table of docs/benchmarks.md shows of it.
-const SHOWN: [&str; 30] = [
+const SHOWN: [&str; 34] = [
     "abuffer",
     "linked-list",
     "painter-triangle",
@@ -227,13 +227,17 @@ const SHOWN: [&str; 30] = [
     "nmt",
     "dfaoit",
     "deep-thesis",
+    "slabs",
     "deep-small",
-    "deep-small:targets=f32",
     "deep-medium",
-    "deep-medium:targets=f32",
+    "deep-medium:range=frame",
     "deep-medium:scale=0.5",
     "deep-large",
-    "deep-large:targets=f16",
+    "deep-large:range=frame",
+    "deep-anchored-small",
+    "deep-anchored-small:targets=f32",
+    "deep-anchored-medium",
+    "deep-anchored-medium:targets=f32",
 ];
 
 /// The part of a page between its marks.

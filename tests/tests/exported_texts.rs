@@ -18,7 +18,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const ANCHORED: [Recipe; 3] = [Recipe::SMALL, Recipe::MEDIUM, Recipe::LARGE];
+const ANCHORED: [Recipe; 2] = [Recipe::ANCHORED_SMALL, Recipe::ANCHORED_MEDIUM];
 
 fn text(model: &Model) -> String {
     peelnet_export::wgsl(model, &Default::default()).unwrap()
@@ -146,8 +146,8 @@ fn resolves_are_those_of_the_core() {
     let background = [0.3, 0.5, 0.7];
     for absorbance in [0.0f32, 1e-6, 0.2, 3.0, 40.0] {
         let t = f64::from((-absorbance).exp());
-        for recipe in [Recipe::SMALL, Recipe::MEDIUM] {
-            let separate = recipe == Recipe::MEDIUM;
+        for recipe in ANCHORED {
+            let separate = recipe == Recipe::ANCHORED_MEDIUM;
             let ends = if separate { "b, " } else { "" };
             let got = evaluate_text(
                 &gpu,

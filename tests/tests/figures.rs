@@ -59,7 +59,7 @@ const DEFINITIONS: &[(&str, &str, &str)] = &[
     ),
     (
         "docs/learned-weights.md",
-        "**Moments as features.**",
+        "`anchored-small` and `anchored-medium` need",
         "a published constant",
     ),
     (
@@ -75,11 +75,6 @@ const DEFINITIONS: &[(&str, &str, &str)] = &[
     (
         "docs/learned-weights.md",
         "- Without the known ends",
-        "networks that were not kept, as the page says",
-    ),
-    (
-        "docs/learned-weights.md",
-        "- Skewness and standard",
         "networks that were not kept, as the page says",
     ),
     ("docs/limits.md", "SIGINT (Ctrl-C)", "a limit"),

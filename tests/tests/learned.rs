@@ -4,12 +4,19 @@
 
 use peelnet_core::{fragment::Fragment, methods::over, random::Random};
 use peelnet_gpu::Gpu;
-use peelnet_model::{Model, Recipe};
+use peelnet_model::{Inputs, Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Material, Scene, Texture, suite};
 use peelnet_tests::{gpu, shipped, walls};
 
-const ANCHORED: [Recipe; 3] = [Recipe::SMALL, Recipe::MEDIUM, Recipe::LARGE];
+/// Ours. All know a pixel's nearest and farthest fragment.
+const LEARNED: [Recipe; 5] = [
+    Recipe::SMALL,
+    Recipe::MEDIUM,
+    Recipe::LARGE,
+    Recipe::ANCHORED_SMALL,
+    Recipe::ANCHORED_MEDIUM,
+];
 
 fn learned(model: &Model) -> LearnedWeight {
     LearnedWeight {
@@ -18,13 +25,21 @@ fn learned(model: &Model) -> LearnedWeight {
     }
 }
 
-/// Both precisions of a learned method's targets.
-fn specs(recipe: Recipe) -> [MethodSpec; 2] {
-    ["f16", "f32"].map(|targets| {
-        format!("{}:targets={targets}", recipe.method)
-            .parse()
-            .unwrap()
-    })
+/// A learned method in every precision that its targets have.
+fn specs(recipe: Recipe) -> Vec<MethodSpec> {
+    let name = recipe.method;
+    let precisions = ["f16", "f32"].map(|targets| format!("{name}:targets={targets}").parse().ok());
+    let all: Vec<MethodSpec> = precisions.into_iter().flatten().collect();
+    if all.is_empty() {
+        vec![name.parse().unwrap()]
+    } else {
+        all
+    }
+}
+
+/// Whether a method's sums have 16 bits.
+fn in_halves(spec: &MethodSpec) -> bool {
+    !spec.to_string().ends_with("f32")
 }
 
 fn draw(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, model: &Model, size: [u32; 2]) -> Image {
@@ -87,16 +102,16 @@ fn few_layers_are_exact() {
         stack([(1.0, 0.3), (4.0, 0.6), (9.0, 0.8)]),
         stack([(0.1, 0.9), (0.2, 0.05), (5000.0, 0.99)]),
     ];
-    for recipe in ANCHORED {
+    for recipe in LEARNED {
         let model = shipped(recipe);
         for fragments in &cases {
-            if fragments.len() > 2 && recipe == Recipe::SMALL {
+            if fragments.len() > 2 && recipe == Recipe::ANCHORED_SMALL {
                 continue;
             }
             let exact = over::composite(fragments, c0);
             for spec in specs(recipe) {
                 let image = draw(&gpu, &walls(fragments, c0), &spec, &model, [3, 2]);
-                let rounding = if spec.to_string().ends_with("f16") {
+                let rounding = if in_halves(&spec) {
                     HALF
                 } else {
                     1.0 / f64::from(1 << 20)
@@ -123,7 +138,7 @@ fn few_layers_are_exact() {
 fn the_ends_are_recognised() {
     let gpu = gpu();
     let c0 = [0.0; 3];
-    for recipe in ANCHORED {
+    for recipe in LEARNED {
         let model = shipped(recipe);
         for reversed in [false, true] {
             // Red in front, white behind, forty green ones between them, from the far end of the range to the near one.
@@ -141,8 +156,11 @@ fn the_ends_are_recognised() {
                 let p = image.pixels[0];
                 // Forty roundings of halves where the ends are normalised with the rest; without the anchors red and blue
                 // are off by a third.
+                // The last slab keeps no farthest fragment: it is guessed.
                 for k in [0, 2] {
-                    let bound = 0.02f32.max(44.0 * HALF as f32) * exact[k].max(0.25);
+                    let in_slabs = matches!(recipe.inputs, Inputs::Slabs(..));
+                    let guessed = if k == 2 && in_slabs { 0.04 } else { 0.02 };
+                    let bound = f32::max(guessed, 44.0 * HALF as f32) * exact[k].max(0.25);
                     assert!(
                         (p[k] - exact[k]).abs() <= bound,
                         "{spec}: {p:?} for {exact:?}"
@@ -152,7 +170,7 @@ fn the_ends_are_recognised() {
                 // 42 terms in halves err by as many roundings towards zero, of colours and of weights, and those of absorbance by as
                 // many of 3.2, times the transmittance.
                 let (shown, covered) = (p[0] + p[1] + p[2], exact[0] + exact[1] + exact[2]);
-                let rounding = if spec.to_string().ends_with("f16") {
+                let rounding = if in_halves(&spec) {
                     2.0 * HALF as f32
                 } else {
                     2.0 * f32::EPSILON
@@ -180,7 +198,7 @@ fn scale_changes_nothing_visible() {
     for file in ["boxes-held", "foliage-held", "panes-held"] {
         let base = suite::load(file).unwrap();
         let exact = draw_exact(&gpu, &base);
-        for recipe in ANCHORED {
+        for recipe in LEARNED {
             let model = shipped(recipe);
             for spec in &specs(recipe) {
                 let reference = draw(&gpu, &base, spec, &model, [256, 192]);
@@ -239,7 +257,7 @@ fn every_pixel_is_finite() {
     let mut scenes: Vec<Scene> = stacks.iter().map(|f| walls(f, [0.1, 0.2, 0.3])).collect();
     scenes.extend(suite::load_all().unwrap());
     for scene in &scenes {
-        for recipe in ANCHORED {
+        for recipe in LEARNED {
             let model = shipped(recipe);
             for spec in specs(recipe) {
                 let image = draw(&gpu, scene, &spec, &model, [48, 36]);
@@ -265,9 +283,11 @@ fn every_pixel_is_finite() {
 #[test]
 fn shipped_networks_are_as_small_as_they_say() {
     for (recipe, most) in [
-        (Recipe::SMALL, 80),
+        (Recipe::SMALL, 150),
         (Recipe::MEDIUM, 150),
-        (Recipe::LARGE, 300),
+        (Recipe::LARGE, 200),
+        (Recipe::ANCHORED_SMALL, 80),
+        (Recipe::ANCHORED_MEDIUM, 150),
     ] {
         let parameters = shipped(recipe).mlp.parameters();
         assert!(parameters <= most, "{recipe}: {parameters}");
@@ -296,7 +316,7 @@ fn a_surface_with_an_image_or_of_stained_glass_is_exact() {
     mapped.maps.nearest = true;
     let mut glass = Material::unlit([0.2, 0.1, 0.3], 0.8);
     glass.transmission = [0.9, 0.5, 0.1];
-    for recipe in ANCHORED {
+    for recipe in LEARNED {
         let model = shipped(recipe);
         for spec in specs(recipe) {
             for material in [&mapped, &glass] {

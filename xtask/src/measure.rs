@@ -69,7 +69,7 @@ const VALIDATION: &str = "<validation>";
 const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-random-color"];
 
 /// One or two of each family: sixty frames of sixty settings would take an hour.
-const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-small,deep-medium,deep-large";
+const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large";
 
 const BENCH_FILES: &[&str] = &[
     "results.json",

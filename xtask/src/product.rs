@@ -44,11 +44,13 @@ pub fn peers() -> Result<(), String> {
 }
 
 /// The recipes, each with the budget that `search` chose where it is not the recipe's own. All learn from the same data.
-const RECIPES: [(&str, &[&str]); 6] = [
+const RECIPES: [(&str, &[&str]); 8] = [
     // The recipe's own are shorter, for networks of one's own scenes in a minute.
-    ("small", &["--lr", "0.016", "--epochs", "80"]),
-    ("medium", &["--lr", "0.016", "--epochs", "80"]),
-    ("large", &["--lr", "0.016", "--epochs", "40"]),
+    ("small", &["--epochs", "40"]),
+    ("medium", &["--epochs", "80"]),
+    ("large", &["--epochs", "80"]),
+    ("anchored-small", &["--lr", "0.016", "--epochs", "80"]),
+    ("anchored-medium", &["--lr", "0.016", "--epochs", "80"]),
     ("nmt", &["--max-rows", "6000000"]),
     ("dfaoit", &[]),
     // The recipe's own are the thesis's published settings, which `peelnet run` repeats.
@@ -74,50 +76,74 @@ const SEARCH: &str = "docs/results/llvmpipe-epyc-2cores/search";
 /// Rows that a search uses of its datasets, at most.
 const SEARCH_ROWS: &str = "1200000";
 
-/// Trains every recipe with each point of a grid of rates and numbers of epochs, and writes what each gave on scenes and synthetic worlds
-/// that it was not trained on.
-pub fn search() -> Result<(), String> {
-    ensure_driver()?;
-    let program = build()?;
-    let step = |args: &[&str]| {
-        println!("\n== peelnet {}", args.join(" "));
-        run(Command::new(&program).args(args), args[0])
-    };
-    let _ = std::fs::remove_dir_all(root().join("out/search"));
-    let lists = |seed: &str, lists: &str, out: &str| {
-        step(&[
+/// Scenes of the search: those that are trained on, and every fourth, that choices are made by. Held-out scenes choose nothing.
+fn search_scenes() -> Result<[Vec<String>; 2], String> {
+    let all = scene_files()?;
+    let all = all.into_iter().filter(|s| !s.ends_with("-held.toml"));
+    let (validation, training): (Vec<_>, Vec<_>) = all.enumerate().partition(|(k, _)| k % 4 == 3);
+    Ok([training, validation].map(|list| list.into_iter().map(|(_, scene)| scene).collect()))
+}
+
+fn step(program: &Path, args: &[&str]) -> Result<(), String> {
+    println!("\n== peelnet {}", args.join(" "));
+    run(Command::new(program).args(args), args[0])
+}
+
+/// Synthetic lists and peeled scenes for a search.
+fn search_data(
+    program: &Path,
+    [seed, lists]: [&str; 2],
+    scenes: &[String],
+    [synthetic, peeled]: [&str; 2],
+) -> Result<(), String> {
+    step(
+        program,
+        &[
             "extract",
             "--synthetic",
             lists,
             "--seed",
             seed,
             "--out",
-            out,
-        ])
-    };
-    let [synthetic, others] = ["out/search/synthetic", "out/search/synthetic-others"];
-    lists("1", "204800", synthetic)?;
-    lists("2", "51200", others)?;
-    let scenes = scene_files()?;
-    let scenes: Vec<&str> = scenes
-        .iter()
-        .map(String::as_str)
-        .filter(|s| !s.ends_with("-held.toml"))
-        .collect();
-    // Every fourth scene is validated on.
-    let peel = |validation: bool, out: &str| {
-        let chosen = scenes.iter().enumerate();
-        let chosen = chosen.filter(|(k, _)| (k % 4 == 3) == validation);
-        let mut args = vec!["extract"];
-        args.extend(chosen.map(|(_, scene)| scene));
-        args.extend(["--size", "128x96", "--augment", "3", "--pixels", "0.25"]);
-        args.extend(["--out", out]);
-        step(&args)
-    };
-    let [peeled, unseen] = ["out/search/peeled", "out/search/peeled-others"];
-    peel(false, peeled)?;
-    peel(true, unseen)?;
-    let [training, validation] = [[synthetic, peeled], [others, unseen]].map(|d| d.join(","));
+            synthetic,
+        ],
+    )?;
+    let mut args = vec!["extract"];
+    args.extend(scenes.iter().map(String::as_str));
+    args.extend(["--size", "128x96", "--augment", "3", "--pixels", "0.25"]);
+    args.extend(["--out", peeled]);
+    step(program, &args)
+}
+
+/// Where the datasets that a search learns from lie.
+const SEARCH_DATA: [&str; 2] = ["out/search/synthetic", "out/search/peeled"];
+
+/// Compares designs of slabs, on the data and scenes of the search.
+pub fn designs() -> Result<(), String> {
+    ensure_driver()?;
+    let program = build()?;
+    let _ = std::fs::remove_dir_all(root().join("out/search"));
+    let [training, validation] = search_scenes()?;
+    search_data(&program, ["1", "204800"], &training, SEARCH_DATA)?;
+    let data = SEARCH_DATA.join(",");
+    let mut args = vec!["bench"];
+    args.extend(validation.iter().map(String::as_str));
+    args.extend(["--designs", &data, "--max-rows", SEARCH_ROWS]);
+    args.extend(["--size", "256x192", "--out", SEARCH]);
+    step(&program, &args)
+}
+
+/// Trains every recipe with each point of a grid of rates and numbers of epochs, and writes what each gave on scenes and synthetic worlds
+/// that it was not trained on.
+pub fn search() -> Result<(), String> {
+    ensure_driver()?;
+    let program = build()?;
+    let _ = std::fs::remove_dir_all(root().join("out/search"));
+    let [known, unseen] = search_scenes()?;
+    let others = ["out/search/synthetic-others", "out/search/peeled-others"];
+    search_data(&program, ["1", "204800"], &known, SEARCH_DATA)?;
+    search_data(&program, ["2", "51200"], &unseen, others)?;
+    let [training, validation] = [SEARCH_DATA, others].map(|d| d.join(","));
     let mut command = cargo();
     command.args([
         "run",

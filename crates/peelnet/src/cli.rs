@@ -360,6 +360,7 @@ pub enum LayersChoice {
   peelnet bench --effects --out out/effects
   peelnet bench --path sixteen-050 --size 512x384 --methods painter-object,wboit-eq9,deep-medium --out out/path
   peelnet bench --training out/synthetic data/scenes/*-held.toml --out out/training
+  peelnet bench --designs out/synthetic sixteen-050 --size 256x192 --out out/designs
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
 DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. Learned methods use the shipped models unless --models
@@ -382,6 +383,16 @@ pub struct BenchArgs {
     /// and epochs
     #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "methods", "models", "frames", "resume"])]
     pub training: Vec<PathBuf>,
+    /// Instead of methods: train the network of each design of slabs on these datasets, and measure its error on the scenes, which the
+    /// datasets must not hold
+    #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "effects", "training", "methods", "models", "frames", "resume", "redraw", "path", "samples"])]
+    pub designs: Vec<PathBuf>,
+    /// The designs of --designs, TOML [default: the shipped data/designs.toml]
+    #[arg(long, value_name = "FILE", requires = "designs")]
+    pub designs_file: Option<PathBuf>,
+    /// Rows of the datasets that --designs uses at most, drawn by whole pixels; more need more memory [default: 33554432, about 4 GiB]
+    #[arg(long, value_name = "N", requires = "designs", value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_rows: Option<u64>,
     /// Measure nothing; write report, charts and tables again from DIR/results.json
     #[arg(long, conflicts_with_all = ["scenes", "scaling", "training"])]
     pub redraw: bool,
@@ -551,6 +562,7 @@ mod tests {
             "bench --scaling --out d",
             "bench --redraw --out d",
             "bench --training d,e s --out o --size 64x48",
+            "bench --designs d,e s --out o --designs-file f.toml --max-rows 1000",
             "bench s --out d --resume",
             "stress --methods mboit4,deep-small --models m --json",
             "stress --model m --cases deep --out d",

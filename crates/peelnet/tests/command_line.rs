@@ -226,7 +226,8 @@ fn broken_datasets(folder: &Path) {
 
 /// Model files: one cut off, one with a shape in its header that the weights do not have.
 fn broken_models(folder: &Path) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/small/model.safetensors");
+    let root =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/anchored-small/model.safetensors");
     let mut model = std::fs::read(root).unwrap();
     let half = model.len() / 2;
     std::fs::write(folder.join("cut.safetensors"), &model[..half]).unwrap();

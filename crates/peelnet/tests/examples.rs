@@ -114,7 +114,7 @@ fn an_exported_text_draws_in_a_foreign_program() {
     let middle = pixels(&out).get_pixel(128, 128).0;
     for (found, exact) in middle.into_iter().zip([0.6125, 0.3625, 0.2375]) {
         let off = f64::from(found) / 255.0 - exact;
-        // Half a step of the picture, and the network's own error on the two layers between the ends.
-        assert!(off.abs() < 0.03, "{middle:?}");
+        // Four layers in slabs of their own are known. Half a step of the picture, and four roundings of half floats.
+        assert!(off.abs() < 0.5 / 255.0 + 4.0 / 2048.0, "{middle:?}");
     }
 }

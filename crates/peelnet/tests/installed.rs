@@ -43,9 +43,9 @@ fn an_installed_program_finds_its_scenes_and_networks() {
     assert!(vase.contains("vase"), "{vase}");
     let stress = installed(
         folder,
-        "stress --methods deep-small:targets=f16 --cases coplanar --json",
+        "stress --methods deep-anchored-small:targets=f16 --cases coplanar --json",
     );
-    assert!(stress.contains("deep-small"), "{stress}");
+    assert!(stress.contains("deep-anchored-small"), "{stress}");
     installed(
         folder,
         "run cups cups-held --size 64x48 --rows 2000 --epochs 1 --out out",

@@ -52,7 +52,8 @@ fn a_failure_is_exit_code_1_with_pictures() {
 #[test]
 fn a_network_of_ones_own_is_judged_alone() {
     let dir = tempfile::tempdir().unwrap();
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/small/model.safetensors");
+    let model =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/anchored-small/model.safetensors");
     std::fs::copy(model, dir.path().join("m.safetensors")).unwrap();
     let line = "stress --model m.safetensors --cases coplanar,half-float --json";
     let output = peelnet(line, dir.path());
@@ -71,7 +72,10 @@ fn a_network_of_ones_own_is_judged_alone() {
     methods.dedup();
     assert_eq!(
         methods,
-        ["\"deep-small:targets=f16\"", "\"deep-small:targets=f32\""]
+        [
+            "\"deep-anchored-small:targets=f16\"",
+            "\"deep-anchored-small:targets=f32\""
+        ]
     );
 }
 

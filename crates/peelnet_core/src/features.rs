@@ -50,12 +50,6 @@ pub struct Feature<C: 'static> {
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
 const NOISE: f64 = 1.0 / 1024.0;
 
-/// The least standard deviation, in halves of the pixel's depth range.
-const DEVIATION_FLOOR: f64 = 1.0 / 32.0;
-
-/// The same for the skewness, whose third power makes noise of rounded sums out of narrow distributions.
-const SKEWNESS_FLOOR: f64 = 1.0 / 4.0;
-
 /// Pull of the moments towards a measure that can be inverted, for [`Rest::moment_bounds`].
 const BIAS: f64 = 1.0 / 1024.0;
 
@@ -137,38 +131,6 @@ impl<F: Float> Rest<F> {
     pub fn moment_bounds(&self) -> (F, F) {
         clamped(mboit4::share_bounds(self.means, self.bias, self.place))
     }
-
-    /// The same from three moments and that all of the rest lies between the ends ([`interval_bounds`]).
-    pub fn interval_bounds(&self) -> (F, F) {
-        let [x1, x2, x3, _] = self.means;
-        interval_bounds([x1, x2, x3], self.place)
-    }
-
-    /// The rest's standard deviation σ.
-    fn deviation(&self) -> F {
-        let [x1, x2, ..] = self.means;
-        (x2 - x1 * x1)
-            .max(c(DEVIATION_FLOOR * DEVIATION_FLOOR))
-            .sqrt()
-    }
-
-    /// `clamp((ζ − μ)/2σ, −2, 2)`, μ the rest's mean.
-    pub fn depth_deviation(&self) -> F {
-        half_clamp((self.place - self.means[0]) / self.deviation())
-    }
-
-    /// `clamp(skewness/2, −2, 2)`, σ at least an eighth of the range in it.
-    pub fn skewness(&self) -> F {
-        let [x1, x2, x3, _] = self.means;
-        let wide = self.deviation().max(c(SKEWNESS_FLOOR));
-        let third = x3 - x1 * (c::<F>(3.0) * x2 - c::<F>(2.0) * x1 * x1);
-        half_clamp(third / wide.powi(3))
-    }
-}
-
-fn half_clamp<F: Float>(value: F) -> F {
-    let two = c::<F>(2.0);
-    (value / two).max(-two).min(two)
 }
 
 /// Both shares in 0 … 1; NaN, where the points of a bound coincide, becomes 0.
@@ -181,18 +143,6 @@ const MOMENT_BOUNDS: Shared = Shared {
     name: "bounds",
     wgsl: "peelnet_moment_bounds(rest)",
     module: Some("learned::moment_bounds"),
-};
-
-const INTERVAL_BOUNDS: Shared = Shared {
-    name: "interval",
-    wgsl: "peelnet_interval_bounds(rest)",
-    module: Some("learned::interval_bounds"),
-};
-
-const SHAPE: Shared = Shared {
-    name: "shape",
-    wgsl: "peelnet_shape(rest)",
-    module: Some("learned::shape"),
 };
 
 /// A feature of the rest.
@@ -259,53 +209,13 @@ pub static SHARE_HIGH: Feature<Rest<f64>> = of_rest(
     |rest| rest.moment_bounds().1,
 );
 
-/// The first of [`Rest::interval_bounds`].
-pub static INTERVAL_LOW: Feature<Rest<f64>> = of_rest(
-    "interval_low",
-    "of the rest's absorbance",
-    "interval.x",
-    Some(&INTERVAL_BOUNDS),
-    |rest| rest.interval_bounds().0,
-);
-
-/// The second of [`Rest::interval_bounds`].
-pub static INTERVAL_HIGH: Feature<Rest<f64>> = of_rest(
-    "interval_high",
-    "of the rest's absorbance",
-    "interval.y",
-    Some(&INTERVAL_BOUNDS),
-    |rest| rest.interval_bounds().1,
-);
-
-/// [`Rest::depth_deviation`].
-pub static DEPTH_DEVIATION: Feature<Rest<f64>> = of_rest(
-    "depth_deviation",
-    "half standard deviations",
-    "shape.x",
-    Some(&SHAPE),
-    Rest::depth_deviation,
-);
-
-/// [`Rest::skewness`].
-pub static SKEWNESS: Feature<Rest<f64>> = of_rest(
-    "skewness",
-    "half skewness",
-    "shape.y",
-    Some(&SHAPE),
-    Rest::skewness,
-);
-
 /// All features of the rest. A recipe reads some of them; tests compare the twins of each.
-pub static FEATURES: [&Feature<Rest<f64>>; 9] = [
+pub static FEATURES: [&Feature<Rest<f64>>; 5] = [
     &ROOT_ABSORBANCE,
     &DEPTH_FRACTION,
     &MEAN_FRACTION,
     &SHARE_LOW,
     &SHARE_HIGH,
-    &INTERVAL_LOW,
-    &INTERVAL_HIGH,
-    &DEPTH_DEVIATION,
-    &SKEWNESS,
 ];
 
 /// The values of all [`FEATURES`].
@@ -314,35 +224,6 @@ pub fn all(rest: &Rest<f64>) -> Vec<f64> {
         .iter()
         .map(|feature| (feature.value)(rest))
         .collect()
-}
-
-/// The least and the most of a distribution on −1 … 1 that can lie in front of `x`, from its first three moments.
-///
-/// The extreme distribution has three points: `x`, one end of the interval, and one more, `y` (Krein & Nudelman, "The
-/// Markov Moment Problem and Extremal Problems", 1977, ch. III: the canonical representation of index 5/2 through `x`).
-/// If the end is −1, the moments of `(t + 1) dμ` have the two points `x` and `y`, which gives `y`; else those of
-/// `(1 − t) dμ`. Both shares are kept in 0 … 1; moments that no distribution has, as rounding makes them, give 0 at worst.
-pub fn interval_bounds<F: Float>(moments: [F; 3], x: F) -> (F, F) {
-    let (zero, one) = (F::zero(), F::one());
-    let [m1, m2, m3] = moments;
-    let point = |[n0, n1, n2]: [F; 3]| (n2 - x * n1) / (n1 - x * n0);
-    let in_front = |share: F, y: F| if y < x { share } else { zero };
-    let low_end = [one + m1, m1 + m2, m2 + m3];
-    let y = point(low_end);
-    let (low, at) = if y >= -one && y <= one {
-        let [n0, n1, _] = low_end;
-        let at = (n1 - y * n0) / ((x - y) * (one + x));
-        let other = (n1 - x * n0) / ((y - x) * (one + y));
-        (one - at - other + in_front(other, y), at)
-    } else {
-        let high_end = [one - m1, m1 - m2, m2 - m3];
-        let [n0, n1, _] = high_end;
-        let y = point(high_end);
-        let at = (n1 - y * n0) / ((x - y) * (one - x));
-        let other = (n1 - x * n0) / ((y - x) * (one - y));
-        (in_front(other, y), at)
-    };
-    clamped((low, low + at))
 }
 
 #[cfg(test)]
@@ -368,12 +249,6 @@ mod tests {
             let m = [moment(1), moment(2), moment(3), moment(4)];
             let x = f64::from(random.between(-0.96, 0.96));
             let share = points.iter().filter(|p| p.0 < x).map(|p| p.1).sum::<f64>() / total;
-            let (low, high) = interval_bounds([m[0], m[1], m[2]], x);
-            // 64-bit moments: nothing but rounding, where the points nearly coincide.
-            assert!(
-                low <= share + 1e-6 && share <= high + 1e-6,
-                "{low} {share} {high}"
-            );
             // The bias gives way by up to its square root times a few.
             let (low, high) = clamped(mboit4::share_bounds(m, BIAS, x));
             let slack = 4.0 * BIAS.sqrt();

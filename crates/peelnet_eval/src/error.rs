@@ -89,6 +89,16 @@ pub enum EvalError {
         /// Where the other comes from.
         second: PathBuf,
     },
+    /// A file of designs that cannot be used.
+    #[error("{}: {what}: {why}", path.display())]
+    Designs {
+        /// The file.
+        path: PathBuf,
+        /// The entry, or what else is wrong.
+        what: String,
+        /// The problem, and how to fix it.
+        why: String,
+    },
     /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,

@@ -48,7 +48,13 @@ pub const FAMILIES: [Family; 7] = [
     family("learned, published", &["deep-thesis", "nmt", "dfaoit"]),
     family(
         "learned, ours",
-        &["deep-small", "deep-medium", "deep-large"],
+        &[
+            "deep-small",
+            "deep-medium",
+            "deep-large",
+            "deep-anchored-small",
+            "deep-anchored-medium",
+        ],
     ),
 ];
 

@@ -35,7 +35,7 @@ impl fmt::Display for Varied {
 pub struct Lesson {
     /// What varies.
     pub varied: Varied,
-    /// Layers, such as `5-12-1`.
+    /// Layers, such as `9-12-1`.
     pub topology: String,
     /// Weights and biases.
     pub parameters: u64,

@@ -4,6 +4,7 @@
 //! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► front, ratios, by_scene ─► recommend, family
 //! hard cases ─► stress ─► rows (method × case × property)
 //! path: every frame of a moving camera and moving objects ─► rows (method × scene, and × frame)
+//! designs: fragments of a scene, composited on the CPU with each design of slabs ─► rows (design)
 //! effects, scaling, numerics, learning ─► rows of their own
 //! ```
 //!
@@ -18,6 +19,7 @@ pub mod bench;
 pub mod by_scene;
 pub mod compare;
 pub mod contours;
+pub mod designs;
 pub mod effects;
 mod error;
 pub mod family;

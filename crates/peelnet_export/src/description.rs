@@ -80,7 +80,7 @@ const fn sum(name: &'static str, format: &'static str, write: &'static str) -> T
 
 const ZETA: &str = "zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the \
     bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else \
-    you choose. Compute zeta with this function in both passes. Its range is the same for the whole frame: \
+    you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: \
     peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.";
 
 const WEIGHTED: &str = "vec4f(alpha * rgb, alpha) * w";
@@ -132,6 +132,102 @@ const SEPARATE_ENDS: &[Pass] = &[
                 "ends",
                 "rgba16float",
                 "select(vec4f(0.0), vec4f(alpha * rgb, alpha) * w, end)",
+            ),
+        ],
+    },
+];
+
+const RANGE: Pass = Pass {
+    name: "range",
+    compute: "let r = peelnet_pixel_range(zeta);",
+    targets: &[Target {
+        name: "range",
+        format: "rg8unorm",
+        clear: [0.0; 4],
+        color: Blend::Max,
+        alpha: Blend::Max,
+        write: "r",
+    }],
+};
+
+const fn levels(name: &'static str, format: &'static str, write: &'static str) -> Target {
+    Target {
+        name,
+        format,
+        clear: [-65504.0; 4],
+        color: Blend::Max,
+        alpha: Blend::Max,
+        write,
+    }
+}
+
+const SLABS_COMPUTE: &str = "let s = peelnet_statistics(alpha, zeta, range);";
+
+const FEW_SLAB_STATISTICS: Pass = Pass {
+    name: "statistics",
+    compute: SLABS_COMPUTE,
+    targets: &[
+        sum("absorbances", "rgba16float", "s.absorbances"),
+        levels("nearest", "rgba16float", "s.nearest"),
+        levels("farthest", "r16float", "s.farthest"),
+        sum("firsts", "rg16float", "s.firsts"),
+    ],
+};
+
+const MANY_SLAB_STATISTICS: Pass = Pass {
+    name: "statistics",
+    compute: SLABS_COMPUTE,
+    targets: &[
+        sum("absorbances", "rgba16float", "s.absorbances"),
+        levels("nearest", "rgba16float", "s.nearest"),
+        Target {
+            name: "farthest",
+            format: "rgba16float",
+            clear: [-65504.0, -65504.0, -65504.0, 0.0],
+            color: Blend::Max,
+            alpha: Blend::Add,
+            write: "s.farthest",
+        },
+        sum("firsts", "rg16float", "s.firsts"),
+    ],
+};
+
+const FEW_SLABS: &[Pass] = &[
+    RANGE,
+    FEW_SLAB_STATISTICS,
+    Pass {
+        name: "weights",
+        compute: "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
+        targets: &[sum("sums", "rgba16float", WEIGHTED)],
+    },
+];
+
+const MANY_SLABS: &[Pass] = &[
+    RANGE,
+    MANY_SLAB_STATISTICS,
+    Pass {
+        name: "weights",
+        compute: "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
+        targets: &[sum("sums", "rgba16float", WEIGHTED)],
+    },
+];
+
+const MANY_SLABS_APART: &[Pass] = &[
+    RANGE,
+    MANY_SLAB_STATISTICS,
+    Pass {
+        name: "weights",
+        compute: "let f = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts); let w = f.x; let known = f.y > 0.0;",
+        targets: &[
+            sum(
+                "sums",
+                "rgba16float",
+                "select(vec4f(alpha * rgb, alpha) * w, vec4f(0.0), known)",
+            ),
+            sum(
+                "ends",
+                "rgba16float",
+                "select(vec4f(0.0), vec4f(alpha * rgb, alpha) * w, known)",
             ),
         ],
     },
@@ -214,6 +310,20 @@ impl Description {
                 ZETA,
                 ONE_SUM,
                 "peelnet_resolve(sums, moments.x, background)",
+            ),
+            (Inputs::Slabs(design, _), _) if design.apart => (
+                ZETA,
+                MANY_SLABS_APART,
+                "peelnet_resolve(sums, ends, dot(absorbances, vec4f(1.0)), background)",
+            ),
+            (Inputs::Slabs(design, _), _) => (
+                ZETA,
+                if !design.slabs[1].farthest {
+                    FEW_SLABS
+                } else {
+                    MANY_SLABS
+                },
+                "peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background)",
             ),
             (Inputs::Row(_), _) => (
                 "z is the distance along the view axis, in the unit of the scenes that the network was trained on.",

@@ -59,6 +59,11 @@ fn about(model: &Model) -> Vec<String> {
             "transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1"
                 .into()
         }
+        Output::BoundedShare => {
+            "transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share \
+             in share_low .. share_high"
+                .into()
+        }
         Output::Color => "linear RGB of all transparent fragments over black, kept in 0 .. 1".into(),
     };
     let mut lines = vec![

@@ -5,7 +5,7 @@ use peelnet_core::{
     guards::{INPUT_LIMIT, RAW_LIMIT, ROOT_ABSORBANCE_LIMIT},
     mlp::{Activation, Layer},
 };
-use peelnet_model::{Input, Inputs, Model, Output};
+use peelnet_model::{BOUNDS, Input, Inputs, Model, Output};
 use std::fmt::Write as _;
 
 /// The exported function's name.
@@ -26,6 +26,7 @@ pub(crate) fn call(model: &Model) -> String {
             "peelnet_weight",
         ),
         Inputs::Rest(_) => ("rest: PeelnetRest", "peelnet_share"),
+        Inputs::Slabs(..) => ("between: PeelnetBetween", "peelnet_share"),
         Inputs::Layers(_) => (
             "front: vec4f, behind: vec4f, all: vec4f, count: f32",
             "peelnet_color",
@@ -84,11 +85,16 @@ pub(crate) fn weight_function(model: &Model) -> String {
             };
             writeln!(t, "    return {answer};\n}}")
         }
-        Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
+        Output::AnchoredShare | Output::AnchoredShareSeparateEnds | Output::BoundedShare => {
+            let bounded = output == Output::BoundedShare;
+            let share = if bounded {
+                "Where between its bounds the share of the absorbance lies that is in front"
+            } else {
+                "The share of the rest's absorbance that lies in front"
+            };
             let _ = writeln!(
                 t,
-                "// The share of the rest's absorbance that lies in front, for inputs as peelnet_network evaluates them.\n\
-                 fn peelnet_share({parameters}) -> {kind} {{"
+                "// {share}, for inputs as peelnet_network evaluates them.\nfn peelnet_share({parameters}) -> {kind} {{"
             );
             let last = network(&mut t, model, false);
             let _ = writeln!(t, "    return {last}_a;\n}}\n");
@@ -111,10 +117,18 @@ pub(crate) fn weight_function(model: &Model) -> String {
                 float(ROOT_ABSORBANCE_LIMIT)
             );
             let _ = writeln!(t, "    let root = {root};");
-            writeln!(
-                t,
-                "    return exp(-root * root * peelnet_share(\n        {limited}));\n}}"
-            )
+            let _ = writeln!(t, "    let share = peelnet_share(\n        {limited});");
+            let front = if bounded {
+                let [low, high] = BOUNDS.map(|k| identifier(&inputs[k].name));
+                let _ = writeln!(
+                    t,
+                    "    let bounds = clamp(vec2f({low}, {high}), vec2f(0.0), vec2f(1.0));"
+                );
+                "mix(bounds.x, bounds.y, share)"
+            } else {
+                "share"
+            };
+            writeln!(t, "    return exp(-root * root * {front});\n}}")
         }
     };
     t

@@ -5,7 +5,7 @@ use crate::{
     network::function_name,
     wgsl::{code, self_test_inputs},
 };
-use peelnet_core::{guards::ROOT_ABSORBANCE_LIMIT, random::Random, tolerance::EXPORT_F32};
+use peelnet_core::{random::Random, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
@@ -66,10 +66,10 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
         return sum;
     }
     let share = model.forward_raw_f64(raw)[0];
-    let rest = raw[0].clamp(0.0, ROOT_ABSORBANCE_LIMIT.into()).powi(2);
-    let weight = |share: f64| (-rest * share.clamp(0.0, 1.0)).exp();
+    let weight = |share: f64| model.meta.output.transmittance(raw, share.clamp(0.0, 1.0));
     // A sigmoid's slope is at most a quarter.
-    EXPORT_F32 + weight(share - 0.25 * sum) - weight(share + 0.25 * sum)
+    let spread = weight(share - 0.25 * sum) - weight(share + 0.25 * sum);
+    EXPORT_F32 + spread.abs()
 }
 
 /// Runs `wgsl` on the GPU over random, extreme and self-test inputs and compares with [`Model::shader_output_f64`].

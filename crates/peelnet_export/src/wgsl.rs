@@ -66,6 +66,7 @@ fn modules(recipe: Recipe) -> Vec<&'static str> {
             let mut modules = vec![
                 "learned::zeta",
                 "learned::absorbance",
+                "learned::levels",
                 "learned::anchored",
                 "learned::anchored_fragment",
             ];
@@ -74,6 +75,9 @@ fn modules(recipe: Recipe) -> Vec<&'static str> {
                 _ => &["learned::resolve", "learned::composite"],
             });
             modules
+        }
+        (Inputs::Slabs(design, _), _) => {
+            peelnet_shaders::slab_modules(!design.slabs[1].farthest, design.apart).to_vec()
         }
     };
     for about in recipe.inputs.about() {

@@ -27,6 +27,6 @@ mod weights;
 
 pub use error::{ModelError, Problem};
 pub use file::KIND;
-pub use metadata::{DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output};
+pub use metadata::{BOUNDS, DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output};
 pub use model::Model;
 pub use recipe::{Budget, Declaration, Inputs, Network, PixelLoss, Recipe};

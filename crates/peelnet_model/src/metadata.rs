@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT, WEIGHT_FLOOR};
+use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT, ROOT_ABSORBANCE_LIMIT, WEIGHT_FLOOR};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Problem;
@@ -11,6 +11,9 @@ use crate::recipe::Recipe;
 
 /// The version of the file's layout that this crate writes and reads.
 pub const FORMAT_VERSION: u32 = 1;
+
+/// The inputs of a network with [`Output::BoundedShare`] that hold the bounds.
+pub const BOUNDS: [usize; 2] = [3, 4];
 
 /// What the network's output means, and how it is kept in range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -23,6 +26,8 @@ pub enum Output {
     AnchoredShare,
     /// The same, where the nearest and the farthest fragment accumulate apart.
     AnchoredShareSeparateEnds,
+    /// Where between its bounds (inputs [`BOUNDS`]) the share of the absorbance lies that is in front, kept in 0 … 1.
+    BoundedShare,
     /// Linear RGB of all transparent fragments of a pixel over black, kept in 0 … 1.
     Color,
 }
@@ -34,6 +39,7 @@ impl Output {
             Self::Transmittance => "transmittance",
             Self::AnchoredShare => "anchored-share",
             Self::AnchoredShareSeparateEnds => "anchored-share-separate-ends",
+            Self::BoundedShare => "bounded-share",
             Self::Color => "color",
         }
     }
@@ -50,13 +56,34 @@ impl Output {
     pub const fn range(self) -> (f32, f32) {
         match self {
             Self::Transmittance => (WEIGHT_FLOOR, 1.0),
-            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::Color => (0.0, 1.0),
+            _ => (0.0, 1.0),
         }
     }
 
     /// Whether the value is a share of absorbance `r`, and the function answers with its transmittance `exp(−r s)`.
     pub const fn is_share(self) -> bool {
-        matches!(self, Self::AnchoredShare | Self::AnchoredShareSeparateEnds)
+        matches!(
+            self,
+            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::BoundedShare
+        )
+    }
+
+    /// The transmittance that an answer stands for where it is a share ([`Output::is_share`]), given the raw inputs: `exp(−x² s)` with the first
+    /// input `x`, the root of an absorbance, which is kept in 0 … [`ROOT_ABSORBANCE_LIMIT`]; bounds are kept in 0 … 1.
+    ///
+    /// # Panics
+    /// With fewer inputs than such networks have.
+    pub fn transmittance(self, raw_inputs: &[f64], answer: f64) -> f64 {
+        let absorbance = raw_inputs[0]
+            .clamp(0.0, ROOT_ABSORBANCE_LIMIT.into())
+            .powi(2);
+        let share = if self == Self::BoundedShare {
+            let [low, high] = BOUNDS.map(|k| raw_inputs[k].clamp(0.0, 1.0));
+            low + (high - low) * answer
+        } else {
+            answer
+        };
+        (-absorbance * share).exp()
     }
 
     /// Keeps one value of the network in range; NaN becomes the smallest value.

@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use peelnet_core::{
-    guards::ROOT_ABSORBANCE_LIMIT,
-    mlp::{Layer, Mlp},
-};
+use peelnet_core::mlp::{Layer, Mlp};
 
 use crate::error::{ModelError, Problem};
 use crate::file;
@@ -36,7 +33,7 @@ impl Model {
     /// use peelnet_model::{Model, Recipe};
     ///
     /// let medium = Model::shipped(Recipe::MEDIUM)?;
-    /// assert_eq!(medium.mlp.topology(), "5-12-1");
+    /// assert_eq!(medium.mlp.topology(), "9-12-1");
     /// # Ok::<(), peelnet_model::ModelError>(())
     /// ```
     ///
@@ -160,18 +157,18 @@ impl Model {
         outputs
     }
 
-    /// What the exported function answers: [`Model::forward_raw`], made a transmittance where the network predicts a share:
-    /// `exp(−x² s)` with the first input `x`, the root of the rest's absorbance, which is kept in 0 …
-    /// [`ROOT_ABSORBANCE_LIMIT`].
+    /// What the exported function answers: [`Model::forward_raw`], made a transmittance where the network predicts a share
+    /// ([`Output::transmittance`](crate::Output::transmittance)).
     ///
     /// # Panics
     /// If the number of features is not that of the model's inputs.
     pub fn shader_output(&self, raw_inputs: &[f32]) -> Vec<f32> {
         let mut outputs = self.forward_raw(raw_inputs);
-        if self.meta.output.is_share() {
-            let rest = raw_inputs[0].clamp(0.0, ROOT_ABSORBANCE_LIMIT).powi(2);
+        let output = self.meta.output;
+        if output.is_share() {
+            let raw: Vec<f64> = raw_inputs.iter().map(|&x| x.into()).collect();
             for share in &mut outputs {
-                *share = (-rest * *share).exp();
+                *share = output.transmittance(&raw, (*share).into()) as f32;
             }
         }
         outputs
@@ -183,12 +180,10 @@ impl Model {
     /// If the number of features is not that of the model's inputs.
     pub fn shader_output_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
         let mut outputs = self.forward_raw_f64(raw_inputs);
-        if self.meta.output.is_share() {
-            let rest = raw_inputs[0]
-                .clamp(0.0, ROOT_ABSORBANCE_LIMIT.into())
-                .powi(2);
+        let output = self.meta.output;
+        if output.is_share() {
             for share in &mut outputs {
-                *share = (-rest * *share).exp();
+                *share = output.transmittance(raw_inputs, *share);
             }
         }
         outputs

@@ -13,13 +13,13 @@ use std::{
 
 use peelnet_core::{
     features::{
-        About, DEPTH_DEVIATION, DEPTH_FRACTION, Feature, INTERVAL_HIGH, INTERVAL_LOW,
-        MEAN_FRACTION, ROOT_ABSORBANCE, Rest, SHARE_HIGH, SHARE_LOW, SKEWNESS,
+        About, DEPTH_FRACTION, Feature, MEAN_FRACTION, ROOT_ABSORBANCE, Rest, SHARE_HIGH, SHARE_LOW,
     },
     methods::{
         deep::{Row, THESIS_INPUTS},
         dfaoit::{self, Layers},
         nmt,
+        slabs::{self, Between, Design},
     },
     mlp::Activation,
     statistics::SumPrecision,
@@ -38,6 +38,9 @@ pub enum Inputs {
     /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be
     /// [`ROOT_ABSORBANCE`].
     Rest(&'static [&'static Feature<Rest<f64>>]),
+    /// What lies between the known ends of a fragment's slab, in a design of slabs: whole pixels are examples. The first input must be
+    /// the root of its absorbance, the fourth and fifth the bounds of the share in front.
+    Slabs(Design, &'static [&'static Feature<Between>]),
     /// A pixel with more fragments than are composited exactly: every such pixel is an example.
     Layers(&'static [&'static Feature<Layers>]),
 }
@@ -52,6 +55,7 @@ impl Inputs {
             Self::Row(features) => of(features),
             Self::Moments(features) => of(features),
             Self::Rest(features) => of(features),
+            Self::Slabs(_, features) => of(features),
             Self::Layers(features) => of(features),
         }
     }
@@ -212,10 +216,46 @@ impl Recipe {
         loss: None,
     });
 
-    /// The cheapest network that beats moments.
+    /// Four slabs in 32 bytes a pixel.
     pub const SMALL: Self = Self(&Declaration {
         name: "small",
         method: "deep-small",
+        inputs: Inputs::Slabs(Design::SMALL, &slabs::NINE),
+        output: Output::BoundedShare,
+        sums: SumPrecision::Half,
+        network: relu(&[12], Activation::Sigmoid),
+        budget: PIXELS,
+        loss: Some(PixelLoss::Image),
+    });
+
+    /// Four slabs in 38 bytes a pixel: the default.
+    pub const MEDIUM: Self = Self(&Declaration {
+        name: "medium",
+        method: "deep-medium",
+        inputs: Inputs::Slabs(Design::MEDIUM, &slabs::NINE),
+        output: Output::BoundedShare,
+        sums: SumPrecision::Half,
+        network: relu(&[12], Activation::Sigmoid),
+        budget: PIXELS,
+        loss: Some(PixelLoss::Image),
+    });
+
+    /// Four slabs in 46 bytes a pixel: the best image.
+    pub const LARGE: Self = Self(&Declaration {
+        name: "large",
+        method: "deep-large",
+        inputs: Inputs::Slabs(Design::LARGE, &slabs::NINE),
+        output: Output::BoundedShare,
+        sums: SumPrecision::Half,
+        network: relu(&[12], Activation::Sigmoid),
+        budget: PIXELS,
+        loss: Some(PixelLoss::Image),
+    });
+
+    /// The pixel's moments and its two ends: the cheapest network that beats moments.
+    pub const ANCHORED_SMALL: Self = Self(&Declaration {
+        name: "anchored-small",
+        method: "deep-anchored-small",
         inputs: Inputs::Rest(&[
             &ROOT_ABSORBANCE,
             &DEPTH_FRACTION,
@@ -230,10 +270,10 @@ impl Recipe {
         loss: Some(PixelLoss::Image),
     });
 
-    /// The default: the same inputs, separate ends.
-    pub const MEDIUM: Self = Self(&Declaration {
-        name: "medium",
-        method: "deep-medium",
+    /// The same inputs, separate ends.
+    pub const ANCHORED_MEDIUM: Self = Self(&Declaration {
+        name: "anchored-medium",
+        method: "deep-anchored-medium",
         inputs: Inputs::Rest(&[
             &ROOT_ABSORBANCE,
             &DEPTH_FRACTION,
@@ -245,31 +285,6 @@ impl Recipe {
         sums: SumPrecision::Half,
         network: relu(&[12], Activation::Sigmoid),
         budget: PIXELS,
-        loss: Some(PixelLoss::Image),
-    });
-
-    /// The best image: more inputs, 32-bit statistics, separate ends.
-    pub const LARGE: Self = Self(&Declaration {
-        name: "large",
-        method: "deep-large",
-        inputs: Inputs::Rest(&[
-            &ROOT_ABSORBANCE,
-            &DEPTH_FRACTION,
-            &MEAN_FRACTION,
-            &SHARE_LOW,
-            &SHARE_HIGH,
-            &INTERVAL_LOW,
-            &INTERVAL_HIGH,
-            &DEPTH_DEVIATION,
-            &SKEWNESS,
-        ]),
-        output: Output::AnchoredShareSeparateEnds,
-        sums: SumPrecision::Exact,
-        network: relu(&[14, 9], Activation::Sigmoid),
-        budget: Budget {
-            epochs: 80,
-            ..PIXELS
-        },
         loss: Some(PixelLoss::Image),
     });
 
@@ -301,14 +316,22 @@ impl Recipe {
     });
 
     /// All recipes.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::THESIS,
         Self::SMALL,
         Self::MEDIUM,
         Self::LARGE,
+        Self::ANCHORED_SMALL,
+        Self::ANCHORED_MEDIUM,
         Self::NMT,
         Self::DFAOIT,
     ];
+
+    /// A recipe that is not in [`Self::ALL`], to train networks that do not ship. The name must be no other recipe's. A model of it can be
+    /// used by the program that trained it; its file is refused, because the file names the recipe only.
+    pub const fn new(declaration: &'static Declaration) -> Self {
+        Self(declaration)
+    }
 
     /// The recipe of a rendering method, if it draws with a network.
     pub fn of_method(method: &str) -> Option<Self> {
@@ -344,10 +367,11 @@ impl PartialOrd for Recipe {
 }
 
 impl Ord for Recipe {
-    /// In the order of [`Recipe::ALL`].
+    /// In the order of [`Recipe::ALL`], then by name.
     fn cmp(&self, other: &Self) -> Ordering {
         let place = |recipe: &Self| Self::ALL.iter().position(|r| r == recipe);
-        place(self).cmp(&place(other))
+        let key = |recipe: &Self| (place(recipe).unwrap_or(Self::ALL.len()), recipe.name);
+        key(self).cmp(&key(other))
     }
 }
 
@@ -403,6 +427,22 @@ impl<'de> Deserialize<'de> for Recipe {
 mod tests {
     use super::*;
 
+    /// Two recipes of one's own are told apart, and stand behind those that ship.
+    #[test]
+    fn recipes_of_ones_own_have_an_order() {
+        let of = |name| {
+            Recipe::new(Box::leak(Box::new(Declaration {
+                name,
+                inputs: Inputs::Slabs(Design::LARGE, &slabs::FIVE),
+                ..*Recipe::LARGE
+            })))
+        };
+        let (a, b) = (of("a"), of("b"));
+        assert_ne!(a, b);
+        assert!(a < b && Recipe::DFAOIT < a);
+        assert_eq!("a".parse::<Recipe>().ok(), None);
+    }
+
     /// What everything that reads the declarations relies on.
     #[test]
     fn declarations_hold_together() {
@@ -413,13 +453,16 @@ mod tests {
             for (i, name) in names.iter().enumerate() {
                 assert!(!names[..i].contains(name), "{recipe} reads {name} twice");
             }
-            let shares = matches!(recipe.inputs, Inputs::Rest(_));
+            let shares = matches!(recipe.inputs, Inputs::Rest(_) | Inputs::Slabs(..));
             assert_eq!(recipe.output.is_share(), shares, "{recipe}");
             assert_eq!(recipe.loss.is_some(), shares, "{recipe}");
             assert!(
                 !shares || names[0] == ROOT_ABSORBANCE.about.name,
                 "{recipe}"
             );
+            let bounded = recipe.output == Output::BoundedShare;
+            let bounds = [&SHARE_LOW, &SHARE_HIGH].map(|f| f.about.name);
+            assert!(!bounded || names[3..5] == bounds, "{recipe}");
         }
     }
 }

@@ -2,7 +2,7 @@ use crate::{Inputs, Model};
 use peelnet_core::{
     absorbance::DepthWarp,
     features::Feature,
-    methods::{anchored, deep, nmt},
+    methods::{anchored, deep, nmt, slabs},
     statistics::SumPrecision,
 };
 
@@ -19,6 +19,10 @@ impl Model {
             Inputs::Rest(features) => anchored::seen(points, warp, precision)
                 .iter()
                 .map(|seen| seen.weight(|rest| self.answer(features, rest)))
+                .collect(),
+            Inputs::Slabs(design, features) => slabs::seen(points, warp, design, precision)
+                .iter()
+                .map(|seen| seen.weight(|between| self.answer(features, between)))
                 .collect(),
             Inputs::Moments(features) => {
                 let all = nmt::Seen::all(points, warp);

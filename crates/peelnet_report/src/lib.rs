@@ -9,6 +9,7 @@
 //! file. They are built with maud, which escapes all text; charts come from `peelnet_chart`, which escapes as well.
 
 mod bench;
+mod designs;
 mod effects;
 mod error;
 mod files;

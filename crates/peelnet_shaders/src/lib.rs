@@ -52,6 +52,31 @@ pub fn source(path: &str) -> Result<&'static str, ShaderError> {
         .ok_or_else(|| ShaderError::Path(path.to_owned()))
 }
 
+/// The modules of a text that composites in slabs: of what surrounds `peelnet_network`, which says where between its bounds the share of
+/// the absorbance lies that is in front of a fragment. `few`: with fewer means and farthest fragments. `apart`: with the colours of known
+/// fragments in a sum of their own.
+pub fn slab_modules(few: bool, apart: bool) -> Vec<&'static str> {
+    let statistics = if few {
+        "learned::slabs_few"
+    } else {
+        "learned::slabs_many"
+    };
+    let resolve: &[&str] = if apart {
+        &["learned::resolve_separate_ends"]
+    } else {
+        &["learned::resolve", "learned::composite"]
+    };
+    let mut modules = vec![
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::slabs",
+        statistics,
+    ];
+    modules.extend(resolve);
+    modules
+}
+
 thread_local! {
     /// The module that has another text on this thread, and that text.
     static ALTERED: RefCell<Option<(String, String)>> = const { RefCell::new(None) };
@@ -202,10 +227,16 @@ mod tests {
                 &["learned::dfaoit"],
                 "front: vec4f, behind: vec4f, all: vec4f, count: f32) -> vec3f { return vec3f(1.0); }",
             ),
+            "methods::slabs" => {
+                let [few, apart] = ["few", "apart"].map(|f| features.contains(&f));
+                let modules = slab_modules(few, apart);
+                return with(&modules, "between: PeelnetBetween) -> f32 { return 0.5; }");
+            }
             _ if features.contains(&"separate_ends") => (
                 &[
                     "learned::zeta",
                     "learned::absorbance",
+                    "learned::levels",
                     "learned::anchored",
                     "learned::anchored_fragment",
                     "learned::resolve_separate_ends",
@@ -216,6 +247,7 @@ mod tests {
                 &[
                     "learned::zeta",
                     "learned::absorbance",
+                    "learned::levels",
                     "learned::anchored",
                     "learned::anchored_fragment",
                     "learned::composite",
@@ -224,6 +256,10 @@ mod tests {
                 "rest: PeelnetRest) -> f32 { return 1.0; }",
             ),
         };
+        with(modules, network)
+    }
+
+    fn with(modules: &[&str], network: &str) -> String {
         let texts: Vec<_> = modules
             .iter()
             .map(|m| source(m).expect("a module of the table"))

@@ -5,9 +5,11 @@ use std::ops::Range;
 
 use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::features::{Feature, Rest};
-use peelnet_core::methods::anchored::{Place, seen};
+use peelnet_core::fragment::Fragment;
+use peelnet_core::methods::anchored::{self, Place};
 use peelnet_core::methods::dfaoit::{FRONT, Layers};
 use peelnet_core::methods::moments::{MomentSums, Settings};
+use peelnet_core::methods::slabs::{self, Between};
 use peelnet_core::methods::{mboit4, nmt};
 use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
@@ -140,11 +142,32 @@ fn pixels_of(batch: &FragmentBatch, each: &mut impl FnMut([u32; 3], &Pixel<'_>))
     }
 }
 
-/// Squared error of a pixel that MBOIT-4 draws, mean over the channels: how hard the pixel is.
+/// Squared error of a pixel without the network, mean over the channels: how hard the pixel is. Drawn by the same slabs with the middle of
+/// the bounds, or by MBOIT-4.
 ///
 /// The figure that a user looks at is a method's error over that of another on the same image. Weighing each view by the
 /// inverse of its mean hardness trains for that figure: faint scenes count as much as glaring ones.
-fn hardness(pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
+fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
+    let found: [f64; 3] = if let Inputs::Slabs(design, _) = recipe.inputs {
+        let points = pixel.points.iter().zip(pixel.colors);
+        let fragments: Vec<_> = points
+            .map(|(&(depth, alpha), &color)| Fragment::new(depth, alpha, color))
+            .collect();
+        slabs::composite(&fragments, [0.0; 3], warp, design, slabs::middle).map(f64::from)
+    } else {
+        by_moments(pixel, warp)
+    };
+    let mut error = found;
+    for (exact, color) in pixel.contributions().zip(pixel.colors) {
+        for (e, &c) in error.iter_mut().zip(color) {
+            *e -= exact * f64::from(c);
+        }
+    }
+    error.iter().map(|e| e * e / 3.0).sum()
+}
+
+/// The colour of a pixel over black that MBOIT-4 draws.
+fn by_moments(pixel: &Pixel<'_>, warp: &DepthWarp) -> [f64; 3] {
     let mut moments = mboit4::Moments::default();
     let zetas: Vec<f64> = pixel
         .points
@@ -164,13 +187,13 @@ fn hardness(pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
         })
         .collect();
     let scale = (1.0 - pixel.behind()) / shares.iter().sum::<f64>().max(1e-12);
-    let mut error = [0.0; 3];
-    for ((exact, share), color) in pixel.contributions().zip(shares).zip(pixel.colors) {
-        for (e, &c) in error.iter_mut().zip(color) {
-            *e += (share * scale - exact) * f64::from(c);
+    let mut sum = [0.0; 3];
+    for (share, color) in shares.iter().zip(pixel.colors) {
+        for (sum, &c) in sum.iter_mut().zip(color) {
+            *sum += share * scale * f64::from(c);
         }
     }
-    error.iter().map(|e| e * e / 3.0).sum()
+    sum
 }
 
 /// Examples of one view, before they are weighed.
@@ -211,7 +234,7 @@ pub(crate) fn gather<'a>(
             if !sample.keep([x, y], pixel.points.len()) {
                 return;
             }
-            gathered.hardness += hardness(pixel, &warp);
+            gathered.hardness += hardness(recipe, pixel, &warp);
             gathered.pixels += 1;
             let subset = split.pixel(view, x, y);
             match recipe.inputs {
@@ -220,7 +243,15 @@ pub(crate) fn gather<'a>(
                 }
                 Inputs::Layers(features) => color_row(features, &mut data, pixel, subset),
                 Inputs::Rest(features) => {
-                    share_pixel(features, &mut data, pixel, &warp, recipe, subset);
+                    let apart = recipe.output == Output::AnchoredShareSeparateEnds;
+                    let all = anchored::seen(pixel.points, &warp, recipe.sums);
+                    let all = all.iter().map(of_anchored);
+                    share_pixel(features, &mut data, pixel, subset, apart, all);
+                }
+                Inputs::Slabs(design, features) => {
+                    let all = slabs::seen(pixel.points, &warp, design, recipe.sums);
+                    let all = all.iter().map(of_slabs);
+                    share_pixel(features, &mut data, pixel, subset, design.apart, all);
                 }
                 // Columns of the dataset, read without whole pixels.
                 Inputs::Row(_) => {}
@@ -262,47 +293,48 @@ fn push(columns: &mut [Vec<f32>], values: impl IntoIterator<Item = f64>) {
     }
 }
 
-/// The fragments of a pixel whose share the network is asked for, and what the others contribute.
-fn share_pixel(
-    features: &[&Feature<Rest<f64>>],
+/// What is known of a fragment's weight without the network.
+struct Known {
+    weight: f64,
+    /// The absorbance that the network says a share of, which takes from that weight; none where the weight is known.
+    guessed: Option<f64>,
+}
+
+/// The fragments of a pixel whose share the network is asked for, with the inputs of each, and what the others contribute: those are `apart`
+/// where they are not normalised with the rest.
+fn share_pixel<'s, C: 's>(
+    features: &[&Feature<C>],
     data: &mut TrainingData,
     pixel: &Pixel<'_>,
-    warp: &DepthWarp,
-    recipe: Recipe,
     subset: Subset,
+    apart: bool,
+    all: impl Iterator<Item = (Known, Option<&'s C>)>,
 ) {
+    let all: Vec<_> = all.collect();
     let Some(columns) = &mut data.pixels else {
         return;
     };
-    let separate_ends = recipe.output == Output::AnchoredShareSeparateEnds;
-    let all = seen(pixel.points, warp, recipe.sums);
-    let between = all.iter().filter(|s| s.place == Place::Between).count();
+    let asked = all.iter().filter(|(k, _)| k.guessed.is_some()).count();
     // Exact whatever the network says: nothing to learn.
-    if between == 0 || (separate_ends && between == 1) {
+    if asked == 0 || (apart && asked == 1) {
         return;
     }
     let first = data.targets[0].len();
     let mut left = 1.0 - pixel.behind();
     let mut fixed = PixelFixed::default();
     for (i, exact) in pixel.contributions().enumerate() {
-        let (s, color) = (&all[i], pixel.colors[i]);
-        let alpha = f64::from(pixel.points[i].1);
-        if s.place == Place::Between {
-            push(
-                &mut data.inputs,
-                features.iter().map(|f| (f.value)(&s.rest)),
-            );
+        let ((known, inputs), color) = (&all[i], pixel.colors[i]);
+        // What is known of its weight goes with its opacity.
+        let a = f64::from(pixel.points[i].1) * known.weight;
+        if let (Some(guessed), Some(inputs)) = (known.guessed, inputs) {
+            push(&mut data.inputs, features.iter().map(|f| (f.value)(inputs)));
             push(&mut data.targets, [exact]);
-            columns.rest.push(s.rest.absorbance as f32);
-            // What is known of its weight goes with its opacity.
-            columns.alpha.push((alpha * (-s.front).exp()) as f32);
+            columns.rest.push(guessed as f32);
+            columns.alpha.push(a as f32);
             for (column, c) in columns.color.iter_mut().zip(color) {
                 column.push(c);
             }
-            continue;
-        }
-        let a = alpha * s.weight(|_| 0.0);
-        if separate_ends {
+        } else if apart {
             left -= a;
         } else {
             fixed.sum += a as f32;
@@ -319,6 +351,24 @@ fn share_pixel(
         weights.push(1.0);
         subsets.push(subset);
     }
+}
+
+fn of_anchored(seen: &anchored::Seen) -> (Known, Option<&Rest<f64>>) {
+    let between = seen.place == Place::Between;
+    let known = Known {
+        weight: seen.weight(|_| 0.0),
+        guessed: between.then_some(seen.rest.absorbance),
+    };
+    (known, between.then_some(&seen.rest))
+}
+
+fn of_slabs(seen: &slabs::Seen) -> (Known, Option<&Between>) {
+    let between = seen.between.as_ref();
+    let known = Known {
+        weight: seen.weight(|_| 0.0),
+        guessed: between.map(|b| b.absorbance * (b.bounds[1] - b.bounds[0])),
+    };
+    (known, between)
 }
 
 fn transmittance_rows(

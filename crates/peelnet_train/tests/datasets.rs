@@ -206,7 +206,7 @@ fn batches_in_memory_train_as_their_dataset() {
     for recipe in [
         Recipe::THESIS,
         Recipe::MEDIUM,
-        Recipe::LARGE,
+        Recipe::ANCHORED_MEDIUM,
         Recipe::NMT,
         Recipe::DFAOIT,
     ] {
@@ -244,7 +244,12 @@ fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
     });
     let datasets = std::slice::from_ref(&dataset);
     let of = 7 * 6 * u64::from(SIDE * SIDE);
-    for recipe in [Recipe::THESIS, Recipe::LARGE, Recipe::NMT, Recipe::DFAOIT] {
+    for recipe in [
+        Recipe::THESIS,
+        Recipe::ANCHORED_MEDIUM,
+        Recipe::NMT,
+        Recipe::DFAOIT,
+    ] {
         let draw = |seed, max_rows| {
             let config = Config {
                 seed,
@@ -336,7 +341,7 @@ fn whole_scenes_are_set_aside() {
 fn whole_datasets_validate() {
     let folder = tempfile::tempdir().unwrap();
     let make =
-        |name: &str, scenes| write_views(&folder.path().join(name), scenes, |k| stacks(k, 6));
+        |name: &str, scenes| write_views(&folder.path().join(name), scenes, |k| stacks(k, 24));
     let training = [make("a", vec![scene("one", false), scene("held", true)])];
     let validation = [make("b", vec![scene("two", false)])];
     for recipe in Recipe::ALL {

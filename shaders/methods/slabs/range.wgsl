@@ -1,6 +1,6 @@
-// slabs, pass 1: the levels of the pixel's nearest and farthest depth, by MAX blending of 8 bits.
-import package::helpers::absorbance::warped_depth;
-import package::methods::slabs::slab::range_of;
+// Slabs, pass 1: the exported text's range of a pixel, by MAX blending of 8 bits.
+import package::helpers::range::transparent_range;
+import package::learned::weight::{peelnet_pixel_range, peelnet_zeta_in};
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
@@ -9,5 +9,5 @@ fn fragment_main(surface: Surface) -> @location(0) vec2f {
     if !visible(surface) {
         discard;
     }
-    return range_of(warped_depth(surface.depth_linear));
+    return peelnet_pixel_range(peelnet_zeta_in(surface.depth_linear, transparent_range()));
 }

@@ -1,11 +1,9 @@
-// slabs: eq 6's resolve, or that of known fragments and guessed ones apart; the transmittance of the whole pixel is exp(-total absorbance).
+// Slabs: the exported text's resolve; its composite alone where light takes a colour. The transmittance of the whole pixel is exp(-total absorbance).
 // Variants: none | apart | tinted | apart tinted
-@if(!apart && !tinted) import package::helpers::resolve::normalised;
-@if(!apart && tinted) import package::helpers::resolve::normalised_by_channel;
-@if(apart && !tinted) import package::learned::resolve_separate_ends::peelnet_resolve;
-@if(apart && tinted) import package::helpers::resolve::within;
-@if(apart && tinted) import package::learned::resolve_separate_ends::peelnet_composite;
+@if(tinted) import package::helpers::resolve::within;
 import package::helpers::screen::screen_corner;
+@if(tinted) import package::learned::weight::peelnet_composite;
+@if(!tinted) import package::learned::weight::peelnet_resolve;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var between: texture_2d<f32>;
@@ -26,12 +24,12 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let sums = textureLoad(between, pixel, 0);
     let slabs = textureLoad(absorbances, pixel, 0);
     let absorbance = slabs.x + slabs.y + slabs.z + slabs.w;
-    @if(tinted) let passing = textureLoad(tinted, pixel, 0).rgb;
-    @if(!apart && !tinted) return normalised(sums, exp(-absorbance), behind);
-    @if(!apart && tinted) return normalised_by_channel(sums, passing, behind);
+    @if(!apart && !tinted) return peelnet_resolve(sums, absorbance, behind);
     @if(apart && !tinted) return peelnet_resolve(sums, textureLoad(ends, pixel, 0), absorbance, behind);
-    @if(apart && tinted) {
+    @if(tinted) {
+        let passing = textureLoad(tinted, pixel, 0).rgb;
         let coverage = 1.0 - dot(passing, vec3f(1.0 / 3.0));
-        return peelnet_composite(within(sums), within(textureLoad(ends, pixel, 0)), coverage, passing, behind);
+        @if(apart) return peelnet_composite(within(sums), within(textureLoad(ends, pixel, 0)), coverage, passing, behind);
+        @else return peelnet_composite(within(sums), coverage, passing, behind);
     }
 }

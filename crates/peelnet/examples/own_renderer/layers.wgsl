@@ -1,5 +1,5 @@
 
-// What follows the exported text: four layers, and the three passes that the text describes.
+// What follows the exported text: four layers, and the passes that the text describes.
 
 // Colour and opacity; distance to the camera. Drawn in this order, which is neither front to back nor back to front.
 const COLORS = array(vec4f(0.0, 0.0, 1.0, 0.5), vec4f(1.0, 1.0, 1.0, 0.9), vec4f(1.0, 0.0, 0.0, 0.5), vec4f(0.0, 1.0, 0.0, 0.5));
@@ -26,40 +26,56 @@ fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
     return vec4f(vec2f(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0, 0.5, 1.0);
 }
 
-@group(0) @binding(0) var moments: texture_2d<f32>;
-@group(0) @binding(1) var extent: texture_2d<f32>;
-@group(0) @binding(2) var sums: texture_2d<f32>;
-@group(0) @binding(3) var ends: texture_2d<f32>;
+@group(0) @binding(0) var range: texture_2d<f32>;
+@group(0) @binding(1) var absorbances: texture_2d<f32>;
+@group(0) @binding(2) var nearest: texture_2d<f32>;
+@group(0) @binding(3) var farthest: texture_2d<f32>;
+@group(0) @binding(4) var firsts: texture_2d<f32>;
+@group(0) @binding(5) var sums: texture_2d<f32>;
 
-// The range of depth that the layers span.
+// In the range of depth that the layers span.
 fn zeta(depth: f32) -> f32 {
     return peelnet_zeta(depth, 1.0, 8.0);
 }
 
-struct Two {
-    @location(0) first: vec4f,
-    @location(1) second: vec4f,
+struct Statistics {
+    @location(0) absorbances: vec4f,
+    @location(1) nearest: vec4f,
+    @location(2) farthest: vec4f,
+    @location(3) firsts: vec2f,
 }
 
 @fragment
-fn statistics(in: Varyings) -> Two {
-    let s = peelnet_statistics(in.color.a, zeta(in.depth));
-    return Two(s.moments, s.extent);
+fn range_of_pixel(in: Varyings) -> @location(0) vec2f {
+    return peelnet_pixel_range(zeta(in.depth));
 }
 
 @fragment
-fn weighted(in: Varyings) -> Two {
+fn statistics(in: Varyings) -> Statistics {
+    let s = peelnet_statistics(in.color.a, zeta(in.depth), textureLoad(range, vec2u(in.position.xy), 0).xy);
+    return Statistics(s.absorbances, s.nearest, s.farthest, s.firsts);
+}
+
+@fragment
+fn weighted(in: Varyings) -> @location(0) vec4f {
     let at = vec2u(in.position.xy);
-    let w = peelnet_fragment(in.color.a, zeta(in.depth), textureLoad(moments, at, 0), textureLoad(extent, at, 0));
-    let contribution = vec4f(in.color.rgb, 1.0) * in.color.a * w.x;
-    return Two(select(vec4f(0.0), contribution, w.y == 0.0), select(contribution, vec4f(0.0), w.y == 0.0));
+    let w = peelnet_fragment(
+        in.color.a,
+        zeta(in.depth),
+        textureLoad(range, at, 0).xy,
+        textureLoad(absorbances, at, 0),
+        textureLoad(nearest, at, 0),
+        textureLoad(farthest, at, 0),
+        textureLoad(firsts, at, 0).xy,
+    ).x;
+    return vec4f(in.color.rgb, 1.0) * in.color.a * w;
 }
 
 @fragment
 fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = vec2u(position.xy);
-    let absorbance = textureLoad(moments, at, 0).x;
-    let color = peelnet_resolve(textureLoad(sums, at, 0), textureLoad(ends, at, 0), absorbance, vec3f(0.0));
+    let absorbance = dot(textureLoad(absorbances, at, 0), vec4f(1.0));
+    let color = peelnet_resolve(textureLoad(sums, at, 0), absorbance, vec3f(0.0));
     // The background is opaque.
     return vec4f(color.rgb, 1.0);
 }

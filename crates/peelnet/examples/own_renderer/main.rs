@@ -9,14 +9,14 @@ use plain_wgpu::{Pass, Program, SIZE, Target};
 use std::error::Error;
 use wgpu::BlendOperation::{Add, Max};
 use wgpu::Color;
-use wgpu::TextureFormat::{Rgba8Unorm, Rgba16Float};
+use wgpu::TextureFormat::{Rg8Unorm, Rg16Float, Rgba8Unorm, Rgba16Float};
 
-/// What a maximum starts from: the lowest half float.
+/// What maxima of levels start from: the lowest half float.
 const LOWEST: Color = Color {
     r: -65504.0,
     g: -65504.0,
     b: -65504.0,
-    a: 0.0,
+    a: -65504.0,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -24,29 +24,43 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut program = Program::new(&[network.wgsl, include_str!("layers.wgsl")].concat())?;
 
     let black = Color::TRANSPARENT;
-    let target = |clear, blend| Target::new(&program.device, Rgba16Float, clear, blend);
-    let moments = target(black, Some((Add, Add)));
-    let extent = target(LOWEST, Some((Max, Add)));
-    let sums = target(black, Some((Add, Add)));
-    let ends = target(black, Some((Add, Add)));
-    let picture = Target::new(&program.device, Rgba8Unorm, black, None);
+    let target = |format, clear, blend| Target::new(&program.device, format, clear, blend);
+    let range = target(Rg8Unorm, black, Some((Max, Max)));
+    let absorbances = target(Rgba16Float, black, Some((Add, Add)));
+    let nearest = target(Rgba16Float, LOWEST, Some((Max, Max)));
+    let farthest = target(Rgba16Float, Color { a: 0.0, ..LOWEST }, Some((Max, Add)));
+    let firsts = target(Rg16Float, black, Some((Add, Add)));
+    let sums = target(Rgba16Float, black, Some((Add, Add)));
+    let picture = target(Rgba8Unorm, black, None);
 
+    program.draw(&Pass {
+        entry_points: ["layer", "range_of_pixel"],
+        instances: 4,
+        reads: &[],
+        targets: &[&range],
+    });
     program.draw(&Pass {
         entry_points: ["layer", "statistics"],
         instances: 4,
-        reads: &[],
-        targets: &[&moments, &extent],
+        reads: &[(0, &range)],
+        targets: &[&absorbances, &nearest, &farthest, &firsts],
     });
     program.draw(&Pass {
         entry_points: ["layer", "weighted"],
         instances: 4,
-        reads: &[(0, &moments), (1, &extent)],
-        targets: &[&sums, &ends],
+        reads: &[
+            (0, &range),
+            (1, &absorbances),
+            (2, &nearest),
+            (3, &farthest),
+            (4, &firsts),
+        ],
+        targets: &[&sums],
     });
     program.draw(&Pass {
         entry_points: ["whole", "resolve"],
         instances: 1,
-        reads: &[(0, &moments), (2, &sums), (3, &ends)],
+        reads: &[(1, &absorbances), (5, &sums)],
         targets: &[&picture],
     });
     let pixels = program.finish(&picture)?;

@@ -1,6 +1,6 @@
 //! `peelnet bench`: error against time for many methods.
 
-use super::{Context, bench_effects, bench_path, bench_training};
+use super::{Context, bench_designs, bench_effects, bench_path, bench_training};
 use crate::cli::BenchArgs;
 use crate::failure::{Failure, one_line};
 use crate::learned;
@@ -26,6 +26,9 @@ use std::path::{Path, PathBuf};
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if !args.training.is_empty() {
         return bench_training::run(context, args);
+    }
+    if !args.designs.is_empty() {
+        return bench_designs::run(context, args);
     }
     if args.effects {
         return bench_effects::run(context, args);

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod bench;
+mod bench_designs;
 mod bench_effects;
 mod bench_path;
 mod bench_training;

@@ -6,7 +6,11 @@
 //! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Between`].
 //!
 //! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
-//! ([`SLAB_END`]). The shader twin is `methods/slabs/`.
+//! ([`EndCode`]). The shader twin is `learned/slabs.wgsl`, with `slabs_many.wgsl` or `slabs_few.wgsl`.
+
+mod inputs;
+
+pub use inputs::{FIVE, NINE};
 
 use super::anchored::{FAINT, resolve, resolve_separate_ends};
 use crate::{
@@ -15,47 +19,102 @@ use crate::{
     statistics::{EndCode, FAR_END, SumPrecision},
 };
 
-/// Slabs of a pixel.
-pub const SLABS: usize = 4;
-
-/// Where slabs begin and end in the pixel's range. The outer ones are narrower: a pixel's own ends lie in them.
-pub const BORDERS: [f64; SLABS + 1] = [0.0, 0.2, 0.5, 0.8, 1.0];
+/// Slabs of a pixel, at most.
+pub const MAX_SLABS: usize = 8;
 
 /// Levels of the range of depths, less one: 8 bits for either end.
 pub const RANGE_TOP: f64 = 255.0;
 
-/// How a slab's nearest and farthest fragment are kept, by their place in the slab.
-pub const SLAB_END: EndCode = FAR_END;
+/// A slab: where it ends, and what is kept of it beside its absorbance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept {
+    /// In the range, 0 … 1. It begins where the slab before ends.
+    pub end: f64,
+    /// The mean depth of its absorbance.
+    pub mean: bool,
+    /// Its nearest fragment.
+    pub nearest: bool,
+    /// Its farthest fragment.
+    pub farthest: bool,
+}
 
-/// What is kept of the slabs, from the nearest one on.
+/// The range of depths that is cut into slabs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// That of the pixel's fragments, in 8 bits for either end: a geometry pass more.
+    Pixel,
+    /// That of the frame's transparent objects.
+    Frame,
+}
+
+/// What is kept of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Design {
-    /// How many keep the mean depth of their absorbance.
-    pub means: usize,
-    /// How many keep their farthest fragment.
-    pub farthest: usize,
+    /// The slabs, nearest first; at most [`MAX_SLABS`], of which the last ends at 1.
+    pub slabs: &'static [Kept],
+    /// How nearest and farthest fragments are kept, by their place in the slab.
+    pub records: EndCode,
+    /// What is cut into slabs.
+    pub extent: Extent,
     /// Whether the colours of known fragments have a sum of their own.
     pub apart: bool,
+}
+
+/// A slab that keeps its nearest fragment.
+const fn until(end: f64, mean: bool, farthest: bool) -> Kept {
+    Kept {
+        end,
+        mean,
+        nearest: true,
+        farthest,
+    }
 }
 
 impl Design {
     /// 32 bytes a pixel, colours included.
     pub const SMALL: Self = Self {
-        means: 2,
-        farthest: 1,
+        slabs: &[
+            until(0.2, true, true),
+            until(0.5, true, false),
+            until(0.8, false, false),
+            until(1.0, false, false),
+        ],
+        records: FAR_END,
+        extent: Extent::Pixel,
         apart: false,
     };
-    /// 40 bytes a pixel.
+    /// 38 bytes a pixel. The outer slabs are narrower: a pixel's own ends lie in them.
     pub const MEDIUM: Self = Self {
-        means: 4,
-        farthest: 3,
-        apart: false,
+        slabs: &[
+            until(0.2, true, true),
+            until(0.5, true, true),
+            until(0.8, true, true),
+            until(1.0, false, false),
+        ],
+        ..Self::SMALL
     };
-    /// 48 bytes a pixel.
+    /// 46 bytes a pixel.
     pub const LARGE: Self = Self {
         apart: true,
         ..Self::MEDIUM
     };
+
+    /// Bytes a pixel of all targets, colours included.
+    pub fn bytes(&self) -> u32 {
+        let channels = |k: &Kept| {
+            1 + [k.mean, k.nearest, k.farthest]
+                .map(u32::from)
+                .iter()
+                .sum::<u32>()
+        };
+        let channels: u32 = self.slabs.iter().map(channels).sum();
+        let range = if self.extent == Extent::Pixel { 2 } else { 0 };
+        range + 2 * channels + 8 * (1 + u32::from(self.apart))
+    }
+
+    fn begin(&self, slab: usize) -> f64 {
+        slab.checked_sub(1).map_or(0.0, |k| self.slabs[k].end)
+    }
 }
 
 /// Where in its pixel a fragment lies.
@@ -65,20 +124,10 @@ struct Place {
     slab: usize,
     /// In the slab, −1 … 1.
     inside: f64,
-}
-
-impl Place {
-    fn near(&self) -> u32 {
-        SLAB_END.mirrored(self.inside, self.absorbance)
-    }
-
-    fn far(&self) -> u32 {
-        SLAB_END.level(self.inside, self.absorbance)
-    }
-
-    fn bin(&self) -> u32 {
-        self.far() / SLAB_END.alphas
-    }
+    /// Its level as the slab's nearest, counted from the far end, and as its farthest.
+    near: u32,
+    far: u32,
+    bin: u32,
 }
 
 /// The range of a pixel's fragments in levels of depth: rounded away from each other, and never empty.
@@ -89,6 +138,12 @@ pub struct Range {
 }
 
 impl Range {
+    /// That of the frame.
+    pub const WHOLE: Self = Self {
+        low: 0.0,
+        high: RANGE_TOP,
+    };
+
     /// Of a pixel whose fragments have these warped depths.
     pub fn of(zetas: impl IntoIterator<Item = f64>) -> Self {
         let none = (RANGE_TOP, 0.0f64);
@@ -166,7 +221,7 @@ impl Seen {
 pub struct Slabs {
     design: Design,
     range: Range,
-    slabs: [Slab; SLABS],
+    slabs: [Slab; MAX_SLABS],
 }
 
 impl Slabs {
@@ -174,7 +229,10 @@ impl Slabs {
     pub fn of(fragments: &[(f64, f64, bool)], design: Design, precision: SumPrecision) -> Self {
         let mut all = Self {
             design,
-            range: Range::of(fragments.iter().map(|f| f.1)),
+            range: match design.extent {
+                Extent::Pixel => Range::of(fragments.iter().map(|f| f.1)),
+                Extent::Frame => Range::WHOLE,
+            },
             slabs: Default::default(),
         };
         for &(b, zeta, counts) in fragments {
@@ -183,21 +241,27 @@ impl Slabs {
             slab.absorbance = precision.add(slab.absorbance, b);
             slab.first = precision.add(slab.first, b * place.inside);
             if counts {
-                slab.nearest = slab.nearest.max(place.near());
-                slab.farthest = slab.farthest.max(place.far());
+                slab.nearest = slab.nearest.max(place.near);
+                slab.farthest = slab.farthest.max(place.far);
             }
         }
         all
     }
 
     fn place(&self, absorbance: f64, zeta: f64) -> Place {
-        let t = self.range.place(zeta);
-        let slab = BORDERS[1..SLABS].iter().filter(|&&b| t >= b).count();
-        let [begin, end] = [BORDERS[slab], BORDERS[slab + 1]];
+        let (t, records) = (self.range.place(zeta), &self.design.records);
+        let inner = self.design.slabs.iter().take(self.design.slabs.len() - 1);
+        let slab = inner.filter(|kept| t >= kept.end).count();
+        let [begin, end] = [self.design.begin(slab), self.design.slabs[slab].end];
+        let inside = 2.0 * (t - begin) / (end - begin) - 1.0;
+        let far = records.level(inside, absorbance);
         Place {
             absorbance,
             slab,
-            inside: 2.0 * (t - begin) / (end - begin) - 1.0,
+            inside,
+            near: records.mirrored(inside, absorbance),
+            far,
+            bin: far / records.alphas,
         }
     }
 
@@ -207,10 +271,10 @@ impl Slabs {
         let slab = &self.slabs[place.slab];
         let before: f64 = self.slabs[..place.slab].iter().map(|s| s.absorbance).sum();
         let others = (slab.absorbance - absorbance).max(0.0);
-        let keeps_far = place.slab < self.design.farthest;
-        let known = if counts && place.near() == slab.nearest {
+        let kept = &self.design.slabs[place.slab];
+        let known = if counts && kept.nearest && place.near == slab.nearest {
             Some(0.0)
-        } else if counts && keeps_far && place.far() == slab.farthest {
+        } else if counts && kept.farthest && place.far == slab.farthest {
             Some(others)
         } else {
             None
@@ -229,28 +293,32 @@ impl Slabs {
     }
 
     fn between(&self, place: &Place, slab: &Slab, others: f64) -> Between {
+        let (kept, records) = (&self.design.slabs[place.slab], &self.design.records);
         let noise = (slab.absorbance / 1024.0).max(1e-6);
-        let alphas = SLAB_END.alphas;
+        let alphas = records.alphas;
         // Of the nearest: counted from the far end.
-        let near_bin = SLAB_END.bins - 1 - slab.nearest / alphas;
+        let near_bin = records.bins - 1 - slab.nearest / alphas;
         let near_level = near_bin * alphas + slab.nearest % alphas;
-        let mut nearest = SLAB_END.absorbance(slab.nearest);
-        let step = 0.6 / f64::from(alphas - 1);
-        // All others, as far as the level's rounding and the sum's can tell.
-        if nearest > others - (step * (1.0 + nearest).powi(2) + noise) {
-            nearest = others;
-        }
-        if near_bin > place.bin() {
-            nearest = 0.0;
+        let (mut nearest, mut begin) = (0.0, -1.0);
+        if kept.nearest {
+            nearest = records.absorbance(slab.nearest);
+            let step = 0.6 / f64::from(alphas - 1);
+            // All others, as far as the level's rounding and the sum's can tell.
+            if nearest > others - (step * (1.0 + nearest).powi(2) + noise) {
+                nearest = others;
+            }
+            if near_bin > place.bin {
+                nearest = 0.0;
+            }
+            begin = records.zeta(near_level);
         }
         let (mut farthest, mut end) = (0.0, 1.0);
-        if place.slab < self.design.farthest && slab.farthest != near_level {
-            if slab.farthest / alphas >= place.bin() {
-                farthest = SLAB_END.absorbance(slab.farthest);
+        if kept.farthest && !(kept.nearest && slab.farthest == near_level) {
+            if slab.farthest / alphas >= place.bin {
+                farthest = records.absorbance(slab.farthest);
             }
-            end = SLAB_END.zeta(slab.farthest);
+            end = records.zeta(slab.farthest);
         }
-        let mut begin = SLAB_END.zeta(near_level);
         let u = place.inside;
         let rest = slab.absorbance - place.absorbance - nearest - farthest;
         let first = slab.first - place.absorbance * u - nearest * begin - farthest * end;
@@ -260,10 +328,10 @@ impl Slabs {
         if end < u {
             end = 1.0;
         }
-        let extent = (end - begin).max(2.0 / f64::from(SLAB_END.bins));
+        let extent = (end - begin).max(2.0 / f64::from(records.bins));
         let x = ((u - begin) / extent).clamp(0.0, 1.0);
         let (mut mean, mut bounds) = (0.5, [0.0, 1.0]);
-        if place.slab < self.design.means {
+        if kept.mean {
             let depth = (first / rest.max(noise)).clamp(begin, end);
             mean = ((depth - begin) / extent).clamp(0.0, 1.0);
             bounds = if x < mean {
@@ -297,6 +365,22 @@ pub fn seen(
     points.iter().map(of).collect()
 }
 
+/// As [`seen`], with the sums of each slab, absorbance and absorbance times depth, as something else added them up.
+pub fn seen_given(
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
+    design: Design,
+    sums: &[[f64; 2]],
+) -> Vec<Seen> {
+    let points = points(fragments, warp);
+    let mut slabs = Slabs::of(&points, design, SumPrecision::Exact);
+    for (slab, &[absorbance, first]) in slabs.slabs.iter_mut().zip(sums) {
+        (slab.absorbance, slab.first) = (absorbance, first);
+    }
+    let of = |&(b, zeta, counts): &(f64, f64, bool)| slabs.seen(b, zeta, counts);
+    points.iter().map(of).collect()
+}
+
 fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<(f64, f64, bool)> {
     let point = |&(depth, alpha): &(f32, f32)| {
         let zeta = warp.apply(depth.into());
@@ -318,6 +402,25 @@ pub fn composite(
     design: Design,
     guess: impl Fn(&Between) -> f64,
 ) -> [f32; 3] {
+    composite_rounded(
+        fragments,
+        background,
+        warp,
+        design,
+        SumPrecision::Exact,
+        guess,
+    )
+}
+
+/// As [`composite`], with the sums of the statistics kept in a precision.
+pub fn composite_rounded(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    warp: &DepthWarp,
+    design: Design,
+    precision: SumPrecision,
+    guess: impl Fn(&Between) -> f64,
+) -> [f32; 3] {
     let list: Vec<(f32, f32)> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
     let total: f64 = list.iter().map(|&(_, alpha)| absorbance(alpha)).sum();
     if total == 0.0 {
@@ -325,10 +428,7 @@ pub fn composite(
     }
     // Premultiplied colour and alpha of what is guessed, and of what is known.
     let mut sums = [[0.0f64; 4]; 2];
-    for (f, seen) in fragments
-        .iter()
-        .zip(seen(&list, warp, design, SumPrecision::Exact))
-    {
+    for (f, seen) in fragments.iter().zip(seen(&list, warp, design, precision)) {
         let w = seen.weight(&guess);
         let sum = &mut sums[usize::from(design.apart && seen.between.is_none())];
         for (sum, c) in sum.iter_mut().zip(f.premultiplied()) {
@@ -346,142 +446,4 @@ pub fn composite(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        methods::{mboit4, moments, over},
-        random::Random,
-    };
-
-    const C0: [f32; 3] = [0.3, 0.1, 0.7];
-
-    /// A pixel's fragments at these places in the range of the view's depths.
-    fn at(places: &[f64], most: f32, random: &mut Random) -> Vec<Fragment> {
-        let mut fragments: Vec<_> = places
-            .iter()
-            .map(|t| {
-                let depth = (0.5 * 100f64.powf(*t)) as f32;
-                Fragment::new(depth, random.between(0.02, most), random.color())
-            })
-            .collect();
-        crate::fragment::sort_front_to_back(&mut fragments);
-        fragments
-    }
-
-    fn warp() -> DepthWarp {
-        DepthWarp::new(0.5, 50.0)
-    }
-
-    fn worst(f: &[Fragment], design: Design, guess: f64) -> f32 {
-        let exact = over::composite(f, C0);
-        let got = composite(f, C0, &warp(), design, |_| guess);
-        (0..3)
-            .map(|k| (got[k] - exact[k]).abs())
-            .fold(0.0, f32::max)
-    }
-
-    /// Two layers in each slab: all are known, whatever is guessed. In the last one the farther is what the nearer leaves; an opacity of
-    /// 32 levels says so, as long as it is told from a third layer.
-    #[test]
-    fn eight_layers_are_known() {
-        let mut random = Random::new(3, &[]);
-        for seed in 0..200 {
-            let mut places = Vec::new();
-            for slab in 0..SLABS {
-                let [begin, end] = [BORDERS[slab], BORDERS[slab + 1]];
-                let depth = |share: f64| begin + (end - begin) * share;
-                places.push(depth(0.02 + 0.4 * f64::from(random.unit())));
-                places.push(depth(0.55 + 0.4 * f64::from(random.unit())));
-            }
-            places[0] = 0.0;
-            places[7] = 1.0;
-            let f = at(&places, 0.98, &mut random);
-            for design in [Design::LARGE, Design::MEDIUM] {
-                let worst = worst(&f, design, f64::from(seed % 3) / 2.0);
-                assert!(worst < 1e-5, "{seed}: {worst}");
-            }
-        }
-    }
-
-    /// 1e−6: about ten roundings of values up to 1. Layers of one bin share a record, so the places are spread evenly.
-    #[test]
-    fn few_layers_are_exact_whatever_is_guessed() {
-        let mut random = Random::new(5, &[]);
-        for seed in 0..600 {
-            let n = 1 + seed % 3;
-            let places: Vec<_> = (0..n)
-                .map(|i| (0.1 + 0.8 * f64::from(random.unit()) + f64::from(i)) / f64::from(n))
-                .collect();
-            let f = at(&places, 0.98, &mut random);
-            let designs = [Design::LARGE, Design::MEDIUM, Design::SMALL];
-            // Sums apart hold one more layer.
-            for design in designs.into_iter().filter(|d| n < 3 || d.apart) {
-                let worst = worst(&f, design, f64::from(seed % 4) / 3.0);
-                assert!(worst < 1e-6, "{design:?} {f:?}: {worst}");
-            }
-        }
-    }
-
-    /// The truth lies between the bounds, but for what 32 levels of opacity round away of the slab's two ends. Half a level is
-    /// (1 + b)²/2·31 of absorbance; the mean depth is off by as much again, from both ends.
-    #[test]
-    fn bounds_hold() {
-        const MOST: f32 = 0.6;
-        let level = (1.0 + absorbance(MOST)).powi(2) / f64::from(SLAB_END.alphas - 1);
-        let limit = 4.0 * 0.5 * level;
-        let mut random = Random::new(7, &[]);
-        let (mut guessed, mut width, mut unbounded) = (0, 0.0, 0.0);
-        for _ in 0..300 {
-            // In 2,000 places, which lie in bins of their own.
-            let mut cells: Vec<_> = (0..random.below(8) + 12)
-                .map(|_| random.below(2000))
-                .collect();
-            cells.sort_unstable();
-            cells.dedup();
-            let places: Vec<_> = cells.iter().map(|&c| c as f64 / 1999.0).collect();
-            let f = at(&places, MOST, &mut random);
-            let list: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
-            let mut front = 0.0f64;
-            let all = seen(&list, &warp(), Design::LARGE, SumPrecision::Exact);
-            for (f, seen) in f.iter().zip(all) {
-                let [least, most] = [0.0, 1.0].map(|guess| -seen.weight(|_| guess).ln());
-                let holds = least - limit <= front && front <= most + limit;
-                assert!(holds, "{front}, not {least} … {most}: {seen:?}");
-                guessed += usize::from(seen.between.is_some());
-                unbounded += seen.between.map_or(0.0, |between| between.absorbance);
-                width += most - least;
-                front += absorbance(f.alpha);
-            }
-        }
-        assert!(guessed > 1000, "only {guessed} fragments are guessed");
-        assert!(width < 0.75 * unbounded, "{width} of {unbounded}");
-    }
-
-    /// Without a network the largest design errs a tenth of four moments' squared error on random pixels, and each smaller one more.
-    #[test]
-    fn known_layers_beat_moments() {
-        let mut random = Random::new(11, &[]);
-        let mut squares = [0.0f64; 4];
-        for _ in 0..400 {
-            let n = 4 + random.below(12);
-            let places: Vec<_> = (0..n).map(|_| f64::from(random.unit())).collect();
-            let f = at(&places, 0.98, &mut random);
-            let exact = over::composite(&f, C0);
-            let designs = [Design::LARGE, Design::MEDIUM, Design::SMALL];
-            let mut found = designs
-                .map(|d| composite(&f, C0, &warp(), d, middle))
-                .to_vec();
-            let empty = mboit4::Moments::default();
-            let settings = moments::Settings::PAPER;
-            found.push(moments::composite(&f, C0, &warp(), empty, &settings));
-            for (sum, found) in squares.iter_mut().zip(found) {
-                *sum += (0..3)
-                    .map(|k| f64::from(found[k] - exact[k]).powi(2))
-                    .sum::<f64>();
-            }
-        }
-        let [large, medium, small, moments] = squares;
-        assert!(large < medium && medium < small, "{squares:?}");
-        assert!(large < 0.1 * moments, "{squares:?}");
-    }
-}
+mod tests;

@@ -1,4 +1,4 @@
-//! `deep-small`, `deep-medium`, `deep-large`: a learned share of the others' absorbance, anchored at both ends, drawn with
+//! `deep-anchored-small`, `deep-anchored-medium`: a learned share of the others' absorbance, anchored at both ends, drawn with
 //! the exported text itself. The CPU twin is `peelnet_core::methods::anchored`.
 
 use super::{
@@ -6,13 +6,13 @@ use super::{
     compositor::{Build, Compositor},
     learned::learned_transmittances,
     method::{Method, Pixel, Promises},
-    parameter::{MOMENT_TARGETS, Precision, TARGETS},
+    parameter::{Precision, TARGETS},
     spec::MethodSpec,
     weighted::SUMS,
 };
 use crate::{
     error::RenderError,
-    flaw::{Flaw, Property, half_statistics, half_sums},
+    flaw::{Flaw, Property, half_sums},
 };
 use peelnet_core::{methods::anchored, statistics::SumPrecision};
 use peelnet_model::{Inputs, Output};
@@ -67,7 +67,7 @@ const BEHIND_COINCIDENT: Flaw = Flaw::new(
 );
 
 /// Of no matter to what is drawn: exported texts have 32 bits.
-const MAGNIFIED: Flaw = Flaw::new(
+pub(super) const MAGNIFIED: Flaw = Flaw::new(
     Property::Half,
     &["half-float"],
     "weights of the hidden layers up to 10 magnify the roundings of half floats, which the limit counts in the last layer alone",
@@ -95,7 +95,7 @@ pub(super) const SMALL: Method = Method {
         MAGNIFIED,
     ],
     ..anchored!(
-        "deep-small",
+        "deep-anchored-small",
         "a learned share of what lies between the pixel's ends, 5-8-1"
     )
 };
@@ -105,28 +105,7 @@ pub(super) const MEDIUM: Method = Method {
     promises: |_| promises(Precision::Half),
     curve: &["", ":targets=f32", ":scale=0.5"],
     flaws: &[ROUNDED_OTHERWISE, UNSETTLED, BEHIND_COINCIDENT],
-    ..anchored!(
-        "deep-medium",
-        "the same with exact ends, 5-12-1: the one to ship"
-    )
-};
-
-pub(super) const LARGE: Method = Method {
-    parameters: &[MOMENT_TARGETS],
-    promises: |_| promises(Precision::Full),
-    curve: &["", ":targets=f16", ":scale=0.5"],
-    flaws: &[
-        Flaw::swallowed(&["deep"]),
-        Flaw::swallowed(&["alpha-tiny"]).when(|s| half_sums(s) && !half_statistics(s)),
-        UNSETTLED,
-        Flaw::unsettled(Property::Order, &["deep", "grazing", "near-overflow"]),
-        BEHIND_COINCIDENT.when(|s| !half_statistics(s)),
-        MAGNIFIED,
-    ],
-    ..anchored!(
-        "deep-large",
-        "the same with more features, 9-14-9-1: the most accurate"
-    )
+    ..anchored!("deep-anchored-medium", "the same with exact ends, 5-12-1")
 };
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {

@@ -81,9 +81,11 @@ pub const METHODS: &[Method] = &[
     deep_thesis::METHOD,
     nmt::METHOD,
     dfaoit::METHOD,
+    slabs::SMALL,
+    slabs::MEDIUM,
+    slabs::LARGE,
     anchored::SMALL,
     anchored::MEDIUM,
-    anchored::LARGE,
 ];
 
 impl MethodSpec {

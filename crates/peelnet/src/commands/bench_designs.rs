@@ -1,0 +1,179 @@
+//! `peelnet bench --designs`: what designs of slabs are worth.
+
+use super::Context;
+use crate::cli::BenchArgs;
+use crate::failure::Failure;
+use crate::outputs::Outputs;
+use crate::parse::{command_line, json_path, shown};
+use crate::progress::Bar;
+use peelnet_dataset::{Dataset, SplitBy};
+use peelnet_eval::{
+    Machine,
+    designs::{
+        self, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score, View,
+    },
+};
+use peelnet_files::{Unfinished, printable};
+use peelnet_report::Results;
+use peelnet_scene::Scene;
+use peelnet_train::{Config, End, RunOptions, TrainingData, train};
+use serde_json::json;
+use std::collections::BTreeSet;
+
+pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    let inputs = args.scenes.iter().chain(&args.designs);
+    let mut outputs = Outputs::new(context, inputs.chain(&args.designs_file));
+    outputs.results("--out", &args.out, Results::<Designs>::FILES)?;
+    let entries = match &args.designs_file {
+        Some(path) => designs::read(path)?,
+        None => designs::shipped()?,
+    };
+    let configs: Vec<Config> = entries.iter().map(|e| config(e, args)).collect();
+    for config in &configs {
+        config.check()?;
+    }
+    let scenes = context.scenes(&args.scenes)?;
+    outputs.begin(&scenes)?;
+    let datasets = args
+        .designs
+        .iter()
+        .map(Dataset::open)
+        .collect::<Result<Vec<_>, _>>()?;
+    let trained_on = check_scenes(context, &scenes, &datasets)?;
+    let gpu = context.gpu()?;
+    let bar = Bar::new(context.console, "designs", entries.len() as u64);
+    bar.set(0, entries.len() as u64, "peeling".to_owned());
+    let size = args.size.0;
+    let views = designs::peel(&gpu, &scenes, size, args.views.limit(), context.stop)?;
+    context.warn_of_memory(&gpu);
+    let judge = Judge::new(&views)?;
+    let scratch = tempfile::tempdir()
+        .map_err(|e| Failure::Failed(format!("cannot create a temporary folder: {e}")))?;
+    let _unfinished = Unfinished::new(scratch.path());
+    let mut rows = Vec::new();
+    for (k, (entry, config)) in entries.iter().zip(&configs).enumerate() {
+        bar.set(k as u64, entries.len() as u64, entry.name.clone());
+        let data = TrainingData::from_datasets(config, &datasets)?;
+        context.check_interrupt()?;
+        if k == 0 {
+            super::train::warn_of_rows(context, &data, config);
+        }
+        let options = RunOptions::new(scratch.path().join("model.safetensors"), context.stop);
+        let outcome = train(config, &data, &options, |_| {})?;
+        if outcome.end == End::Interrupted {
+            return Err(Failure::Interrupted);
+        }
+        let examples = data.training_examples() as u64;
+        // Two designs' examples are never in memory at once.
+        drop(data);
+        let measured = |model| -> Result<Score, Failure> {
+            let measured = views.iter().map(|view| entry.measure(view, model));
+            let measured: Vec<Measured> = measured.collect();
+            context.check_interrupt()?;
+            Ok(judge.score(&measured))
+        };
+        let (network, middle) = (measured(Some(&outcome.model))?, measured(None)?);
+        rows.push(Row {
+            examples,
+            seconds: super::train::seconds(&outcome),
+            ..Row::new(entry, &outcome.model, network, middle)
+        });
+    }
+    drop(bar);
+    let found = Designs {
+        file: args
+            .designs_file
+            .as_ref()
+            .map_or_else(|| DESIGNS.to_owned(), |path| json_path(path)),
+        trained_on,
+        judged_on: scenes.iter().map(|s| s.name.clone()).collect(),
+        learning_rate: configs[0].learning_rate,
+        epochs: configs[0].epochs,
+        references: judge.references(),
+        rows,
+    };
+    let results = Results::new(Machine::of(&gpu), command_line(), found);
+    results.write(&args.out)?;
+    context
+        .console
+        .result(|| results.table().plain(), || json!(results))
+}
+
+fn config(entry: &Entry, args: &BenchArgs) -> Config {
+    let base = Config::for_recipe(entry.recipe);
+    Config {
+        // The scenes of the bench judge.
+        split: SplitBy::Pixel,
+        seed: entry.seed,
+        max_rows: args.max_rows.unwrap_or(base.max_rows),
+        ..base
+    }
+}
+
+/// The scenes that are trained on.
+///
+/// # Errors
+/// A scene that would judge and is trained on.
+fn check_scenes(
+    context: &Context<'_>,
+    scenes: &[Scene],
+    datasets: &[Dataset],
+) -> Result<Vec<String>, Failure> {
+    let mut trained: BTreeSet<String> = BTreeSet::new();
+    for dataset in datasets {
+        let manifest = dataset.manifest();
+        for part in manifest.parts.iter().filter(|p| !dataset.is_held_out(p)) {
+            let name = &manifest.scenes[part.scene as usize].name;
+            if scenes.iter().any(|scene| scene.name == *name) {
+                return Err(Failure::Usage(format!(
+                    "--designs {}: the dataset holds scene '{}', which would judge what was trained on it; extract a dataset without it, or name \
+                     another scene",
+                    shown(dataset.path()),
+                    printable(name)
+                )));
+            }
+            trained.insert(name.clone());
+        }
+    }
+    for scene in scenes.iter().filter(|scene| scene.held_out) {
+        context.console.warn(format!(
+            "scene '{}' is held out: once a design was chosen by it, it can no longer judge that design",
+            printable(&scene.name)
+        ));
+    }
+    Ok(trained.into_iter().collect())
+}
+
+/// The errors that others are compared with.
+struct Judge<'a> {
+    views: &'a [View],
+    moments: Vec<Measured>,
+    kbuffer: Vec<Measured>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(views: &'a [View]) -> Result<Self, Failure> {
+        let of = |name: &str| -> Result<Vec<Measured>, Failure> {
+            let method = name.parse()?;
+            let measured = views.iter().map(|view| view.measure_method(&method));
+            Ok(measured.collect())
+        };
+        Ok(Self {
+            views,
+            moments: of(MOMENTS)?,
+            kbuffer: of(KBUFFER)?,
+        })
+    }
+
+    fn score(&self, measured: &[Measured]) -> Score {
+        designs::score(self.views, measured, &self.moments, &self.kbuffer)
+    }
+
+    fn references(&self) -> Vec<Reference> {
+        let of = |name: &str, measured: &[Measured]| Reference {
+            method: name.to_owned(),
+            score: self.score(measured),
+        };
+        vec![of(MOMENTS, &self.moments), of(KBUFFER, &self.kbuffer)]
+    }
+}

@@ -1,0 +1,137 @@
+use super::*;
+use crate::{
+    methods::{mboit4, moments, over},
+    random::Random,
+};
+
+const C0: [f32; 3] = [0.3, 0.1, 0.7];
+
+/// A pixel's fragments at these places in the range of the view's depths.
+fn at(places: &[f64], most: f32, random: &mut Random) -> Vec<Fragment> {
+    let mut fragments: Vec<_> = places
+        .iter()
+        .map(|t| {
+            let depth = (0.5 * 100f64.powf(*t)) as f32;
+            Fragment::new(depth, random.between(0.02, most), random.color())
+        })
+        .collect();
+    crate::fragment::sort_front_to_back(&mut fragments);
+    fragments
+}
+
+fn warp() -> DepthWarp {
+    DepthWarp::new(0.5, 50.0)
+}
+
+fn worst(f: &[Fragment], design: Design, guess: f64) -> f32 {
+    let exact = over::composite(f, C0);
+    let got = composite(f, C0, &warp(), design, |_| guess);
+    (0..3)
+        .map(|k| (got[k] - exact[k]).abs())
+        .fold(0.0, f32::max)
+}
+
+/// Two layers in each slab: all are known, whatever is guessed. In the last one the farther is what the nearer leaves; an opacity of
+/// 32 levels says so, as long as it is told from a third layer.
+#[test]
+fn eight_layers_are_known() {
+    let mut random = Random::new(3, &[]);
+    for seed in 0..200 {
+        let mut places = Vec::new();
+        for slab in 0..4 {
+            let design = Design::LARGE;
+            let [begin, end] = [design.begin(slab), design.slabs[slab].end];
+            let depth = |share: f64| begin + (end - begin) * share;
+            places.push(depth(0.02 + 0.4 * f64::from(random.unit())));
+            places.push(depth(0.55 + 0.4 * f64::from(random.unit())));
+        }
+        places[0] = 0.0;
+        places[7] = 1.0;
+        let f = at(&places, 0.98, &mut random);
+        for design in [Design::LARGE, Design::MEDIUM] {
+            let worst = worst(&f, design, f64::from(seed % 3) / 2.0);
+            assert!(worst < 1e-5, "{seed}: {worst}");
+        }
+    }
+}
+
+/// 1e−6: about ten roundings of values up to 1. Layers of one bin share a record, so the places are spread evenly.
+#[test]
+fn few_layers_are_exact_whatever_is_guessed() {
+    let mut random = Random::new(5, &[]);
+    for seed in 0..600 {
+        let n = 1 + seed % 3;
+        let places: Vec<_> = (0..n)
+            .map(|i| (0.1 + 0.8 * f64::from(random.unit()) + f64::from(i)) / f64::from(n))
+            .collect();
+        let f = at(&places, 0.98, &mut random);
+        // The middle one of three is the second of its slab at most, beside one of the pixel's own ends.
+        for design in [Design::LARGE, Design::MEDIUM, Design::SMALL] {
+            let worst = worst(&f, design, f64::from(seed % 4) / 3.0);
+            assert!(worst < 1e-6, "{design:?} {f:?}: {worst}");
+        }
+    }
+}
+
+/// The truth lies between the bounds, but for what 32 levels of opacity round away of the slab's two ends. Half a level is
+/// (1 + b)²/2·31 of absorbance; the mean depth is off by as much again, from both ends.
+#[test]
+fn bounds_hold() {
+    const MOST: f32 = 0.6;
+    let level = (1.0 + absorbance(MOST)).powi(2) / f64::from(FAR_END.alphas - 1);
+    let limit = 4.0 * 0.5 * level;
+    let mut random = Random::new(7, &[]);
+    let (mut guessed, mut width, mut unbounded) = (0, 0.0, 0.0);
+    for _ in 0..300 {
+        // In 2,000 places, which lie in bins of their own.
+        let mut cells: Vec<_> = (0..random.below(8) + 12)
+            .map(|_| random.below(2000))
+            .collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let places: Vec<_> = cells.iter().map(|&c| c as f64 / 1999.0).collect();
+        let f = at(&places, MOST, &mut random);
+        let list: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
+        let mut front = 0.0f64;
+        let all = seen(&list, &warp(), Design::LARGE, SumPrecision::Exact);
+        for (f, seen) in f.iter().zip(all) {
+            let [least, most] = [0.0, 1.0].map(|guess| -seen.weight(|_| guess).ln());
+            let holds = least - limit <= front && front <= most + limit;
+            assert!(holds, "{front}, not {least} … {most}: {seen:?}");
+            guessed += usize::from(seen.between.is_some());
+            unbounded += seen.between.map_or(0.0, |between| between.absorbance);
+            width += most - least;
+            front += absorbance(f.alpha);
+        }
+    }
+    assert!(guessed > 1000, "only {guessed} fragments are guessed");
+    assert!(width < 0.75 * unbounded, "{width} of {unbounded}");
+}
+
+/// Without a network the largest design errs a tenth of four moments' squared error on random pixels, and each smaller one more.
+#[test]
+fn known_layers_beat_moments() {
+    let mut random = Random::new(11, &[]);
+    let mut squares = [0.0f64; 4];
+    for _ in 0..400 {
+        let n = 4 + random.below(12);
+        let places: Vec<_> = (0..n).map(|_| f64::from(random.unit())).collect();
+        let f = at(&places, 0.98, &mut random);
+        let exact = over::composite(&f, C0);
+        let designs = [Design::LARGE, Design::MEDIUM, Design::SMALL];
+        let mut found = designs
+            .map(|d| composite(&f, C0, &warp(), d, middle))
+            .to_vec();
+        let empty = mboit4::Moments::default();
+        let settings = moments::Settings::PAPER;
+        found.push(moments::composite(&f, C0, &warp(), empty, &settings));
+        for (sum, found) in squares.iter_mut().zip(found) {
+            *sum += (0..3)
+                .map(|k| f64::from(found[k] - exact[k]).powi(2))
+                .sum::<f64>();
+        }
+    }
+    let [large, medium, small, moments] = squares;
+    assert!(large < medium && medium < small, "{squares:?}");
+    assert!(large < 0.1 * moments, "{squares:?}");
+}

@@ -1,0 +1,230 @@
+//! Designs of slabs against one another: what the learned methods keep of a pixel, and what that is worth.
+//!
+//! Designs are data ([`read`]): one entry each. A caller trains the network of an entry ([`Entry::recipe`]) and measures it here
+//! ([`Entry::measure`]) on whole frames that [`peel`] holds in memory. Pixels are composited on the CPU with statistics rounded as 16-bit
+//! targets round them; colours are not rounded. The errors are ratios to those of two references on the same fragments ([`MOMENTS`] and
+//! [`KBUFFER`]), composited by their CPU twins.
+
+mod file;
+#[cfg(test)]
+mod tests;
+mod views;
+
+pub use file::{parse, read, shipped};
+pub use views::{Measured, View, peel, score};
+
+use peelnet_core::{
+    features::Feature,
+    methods::slabs::{self, Between, Design, Extent},
+    statistics::SumPrecision,
+};
+use peelnet_model::{Model, PixelLoss, Recipe};
+use serde::{Deserialize, Serialize};
+
+pub use crate::ratios::MOMENTS;
+
+/// The method that keeps the nearest four fragments, which errors are compared with as well.
+pub const KBUFFER: &str = "kbuffer-4";
+
+/// Where the shipped designs lie in the repository.
+pub const DESIGNS: &str = "data/designs.toml";
+
+/// A trained network, and what it reads.
+#[derive(Clone, Copy, Debug)]
+struct Network<'a> {
+    model: &'a Model,
+    inputs: &'a [&'static Feature<Between>],
+}
+
+/// An entry of a file of designs.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// What is kept of a pixel.
+    pub design: Design,
+    /// What the network reads.
+    pub inputs: &'static [&'static Feature<Between>],
+    /// What is trained; its examples may be gathered with the sums apart where the design has one sum.
+    pub recipe: Recipe,
+    /// Decides initial weights and the order of examples.
+    pub seed: u64,
+}
+
+impl Entry {
+    /// The error of a view with this network, or without one (the middle of the bounds).
+    ///
+    /// # Panics
+    /// If the model has other inputs.
+    pub fn measure(&self, view: &View, model: Option<&Model>) -> Measured {
+        let network = model.map(|model| Network {
+            model,
+            inputs: self.inputs,
+        });
+        view.measure(|fragments| {
+            slabs::composite_rounded(
+                fragments,
+                [0.0; 3],
+                &view.warp,
+                self.design,
+                SumPrecision::Half,
+                |between| network.map_or_else(|| slabs::middle(between), |n| n.guess(between)),
+            )
+        })
+    }
+
+    /// What is kept of each slab.
+    pub fn kept(&self) -> Vec<Slab> {
+        let slabs = self.design.slabs.iter();
+        slabs
+            .map(|kept| Slab {
+                end: kept.end,
+                mean: kept.mean,
+                nearest: kept.nearest,
+                farthest: kept.farthest,
+            })
+            .collect()
+    }
+}
+
+impl Network<'_> {
+    fn guess(&self, between: &Between) -> f64 {
+        let inputs: Vec<f32> = self
+            .inputs
+            .iter()
+            .map(|feature| (feature.value)(between) as f32)
+            .collect();
+        self.model.forward_raw(&inputs)[0].into()
+    }
+}
+
+/// All designs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Designs {
+    /// The file of designs.
+    pub file: String,
+    /// Names of the scenes that were trained on.
+    pub trained_on: Vec<String>,
+    /// Names of the scenes that judge.
+    pub judged_on: Vec<String>,
+    /// Peak of the learning rate.
+    pub learning_rate: f64,
+    /// Passes over the training examples.
+    pub epochs: u32,
+    /// The methods that errors are compared with.
+    pub references: Vec<Reference>,
+    /// A row for each design, in the order of the file.
+    pub rows: Vec<Row>,
+}
+
+/// A method that errors are compared with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Its name.
+    pub method: String,
+    /// Its own errors.
+    #[serde(flatten)]
+    pub score: Score,
+}
+
+/// Errors over all views.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// Mean squared error of the whole frame over that of [`MOMENTS`], geometric mean over scenes and views.
+    pub to_moments: Option<f64>,
+    /// The same over that of [`KBUFFER`].
+    pub to_kbuffer: Option<f64>,
+    /// The scene with the largest ratio of mean error to that of [`MOMENTS`].
+    pub worst_scene: Option<String>,
+    /// That ratio.
+    pub worst: Option<f64>,
+    /// Share of contour pairs, mean over the views that have pairs; see [`crate::contours`].
+    pub contour_pairs: Option<f64>,
+}
+
+/// What a design keeps of a slab besides its absorbance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Slab {
+    /// Where it ends in the range, 0 … 1.
+    pub end: f64,
+    /// Whether the mean depth of its absorbance is kept.
+    pub mean: bool,
+    /// Whether its nearest fragment is kept.
+    pub nearest: bool,
+    /// Whether its farthest fragment is kept.
+    pub farthest: bool,
+}
+
+/// A measured design.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Its name.
+    pub design: String,
+    /// The slabs, nearest first.
+    pub slabs: Vec<Slab>,
+    /// Bins of depth and levels of opacity of a nearest or farthest fragment, such as `1920x32`.
+    pub records: String,
+    /// What is cut into slabs: `pixel` or `frame`.
+    pub range: String,
+    /// Whether the colours of known fragments have a sum of their own.
+    pub apart: bool,
+    /// The same of the training examples.
+    pub trained_apart: bool,
+    /// Bytes a pixel of all targets, colours included.
+    pub bytes: u32,
+    /// Names of the inputs.
+    pub inputs: Vec<String>,
+    /// Layers, such as `9-12-1`.
+    pub topology: String,
+    /// Weights and biases.
+    pub parameters: u64,
+    /// What was minimised.
+    pub loss: PixelLoss,
+    /// Decides initial weights and the order of examples.
+    pub seed: u64,
+    /// Pixels that were trained on.
+    pub examples: u64,
+    /// Seconds of training.
+    pub seconds: f64,
+    /// With the network.
+    pub network: Score,
+    /// Without a network: the middle of the bounds.
+    pub middle: Score,
+}
+
+impl Row {
+    /// Of an entry with its trained model.
+    pub fn new(entry: &Entry, model: &Model, network: Score, middle: Score) -> Self {
+        let (design, recipe) = (&entry.design, entry.recipe);
+        let trained_apart = match recipe.inputs {
+            peelnet_model::Inputs::Slabs(trained, _) => trained.apart,
+            _ => design.apart,
+        };
+        Self {
+            design: entry.name.clone(),
+            slabs: entry.kept(),
+            records: format!("{}x{}", design.records.bins, design.records.alphas),
+            range: match design.extent {
+                Extent::Pixel => "pixel",
+                Extent::Frame => "frame",
+            }
+            .to_owned(),
+            apart: design.apart,
+            trained_apart,
+            bytes: design.bytes(),
+            inputs: recipe
+                .input_names()
+                .into_iter()
+                .map(str::to_owned)
+                .collect(),
+            topology: model.mlp.topology(),
+            parameters: model.mlp.parameters() as u64,
+            loss: recipe.loss.unwrap_or_default(),
+            seed: entry.seed,
+            examples: 0,
+            seconds: 0.0,
+            network,
+            middle,
+        }
+    }
+}

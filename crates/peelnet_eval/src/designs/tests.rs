@@ -1,0 +1,188 @@
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+use super::*;
+use peelnet_core::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::Fragment,
+    methods::{kbuffer, mboit4, moments, over, stored::Colors},
+    random::Random,
+};
+use std::path::Path;
+
+fn entry(text: &str) -> Entry {
+    let text = format!("[[design]]\nname = \"one\"\n{text}");
+    parse(&text, Path::new("f.toml")).unwrap().remove(0)
+}
+
+/// A view of four pixels, of which two hold these lists.
+fn view(lists: [Vec<Fragment>; 2]) -> View {
+    let [a, b] = lists;
+    View::new("s", DepthWarp::new(1.0, 100.0), 4, [(0, a), (3, b)])
+}
+
+fn random_view(layers: usize) -> View {
+    let mut random = Random::new(3, &[]);
+    let lists = [0, 1].map(|_| {
+        let mut list: Vec<Fragment> = (0..layers)
+            .map(|_| {
+                let depth = random.between(2.0, 60.0);
+                Fragment::new(depth, random.between(0.1, 0.9), random.color())
+            })
+            .collect();
+        peelnet_core::fragment::sort_front_to_back(&mut list);
+        list
+    });
+    view(lists)
+}
+
+const FOUR: &str = "ends = [0.2, 0.5, 0.8, 1.0]
+means = [true, true, true, true]
+farthest = [true, true, true, false]\n";
+
+/// Sums of 16 bits err by 2⁻¹¹ of a value, so that the squared error of a colour is 1e−6 at most.
+#[test]
+fn a_list_of_two_layers_is_exact() {
+    for text in [FOUR, "ends = [1.0]\nmeans = [false]\nfarthest = [true]\n"] {
+        let error = entry(text).measure(&random_view(2), None).mse_linear;
+        assert!(error < 1e-6, "{error}");
+    }
+    // Nothing is known of three but absorbance and mean.
+    let none = "ends = [1.0]\nmeans = [true]\nnearest = [false]\nfarthest = [false]\n";
+    let error = entry(none).measure(&random_view(3), None).mse_linear;
+    assert!(error > 1e-4, "{error}");
+}
+
+/// One slab without records: half of the others' absorbance lies in front of each fragment.
+#[test]
+fn one_slab_without_records_is_a_closed_form() {
+    let text = "ends = [1.0]\nmeans = [false]\nnearest = [false]\nfarthest = [false]\n";
+    let alphas = [0.5f32, 0.75, 0.25];
+    let colors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let list: Vec<Fragment> = (0..3)
+        .map(|i| Fragment::new(10.0 * (i + 1) as f32, alphas[i], colors[i]))
+        .collect();
+    let total: f64 = alphas.iter().map(|&a| absorbance(a)).sum();
+    let shares: Vec<f64> = alphas
+        .iter()
+        .map(|&a| f64::from(a) * (-0.5 * (total - absorbance(a))).exp())
+        .collect();
+    let left = 1.0 - (-total).exp();
+    let sum: f64 = shares.iter().sum();
+    let exact = over::composite_f64(&list, [0.0; 3]);
+    // Fragment i is alone in channel i. Two of the four pixels hold the list.
+    let squares: f64 = (0..3)
+        .map(|i| (shares[i] / sum * left - exact[i]).powi(2))
+        .sum();
+    let expected = 2.0 * squares / 12.0;
+    let found = entry(text).measure(&view([list.clone(), list]), None);
+    let off = (found.mse_linear / expected - 1.0).abs();
+    // Roundings to 2⁻¹¹, of differences of a tenth.
+    assert!(off < 0.02, "{} is not {expected}", found.mse_linear);
+    assert_eq!(found.contour_pairs, None);
+}
+
+/// Of thirty layers the sums differ from exact ones in the fourth digit, and so does the error.
+#[test]
+fn statistics_are_rounded_to_halves() {
+    let (entry, view) = (entry(FOUR), random_view(30));
+    let found = entry.measure(&view, None);
+    let with = |precision| {
+        view.measure(|f| {
+            let design = entry.design;
+            slabs::composite_rounded(f, [0.0; 3], &view.warp, design, precision, slabs::middle)
+        })
+    };
+    assert_eq!(found, with(SumPrecision::Half));
+    assert_ne!(found, with(SumPrecision::Exact));
+}
+
+#[test]
+fn references_are_the_twins() {
+    let view = random_view(9);
+    let expected = |twin: &(dyn Fn(&[Fragment]) -> [f32; 3] + Sync)| view.measure(twin).mse_linear;
+    let moments = expected(&|fragments| {
+        let empty = mboit4::Moments::default();
+        let settings = moments::Settings::PAPER;
+        moments::composite(fragments, [0.0; 3], &view.warp, empty, &settings)
+    });
+    let nearest = expected(&|f| kbuffer::composite(f, [0.0; 3], 4, None, Colors::Full));
+    for (name, expected) in [(MOMENTS, moments), (KBUFFER, nearest)] {
+        let found = view.measure_method(&name.parse().unwrap()).mse_linear;
+        assert!(
+            found > 1e-8 && found == expected,
+            "{name}: {found} {expected}"
+        );
+    }
+}
+
+/// A network that always says `p` is the middle of the bounds where `p` is a half, and another share elsewhere.
+#[test]
+fn the_network_is_asked() {
+    let entry = entry(FOUR);
+    let view = random_view(20);
+    let says = |share: f32| {
+        let layer = peelnet_core::mlp::Layer {
+            inputs: 9,
+            outputs: 1,
+            weights: vec![0.0; 9],
+            bias: vec![(share / (1.0 - share)).ln()],
+        };
+        let activations = entry.recipe.network;
+        let (hidden, output) = (activations.hidden_activation, activations.output_activation);
+        let input = |name: &&str| peelnet_model::Input {
+            name: (*name).to_owned(),
+            unit: String::new(),
+            offset: 0.0,
+            scale: 1.0,
+            min: 0.0,
+            max: 1.0,
+        };
+        let model = Model {
+            mlp: peelnet_core::mlp::Mlp::new(vec![layer], hidden, output).unwrap(),
+            meta: peelnet_model::Metadata {
+                format_version: peelnet_model::FORMAT_VERSION,
+                tool_version: String::new(),
+                recipe: entry.recipe,
+                inputs: entry.recipe.input_names().iter().map(input).collect(),
+                output: entry.recipe.output,
+                seed: 1,
+                dataset: None,
+                epochs: 0,
+                losses: Default::default(),
+                held_out: Default::default(),
+                config: serde_json::Value::Null,
+            },
+        };
+        model.check().unwrap();
+        entry.measure(&view, Some(&model)).mse_linear
+    };
+    let middle = entry.measure(&view, None).mse_linear;
+    assert!((says(0.5) / middle - 1.0).abs() < 1e-6);
+    assert!((says(0.9) / middle - 1.0).abs() > 0.01);
+}
+
+/// Two scenes with ratios 1/4 and 1 to the moments, and 1 and 1/4 to the buffer.
+#[test]
+fn scores_are_geometric_means_and_the_worst_scene() {
+    let warp = DepthWarp::new(1.0, 100.0);
+    let views = ["a", "b"].map(|scene| View::new(scene, warp, 4, []));
+    let of = |errors: [f64; 2], pairs: [Option<f64>; 2]| {
+        [0, 1].map(|k| Measured {
+            mse_linear: errors[k],
+            contour_pairs: pairs[k],
+        })
+    };
+    let own = of([1e-3, 1e-3], [Some(0.5), None]);
+    let moments = of([4e-3, 1e-3], [None; 2]);
+    let kbuffer = of([1e-3, 4e-3], [None; 2]);
+    let score = score(&views, &own, &moments, &kbuffer);
+    let close = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
+    assert!(
+        close(score.to_moments, 0.5) && close(score.to_kbuffer, 0.5),
+        "{score:?}"
+    );
+    assert_eq!(score.worst_scene.as_deref(), Some("b"));
+    assert!(
+        close(score.worst, 1.0) && close(score.contour_pairs, 0.5),
+        "{score:?}"
+    );
+}

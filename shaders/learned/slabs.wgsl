@@ -1,0 +1,158 @@
+// Fragments of less opacity are composited, but are never a slab's nearest or farthest.
+const PEELNET_FAINT: f32 = 0.003921569;
+// Levels of the range of depths, less one.
+const PEELNET_RANGE_TOP: f32 = 255.0;
+// Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
+const PEELNET_BINS: f32 = 1920.0;
+const PEELNET_OPACITIES: f32 = 32.0;
+// What targets of levels are cleared to: the least half.
+const PEELNET_EMPTY: f32 = -65504.0;
+
+// Where in its pixel's slabs a fragment lies.
+struct PeelnetPlace {
+    absorbance: f32,
+    // 0, the nearest, to 3.
+    slab: f32,
+    // In the slab, -1 .. 1.
+    inside: f32,
+    bin: f32,
+    // Levels as the slab's nearest, counted from the far end, and as its farthest.
+    near: f32,
+    far: f32,
+}
+
+// What lies in a fragment's slab besides the fragment and the slab's known ends. Depths are 0 at the nearer and 1 at the farther of the two.
+struct PeelnetBetween {
+    // Absorbance of it.
+    absorbance: f32,
+    // Depth of the fragment.
+    place: f32,
+    // Mean depth of the absorbance; a half where the slab does not keep it.
+    mean: f32,
+    // The least and the most of the absorbance that can lie in front of the fragment, as shares.
+    low: f32,
+    high: f32,
+    // Half of what the two ends are apart, in slabs.
+    extent: f32,
+    // Absorbance of the fragment.
+    own: f32,
+    // Absorbance of the nearer end; 0 where it does not lie in front.
+    nearest: f32,
+}
+
+// What a fragment writes of the pixel's range, into 8 bits under MAX: its level of depth counted from the far end, rounded down, and
+// from the near end, rounded up.
+fn peelnet_pixel_range(zeta: f32) -> vec2f {
+    let level = PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5);
+    return vec2f(PEELNET_RANGE_TOP - floor(level), ceil(level)) / PEELNET_RANGE_TOP;
+}
+
+fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
+    let ends = floor(range * PEELNET_RANGE_TOP + 0.5);
+    let low = PEELNET_RANGE_TOP - ends.x;
+    let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
+    let b = peelnet_absorbance(alpha);
+    // Borders at 0.2, 0.5 and 0.8.
+    let far_half = t >= 0.5;
+    let second = select(t >= 0.2, t >= 0.8, far_half);
+    let slab = select(0.0, 2.0, far_half) + select(0.0, 1.0, second);
+    let begin = select(select(0.0, 0.2, second), select(0.5, 0.8, second), far_half);
+    let end = select(select(0.2, 0.5, second), select(0.8, 1.0, second), far_half);
+    let inside = (t - begin) / (end - begin);
+    let bin = min(floor(inside * PEELNET_BINS), PEELNET_BINS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
+    let near = (PEELNET_BINS - 1.0 - bin) * PEELNET_OPACITIES + opacity;
+    return PeelnetPlace(b, slab, 2.0 * inside - 1.0, bin, near, bin * PEELNET_OPACITIES + opacity);
+}
+
+// The absorbance that a level stands for.
+fn peelnet_absorbance_of(level: f32) -> f32 {
+    let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
+    return share / (1.0625 - share);
+}
+
+// The depth in a slab in the middle of a bin.
+fn peelnet_middle_of(bin: f32) -> f32 {
+    return (bin + 0.5) * (2.0 / PEELNET_BINS) - 1.0;
+}
+
+// A slab's channel. Not by products: sums of 16 bits may be infinite.
+fn peelnet_of_slab(values: vec4f, slab: f32) -> f32 {
+    return select(select(values.x, values.y, slab == 1.0), select(values.z, values.w, slab == 3.0), slab >= 2.0);
+}
+
+fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
+    return vec4f(
+        select(elsewhere, value, slab == 0.0),
+        select(elsewhere, value, slab == 1.0),
+        select(elsewhere, value, slab == 2.0),
+        select(elsewhere, value, slab == 3.0),
+    );
+}
+
+// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none. keeps_mean: whether first is kept.
+fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
+    let b = place.absorbance;
+    let others = max(total - b, 0.0);
+    // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
+    let noise = max(total * 0.0009765625, 1e-6);
+    let near_back = floor(levels.x / PEELNET_OPACITIES);
+    let near_bin = PEELNET_BINS - 1.0 - near_back;
+    let near_level = levels.x + (near_bin - near_back) * PEELNET_OPACITIES;
+    let known = peelnet_absorbance_of(levels.x);
+    // All others, as far as the level's rounding and the sum's can tell.
+    let step = 0.6 / (PEELNET_OPACITIES - 1.0);
+    let all = known > others - (step * (1.0 + known) * (1.0 + known) + noise);
+    let near = select(select(known, others, all), 0.0, near_bin > place.bin);
+    let far_bin = floor(levels.y / PEELNET_OPACITIES);
+    let is_one = levels.y == near_level || levels.y < 0.0;
+    let far = select(peelnet_absorbance_of(levels.y), 0.0, is_one || far_bin < place.bin);
+    var begin = peelnet_middle_of(near_bin);
+    var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
+    let rest = total - b - near - far;
+    let moment = first - b * place.inside - near * begin - far * end;
+    begin = select(begin, -1.0, begin > place.inside);
+    end = select(end, 1.0, end < place.inside);
+    let extent = max(end - begin, 2.0 / PEELNET_BINS);
+    let x = clamp((place.inside - begin) / extent, 0.0, 1.0);
+    let depth = clamp(moment / max(rest, noise), begin, end);
+    let mean = select(0.5, clamp((depth - begin) / extent, 0.0, 1.0), keeps_mean);
+    // Markov's bounds of the share in front.
+    let before = x < mean;
+    let low = select((x - mean) / max(x, 1e-6), 0.0, before || !keeps_mean);
+    let high = select(1.0, (1.0 - mean) / max(1.0 - x, 1e-6), before && keeps_mean);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
+}
+
+// The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
+// nearest, farthest: by slab. keeps: how many of the nearer slabs keep a mean depth and a farthest fragment.
+fn peelnet_weigh(
+    place: PeelnetPlace,
+    counts: bool,
+    absorbances: vec4f,
+    firsts: vec4f,
+    nearest: vec4f,
+    farthest: vec4f,
+    keeps: vec2f,
+) -> vec2f {
+    // Sums of 16-bit targets may become infinite.
+    let sums = min(absorbances, vec4f(65504.0));
+    let total = peelnet_of_slab(sums, place.slab);
+    let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
+    let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
+    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < keeps.y);
+    let before = select(0.0, sums.x, place.slab > 0.0)
+        + select(0.0, sums.y, place.slab > 1.0)
+        + select(0.0, sums.z, place.slab > 2.0);
+    let is_near = counts && place.near == levels.x;
+    let is_far = counts && place.far == levels.y && !is_near;
+    let known = is_near || is_far;
+    // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
+    let between = peelnet_between(place, total, first, levels, place.slab < keeps.x);
+    let share = between.low + (between.high - between.low) * peelnet_network(between);
+    let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
+    let inside = select(between.nearest + between.absorbance * share, at_end, known);
+    // The nearest fragment's weight is 1: their sum cannot vanish.
+    return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
+}

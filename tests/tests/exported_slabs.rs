@@ -1,0 +1,276 @@
+//! The exported texts of slabs, function by function, against their CPU twin.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use peelnet_core::{
+    absorbance::{DepthWarp, absorbance},
+    methods::slabs::{self, Design, Range, Seen},
+    random::Random,
+};
+use peelnet_gpu::Gpu;
+use peelnet_model::{Inputs, Model, Recipe};
+use peelnet_tests::{gpu, run_text, shipped};
+
+/// A pixel's fragments as (linear depth, α), in no order.
+type Points = Vec<(f32, f32)>;
+
+/// The warp of the pixels below: ζ = ln depth.
+fn warp() -> DepthWarp {
+    DepthWarp::new((-1f64).exp(), 1f64.exp())
+}
+
+fn zeta(depth: f32) -> f64 {
+    f64::from(warp().apply(depth.into()) as f32)
+}
+
+/// Whether every depth and opacity lies within its level, bin and slab. On the edge between two they may be rounded to either, in 32 bits
+/// otherwise than in 64.
+fn settled(pixel: &Points, design: &Design) -> bool {
+    let zetas: Vec<f64> = pixel.iter().map(|p| zeta(p.0)).collect();
+    let range = Range::of(zetas.iter().copied());
+    let levels = zetas.iter().map(|z| 255.0 * (z * 0.5 + 0.5));
+    let spread = levels.clone().fold([255.0f64, 0.0], |[low, high], l| {
+        [low.min(l.floor()), high.max(l.ceil())]
+    });
+    let extent = (spread[1] - spread[0]).max(1.0);
+    let apart = |x: f64, least: f64| (x - x.round()).abs() > least;
+    let level_is = levels.clone().all(|l| apart(l, 1e-3) || l == l.round());
+    let place_is = zetas.iter().all(|&z| {
+        let t = range.place(z);
+        let mut begin = 0.0;
+        design.slabs.iter().all(|slab| {
+            let bin = (t - begin) / (slab.end - begin) * f64::from(design.records.bins);
+            begin = slab.end;
+            // 255 levels are eight bits; the others of 24 are left for the pixel's part of them, and bins take eleven to thirteen.
+            let outside = !(0.0..=f64::from(design.records.bins)).contains(&bin);
+            (outside && (t - slab.end).abs() > 1e-4)
+                || apart(bin, 0.02 + 0.3 / extent)
+                || t == 0.0
+                || t == 1.0
+        })
+    });
+    let opacity_is = pixel.iter().all(|&(_, alpha)| {
+        let b = absorbance(alpha);
+        let level = b / (b + 1.0) * 1.0625 * f64::from(design.records.alphas - 1) + 0.5;
+        apart(level, 0.002)
+    });
+    level_is && place_is && opacity_is
+}
+
+/// Pixels of every kind: few and many layers, narrow and wide, faint, opaque, deep, coplanar.
+fn pixels(design: &Design) -> Vec<Points> {
+    let mut random = Random::new(51, &[]);
+    let mut all: Vec<Points> = Vec::new();
+    for i in 0..6000 {
+        let n = [1, 2, 3, 4, 6, 9, 14, 40][i % 8];
+        let (from, width) = (random.between(-1.0, 0.8), random.between(0.05, 1.9));
+        let kind = random.below(5);
+        let pixel: Points = (0..n)
+            .map(|_| {
+                let depth = (from + width * random.unit()).min(1.0).exp();
+                let alpha = match kind {
+                    0 => random.between(0.01, 0.2),
+                    1 => random.between(0.7, 1.0),
+                    2 => [0.001, 0.3, 0.9999][random.below(3)],
+                    _ => random.between(0.02, 0.98),
+                };
+                (depth, alpha)
+            })
+            .collect();
+        all.push(pixel);
+    }
+    let even = |n: usize, alpha: f32| -> Points {
+        (0..n)
+            .map(|i| ((i as f32 / n as f32 * 1.9 - 0.95).exp(), alpha))
+            .collect()
+    };
+    for n in 2..400 {
+        all.push(even(n, [0.0, 0.001, 0.02, 0.5, 0.97][n % 5]));
+        all.push(vec![
+            (0.9 + 0.001 * n as f32, 0.013 * (1 + n % 60) as f32);
+            2 + n % 15
+        ]);
+    }
+    all.retain(|pixel| settled(pixel, design));
+    all
+}
+
+/// What the exported functions say of a fragment.
+#[derive(Clone, Copy)]
+struct Answer {
+    absorbances: [f32; 4],
+    /// Of the slabs that keep it.
+    firsts: [f32; 3],
+    known: bool,
+    weight: f32,
+}
+
+/// Runs the exported functions over pixels, with targets that add and take maxima as blending does.
+fn on_the_gpu(
+    gpu: &Gpu,
+    model: &Model,
+    pixels: &[Points],
+    half: bool,
+    few: bool,
+) -> Vec<Vec<Answer>> {
+    let rounded = if half {
+        "vec4f(unpack2x16float(pack2x16float(x.xy)), unpack2x16float(pack2x16float(x.zw)))"
+    } else {
+        "x"
+    };
+    let [empty, blended, third] = if few {
+        ["-65504.0", "max(f, s.farthest)", "0.0"]
+    } else {
+        [
+            "vec4f(vec3f(-65504.0), 0.0)",
+            "vec4f(max(f.xyz, s.farthest.xyz), stored(vec4f(f.w + stored(vec4f(s.farthest.w)).x)).x)",
+            "f.w",
+        ]
+    };
+    let root = format!(
+        "import package::learned::weight::{{peelnet_pixel_range, peelnet_statistics, peelnet_fragment}};
+        @group(0) @binding(0) var<storage, read> fragments: array<vec4f>;
+        @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
+        fn stored(x: vec4f) -> vec4f {{ return {rounded}; }}
+        @compute @workgroup_size(64)
+        fn main(@builtin(global_invocation_id) id: vec3u) {{
+            if id.x >= arrayLength(&fragments) {{ return; }}
+            let own = fragments[id.x];
+            var range = vec2f(0.0);
+            for (var i = u32(own.z); i < u32(own.w); i++) {{
+                range = max(range, peelnet_pixel_range(fragments[i].x));
+            }}
+            var a = vec4f(0.0);
+            var n = vec4f(-65504.0);
+            var f = {empty};
+            var b = vec2f(0.0);
+            for (var i = u32(own.z); i < u32(own.w); i++) {{
+                let s = peelnet_statistics(fragments[i].y, fragments[i].x, range);
+                a = stored(a + stored(s.absorbances));
+                n = max(n, s.nearest);
+                f = {blended};
+                b = stored(vec4f(b + stored(vec4f(s.firsts, 0.0, 0.0)).xy, 0.0, 0.0)).xy;
+            }}
+            let w = peelnet_fragment(own.y, own.x, range, a, n, f, b);
+            answers[3u * id.x] = a;
+            answers[3u * id.x + 1u] = vec4f(b, {third}, w.y);
+            answers[3u * id.x + 2u] = vec4f(w.x);
+        }}"
+    );
+    let text = peelnet_export::wgsl(model, &Default::default()).unwrap();
+    let sources = [("driver", root.as_str()), ("learned::weight", &text)];
+    let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
+    let mut fragments: Vec<[f32; 4]> = Vec::new();
+    for pixel in pixels {
+        let first = fragments.len();
+        let end = (first + pixel.len()) as f32;
+        let rows = pixel.iter();
+        fragments.extend(rows.map(|&(z, a)| [zeta(z) as f32, a, first as f32, end]));
+    }
+    let rows: Vec<[f32; 12]> = run_text(gpu, &wgsl, &fragments, fragments.len());
+    let mut rows = rows.into_iter().map(|a| Answer {
+        absorbances: [a[0], a[1], a[2], a[3]],
+        firsts: [a[4], a[5], a[6]],
+        known: a[7] == 1.0,
+        weight: a[8],
+    });
+    pixels
+        .iter()
+        .map(|p| rows.by_ref().take(p.len()).collect())
+        .collect()
+}
+
+/// The exported text's sums, known fragments and weights are those of `peelnet_core`, in both precisions of the targets.
+///
+/// Sums: every one of n additions, and every term, rounds once. Weights are compared given the GPU's own sums: they then differ by the roundings of
+/// differences of those sums, by as much as moving the sums by sixteen roundings (2⁻²⁰) in sixteen random directions moves the 64-bit
+/// weights, times four for what random directions do not show, and two hundred roundings of the weight, of which logarithms take most. One
+/// in 200 may lie outside, where a rounding decides whether the nearer end is all that is left of its slab.
+#[test]
+fn the_exported_text_is_the_twin_of_the_core() {
+    let gpu = gpu();
+    for recipe in [Recipe::SMALL, Recipe::MEDIUM, Recipe::LARGE] {
+        let model = shipped(recipe);
+        let Inputs::Slabs(design, inputs) = recipe.inputs else {
+            panic!("{recipe} reads no slabs");
+        };
+        let pixels = pixels(&design);
+        let layers: usize = pixels.iter().map(Vec::len).sum();
+        assert!(
+            layers > 4000,
+            "{layers} fragments of {} pixels",
+            pixels.len()
+        );
+        for half in [false, true] {
+            let few = recipe == Recipe::SMALL;
+            let answers = on_the_gpu(&gpu, &model, &pixels, half, few);
+            let mut random = Random::new(52, &[]);
+            let (mut compared, mut outside, mut known) = (0, 0, 0);
+            for (pixel, answers) in pixels.iter().zip(&answers) {
+                let found = answers[0];
+                let sums: [[f64; 2]; 4] = std::array::from_fn(|k| {
+                    let first = found.firsts.get(k).copied().unwrap_or(0.0);
+                    [found.absorbances[k].into(), first.into()]
+                });
+                check_sums(pixel, &sums, half, &design);
+                let weights = |pixel: &Points, sums: &[[f64; 2]]| -> Vec<(f64, Seen)> {
+                    let all = slabs::seen_given(pixel, &warp(), design, sums);
+                    let weigh = |s: &Seen| s.weight(|between| model.answer(inputs, between));
+                    all.iter().map(|s| (weigh(s), *s)).collect()
+                };
+                let base = weights(pixel, &sums);
+                let moved: Vec<Vec<(f64, Seen)>> = (0..16)
+                    .map(|_| {
+                        let mut by = || 1.0 + f64::from(random.between(-1.0, 1.0)) * 2f64.powi(-20);
+                        weights(pixel, &sums.map(|sum| sum.map(|x| x * by() + by() - 1.0)))
+                    })
+                    .collect();
+                for (i, (got, (weight, seen))) in answers.iter().zip(&base).enumerate() {
+                    let place = || format!("{recipe}, half {half}, {i} of {pixel:?}");
+                    assert_eq!(got.known, seen.between.is_none(), "{}", place());
+                    let spread = moved.iter().map(|m| (m[i].0 - weight).abs());
+                    let spread = spread.fold(0.0, f64::max);
+                    let bound = 4.0 * spread + 200.0 / f64::from(1 << 24);
+                    compared += 1;
+                    known += usize::from(got.known);
+                    outside += usize::from((f64::from(got.weight) - weight).abs() > bound);
+                }
+            }
+            println!("{recipe}, half {half}: {outside} of {compared} outside, {known} known");
+            assert!(
+                known > compared / 10 && known < compared,
+                "{recipe}: {known}"
+            );
+            assert!(
+                200 * outside <= compared,
+                "{recipe}, half {half}: {outside} of {compared}"
+            );
+        }
+    }
+}
+
+/// The sums of a pixel's slabs.
+fn check_sums(pixel: &Points, sums: &[[f64; 2]; 4], half: bool, design: &Design) {
+    let exact = pixel.iter().map(|p| absorbance(p.1)).sum::<f64>();
+    let n = pixel.len() as f64;
+    let rounding = if half {
+        1.0 / 2048.0
+    } else {
+        1.0 / f64::from(1 << 24)
+    };
+    // WGSL's logarithm errs by 2⁻²¹ near 1, where opacities are small; subnormal halves step by 2⁻²⁴.
+    let bound = exact * (n + 1.0) * (rounding + 4.0 / f64::from(1 << 22))
+        + n * (0.5f64.powi(21) + 0.5f64.powi(24));
+    let found: f64 = sums.iter().map(|s| s[0]).sum();
+    assert!(
+        (found - exact).abs() <= bound,
+        "half {half}: {found} for {exact} of {pixel:?}"
+    );
+    for (sum, kept) in sums.iter().zip(design.slabs) {
+        // A mean depth lies in the slab.
+        assert!(
+            !kept.mean || sum[1].abs() <= sum[0] + bound,
+            "half {half}: {sum:?} of {pixel:?}"
+        );
+    }
+}
