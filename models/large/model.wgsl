@@ -152,6 +152,12 @@ fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
     return PeelnetPlace(b, slab, 2.0 * inside - 1.0, bin, near, bin * PEELNET_OPACITIES + opacity);
 }
 
+// What a fragment writes of itself as its slab's nearest and as its farthest, into targets under MAX.
+fn peelnet_records(alpha: f32, place: PeelnetPlace) -> vec2f {
+    let levels = peelnet_halves(vec3f(place.near, place.far, place.far)).xy;
+    return select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
+}
+
 // The absorbance that a level stands for.
 fn peelnet_absorbance_of(level: f32) -> f32 {
     let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
@@ -258,8 +264,7 @@ struct PeelnetStatistics {
 // What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
 fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
     let place = peelnet_place(alpha, zeta, range);
-    let levels = peelnet_halves(vec3f(place.near, place.far, place.far)).xy;
-    let halves = select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
+    let halves = peelnet_records(alpha, place);
     let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
     let firsts = peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0);
     return PeelnetStatistics(

@@ -12,8 +12,7 @@ struct PeelnetStatistics {
 // What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
 fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
     let place = peelnet_place(alpha, zeta, range);
-    let levels = peelnet_halves(vec3f(place.near, place.far, place.far)).xy;
-    let halves = select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
+    let halves = peelnet_records(alpha, place);
     let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
     let firsts = peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0);
     return PeelnetStatistics(

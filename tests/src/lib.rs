@@ -5,7 +5,7 @@ pub mod literals;
 pub mod readers;
 
 use glam::{Vec2, Vec3};
-use peelnet_core::fragment::Fragment;
+use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
 use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
@@ -69,6 +69,30 @@ pub fn evaluate_text(
     let sources = [("driver", root.as_str()), ("learned::weight", text)];
     let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap_or_else(|e| panic!("{e}"));
     run_text(gpu, &wgsl, inputs.as_flattened(), inputs.len())
+}
+
+/// A pixel's fragments as (linear depth, α), in no order.
+pub type Points = Vec<(f32, f32)>;
+
+/// WGSL for `x` as a target of 16 bits keeps it, or one of 32.
+pub const fn stored(half: bool) -> &'static str {
+    if half {
+        "vec4f(unpack2x16float(pack2x16float(x.xy)), unpack2x16float(pack2x16float(x.zw)))"
+    } else {
+        "x"
+    }
+}
+
+/// Rows `(ζ, α, first, end)` of all fragments of pixels, each with the rows of its pixel.
+pub fn in_runs(pixels: &[Points], warp: &DepthWarp) -> Vec<[f32; 4]> {
+    let mut rows: Vec<[f32; 4]> = Vec::new();
+    for pixel in pixels {
+        let first = rows.len();
+        let end = (first + pixel.len()) as f32;
+        let fragments = pixel.iter();
+        rows.extend(fragments.map(|&(z, a)| [warp.apply(z.into()) as f32, a, first as f32, end]));
+    }
+    rows
 }
 
 /// Runs a compute shader on buffers of inputs and of `count` answers.

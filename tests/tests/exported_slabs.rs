@@ -9,10 +9,7 @@ use peelnet_core::{
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::{Inputs, Model, Recipe};
-use peelnet_tests::{gpu, run_text, shipped};
-
-/// A pixel's fragments as (linear depth, α), in no order.
-type Points = Vec<(f32, f32)>;
+use peelnet_tests::{Points, gpu, in_runs, run_text, shipped, stored};
 
 /// The warp of the pixels below: ζ = ln depth.
 fn warp() -> DepthWarp {
@@ -113,11 +110,7 @@ fn on_the_gpu(
     half: bool,
     few: bool,
 ) -> Vec<Vec<Answer>> {
-    let rounded = if half {
-        "vec4f(unpack2x16float(pack2x16float(x.xy)), unpack2x16float(pack2x16float(x.zw)))"
-    } else {
-        "x"
-    };
+    let rounded = stored(half);
     let [empty, blended, third] = if few {
         ["-65504.0", "max(f, s.farthest)", "0.0"]
     } else {
@@ -160,13 +153,7 @@ fn on_the_gpu(
     let text = peelnet_export::wgsl(model, &Default::default()).unwrap();
     let sources = [("driver", root.as_str()), ("learned::weight", &text)];
     let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
-    let mut fragments: Vec<[f32; 4]> = Vec::new();
-    for pixel in pixels {
-        let first = fragments.len();
-        let end = (first + pixel.len()) as f32;
-        let rows = pixel.iter();
-        fragments.extend(rows.map(|&(z, a)| [zeta(z) as f32, a, first as f32, end]));
-    }
+    let fragments = in_runs(pixels, &warp());
     let rows: Vec<[f32; 12]> = run_text(gpu, &wgsl, &fragments, fragments.len());
     let mut rows = rows.into_iter().map(|a| Answer {
         absorbances: [a[0], a[1], a[2], a[3]],

@@ -12,7 +12,7 @@ use peelnet_core::{
 use peelnet_export::Description;
 use peelnet_gpu::Gpu;
 use peelnet_model::{Inputs, Model, Recipe};
-use peelnet_tests::{evaluate_text, gpu, run_text, shipped};
+use peelnet_tests::{Points, evaluate_text, gpu, in_runs, run_text, shipped, stored};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -179,9 +179,6 @@ fn resolves_are_those_of_the_core() {
     }
 }
 
-/// A pixel's fragments as (linear depth, α), in no order.
-type Points = Vec<(f32, f32)>;
-
 /// The warp of the pixels below: ζ = ln depth.
 fn warp() -> DepthWarp {
     DepthWarp::new((-1f64).exp(), 1f64.exp())
@@ -286,11 +283,7 @@ struct Answer {
 
 /// Runs the exported functions over pixels, with targets that add and take maxima as blending does.
 fn on_the_gpu(gpu: &Gpu, model: &Model, pixels: &[Points], half: bool) -> Vec<Vec<Answer>> {
-    let rounded = if half {
-        "vec4f(unpack2x16float(pack2x16float(x.xy)), unpack2x16float(pack2x16float(x.zw)))"
-    } else {
-        "x"
-    };
+    let rounded = stored(half);
     let about = model.meta.recipe.inputs.about();
     let mut values: Vec<&str> = about.iter().map(|about| about.wgsl).collect();
     values.resize(12, "0.0");
@@ -337,15 +330,7 @@ fn on_the_gpu(gpu: &Gpu, model: &Model, pixels: &[Points], half: bool) -> Vec<Ve
     let text = text(model);
     let sources = [("driver", root.as_str()), ("learned::weight", &text)];
     let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
-    let mut fragments: Vec<[f32; 4]> = Vec::new();
-    for pixel in pixels {
-        let first = fragments.len();
-        let end = (first + pixel.len()) as f32;
-        fragments.extend(pixel.iter().map(|&(z, a)| {
-            let zeta = warp().apply(z.into()) as f32;
-            [zeta, a, first as f32, end]
-        }));
-    }
+    let fragments = in_runs(pixels, &warp());
     let rows: Vec<[f32; 20]> = run_text(gpu, &wgsl, &fragments, fragments.len());
     let mut rows = rows.into_iter().map(|a| Answer {
         moments: [a[0], a[1], a[2], a[3], a[4]],

@@ -166,10 +166,6 @@ pub fn train_models() -> Result<(), String> {
     ensure_driver()?;
     // Built once: networks that change on the way would make cargo build it again.
     let program = build()?;
-    let step = |args: &[&str]| {
-        println!("\n== peelnet {}", args.join(" "));
-        run(Command::new(&program).args(args), args[0])
-    };
     // What an earlier run left would be in the way of extraction.
     let _ = std::fs::remove_dir_all(root().join("out/models"));
     let scenes = scene_files()?;
@@ -181,13 +177,14 @@ pub fn train_models() -> Result<(), String> {
         .filter(|s| !families.contains(s))
         .collect();
     let (synthetic, peeled) = ("out/models/synthetic", "out/models/peeled");
-    step(&["extract", "--synthetic", "600000", "--out", synthetic])?;
+    let lists = ["extract", "--synthetic", "600000", "--out", synthetic];
+    step(&program, &lists)?;
     let mut peel = vec!["extract"];
     peel.extend(scenes.iter().map(String::as_str));
     // Many small views teach more than few large ones.
     peel.extend(["--size", "256x192", "--augment", "5", "--pixels", "0.12"]);
     peel.extend(["--out", peeled]);
-    step(&peel)?;
+    step(&program, &peel)?;
     for (recipe, budget) in RECIPES {
         finish(&program, recipe, &[synthetic, peeled], budget)?;
     }

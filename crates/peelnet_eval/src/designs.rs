@@ -22,19 +22,13 @@ use peelnet_model::{Model, PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
 
 pub use crate::ratios::MOMENTS;
+pub use peelnet_core::methods::slabs::Kept;
 
 /// The method that keeps the nearest four fragments, which errors are compared with as well.
 pub const KBUFFER: &str = "kbuffer-4";
 
 /// Where the shipped designs lie in the repository.
 pub const DESIGNS: &str = "data/designs.toml";
-
-/// A trained network, and what it reads.
-#[derive(Clone, Copy, Debug)]
-struct Network<'a> {
-    model: &'a Model,
-    inputs: &'a [&'static Feature<Between>],
-}
 
 /// An entry of a file of designs.
 #[derive(Clone, Debug)]
@@ -57,10 +51,6 @@ impl Entry {
     /// # Panics
     /// If the model has other inputs.
     pub fn measure(&self, view: &View, model: Option<&Model>) -> Measured {
-        let network = model.map(|model| Network {
-            model,
-            inputs: self.inputs,
-        });
         view.measure(|fragments| {
             slabs::composite_rounded(
                 fragments,
@@ -68,33 +58,12 @@ impl Entry {
                 &view.warp,
                 self.design,
                 SumPrecision::Half,
-                |between| network.map_or_else(|| slabs::middle(between), |n| n.guess(between)),
+                |between| match model {
+                    Some(model) => model.answer(self.inputs, between),
+                    None => slabs::middle(between),
+                },
             )
         })
-    }
-
-    /// What is kept of each slab.
-    pub fn kept(&self) -> Vec<Slab> {
-        let slabs = self.design.slabs.iter();
-        slabs
-            .map(|kept| Slab {
-                end: kept.end,
-                mean: kept.mean,
-                nearest: kept.nearest,
-                farthest: kept.farthest,
-            })
-            .collect()
-    }
-}
-
-impl Network<'_> {
-    fn guess(&self, between: &Between) -> f64 {
-        let inputs: Vec<f32> = self
-            .inputs
-            .iter()
-            .map(|feature| (feature.value)(between) as f32)
-            .collect();
-        self.model.forward_raw(&inputs)[0].into()
     }
 }
 
@@ -142,26 +111,13 @@ pub struct Score {
     pub contour_pairs: Option<f64>,
 }
 
-/// What a design keeps of a slab besides its absorbance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Slab {
-    /// Where it ends in the range, 0 … 1.
-    pub end: f64,
-    /// Whether the mean depth of its absorbance is kept.
-    pub mean: bool,
-    /// Whether its nearest fragment is kept.
-    pub nearest: bool,
-    /// Whether its farthest fragment is kept.
-    pub farthest: bool,
-}
-
 /// A measured design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Its name.
     pub design: String,
     /// The slabs, nearest first.
-    pub slabs: Vec<Slab>,
+    pub slabs: Vec<Kept>,
     /// Bins of depth and levels of opacity of a nearest or farthest fragment, such as `1920x32`.
     pub records: String,
     /// What is cut into slabs: `pixel` or `frame`.
@@ -202,7 +158,7 @@ impl Row {
         };
         Self {
             design: entry.name.clone(),
-            slabs: entry.kept(),
+            slabs: design.slabs.to_vec(),
             records: format!("{}x{}", design.records.bins, design.records.alphas),
             range: match design.extent {
                 Extent::Pixel => "pixel",

@@ -137,29 +137,27 @@ const SEPARATE_ENDS: &[Pass] = &[
     },
 ];
 
-const RANGE: Pass = Pass {
-    name: "range",
-    compute: "let r = peelnet_pixel_range(zeta);",
-    targets: &[Target {
-        name: "range",
-        format: "rg8unorm",
-        clear: [0.0; 4],
-        color: Blend::Max,
-        alpha: Blend::Max,
-        write: "r",
-    }],
-};
-
-const fn levels(name: &'static str, format: &'static str, write: &'static str) -> Target {
+const fn most(name: &'static str, format: &'static str, clear: f32, write: &'static str) -> Target {
     Target {
         name,
         format,
-        clear: [-65504.0; 4],
+        clear: [clear; 4],
         color: Blend::Max,
         alpha: Blend::Max,
         write,
     }
 }
+
+const RANGE: Pass = Pass {
+    name: "range",
+    compute: "let r = peelnet_pixel_range(zeta);",
+    targets: &[most("range", "rg8unorm", 0.0, "r")],
+};
+
+/// What levels are cleared to.
+const LEAST: f32 = -65504.0;
+
+const NEAREST: Target = most("nearest", "rgba16float", LEAST, "s.nearest");
 
 const SLABS_COMPUTE: &str = "let s = peelnet_statistics(alpha, zeta, range);";
 
@@ -168,8 +166,8 @@ const FEW_SLAB_STATISTICS: Pass = Pass {
     compute: SLABS_COMPUTE,
     targets: &[
         sum("absorbances", "rgba16float", "s.absorbances"),
-        levels("nearest", "rgba16float", "s.nearest"),
-        levels("farthest", "r16float", "s.farthest"),
+        NEAREST,
+        most("farthest", "r16float", LEAST, "s.farthest"),
         sum("firsts", "rg16float", "s.firsts"),
     ],
 };
@@ -179,11 +177,11 @@ const MANY_SLAB_STATISTICS: Pass = Pass {
     compute: SLABS_COMPUTE,
     targets: &[
         sum("absorbances", "rgba16float", "s.absorbances"),
-        levels("nearest", "rgba16float", "s.nearest"),
+        NEAREST,
         Target {
             name: "farthest",
             format: "rgba16float",
-            clear: [-65504.0, -65504.0, -65504.0, 0.0],
+            clear: [LEAST, LEAST, LEAST, 0.0],
             color: Blend::Max,
             alpha: Blend::Add,
             write: "s.farthest",
@@ -192,25 +190,15 @@ const MANY_SLAB_STATISTICS: Pass = Pass {
     ],
 };
 
-const FEW_SLABS: &[Pass] = &[
-    RANGE,
-    FEW_SLAB_STATISTICS,
-    Pass {
-        name: "weights",
-        compute: "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
-        targets: &[sum("sums", "rgba16float", WEIGHTED)],
-    },
-];
+const SLAB_WEIGHTS: Pass = Pass {
+    name: "weights",
+    compute: "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
+    targets: &[sum("sums", "rgba16float", WEIGHTED)],
+};
 
-const MANY_SLABS: &[Pass] = &[
-    RANGE,
-    MANY_SLAB_STATISTICS,
-    Pass {
-        name: "weights",
-        compute: "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
-        targets: &[sum("sums", "rgba16float", WEIGHTED)],
-    },
-];
+const FEW_SLABS: &[Pass] = &[RANGE, FEW_SLAB_STATISTICS, SLAB_WEIGHTS];
+
+const MANY_SLABS: &[Pass] = &[RANGE, MANY_SLAB_STATISTICS, SLAB_WEIGHTS];
 
 const MANY_SLABS_APART: &[Pass] = &[
     RANGE,
@@ -318,7 +306,7 @@ impl Description {
             ),
             (Inputs::Slabs(design, _), _) => (
                 ZETA,
-                if !design.slabs[1].farthest {
+                if design.keeps_few() {
                     FEW_SLABS
                 } else {
                     MANY_SLABS

@@ -77,7 +77,7 @@ fn modules(recipe: Recipe) -> Vec<&'static str> {
             modules
         }
         (Inputs::Slabs(design, _), _) => {
-            peelnet_shaders::slab_modules(!design.slabs[1].farthest, design.apart).to_vec()
+            peelnet_shaders::slab_modules(design.keeps_few(), design.apart)
         }
     };
     for about in recipe.inputs.about() {

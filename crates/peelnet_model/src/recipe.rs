@@ -427,7 +427,7 @@ impl<'de> Deserialize<'de> for Recipe {
 mod tests {
     use super::*;
 
-    /// Two recipes of one's own are told apart, and stand behind those that ship.
+    /// Two recipes of one's own are distinguished, and stand behind those that ship.
     #[test]
     fn recipes_of_ones_own_have_an_order() {
         let of = |name| {

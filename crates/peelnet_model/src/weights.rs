@@ -20,10 +20,11 @@ impl Model {
                 .iter()
                 .map(|seen| seen.weight(|rest| self.answer(features, rest)))
                 .collect(),
-            Inputs::Slabs(design, features) => slabs::seen(points, warp, design, precision)
-                .iter()
-                .map(|seen| seen.weight(|between| self.answer(features, between)))
-                .collect(),
+            Inputs::Slabs(design, features) => {
+                slabs::weights(points, warp, design, precision, |between| {
+                    self.answer(features, between)
+                })
+            }
             Inputs::Moments(features) => {
                 let all = nmt::Seen::all(points, warp);
                 all.iter().map(|seen| self.answer(features, seen)).collect()

@@ -1,7 +1,7 @@
 //! The files of `peelnet bench --designs`: what designs of slabs are worth.
 
 use crate::{ReportError, Results, Table, files::write_file};
-use peelnet_eval::designs::{Designs, Row, Score, Slab};
+use peelnet_eval::designs::{Designs, Kept, Row, Score};
 use std::path::Path;
 
 impl Results<Designs> {
@@ -95,7 +95,7 @@ fn line(row: &Row) -> Vec<String> {
     cells
 }
 
-fn kept(slab: &Slab) -> String {
+fn kept(slab: &Kept) -> String {
     let letters = [(slab.mean, 'M'), (slab.nearest, 'N'), (slab.farthest, 'F')];
     let kept: String = letters.iter().filter(|l| l.0).map(|l| l.1).collect();
     if kept.is_empty() {
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn files_are_written() {
         let dir = tempfile::tempdir().unwrap();
-        let slab = |end, mean, farthest| Slab {
+        let slab = |end, mean, farthest| Kept {
             end,
             mean,
             nearest: true,

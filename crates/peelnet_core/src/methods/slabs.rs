@@ -18,6 +18,7 @@ use crate::{
     fragment::Fragment,
     statistics::{EndCode, FAR_END, SumPrecision},
 };
+use serde::{Deserialize, Serialize};
 
 /// Slabs of a pixel, at most.
 pub const MAX_SLABS: usize = 8;
@@ -26,7 +27,7 @@ pub const MAX_SLABS: usize = 8;
 pub const RANGE_TOP: f64 = 255.0;
 
 /// A slab: where it ends, and what is kept of it beside its absorbance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
     /// In the range, 0 … 1. It begins where the slab before ends.
     pub end: f64,
@@ -110,6 +111,11 @@ impl Design {
         let channels: u32 = self.slabs.iter().map(channels).sum();
         let range = if self.extent == Extent::Pixel { 2 } else { 0 };
         range + 2 * channels + 8 * (1 + u32::from(self.apart))
+    }
+
+    /// Whether fewer means and farthest fragments are kept than [`Design::MEDIUM`] keeps: which of the two layouts of targets the shaders have.
+    pub const fn keeps_few(&self) -> bool {
+        !self.slabs[1].farthest
     }
 
     fn begin(&self, slab: usize) -> f64 {
@@ -363,6 +369,18 @@ pub fn seen(
     let slabs = Slabs::of(&points, design, precision);
     let of = |&(b, zeta, counts): &(f64, f64, bool)| slabs.seen(b, zeta, counts);
     points.iter().map(of).collect()
+}
+
+/// The weights of a pixel's fragments; `guess` says where between its bounds the share lies that is in front of a fragment.
+pub fn weights(
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
+    design: Design,
+    precision: SumPrecision,
+    guess: impl Fn(&Between) -> f64,
+) -> Vec<f64> {
+    let seen = seen(fragments, warp, design, precision);
+    seen.iter().map(|seen| seen.weight(&guess)).collect()
 }
 
 /// As [`seen`], with the sums of each slab, absorbance and absorbance times depth, as something else added them up.

@@ -92,8 +92,14 @@ pub(super) const METHOD: Method = Method {
         ))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        let seen = slabs::seen(fragments, warp, design(s), SumPrecision::Half);
-        Some(seen.iter().map(|seen| seen.weight(slabs::middle)).collect())
+        let half = SumPrecision::Half;
+        Some(slabs::weights(
+            fragments,
+            warp,
+            design(s),
+            half,
+            slabs::middle,
+        ))
     }),
     flaws: &[
         Flaw::swallowed(&["alpha-tiny"]).when(|s| !is_small(s)),
@@ -121,9 +127,10 @@ fn transmittances(
     let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
         return None;
     };
-    let seen = slabs::seen(fragments, warp, ranged(spec, design), SumPrecision::Half);
-    let weight = |seen: &slabs::Seen| seen.weight(|between| model.answer(features, between));
-    Some(seen.iter().map(weight).collect())
+    let (design, half) = (ranged(spec, design), SumPrecision::Half);
+    Some(slabs::weights(fragments, warp, design, half, |between| {
+        model.answer(features, between)
+    }))
 }
 
 fn twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
@@ -224,14 +231,14 @@ fn build_plain(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         "// The guess without a network: the middle between the bounds.\n\
          fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
     );
-    for module in peelnet_shaders::slab_modules(!design.slabs[1].farthest, design.apart) {
+    for module in peelnet_shaders::slab_modules(design.keeps_few(), design.apart) {
         text.push_str(peelnet_shaders::source(module)?);
     }
     build(b, design, &text)
 }
 
 fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor>, RenderError> {
-    let few = !design.slabs[1].farthest;
+    let few = design.keeps_few();
     let framed = design.extent == Extent::Frame;
     let mut targets = vec![
         SUMS,

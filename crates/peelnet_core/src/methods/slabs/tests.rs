@@ -32,7 +32,7 @@ fn worst(f: &[Fragment], design: Design, guess: f64) -> f32 {
 }
 
 /// Two layers in each slab: all are known, whatever is guessed. In the last one the farther is what the nearer leaves; an opacity of
-/// 32 levels says so, as long as it is told from a third layer.
+/// 32 levels says so, as long as it can be distinguished from a third layer.
 #[test]
 fn eight_layers_are_known() {
     let mut random = Random::new(3, &[]);
