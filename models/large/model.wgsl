@@ -3,20 +3,20 @@
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
 // Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.056216 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999998 in training.
 // Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.5770967 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
 // Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
 // Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999869 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000181, validation 0.000203, test 0.000176.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00561, cups-held 0.00460, foliage-held 0.00128, panes-held 0.00048, sixteen-held 0.00060, smoke-held 0.00902.
+// Loss: training 0.000247, validation 0.000252, test 0.000242.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00533, cups-held 0.00371, foliage-held 0.00097, panes-held 0.00046, sixteen-held 0.00047, smoke-held 0.00833.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(7.528108, 0.5, 0.5, 0.5, 0.5, 1.3043636, 0.5002604, 0.49999344, 0.5) = 4.9401726e-13
-// Self-test: peelnet_weight(15.056216, 1.0, 1.0, 1.0, 1.0, 2.5770967, 1.0, 0.9999869, 1.0) = 0.0
+// Self-test: peelnet_weight(7.528108, 0.4999999, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999344, 0.5) = 4.9401726e-13
+// Self-test: peelnet_weight(15.056216, 0.9999998, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.9999869, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
@@ -25,12 +25,11 @@
 // 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
-//    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-//    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let f = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts); let w = f.x; let known = f.y > 0.0;
-//    sums: rgba16float, cleared to 0, blending ADD, from select(vec4f(alpha * rgb, alpha) * w, vec4f(0.0), known)
-//    ends: rgba16float, cleared to 0, blending ADD, from select(vec4f(0.0), vec4f(alpha * rgb, alpha) * w, known)
-// 4. Resolve: peelnet_resolve(sums, ends, dot(absorbances, vec4f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
+//    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
+//    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
+//    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
+// 4. Resolve: peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -98,7 +97,7 @@ const PEELNET_EMPTY: f32 = -65504.0;
 // Where in its pixel's slabs a fragment lies.
 struct PeelnetPlace {
     absorbance: f32,
-    // 0, the nearest, to 3.
+    // 0, the nearest, to PEELNET_LAST_SLAB.
     slab: f32,
     // In the slab, -1 .. 1.
     inside: f32,
@@ -139,12 +138,11 @@ fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
     let low = PEELNET_RANGE_TOP - ends.x;
     let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
     let b = peelnet_absorbance(alpha);
-    // Borders at 0.2, 0.5 and 0.8.
-    let far_half = t >= 0.5;
-    let second = select(t >= 0.2, t >= 0.8, far_half);
-    let slab = select(0.0, 2.0, far_half) + select(0.0, 1.0, second);
-    let begin = select(select(0.0, 0.2, second), select(0.5, 0.8, second), far_half);
-    let end = select(select(0.2, 0.5, second), select(0.8, 1.0, second), far_half);
+    let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
+    let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
+    let slab = min(passed, PEELNET_LAST_SLAB);
+    let begin = peelnet_of_slab(vec4f(0.0, PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END), slab);
+    let end = peelnet_of_slab(vec4f(PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END, 1.0), slab);
     let inside = (t - begin) / (end - begin);
     let bin = min(floor(inside * PEELNET_BINS), PEELNET_BINS - 1.0);
     let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
@@ -158,10 +156,10 @@ fn peelnet_records(alpha: f32, place: PeelnetPlace) -> vec2f {
     return select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
 }
 
-// The absorbance that a level stands for.
-fn peelnet_absorbance_of(level: f32) -> f32 {
-    let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
-    return share / (1.0625 - share);
+// The absorbances that two levels stand for.
+fn peelnet_absorbances_of(levels: vec2f) -> vec2f {
+    let share = (levels - floor(levels * (1.0 / PEELNET_OPACITIES)) * PEELNET_OPACITIES) * (1.0 / (PEELNET_OPACITIES - 1.0));
+    return share / (vec2f(1.0625) - share);
 }
 
 // The depth in a slab in the middle of a bin.
@@ -183,23 +181,23 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none. keeps_mean: whether first is kept.
+// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
 fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
     let noise = max(total * 0.0009765625, 1e-6);
-    let near_back = floor(levels.x / PEELNET_OPACITIES);
+    let near_back = floor(levels.x * (1.0 / PEELNET_OPACITIES));
     let near_bin = PEELNET_BINS - 1.0 - near_back;
     let near_level = levels.x + (near_bin - near_back) * PEELNET_OPACITIES;
-    let known = peelnet_absorbance_of(levels.x);
+    let known = peelnet_absorbances_of(levels);
     // All others, as far as the level's rounding and the sum's can tell.
     let step = 0.6 / (PEELNET_OPACITIES - 1.0);
-    let all = known > others - (step * (1.0 + known) * (1.0 + known) + noise);
-    let near = select(select(known, others, all), 0.0, near_bin > place.bin);
-    let far_bin = floor(levels.y / PEELNET_OPACITIES);
-    let is_one = levels.y == near_level || levels.y < 0.0;
-    let far = select(peelnet_absorbance_of(levels.y), 0.0, is_one || far_bin < place.bin);
+    let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
+    let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
+    let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
+    let is_one = levels.y == near_level;
+    let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
     let rest = total - b - near - far;
@@ -207,18 +205,20 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
-    let x = clamp((place.inside - begin) / extent, 0.0, 1.0);
+    let per_extent = 1.0 / extent;
+    let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) / extent, 0.0, 1.0), keeps_mean);
+    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
     // Markov's bounds of the share in front.
     let before = x < mean;
-    let low = select((x - mean) / max(x, 1e-6), 0.0, before || !keeps_mean);
-    let high = select(1.0, (1.0 - mean) / max(1.0 - x, 1e-6), before && keeps_mean);
+    let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
+    let low = select(bound, 0.0, before || !keeps_mean);
+    let high = select(1.0, bound, before && keeps_mean);
     return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. keeps: how many of the nearer slabs keep a mean depth and a farthest fragment.
+// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -226,15 +226,14 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    keeps: vec2f,
+    means: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
-    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < keeps.y);
+    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -242,7 +241,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < keeps.x);
+    let between = peelnet_between(place, total, first, levels, place.slab < means);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);
@@ -250,29 +249,31 @@ fn peelnet_weigh(
     return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
 }
 
+// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.2;
+const PEELNET_SECOND_END: f32 = 0.5;
+const PEELNET_THIRD_END: f32 = 0.8;
+const PEELNET_LAST_SLAB: f32 = 3.0;
+
 struct PeelnetStatistics {
-    // Absorbance of each slab.
+    // Absorbance of each of four slabs.
     absorbances: vec4f,
-    // Levels of the slabs' nearest fragments.
+    // Levels of the slabs' nearest and farthest fragments.
     nearest: vec4f,
-    // Levels of the farthest fragments of the three nearer slabs; absorbance times depth in the slab, of the third.
     farthest: vec4f,
-    // Absorbance times depth in the slab, of the first two.
-    firsts: vec2f,
+    // Absorbance times depth in the slab.
+    firsts: vec4f,
 }
 
 // What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
 fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
     let place = peelnet_place(alpha, zeta, range);
     let halves = peelnet_records(alpha, place);
-    let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
+    let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
+    let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
     let firsts = peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0);
-    return PeelnetStatistics(
-        peelnet_in_slab(place.absorbance, place.slab, 0.0),
-        peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY),
-        vec4f(farthest.xyz, firsts.z),
-        firsts.xy,
-    );
+    let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
+    return PeelnetStatistics(absorbances, nearest, farthest, firsts);
 }
 
 // The weight of a fragment, and whether it is known without the network.
@@ -283,32 +284,23 @@ fn peelnet_fragment(
     absorbances: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    firsts: vec2f,
+    firsts: vec4f,
 ) -> vec2f {
     let place = peelnet_place(alpha, zeta, range);
-    let last = vec4f(farthest.xyz, PEELNET_EMPTY);
-    let means = vec4f(firsts, farthest.w, 0.0);
-    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, means, nearest, last, vec2f(3.0, 3.0));
+    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 4.0);
 }
 
-// The colour and coverage of a pixel. sums, ends: alpha * rgb * w and alpha * w of the fragments between the pixel's ends and at
-// them, finite. transmittance: of red, green and blue light; coverage: 1 less their mean. Where nothing is covered the background
-// stays as it is.
-fn peelnet_composite(sums: vec4f, ends: vec4f, coverage: f32, transmittance: vec3f, background: vec3f) -> vec4f {
-    // The ends never take more than the coverage, and what lies between no more than it can fill, 16 times its sum. Both then fill
-    // what is missing.
-    let own = min(ends.a, coverage);
-    let left = min(coverage - own, 16.0 * sums.a);
-    let fill = coverage / max(own + left, 1.17549435e-38);
-    let shares = fill * vec2f(own / max(ends.a, 1.17549435e-38), left / max(sums.a, 1.17549435e-38));
-    return vec4f(ends.rgb * shares.x + sums.rgb * shares.y + background * transmittance, coverage);
-}
-
-// The same with 16-bit sums, which may become infinite. absorbance: the pixel's total, moments.x.
-fn peelnet_resolve(sums: vec4f, ends: vec4f, absorbance: f32, background: vec3f) -> vec4f {
+// The colour and coverage of a pixel with 16-bit sums, which may become infinite. absorbance: the pixel's total.
+fn peelnet_resolve(sums: vec4f, absorbance: f32, background: vec3f) -> vec4f {
     let transmittance = exp(-absorbance);
-    let most = vec4f(65504.0);
-    return peelnet_composite(min(sums, most), min(ends, most), 1.0 - transmittance, vec3f(transmittance), background);
+    return peelnet_composite(min(sums, vec4f(65504.0)), 1.0 - transmittance, vec3f(transmittance), background);
+}
+
+// The colour and coverage of a pixel. sums: alpha * rgb * w and alpha * w of all fragments, finite. transmittance: of red, green
+// and blue light; coverage: 1 less their mean. Where nothing is covered the background stays as it is.
+fn peelnet_composite(sums: vec4f, coverage: f32, transmittance: vec3f, background: vec3f) -> vec4f {
+    let average = select(vec3f(0.0), sums.rgb / max(sums.a, 1.17549435e-38), sums.a > 0.0 && coverage > 0.0);
+    return vec4f(average * coverage + background * transmittance, coverage);
 }
 
 // The network's answer for what is known of a fragment.
@@ -322,22 +314,22 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(2.368875, 0.3913847, 5.415646, 1.9873959)
-        + mat4x4f(vec4f(0.017826673, -0.0053044287, -0.15036094, -0.14193912), vec4f(-1.1625398, 0.08669376, -2.0270157, -2.9763188), vec4f(0.547583, -1.9552368, 2.0993612, -3.4800358), vec4f(-10.337134, -2.2244542, -8.845943, 2.904093)) * input_a
-        + mat4x4f(vec4f(-0.4019977, -0.79810035, -4.3965087, 2.7923615), vec4f(0.03813074, 1.8160514, -0.017146224, 0.33617225), vec4f(0.16078469, 0.83931893, -0.1939912, -0.32587856), vec4f(-2.0893579, -1.3904935, 0.43216157, 0.36038062)) * input_b
-        + vec4f(-0.30666736, -0.00015370557, 0.21397634, -0.1964543) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(3.216821, 4.6470704, 1.4003404, 12.429225)
-        + mat4x4f(vec4f(-0.12567464, -0.2405271, -0.09074601, 0.12623976), vec4f(-4.558416, 3.0400066, -4.8597503, -0.25810423), vec4f(0.5099648, -6.6139245, 0.20172262, -9.127631), vec4f(-6.3277974, 1.5409485, -0.34529635, 0.17802975)) * input_a
-        + mat4x4f(vec4f(-3.3718984, -1.2237256, -0.189875, -6.168496), vec4f(0.030233469, 0.3369155, 0.04083388, -0.060819693), vec4f(0.7848685, -0.06040595, -0.28653228, -0.67080796), vec4f(2.1757562, -0.5308588, -0.39988232, -1.695564)) * input_b
-        + vec4f(1.6821176, 0.14973816, -0.048501562, -0.15770353) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(-1.3570657, 4.097497, -3.1296165, 11.222946)
-        + mat4x4f(vec4f(-0.027243802, -0.15349945, 0.1897883, -0.12912524), vec4f(2.0289052, 2.827727, -0.92791486, -1.3222561), vec4f(-2.456995, -1.0325302, -5.1163487, -6.9060726), vec4f(-6.3569746, 0.5508331, -5.157092, -2.6430993)) * input_a
-        + mat4x4f(vec4f(-3.0537522, -1.4546108, -0.5663827, -6.8303432), vec4f(0.18427883, 0.7136996, 0.90086013, -0.38728818), vec4f(-0.4166438, -0.6735062, -0.33255994, -0.6890928), vec4f(-0.3149763, -0.9991773, 0.18490332, 1.6945696)) * input_b
-        + vec4f(5.0540524, -1.5379622, 5.8668327, -1.6567909) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.7338535
-        + dot(vec4f(-2.307776, 0.62114954, -0.8359471, -0.6763625), layer_a_a)
-        + dot(vec4f(0.7556141, 0.73002625, -4.5136495, 0.92134523), layer_a_b)
-        + dot(vec4f(-1.1076574, 0.38000172, -0.8763953, -0.75769585), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(4.054996, -9.829898, 2.064002, 0.5241928)
+        + mat4x4f(vec4f(-0.11973406, -0.16235696, -0.14148547, 0.11061637), vec4f(-1.2507079, 1.1110176, -0.960999, -0.044336002), vec4f(1.6600657, 0.019636726, 0.99253726, -0.9020999), vec4f(-2.7273283, 1.3131754, -5.771837, -1.4805175)) * input_a
+        + mat4x4f(vec4f(-1.144964, 5.5187254, -1.7038211, -0.21630187), vec4f(-0.5096233, 0.44637385, -0.084842026, 1.5770316), vec4f(0.040113755, 0.11241977, -0.43324995, 2.0301151), vec4f(-3.9272192, 0.41560614, 1.4830444, -5.0327296)) * input_b
+        + vec4f(0.19533597, 3.3317258, -0.048967328, 2.572144) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-1.2181553, 6.574016, 2.4618273, -2.1828845)
+        + mat4x4f(vec4f(0.01513933, 0.12222185, -0.060866542, 0.33694643), vec4f(-3.7517667, 0.8428816, -2.8319745, 1.2547894), vec4f(-1.5646298, -0.5615233, -2.8259845, -1.2692242), vec4f(-5.4639883, 2.5493815, -0.57500273, 1.0193163)) * input_a
+        + mat4x4f(vec4f(-0.3167329, -1.4189578, -3.0520668, 4.9679585), vec4f(1.1626663, -1.3305342, -0.27243212, -0.2576521), vec4f(0.64713615, -0.8560712, 0.28430778, -0.44347075), vec4f(-0.9391343, -4.826613, -1.3022465, -4.7325487)) * input_b
+        + vec4f(5.9019747, 0.2552146, 2.5720806, 0.20208287) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(6.5858154, 2.26499, 1.0644361, -1.8969043)
+        + mat4x4f(vec4f(0.192656, -0.0038423468, 0.036101613, 0.13753211), vec4f(-1.8089882, 1.2067385, -0.13933708, -0.515498), vec4f(-2.6600053, 1.3644714, -3.5918846, -3.1175208), vec4f(-4.4474063, -0.31853527, -5.7779255, -2.055619)) * input_a
+        + mat4x4f(vec4f(-2.314491, 0.5875215, -1.4059887, -4.904074), vec4f(0.10474695, -0.13639888, -0.095847994, -0.1033323), vec4f(0.2194886, 4.4807687, -1.7027814, 0.19746676), vec4f(-0.76777494, -4.811916, -0.91133034, 4.7062087)) * input_b
+        + vec4f(-3.651813, -3.8922586, 4.5546994, 4.137382) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.48279703
+        + dot(vec4f(-1.17559, 1.3123437, -0.41615537, -0.61662245), layer_a_a)
+        + dot(vec4f(0.72870034, 0.5047572, -3.93812, 1.3536268), layer_a_b)
+        + dot(vec4f(-0.8044576, 0.34033692, -0.9917361, -0.507461), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -345,7 +337,7 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -27918.258, 27925.832), clamp(depth_fraction, -2977.1558, 2978.1875), clamp(mean_fraction, -1281.7662, 1282.7777), clamp(share_low, -2033.9182, 2034.1716), clamp(share_high, -2115.3406, 2117.0774), clamp(root_own, -5845.956, 5847.581), clamp(half_extent, -1640.4662, 1642.1823), clamp(of_own, -1812.09, 1813.8597), clamp(of_nearest, -1805.0753, 1806.8461));
+        clamp(root_absorbance, -27999.002, 28006.643), clamp(depth_fraction, -2902.757, 2903.7585), clamp(mean_fraction, -1531.5413, 1532.5449), clamp(share_low, -2246.2498, 2246.593), clamp(share_high, -2292.6687, 2294.319), clamp(root_own, -5859.378, 5861.003), clamp(half_extent, -1586.9026, 1588.6211), clamp(of_own, -1814.3054, 1816.0784), clamp(of_nearest, -1802.7184, 1804.4926));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

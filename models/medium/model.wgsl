@@ -2,21 +2,21 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.056216 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 17.45139 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999997 in training.
 // Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.5770967 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
 // Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999869 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99998844 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000225, validation 0.000228, test 0.000220.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00535, cups-held 0.00417, foliage-held 0.00129, panes-held 0.00043, sixteen-held 0.00064, smoke-held 0.00862.
+// Loss: training 0.000272, validation 0.000267, test 0.000260.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00706, cups-held 0.00556, foliage-held 0.00168, panes-held 0.00074, sixteen-held 0.00125, smoke-held 0.00915.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(7.528108, 0.5, 0.5, 0.5, 0.5, 1.3043636, 0.5002604, 0.49999344, 0.5) = 4.9401726e-13
-// Self-test: peelnet_weight(15.056216, 1.0, 1.0, 1.0, 1.0, 2.5770967, 1.0, 0.9999869, 1.0) = 0.0
+// Self-test: peelnet_weight(8.725695, 0.49999985, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999422, 0.5) = 2.9302066e-17
+// Self-test: peelnet_weight(17.45139, 0.9999997, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.99998844, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
@@ -24,12 +24,11 @@
 //    range: rg8unorm, cleared to 0, blending MAX, from r
 // 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
-//    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
+//    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-//    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
+// 4. Resolve: peelnet_resolve(sums, dot(absorbances.xyz, vec3f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -97,7 +96,7 @@ const PEELNET_EMPTY: f32 = -65504.0;
 // Where in its pixel's slabs a fragment lies.
 struct PeelnetPlace {
     absorbance: f32,
-    // 0, the nearest, to 3.
+    // 0, the nearest, to PEELNET_LAST_SLAB.
     slab: f32,
     // In the slab, -1 .. 1.
     inside: f32,
@@ -138,12 +137,11 @@ fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
     let low = PEELNET_RANGE_TOP - ends.x;
     let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
     let b = peelnet_absorbance(alpha);
-    // Borders at 0.2, 0.5 and 0.8.
-    let far_half = t >= 0.5;
-    let second = select(t >= 0.2, t >= 0.8, far_half);
-    let slab = select(0.0, 2.0, far_half) + select(0.0, 1.0, second);
-    let begin = select(select(0.0, 0.2, second), select(0.5, 0.8, second), far_half);
-    let end = select(select(0.2, 0.5, second), select(0.8, 1.0, second), far_half);
+    let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
+    let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
+    let slab = min(passed, PEELNET_LAST_SLAB);
+    let begin = peelnet_of_slab(vec4f(0.0, PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END), slab);
+    let end = peelnet_of_slab(vec4f(PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END, 1.0), slab);
     let inside = (t - begin) / (end - begin);
     let bin = min(floor(inside * PEELNET_BINS), PEELNET_BINS - 1.0);
     let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
@@ -157,10 +155,10 @@ fn peelnet_records(alpha: f32, place: PeelnetPlace) -> vec2f {
     return select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
 }
 
-// The absorbance that a level stands for.
-fn peelnet_absorbance_of(level: f32) -> f32 {
-    let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
-    return share / (1.0625 - share);
+// The absorbances that two levels stand for.
+fn peelnet_absorbances_of(levels: vec2f) -> vec2f {
+    let share = (levels - floor(levels * (1.0 / PEELNET_OPACITIES)) * PEELNET_OPACITIES) * (1.0 / (PEELNET_OPACITIES - 1.0));
+    return share / (vec2f(1.0625) - share);
 }
 
 // The depth in a slab in the middle of a bin.
@@ -182,23 +180,23 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none. keeps_mean: whether first is kept.
+// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
 fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
     let noise = max(total * 0.0009765625, 1e-6);
-    let near_back = floor(levels.x / PEELNET_OPACITIES);
+    let near_back = floor(levels.x * (1.0 / PEELNET_OPACITIES));
     let near_bin = PEELNET_BINS - 1.0 - near_back;
     let near_level = levels.x + (near_bin - near_back) * PEELNET_OPACITIES;
-    let known = peelnet_absorbance_of(levels.x);
+    let known = peelnet_absorbances_of(levels);
     // All others, as far as the level's rounding and the sum's can tell.
     let step = 0.6 / (PEELNET_OPACITIES - 1.0);
-    let all = known > others - (step * (1.0 + known) * (1.0 + known) + noise);
-    let near = select(select(known, others, all), 0.0, near_bin > place.bin);
-    let far_bin = floor(levels.y / PEELNET_OPACITIES);
-    let is_one = levels.y == near_level || levels.y < 0.0;
-    let far = select(peelnet_absorbance_of(levels.y), 0.0, is_one || far_bin < place.bin);
+    let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
+    let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
+    let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
+    let is_one = levels.y == near_level;
+    let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
     let rest = total - b - near - far;
@@ -206,18 +204,20 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
-    let x = clamp((place.inside - begin) / extent, 0.0, 1.0);
+    let per_extent = 1.0 / extent;
+    let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) / extent, 0.0, 1.0), keeps_mean);
+    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
     // Markov's bounds of the share in front.
     let before = x < mean;
-    let low = select((x - mean) / max(x, 1e-6), 0.0, before || !keeps_mean);
-    let high = select(1.0, (1.0 - mean) / max(1.0 - x, 1e-6), before && keeps_mean);
+    let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
+    let low = select(bound, 0.0, before || !keeps_mean);
+    let high = select(1.0, bound, before && keeps_mean);
     return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. keeps: how many of the nearer slabs keep a mean depth and a farthest fragment.
+// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -225,15 +225,14 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    keeps: vec2f,
+    means: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
-    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < keeps.y);
+    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -241,7 +240,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < keeps.x);
+    let between = peelnet_between(place, total, first, levels, place.slab < means);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);
@@ -249,45 +248,41 @@ fn peelnet_weigh(
     return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
 }
 
+// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.22;
+const PEELNET_SECOND_END: f32 = 0.55;
+const PEELNET_THIRD_END: f32 = 1.0;
+const PEELNET_LAST_SLAB: f32 = 2.0;
+
 struct PeelnetStatistics {
-    // Absorbance of each slab.
+    // Absorbance of each of three slabs; absorbance times depth in the slab, of the first.
     absorbances: vec4f,
-    // Levels of the slabs' nearest fragments.
+    // Levels of the slabs' nearest fragments; absorbance times depth in the slab, of the second.
     nearest: vec4f,
-    // Levels of the farthest fragments of the three nearer slabs; absorbance times depth in the slab, of the third.
+    // Levels of the slabs' farthest fragments; absorbance times depth in the slab, of the third.
     farthest: vec4f,
-    // Absorbance times depth in the slab, of the first two.
-    firsts: vec2f,
 }
 
 // What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
 fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
     let place = peelnet_place(alpha, zeta, range);
     let halves = peelnet_records(alpha, place);
-    let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
+    let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
+    let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
     let firsts = peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0);
+    let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
     return PeelnetStatistics(
-        peelnet_in_slab(place.absorbance, place.slab, 0.0),
-        peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY),
+        vec4f(absorbances.xyz, firsts.x),
+        vec4f(nearest.xyz, firsts.y),
         vec4f(farthest.xyz, firsts.z),
-        firsts.xy,
     );
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(
-    alpha: f32,
-    zeta: f32,
-    range: vec2f,
-    absorbances: vec4f,
-    nearest: vec4f,
-    farthest: vec4f,
-    firsts: vec2f,
-) -> vec2f {
+fn peelnet_fragment(alpha: f32, zeta: f32, range: vec2f, absorbances: vec4f, nearest: vec4f, farthest: vec4f) -> vec2f {
     let place = peelnet_place(alpha, zeta, range);
-    let last = vec4f(farthest.xyz, PEELNET_EMPTY);
-    let means = vec4f(firsts, farthest.w, 0.0);
-    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, means, nearest, last, vec2f(3.0, 3.0));
+    let firsts = vec4f(absorbances.w, nearest.w, farthest.w, 0.0);
+    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 3.0);
 }
 
 // The colour and coverage of a pixel with 16-bit sums, which may become infinite. absorbance: the pixel's total.
@@ -314,22 +309,22 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-1.4471232, -3.8437343, 0.7947034, 3.2954507)
-        + mat4x4f(vec4f(-0.24887305, -0.39832693, 0.03127903, 0.10059704), vec4f(-4.8471656, -0.6625143, 0.03297198, -0.41432992), vec4f(4.4494095, -1.296731, 4.0761857, -3.546885), vec4f(-0.5288319, -0.10634604, -7.3503885, -2.1674716)) * input_a
-        + mat4x4f(vec4f(2.3168883, 4.6061473, -0.43561354, 2.761181), vec4f(-0.2269452, 1.1814891, -0.73245305, 0.63940847), vec4f(-0.00048461047, 2.4081645, -0.22307098, 2.1641767), vec4f(0.18119445, -0.49723315, -2.8466673, 0.02022258)) * input_b
-        + vec4f(-0.22301751, 0.01975051, 1.2651227, -5.6134996) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-3.5254753, -5.030528, 1.752954, 10.679947)
-        + mat4x4f(vec4f(0.058010478, 0.115214325, -0.02490039, -0.25796747), vec4f(-3.1147697, 4.732389, -3.8756022, -0.59575146), vec4f(1.8803468, -0.99313116, -2.2312722, -1.998342), vec4f(-4.0048485, 1.4623417, 0.8222426, -2.7652006)) * input_a
-        + mat4x4f(vec4f(-0.21806192, 2.8518054, -1.6108242, 0.6930017), vec4f(0.72831964, -0.25487128, -0.252651, -1.4536215), vec4f(-0.86025184, -0.5456314, -0.106891334, 1.0018201), vec4f(0.24587983, -0.883465, -1.2210068, -2.7228632)) * input_b
-        + vec4f(5.944968, 0.17379619, 2.4419665, -6.297499) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(1.0684468, -0.7386571, -0.9233247, -0.37172636)
-        + mat4x4f(vec4f(0.08692133, 0.3914568, 0.14100662, 0.21464281), vec4f(-0.89562935, 1.9533149, -0.25029856, -2.1686804), vec4f(0.7826869, -9.280299, -2.1383138, 4.8740625), vec4f(-10.048515, 1.8985599, -9.553144, 1.5015724)) * input_a
-        + mat4x4f(vec4f(0.5730729, 0.81933635, -0.02804162, -4.3731465), vec4f(-0.02240811, -0.086778514, 0.0660286, 0.15808646), vec4f(0.028616376, 0.14670154, -0.88077354, -0.71318185), vec4f(-1.7927368, -3.1870522, -1.7923763, -0.5033301)) * input_b
-        + vec4f(-0.57951355, 4.1719365, 4.5187306, 2.2616754) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.63265365
-        + dot(vec4f(-1.4692817, 0.48582095, -0.5185051, -0.64918923), layer_a_a)
-        + dot(vec4f(0.41653845, 1.4741286, -3.0445526, 0.5204951), layer_a_b)
-        + dot(vec4f(-2.5466666, 1.1728921, -1.2004005, -0.52217984), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(3.3935356, 5.8347907, 6.6538205, -3.873926)
+        + mat4x4f(vec4f(-0.111133575, -0.2111261, -0.010409008, 0.1477073), vec4f(-1.2372341, 1.7986479, -1.4044187, 1.3466747), vec4f(1.7030135, 1.6124195, 2.2765281, -2.9122927), vec4f(-1.8155476, -1.0129492, -1.4952918, 2.9200475)) * input_a
+        + mat4x4f(vec4f(-0.9378126, 1.1495869, 0.29707363, 0.2421195), vec4f(0.20693892, 0.6084917, 1.0822641, 1.0580354), vec4f(0.27218717, 1.059934, -0.104120314, -0.8097296), vec4f(-3.8476062, -4.7627587, -4.17889, -1.7548307)) * input_b
+        + vec4f(-0.6952874, -5.2111697, -3.8944151, 6.4496355) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-1.5874934, -11.886118, 0.9641152, 0.113270015)
+        + mat4x4f(vec4f(0.010292462, 0.07813404, -0.09147709, 0.34670234), vec4f(-1.7420814, 1.281215, -3.0577893, 1.0864216), vec4f(-3.4582958, -0.84344316, -2.8077111, -0.70210403), vec4f(-3.6573894, 2.3078008, 0.7004464, 1.3964082)) * input_a
+        + mat4x4f(vec4f(0.33721384, 8.245953, -3.0330539, 3.098226), vec4f(1.3704988, 0.07569591, -0.020788727, -0.2781122), vec4f(-0.11498427, -0.5170471, 0.06251888, -0.12286844), vec4f(-2.0009322, -0.8630143, -0.17436637, -5.74606)) * input_b
+        + vec4f(6.9480643, 4.637382, 2.931796, -0.2518981) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(5.001616, 4.6935263, -0.33140454, -6.229739)
+        + mat4x4f(vec4f(0.20067921, 0.08282232, -0.07213993, 0.25878143), vec4f(-2.8421915, 0.6806998, -0.38182756, 1.6347768), vec4f(-3.3459382, -1.0751458, -3.891714, 1.4302219), vec4f(-4.7818427, 3.993018, -2.4153266, -2.9118886)) * input_a
+        + mat4x4f(vec4f(-1.6972584, 0.23685999, -4.051493, -1.0036377), vec4f(-0.07753822, -1.6057957, -0.52560705, 0.58281094), vec4f(-0.03405317, -0.5086381, -0.49457598, 3.8786626), vec4f(0.19430768, 0.49235117, -0.42295042, 4.1126547)) * input_b
+        + vec4f(-2.1449916, -3.6869931, 7.416252, -2.7632458) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-1.066652
+        + dot(vec4f(-1.2840198, 0.46027064, -0.44211313, -0.5954601), layer_a_a)
+        + dot(vec4f(0.60101956, 1.3819145, -6.878897, 1.2349877), layer_a_b)
+        + dot(vec4f(-0.908354, 0.46970716, -0.91686434, -0.2037116), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -337,7 +332,7 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -28016.574, 28024.082), clamp(depth_fraction, -2986.5183, 2987.5554), clamp(mean_fraction, -1288.5994, 1289.6111), clamp(share_low, -2037.7227, 2037.9749), clamp(share_high, -2123.3823, 2125.1196), clamp(root_own, -5843.5054, 5845.1304), clamp(half_extent, -1684.1893, 1685.8993), clamp(of_own, -1980.5853, 1982.3397), clamp(of_nearest, -1974.2427, 1975.998));
+        clamp(root_absorbance, -32559.768, 32568.568), clamp(depth_fraction, -2894.1196, 2895.1226), clamp(mean_fraction, -1441.0531, 1442.0575), clamp(share_low, -2175.7192, 2176.0542), clamp(share_high, -2206.636, 2208.298), clamp(root_own, -5844.2617, 5845.8906), clamp(half_extent, -1527.3837, 1529.1498), clamp(of_own, -1635.837, 1637.6483), clamp(of_nearest, -1620.7386, 1622.5494));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

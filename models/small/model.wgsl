@@ -2,21 +2,21 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.180164 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 16.785595 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999998 in training.
 // Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.5770967 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
 // Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999871 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999885 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000247, validation 0.000245, test 0.000241.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00846, cups-held 0.00518, foliage-held 0.00198, panes-held 0.00059, sixteen-held 0.00182, smoke-held 0.00879.
+// Loss: training 0.000384, validation 0.000401, test 0.000401.
+// Held-out error, mean |T - T_exact|: boxes-held 0.01064, cups-held 0.00759, foliage-held 0.00257, panes-held 0.00184, sixteen-held 0.00193, smoke-held 0.01035.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(7.590082, 0.5, 0.5, 0.5, 0.5, 1.3043636, 0.5002604, 0.49999356, 0.5) = 3.0923538e-13
-// Self-test: peelnet_weight(15.180164, 1.0, 1.0, 1.0, 1.0, 2.5770967, 1.0, 0.9999871, 1.0) = 0.0
+// Self-test: peelnet_weight(8.392797, 0.4999999, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999425, 0.5) = 5.0623803e-16
+// Self-test: peelnet_weight(16.785595, 0.9999998, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.9999885, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
@@ -25,11 +25,10 @@
 // 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
-//    farthest: r16float, cleared to -65504, blending MAX, from s.farthest
-//    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
+//    farthest: rg16float, cleared to -65504, blending MAX, from s.farthest
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
+// 4. Resolve: peelnet_resolve(sums, dot(absorbances.xyz, vec3f(1.0)), background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -97,7 +96,7 @@ const PEELNET_EMPTY: f32 = -65504.0;
 // Where in its pixel's slabs a fragment lies.
 struct PeelnetPlace {
     absorbance: f32,
-    // 0, the nearest, to 3.
+    // 0, the nearest, to PEELNET_LAST_SLAB.
     slab: f32,
     // In the slab, -1 .. 1.
     inside: f32,
@@ -138,12 +137,11 @@ fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
     let low = PEELNET_RANGE_TOP - ends.x;
     let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
     let b = peelnet_absorbance(alpha);
-    // Borders at 0.2, 0.5 and 0.8.
-    let far_half = t >= 0.5;
-    let second = select(t >= 0.2, t >= 0.8, far_half);
-    let slab = select(0.0, 2.0, far_half) + select(0.0, 1.0, second);
-    let begin = select(select(0.0, 0.2, second), select(0.5, 0.8, second), far_half);
-    let end = select(select(0.2, 0.5, second), select(0.8, 1.0, second), far_half);
+    let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
+    let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
+    let slab = min(passed, PEELNET_LAST_SLAB);
+    let begin = peelnet_of_slab(vec4f(0.0, PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END), slab);
+    let end = peelnet_of_slab(vec4f(PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END, 1.0), slab);
     let inside = (t - begin) / (end - begin);
     let bin = min(floor(inside * PEELNET_BINS), PEELNET_BINS - 1.0);
     let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
@@ -157,10 +155,10 @@ fn peelnet_records(alpha: f32, place: PeelnetPlace) -> vec2f {
     return select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
 }
 
-// The absorbance that a level stands for.
-fn peelnet_absorbance_of(level: f32) -> f32 {
-    let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
-    return share / (1.0625 - share);
+// The absorbances that two levels stand for.
+fn peelnet_absorbances_of(levels: vec2f) -> vec2f {
+    let share = (levels - floor(levels * (1.0 / PEELNET_OPACITIES)) * PEELNET_OPACITIES) * (1.0 / (PEELNET_OPACITIES - 1.0));
+    return share / (vec2f(1.0625) - share);
 }
 
 // The depth in a slab in the middle of a bin.
@@ -182,23 +180,23 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none. keeps_mean: whether first is kept.
+// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
 fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
     let noise = max(total * 0.0009765625, 1e-6);
-    let near_back = floor(levels.x / PEELNET_OPACITIES);
+    let near_back = floor(levels.x * (1.0 / PEELNET_OPACITIES));
     let near_bin = PEELNET_BINS - 1.0 - near_back;
     let near_level = levels.x + (near_bin - near_back) * PEELNET_OPACITIES;
-    let known = peelnet_absorbance_of(levels.x);
+    let known = peelnet_absorbances_of(levels);
     // All others, as far as the level's rounding and the sum's can tell.
     let step = 0.6 / (PEELNET_OPACITIES - 1.0);
-    let all = known > others - (step * (1.0 + known) * (1.0 + known) + noise);
-    let near = select(select(known, others, all), 0.0, near_bin > place.bin);
-    let far_bin = floor(levels.y / PEELNET_OPACITIES);
-    let is_one = levels.y == near_level || levels.y < 0.0;
-    let far = select(peelnet_absorbance_of(levels.y), 0.0, is_one || far_bin < place.bin);
+    let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
+    let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
+    let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
+    let is_one = levels.y == near_level;
+    let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
     let rest = total - b - near - far;
@@ -206,18 +204,20 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
-    let x = clamp((place.inside - begin) / extent, 0.0, 1.0);
+    let per_extent = 1.0 / extent;
+    let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) / extent, 0.0, 1.0), keeps_mean);
+    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
     // Markov's bounds of the share in front.
     let before = x < mean;
-    let low = select((x - mean) / max(x, 1e-6), 0.0, before || !keeps_mean);
-    let high = select(1.0, (1.0 - mean) / max(1.0 - x, 1e-6), before && keeps_mean);
+    let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
+    let low = select(bound, 0.0, before || !keeps_mean);
+    let high = select(1.0, bound, before && keeps_mean);
     return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. keeps: how many of the nearer slabs keep a mean depth and a farthest fragment.
+// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -225,15 +225,14 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    keeps: vec2f,
+    means: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
-    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < keeps.y);
+    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -241,7 +240,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < keeps.x);
+    let between = peelnet_between(place, total, first, levels, place.slab < means);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);
@@ -249,41 +248,38 @@ fn peelnet_weigh(
     return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
 }
 
+// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.25;
+const PEELNET_SECOND_END: f32 = 0.6;
+const PEELNET_THIRD_END: f32 = 1.0;
+const PEELNET_LAST_SLAB: f32 = 2.0;
+
 struct PeelnetStatistics {
-    // Absorbance of each slab.
+    // Absorbance of each of three slabs; absorbance times depth in the slab, of the first.
     absorbances: vec4f,
-    // Levels of the slabs' nearest fragments, and of the farthest of the nearest slab.
+    // Levels of the slabs' nearest fragments, and of the farthest of the first.
     nearest: vec4f,
-    farthest: f32,
-    // Absorbance times depth in the slab, of the two nearer slabs.
-    firsts: vec2f,
+    // Levels of the farthest fragments of the other two.
+    farthest: vec2f,
 }
 
 // What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
 fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
     let place = peelnet_place(alpha, zeta, range);
     let halves = peelnet_records(alpha, place);
-    return PeelnetStatistics(
-        peelnet_in_slab(place.absorbance, place.slab, 0.0),
-        peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY),
-        select(halves.y, PEELNET_EMPTY, place.slab > 0.0),
-        peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0).xy,
-    );
+    let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
+    let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
+    let first = select(place.absorbance * place.inside, 0.0, place.slab > 0.0);
+    let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
+    return PeelnetStatistics(vec4f(absorbances.xyz, first), vec4f(nearest.xyz, farthest.x), farthest.yz);
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(
-    alpha: f32,
-    zeta: f32,
-    range: vec2f,
-    absorbances: vec4f,
-    nearest: vec4f,
-    farthest: f32,
-    firsts: vec2f,
-) -> vec2f {
+fn peelnet_fragment(alpha: f32, zeta: f32, range: vec2f, absorbances: vec4f, nearest: vec4f, farthest: vec2f) -> vec2f {
     let place = peelnet_place(alpha, zeta, range);
-    let last = vec4f(farthest, vec3f(PEELNET_EMPTY));
-    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, vec4f(firsts, 0.0, 0.0), nearest, last, vec2f(2.0, 1.0));
+    let firsts = vec4f(absorbances.w, 0.0, 0.0, 0.0);
+    let last = vec4f(nearest.w, farthest, PEELNET_EMPTY);
+    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, last, 1.0);
 }
 
 // The colour and coverage of a pixel with 16-bit sums, which may become infinite. absorbance: the pixel's total.
@@ -310,22 +306,22 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(4.3870378, -3.1481946, 1.5653112, -2.5486934)
-        + mat4x4f(vec4f(-0.038064614, 0.12956722, -0.08249069, 0.049593743), vec4f(-2.184074, 0.6528872, -1.3558904, -0.6549371), vec4f(-1.4434578, 1.139601, 1.7173859, 2.5406518), vec4f(-3.7199156, 2.5418758, -10.912024, 3.452518)) * input_a
-        + mat4x4f(vec4f(-1.6210166, 3.6434636, -0.65800446, 2.1116688), vec4f(-0.38880306, 0.118607946, -0.25735825, 0.19663239), vec4f(0.052811857, -0.15819192, -1.5049752, 1.2155893), vec4f(-1.580114, -3.374838, -0.74399984, 2.5298684)) * input_b
-        + vec4f(-0.5954277, -0.11943602, 2.329258, -4.001528) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-5.9745197, -1.6991844, -1.3599768, 0.4069477)
-        + mat4x4f(vec4f(0.044722382, 0.08503355, -0.01799365, -0.022890177), vec4f(-2.3838089, 2.6616993, -3.9467218, 1.8633987), vec4f(-2.9856226, -0.15495747, 0.2751188, -2.278127), vec4f(0.73235846, 2.0453978, -0.76937807, -2.0170515)) * input_a
-        + mat4x4f(vec4f(4.036189, 2.605808, 0.22241142, -3.1245074), vec4f(0.62820494, -1.0188459, -0.23284175, -0.21839812), vec4f(-0.77978075, 0.96719825, -0.11354484, 0.33448932), vec4f(3.728693, -0.54611695, -0.9326957, 2.9692254)) * input_b
-        + vec4f(2.736754, -3.2759714, 3.057637, 1.4938148) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(1.1436791, -4.1215615, -5.1410356, -1.0105362)
-        + mat4x4f(vec4f(-0.045621857, 0.25930724, 0.19910528, 0.15113552), vec4f(-1.060544, -0.34296924, -0.9857747, -1.361313), vec4f(1.6615076, -5.146176, -2.0010464, 4.895669), vec4f(-5.948301, 1.3800168, -4.703556, -2.0764382)) * input_a
-        + mat4x4f(vec4f(0.23972362, 8.569383, 1.0412949, -5.509027), vec4f(0.64394176, -0.9237976, 0.78712654, -0.39736125), vec4f(0.14208785, -0.82956916, 1.5373014, 0.84947807), vec4f(-2.3245783, -2.7879527, 3.3806367, 2.2628253)) * input_b
-        + vec4f(-1.3399414, 1.5530819, -0.2107958, 1.6529081) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.12162175
-        + dot(vec4f(-1.8707377, 1.610801, -0.6729792, -0.62036836), layer_a_a)
-        + dot(vec4f(-0.4898581, 1.1253816, -2.5672278, 0.6794554), layer_a_b)
-        + dot(vec4f(-1.3401008, 0.9113712, -0.4494747, -0.50378335), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(3.1123188, -2.5865164, 5.185004, 2.0149696)
+        + mat4x4f(vec4f(-0.019135818, 0.115697354, -0.04241212, -0.03302508), vec4f(-4.55579, 1.5101659, 0.2691026, 0.8301476), vec4f(4.6440635, -10.301589, 5.1571136, -0.41197023), vec4f(-4.2946825, -0.6640902, -3.9001062, -0.7588776)) * input_a
+        + mat4x4f(vec4f(-2.5805514, 3.0817335, -1.1661558, 1.7537258), vec4f(-0.52734935, 0.10109053, -0.8755783, -0.34982046), vec4f(0.09076549, -0.08924561, 0.5727824, -3.6837037), vec4f(-1.616743, -0.74291134, -2.4189873, -0.7532667)) * input_b
+        + vec4f(1.1928986, 3.8034, -4.760968, 0.6280914) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-3.0643501, -2.8498693, -7.4641066, 8.641286)
+        + mat4x4f(vec4f(0.1608382, -0.20475385, -0.01727476, -0.16391757), vec4f(-0.4395136, 0.37981305, -0.72151005, -1.1647537), vec4f(-1.5929867, 0.04825241, -3.2858853, -2.9248002), vec4f(-19.83453, 5.4553523, 5.1335664, 0.032118086)) * input_a
+        + mat4x4f(vec4f(1.2233456, 2.394567, 7.8576746, -5.615719), vec4f(-0.25601652, -0.17099853, 0.47079754, -0.87843645), vec4f(-0.8708622, 0.16140458, 1.0759127, -0.6760138), vec4f(-0.6975446, -2.946429, 1.4439423, -0.07755761)) * input_b
+        + vec4f(5.475206, 4.46018, -0.05908926, 1.6473831) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(5.464886, 3.3747797, 1.3993491, -1.0412363)
+        + mat4x4f(vec4f(0.16479927, 0.06837622, -0.04070889, -0.1485686), vec4f(-0.99869174, 4.8493824, -3.5694742, -3.7582836), vec4f(-2.951277, -3.7278416, -2.3710477, 0.39029276), vec4f(-10.628894, -0.5839514, -3.6359465, 1.7112252)) * input_a
+        + mat4x4f(vec4f(-1.5531603, 0.044064097, -0.1587575, -1.0088991), vec4f(0.35818097, -0.97540313, -0.2817452, -0.19706044), vec4f(-0.0120531, 0.28627473, -0.3228078, -0.10756849), vec4f(-3.1915922, -2.3530116, 1.0669887, -1.3856872)) * input_b
+        + vec4f(-0.9012394, -2.7006161, 0.18369423, 4.125574) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.22811404
+        + dot(vec4f(-0.8958171, 0.872417, -0.34098572, -0.21681777), layer_a_a)
+        + dot(vec4f(-0.595793, 0.47862333, -0.5789839, 0.60295653), layer_a_b)
+        + dot(vec4f(-0.7536308, 1.2284092, -1.6060749, -3.1960964), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -333,7 +329,7 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -28012.893, 28020.299), clamp(depth_fraction, -2979.964, 2980.988), clamp(mean_fraction, -1075.4502, 1076.4526), clamp(share_low, -1754.4419, 1754.6035), clamp(share_high, -1783.6151, 1785.4525), clamp(root_own, -5827.6797, 5829.3086), clamp(half_extent, -1524.9297, 1526.7095), clamp(of_own, -2095.4434, 2097.184), clamp(of_nearest, -2089.3865, 2091.1277));
+        clamp(root_absorbance, -31649.232, 31657.889), clamp(depth_fraction, -2888.0073, 2889.0142), clamp(mean_fraction, -819.60406, 820.617), clamp(share_low, -1274.7275, 1274.8062), clamp(share_high, -1403.4729, 1405.3853), clamp(root_own, -5843.9663, 5845.595), clamp(half_extent, -1547.0103, 1548.771), clamp(of_own, -1648.2185, 1650.0273), clamp(of_nearest, -1632.6451, 1634.4557));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -11,7 +11,7 @@ const PEELNET_EMPTY: f32 = -65504.0;
 // Where in its pixel's slabs a fragment lies.
 struct PeelnetPlace {
     absorbance: f32,
-    // 0, the nearest, to 3.
+    // 0, the nearest, to PEELNET_LAST_SLAB.
     slab: f32,
     // In the slab, -1 .. 1.
     inside: f32,
@@ -52,12 +52,11 @@ fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
     let low = PEELNET_RANGE_TOP - ends.x;
     let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
     let b = peelnet_absorbance(alpha);
-    // Borders at 0.2, 0.5 and 0.8.
-    let far_half = t >= 0.5;
-    let second = select(t >= 0.2, t >= 0.8, far_half);
-    let slab = select(0.0, 2.0, far_half) + select(0.0, 1.0, second);
-    let begin = select(select(0.0, 0.2, second), select(0.5, 0.8, second), far_half);
-    let end = select(select(0.2, 0.5, second), select(0.8, 1.0, second), far_half);
+    let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
+    let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
+    let slab = min(passed, PEELNET_LAST_SLAB);
+    let begin = peelnet_of_slab(vec4f(0.0, PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END), slab);
+    let end = peelnet_of_slab(vec4f(PEELNET_FIRST_END, PEELNET_SECOND_END, PEELNET_THIRD_END, 1.0), slab);
     let inside = (t - begin) / (end - begin);
     let bin = min(floor(inside * PEELNET_BINS), PEELNET_BINS - 1.0);
     let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_OPACITIES - 1.0)) + 0.5);
@@ -71,10 +70,10 @@ fn peelnet_records(alpha: f32, place: PeelnetPlace) -> vec2f {
     return select(levels, vec2f(PEELNET_EMPTY), alpha < PEELNET_FAINT);
 }
 
-// The absorbance that a level stands for.
-fn peelnet_absorbance_of(level: f32) -> f32 {
-    let share = (level - floor(level / PEELNET_OPACITIES) * PEELNET_OPACITIES) / (PEELNET_OPACITIES - 1.0);
-    return share / (1.0625 - share);
+// The absorbances that two levels stand for.
+fn peelnet_absorbances_of(levels: vec2f) -> vec2f {
+    let share = (levels - floor(levels * (1.0 / PEELNET_OPACITIES)) * PEELNET_OPACITIES) * (1.0 / (PEELNET_OPACITIES - 1.0));
+    return share / (vec2f(1.0625) - share);
 }
 
 // The depth in a slab in the middle of a bin.
@@ -96,23 +95,23 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none. keeps_mean: whether first is kept.
+// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
 fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
     let noise = max(total * 0.0009765625, 1e-6);
-    let near_back = floor(levels.x / PEELNET_OPACITIES);
+    let near_back = floor(levels.x * (1.0 / PEELNET_OPACITIES));
     let near_bin = PEELNET_BINS - 1.0 - near_back;
     let near_level = levels.x + (near_bin - near_back) * PEELNET_OPACITIES;
-    let known = peelnet_absorbance_of(levels.x);
+    let known = peelnet_absorbances_of(levels);
     // All others, as far as the level's rounding and the sum's can tell.
     let step = 0.6 / (PEELNET_OPACITIES - 1.0);
-    let all = known > others - (step * (1.0 + known) * (1.0 + known) + noise);
-    let near = select(select(known, others, all), 0.0, near_bin > place.bin);
-    let far_bin = floor(levels.y / PEELNET_OPACITIES);
-    let is_one = levels.y == near_level || levels.y < 0.0;
-    let far = select(peelnet_absorbance_of(levels.y), 0.0, is_one || far_bin < place.bin);
+    let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
+    let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
+    let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
+    let is_one = levels.y == near_level;
+    let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
     let rest = total - b - near - far;
@@ -120,18 +119,20 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
-    let x = clamp((place.inside - begin) / extent, 0.0, 1.0);
+    let per_extent = 1.0 / extent;
+    let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) / extent, 0.0, 1.0), keeps_mean);
+    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
     // Markov's bounds of the share in front.
     let before = x < mean;
-    let low = select((x - mean) / max(x, 1e-6), 0.0, before || !keeps_mean);
-    let high = select(1.0, (1.0 - mean) / max(1.0 - x, 1e-6), before && keeps_mean);
+    let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
+    let low = select(bound, 0.0, before || !keeps_mean);
+    let high = select(1.0, bound, before && keeps_mean);
     return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. keeps: how many of the nearer slabs keep a mean depth and a farthest fragment.
+// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -139,15 +140,14 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    keeps: vec2f,
+    means: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
-    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < keeps.y);
+    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -155,7 +155,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < keeps.x);
+    let between = peelnet_between(place, total, first, levels, place.slab < means);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);

@@ -3,9 +3,9 @@ struct Surface {
     @builtin(position) @invariant position: vec4f,
     // Linear depth: distance along the view axis in scene units. The sort key everywhere.
     @location(0) depth_linear: f32,
-    @location(1) @interpolate(flat) material: u32,
+    @if(material) @location(1) @interpolate(flat) material: u32,
     // Of the material: linear RGB and alpha.
-    @location(2) @interpolate(flat) material_color: vec4f,
+    @if(material) @location(2) @interpolate(flat) material_color: vec4f,
     // Index in the scene's list of triangles, object by object: the tie rule.
     @if(numbered) @location(3) @interpolate(flat) triangle: u32,
     // Nothing is lit: nobody asks where it is, which way it faces and how it shines.

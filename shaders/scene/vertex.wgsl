@@ -1,11 +1,11 @@
 // The only vertex shader of scene geometry: every pass shares it, so that depth comes out bit-identical in all of them.
 import package::scene::camera::camera;
-import package::scene::material::materials;
+@if(material) import package::scene::material::materials;
 import package::scene::surface::Surface;
 
 struct Vertex {
     @location(0) position: vec3f,
-    @location(1) material: u32,
+    @if(material) @location(1) material: u32,
     @if(mapped) @location(2) uv: vec2f,
     @if(normal_map) @location(3) tangent: vec4f,
     @if(vertex_colors) @location(4) color: vec4f,
@@ -26,9 +26,9 @@ fn vertex_main(vertex: Vertex, @if(numbered) @builtin(vertex_index) index: u32) 
     // A perspective projection puts the distance along the view axis into w.
     out.depth_linear = out.position.w;
     @if(numbered) out.triangle = index / 3u;
-    out.material = vertex.material;
-    let material = materials[vertex.material];
-    out.material_color = material.color;
+    @if(material) out.material = vertex.material;
+    @if(material) let material = materials[vertex.material];
+    @if(material) out.material_color = material.color;
     @if(lit) out.finish = vec2f(material.specular_or_metallic, material.shininess_or_roughness);
     return out;
 }

@@ -4,9 +4,10 @@
 
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
-    methods::slabs::{self, Design, Range, Seen},
+    methods::slabs::{self, Design, Layout, Range, Seen},
     random::Random,
 };
+use peelnet_export::{Blend, Description, Target};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Inputs, Model, Recipe};
 use peelnet_tests::{Points, gpu, in_runs, run_text, shipped, stored};
@@ -95,36 +96,81 @@ fn pixels(design: &Design) -> Vec<Points> {
 /// What the exported functions say of a fragment.
 #[derive(Clone, Copy)]
 struct Answer {
+    /// Of each slab; 0 where there is none, or none is kept.
     absorbances: [f32; 4],
-    /// Of the slabs that keep it.
-    firsts: [f32; 3],
+    firsts: [f32; 4],
     known: bool,
     weight: f32,
 }
 
-/// Runs the exported functions over pixels, with targets that add and take maxima as blending does.
+/// A target of the statistics as a variable of the driver: its declaration, and what a fragment does to it.
+fn variable(target: &Target) -> [String; 2] {
+    let channels = if target.format == "rg16float" { 2 } else { 4 };
+    let (name, write) = (target.name, target.write);
+    let clear: Vec<String> = target.clear[..channels]
+        .iter()
+        .map(|c| format!("f32({c})"))
+        .collect();
+    let declared = format!("var {name} = vec{channels}f({});", clear.join(", "));
+    let blended: Vec<String> = ["x", "y", "z", "w"][..channels]
+        .iter()
+        .map(|c| {
+            let blend = if *c == "w" {
+                target.alpha
+            } else {
+                target.color
+            };
+            match blend {
+                Blend::Add => format!("stored({name}.{c} + stored({write}.{c}))"),
+                _ => format!("max({name}.{c}, {write}.{c})"),
+            }
+        })
+        .collect();
+    let done = format!("{name} = vec{channels}f({});", blended.join(", "));
+    [declared, done]
+}
+
+/// Runs the exported functions over pixels, with the passes of the exported description, and targets that add and take maxima as blending
+/// does.
 fn on_the_gpu(
     gpu: &Gpu,
     model: &Model,
+    layout: Layout,
     pixels: &[Points],
     half: bool,
-    few: bool,
 ) -> Vec<Vec<Answer>> {
     let rounded = stored(half);
-    let [empty, blended, third] = if few {
-        ["-65504.0", "max(f, s.farthest)", "0.0"]
-    } else {
-        [
-            "vec4f(vec3f(-65504.0), 0.0)",
-            "vec4f(max(f.xyz, s.farthest.xyz), stored(vec4f(f.w + stored(vec4f(s.farthest.w)).x)).x)",
-            "f.w",
-        ]
+    let description = Description::of(model.meta.recipe);
+    let [_, statistics, weights] = description.passes else {
+        panic!("{:?}", description.passes);
+    };
+    let variables: Vec<_> = statistics.targets.iter().map(variable).collect();
+    let [declared, done] = [0, 1].map(|k| {
+        let parts: Vec<&str> = variables.iter().map(|v| v[k].as_str()).collect();
+        parts.join("\n")
+    });
+    let compute = statistics.compute;
+    let call = weights
+        .compute
+        .trim_start_matches("let w = ")
+        .trim_end_matches(".x;");
+    let [absorbances, firsts] = match layout {
+        Layout::Small => [
+            "vec4f(absorbances.xyz, 0.0)",
+            "vec4f(absorbances.w, 0.0, 0.0, 0.0)",
+        ],
+        Layout::Medium => [
+            "vec4f(absorbances.xyz, 0.0)",
+            "vec4f(absorbances.w, nearest.w, farthest.w, 0.0)",
+        ],
+        Layout::Large => ["absorbances", "firsts"],
     };
     let root = format!(
         "import package::learned::weight::{{peelnet_pixel_range, peelnet_statistics, peelnet_fragment}};
         @group(0) @binding(0) var<storage, read> fragments: array<vec4f>;
         @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
-        fn stored(x: vec4f) -> vec4f {{ return {rounded}; }}
+        fn stored_all(x: vec4f) -> vec4f {{ return {rounded}; }}
+        fn stored(x: f32) -> f32 {{ return stored_all(vec4f(x)).x; }}
         @compute @workgroup_size(64)
         fn main(@builtin(global_invocation_id) id: vec3u) {{
             if id.x >= arrayLength(&fragments) {{ return; }}
@@ -133,21 +179,19 @@ fn on_the_gpu(
             for (var i = u32(own.z); i < u32(own.w); i++) {{
                 range = max(range, peelnet_pixel_range(fragments[i].x));
             }}
-            var a = vec4f(0.0);
-            var n = vec4f(-65504.0);
-            var f = {empty};
-            var b = vec2f(0.0);
+            {declared}
             for (var i = u32(own.z); i < u32(own.w); i++) {{
-                let s = peelnet_statistics(fragments[i].y, fragments[i].x, range);
-                a = stored(a + stored(s.absorbances));
-                n = max(n, s.nearest);
-                f = {blended};
-                b = stored(vec4f(b + stored(vec4f(s.firsts, 0.0, 0.0)).xy, 0.0, 0.0)).xy;
+                let zeta = fragments[i].x;
+                let alpha = fragments[i].y;
+                {compute}
+                {done}
             }}
-            let w = peelnet_fragment(own.y, own.x, range, a, n, f, b);
-            answers[3u * id.x] = a;
-            answers[3u * id.x + 1u] = vec4f(b, {third}, w.y);
-            answers[3u * id.x + 2u] = vec4f(w.x);
+            let zeta = own.x;
+            let alpha = own.y;
+            let w = {call};
+            answers[3u * id.x] = {absorbances};
+            answers[3u * id.x + 1u] = {firsts};
+            answers[3u * id.x + 2u] = vec4f(w, 0.0, 0.0);
         }}"
     );
     let text = peelnet_export::wgsl(model, &Default::default()).unwrap();
@@ -157,8 +201,8 @@ fn on_the_gpu(
     let rows: Vec<[f32; 12]> = run_text(gpu, &wgsl, &fragments, fragments.len());
     let mut rows = rows.into_iter().map(|a| Answer {
         absorbances: [a[0], a[1], a[2], a[3]],
-        firsts: [a[4], a[5], a[6]],
-        known: a[7] == 1.0,
+        firsts: [a[4], a[5], a[6], a[7]],
+        known: a[9] == 1.0,
         weight: a[8],
     });
     pixels
@@ -181,6 +225,7 @@ fn the_exported_text_is_the_twin_of_the_core() {
         let Inputs::Slabs(design, inputs) = recipe.inputs else {
             panic!("{recipe} reads no slabs");
         };
+        let layout = design.layout().unwrap();
         let pixels = pixels(&design);
         let layers: usize = pixels.iter().map(Vec::len).sum();
         assert!(
@@ -189,16 +234,13 @@ fn the_exported_text_is_the_twin_of_the_core() {
             pixels.len()
         );
         for half in [false, true] {
-            let few = recipe == Recipe::SMALL;
-            let answers = on_the_gpu(&gpu, &model, &pixels, half, few);
+            let answers = on_the_gpu(&gpu, &model, layout, &pixels, half);
             let mut random = Random::new(52, &[]);
             let (mut compared, mut outside, mut known) = (0, 0, 0);
             for (pixel, answers) in pixels.iter().zip(&answers) {
                 let found = answers[0];
-                let sums: [[f64; 2]; 4] = std::array::from_fn(|k| {
-                    let first = found.firsts.get(k).copied().unwrap_or(0.0);
-                    [found.absorbances[k].into(), first.into()]
-                });
+                let sums: [[f64; 2]; 4] =
+                    std::array::from_fn(|k| [found.absorbances[k].into(), found.firsts[k].into()]);
                 check_sums(pixel, &sums, half, &design);
                 let weights = |pixel: &Points, sums: &[[f64; 2]]| -> Vec<(f64, Seen)> {
                     let all = slabs::seen_given(pixel, &warp(), design, sums);

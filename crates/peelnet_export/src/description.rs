@@ -1,5 +1,6 @@
 //! What a renderer must do around an exported text: the one source of the text's header and of the documents.
 
+use peelnet_core::methods::slabs::{Design, Layout};
 use peelnet_model::{Inputs, Output, Recipe};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -157,68 +158,76 @@ const RANGE: Pass = Pass {
 /// What levels are cleared to.
 const LEAST: f32 = -65504.0;
 
+const ABSORBANCES: Target = sum("absorbances", "rgba16float", "s.absorbances");
+
 const NEAREST: Target = most("nearest", "rgba16float", LEAST, "s.nearest");
+
+const fn most_and_sum(name: &'static str, write: &'static str) -> Target {
+    Target {
+        name,
+        format: "rgba16float",
+        clear: [LEAST, LEAST, LEAST, 0.0],
+        color: Blend::Max,
+        alpha: Blend::Add,
+        write,
+    }
+}
 
 const SLABS_COMPUTE: &str = "let s = peelnet_statistics(alpha, zeta, range);";
 
-const FEW_SLAB_STATISTICS: Pass = Pass {
-    name: "statistics",
-    compute: SLABS_COMPUTE,
-    targets: &[
-        sum("absorbances", "rgba16float", "s.absorbances"),
-        NEAREST,
-        most("farthest", "r16float", LEAST, "s.farthest"),
-        sum("firsts", "rg16float", "s.firsts"),
-    ],
-};
+const SUMS: &[Target] = &[sum("sums", "rgba16float", WEIGHTED)];
 
-const MANY_SLAB_STATISTICS: Pass = Pass {
-    name: "statistics",
-    compute: SLABS_COMPUTE,
-    targets: &[
-        sum("absorbances", "rgba16float", "s.absorbances"),
-        NEAREST,
-        Target {
-            name: "farthest",
-            format: "rgba16float",
-            clear: [LEAST, LEAST, LEAST, 0.0],
-            color: Blend::Max,
-            alpha: Blend::Add,
-            write: "s.farthest",
-        },
-        sum("firsts", "rg16float", "s.firsts"),
-    ],
-};
-
-const SLAB_WEIGHTS: Pass = Pass {
-    name: "weights",
-    compute: "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
-    targets: &[sum("sums", "rgba16float", WEIGHTED)],
-};
-
-const FEW_SLABS: &[Pass] = &[RANGE, FEW_SLAB_STATISTICS, SLAB_WEIGHTS];
-
-const MANY_SLABS: &[Pass] = &[RANGE, MANY_SLAB_STATISTICS, SLAB_WEIGHTS];
-
-const MANY_SLABS_APART: &[Pass] = &[
-    RANGE,
-    MANY_SLAB_STATISTICS,
+const fn slab_weights(compute: &'static str) -> Pass {
     Pass {
         name: "weights",
-        compute: "let f = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts); let w = f.x; let known = f.y > 0.0;",
+        compute,
+        targets: SUMS,
+    }
+}
+
+const SMALL_SLABS: &[Pass] = &[
+    RANGE,
+    Pass {
+        name: "statistics",
+        compute: SLABS_COMPUTE,
         targets: &[
-            sum(
-                "sums",
-                "rgba16float",
-                "select(vec4f(alpha * rgb, alpha) * w, vec4f(0.0), known)",
-            ),
-            sum(
-                "ends",
-                "rgba16float",
-                "select(vec4f(0.0), vec4f(alpha * rgb, alpha) * w, known)",
-            ),
+            ABSORBANCES,
+            NEAREST,
+            most("farthest", "rg16float", LEAST, "s.farthest"),
         ],
     },
+    slab_weights("let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;"),
+];
+
+const MEDIUM_SLABS: &[Pass] = &[
+    RANGE,
+    Pass {
+        name: "statistics",
+        compute: SLABS_COMPUTE,
+        targets: &[
+            ABSORBANCES,
+            most_and_sum("nearest", "s.nearest"),
+            most_and_sum("farthest", "s.farthest"),
+        ],
+    },
+    slab_weights("let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;"),
+];
+
+const LARGE_SLABS: &[Pass] = &[
+    RANGE,
+    Pass {
+        name: "statistics",
+        compute: SLABS_COMPUTE,
+        targets: &[
+            ABSORBANCES,
+            NEAREST,
+            most("farthest", "rgba16float", LEAST, "s.farthest"),
+            sum("firsts", "rgba16float", "s.firsts"),
+        ],
+    },
+    slab_weights(
+        "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
+    ),
 ];
 
 const THESIS: &[Pass] = &[
@@ -285,6 +294,12 @@ const DFAOIT: &[Pass] = &[Pass {
     ],
 }];
 
+/// The layout of a recipe's design.
+pub(crate) fn layout(design: &Design) -> Layout {
+    let layout = design.layout();
+    layout.expect("recipes that are exported keep what a layout holds")
+}
+
 impl Description {
     /// Of the networks of a recipe.
     pub fn of(recipe: Recipe) -> Self {
@@ -299,20 +314,16 @@ impl Description {
                 ONE_SUM,
                 "peelnet_resolve(sums, moments.x, background)",
             ),
-            (Inputs::Slabs(design, _), _) if design.apart => (
-                ZETA,
-                MANY_SLABS_APART,
-                "peelnet_resolve(sums, ends, dot(absorbances, vec4f(1.0)), background)",
-            ),
-            (Inputs::Slabs(design, _), _) => (
-                ZETA,
-                if design.keeps_few() {
-                    FEW_SLABS
-                } else {
-                    MANY_SLABS
-                },
-                "peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background)",
-            ),
+            (Inputs::Slabs(design, _), _) => {
+                let three = "peelnet_resolve(sums, dot(absorbances.xyz, vec3f(1.0)), background)";
+                let four = "peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background)";
+                let (passes, resolve) = match layout(&design) {
+                    Layout::Small => (SMALL_SLABS, three),
+                    Layout::Medium => (MEDIUM_SLABS, three),
+                    Layout::Large => (LARGE_SLABS, four),
+                };
+                (ZETA, passes, resolve)
+            }
             (Inputs::Row(_), _) => (
                 "z is the distance along the view axis, in the unit of the scenes that the network was trained on.",
                 THESIS,

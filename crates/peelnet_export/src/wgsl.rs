@@ -2,6 +2,7 @@
 
 use crate::{
     ExportError, Options,
+    description::layout,
     header::header,
     network::{call, weight_function},
 };
@@ -76,9 +77,7 @@ fn modules(recipe: Recipe) -> Vec<&'static str> {
             });
             modules
         }
-        (Inputs::Slabs(design, _), _) => {
-            peelnet_shaders::slab_modules(design.keeps_few(), design.apart)
-        }
+        (Inputs::Slabs(design, _), _) => peelnet_shaders::slab_modules(layout(&design).name()),
     };
     for about in recipe.inputs.about() {
         let module = about.shared.and_then(|shared| shared.module);

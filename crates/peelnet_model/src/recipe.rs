@@ -216,7 +216,7 @@ impl Recipe {
         loss: None,
     });
 
-    /// Four slabs in 32 bytes a pixel.
+    /// Three slabs in 30 bytes a pixel.
     pub const SMALL: Self = Self(&Declaration {
         name: "small",
         method: "deep-small",
@@ -228,7 +228,7 @@ impl Recipe {
         loss: Some(PixelLoss::Image),
     });
 
-    /// Four slabs in 38 bytes a pixel: the default.
+    /// Three slabs in 34 bytes a pixel: the default.
     pub const MEDIUM: Self = Self(&Declaration {
         name: "medium",
         method: "deep-medium",
@@ -240,7 +240,7 @@ impl Recipe {
         loss: Some(PixelLoss::Image),
     });
 
-    /// Four slabs in 46 bytes a pixel: the best image.
+    /// Four slabs in 42 bytes a pixel: the best image.
     pub const LARGE: Self = Self(&Declaration {
         name: "large",
         method: "deep-large",

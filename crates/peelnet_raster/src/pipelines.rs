@@ -136,7 +136,14 @@ fn pipeline(
     fragment: &str,
     culled: bool,
 ) -> Result<wgpu::RenderPipeline, RasterError> {
-    let carried = ["numbered", "lit", "mapped", "normal_map", "vertex_colors"];
+    let carried = [
+        "numbered",
+        "material",
+        "lit",
+        "mapped",
+        "normal_map",
+        "vertex_colors",
+    ];
     let mut of_vertex = features.to_vec();
     of_vertex.retain(|f| carried.contains(f));
     let vertex = peelnet_shaders::link("scene::vertex", &of_vertex, &[])?;

@@ -20,10 +20,15 @@ pub(crate) struct Reads {
 }
 
 /// What depends on a member of `Surface` or on textures, and the features that only serve it.
-const NEEDS: [(Need, &[&str]); 3] = [
-    (Need::Surface("triangle"), &["numbered"]),
+const NEEDS: [(Need, &[&str]); 5] = [
+    (Need::Surface(&["triangle"]), &["numbered"]),
     (
-        Need::Surface("world"),
+        Need::Surface(&["material", "material_color"]),
+        &["material"],
+    ),
+    (Need::Surface(&["color"]), &["vertex_colors"]),
+    (
+        Need::Surface(&["world"]),
         &[
             "lit",
             "phong",
@@ -49,7 +54,8 @@ const NEEDS: [(Need, &[&str]); 3] = [
 
 #[derive(Clone, Copy)]
 enum Need {
-    Surface(&'static str),
+    /// Any of these members.
+    Surface(&'static [&'static str]),
     Textures,
 }
 
@@ -59,13 +65,13 @@ pub(crate) fn link<'a>(
     mut features: Vec<&'a str>,
     extra: &[(&str, &str)],
 ) -> Result<(Vec<&'a str>, String), RasterError> {
-    features.push("numbered");
+    features.extend(["numbered", "material"]);
     let text = peelnet_shaders::link(shader, &features, extra)?;
     let reads = reads(shader, &text)?;
     let before = features.len();
     for (need, serving) in NEEDS {
         let read = match need {
-            Need::Surface(member) => reads.surface.contains(member),
+            Need::Surface(members) => members.iter().any(|&m| reads.surface.contains(m)),
             Need::Textures => reads.textures,
         };
         if !read {
@@ -205,7 +211,8 @@ mod tests {
     #[test]
     fn passes_need_what_they_read() {
         let needed = |shader: &str| link(shader, ALL.to_vec(), &[]).expect("links").0;
-        assert_eq!(needed("peel::count"), ["clear_map", "vertex_colors"]);
+        assert_eq!(needed("peel::count"), ["clear_map"]);
+        assert!(needed("peel::store").contains(&"material"));
         let peel = needed("peel::single");
         assert!(peel.contains(&"numbered") && peel.contains(&"normal_map"));
         let sums = needed("methods::weighted_sum::gather");

@@ -167,7 +167,7 @@ mod tests {
     /// Every struct lies in memory as the shaders read it.
     #[test]
     fn structs_lie_as_shaders_read_them() {
-        let features = ["lit", "pbr", "sun", "numbered"];
+        let features = ["lit", "pbr", "sun", "numbered", "material"];
         let text =
             peelnet_shaders::link("methods::blended::gather", &features, &[]).expect("links");
         let capabilities = naga::valid::Capabilities::empty();

@@ -53,28 +53,22 @@ pub fn source(path: &str) -> Result<&'static str, ShaderError> {
 }
 
 /// The modules of a text that composites in slabs: of what surrounds `peelnet_network`, which says where between its bounds the share of
-/// the absorbance lies that is in front of a fragment. `few`: with fewer means and farthest fragments. `apart`: with the colours of known
-/// fragments in a sum of their own.
-pub fn slab_modules(few: bool, apart: bool) -> Vec<&'static str> {
-    let statistics = if few {
-        "learned::slabs_few"
-    } else {
-        "learned::slabs_many"
+/// the absorbance lies that is in front of a fragment. `layout`: `small`, `medium` or `large`.
+pub fn slab_modules(layout: &str) -> Vec<&'static str> {
+    let statistics = match layout {
+        "small" => "learned::slabs_small",
+        "medium" => "learned::slabs_medium",
+        _ => "learned::slabs_large",
     };
-    let resolve: &[&str] = if apart {
-        &["learned::resolve_separate_ends"]
-    } else {
-        &["learned::resolve", "learned::composite"]
-    };
-    let mut modules = vec![
+    vec![
         "learned::zeta",
         "learned::absorbance",
         "learned::levels",
         "learned::slabs",
         statistics,
-    ];
-    modules.extend(resolve);
-    modules
+        "learned::resolve",
+        "learned::composite",
+    ]
 }
 
 thread_local! {
@@ -228,8 +222,9 @@ mod tests {
                 "front: vec4f, behind: vec4f, all: vec4f, count: f32) -> vec3f { return vec3f(1.0); }",
             ),
             "methods::slabs" => {
-                let [few, apart] = ["few", "apart"].map(|f| features.contains(&f));
-                let modules = slab_modules(few, apart);
+                let layouts = ["small", "medium"];
+                let layout = layouts.into_iter().find(|l| features.contains(l));
+                let modules = slab_modules(layout.unwrap_or("large"));
                 return with(&modules, "between: PeelnetBetween) -> f32 { return 0.5; }");
             }
             _ if features.contains(&"separate_ends") => (
@@ -334,7 +329,7 @@ mod tests {
             conditions.flat_map(|c| c.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'));
         let of_scenes = |f: &&str| {
             let known = MATERIALS.into_iter().chain(OF_VIEWS);
-            *f == "numbered" || known.flatten().any(|k| k == f)
+            ["numbered", "material"].contains(f) || known.flatten().any(|k| k == f)
         };
         words.filter(|f| !f.is_empty() && !of_scenes(f)).collect()
     }
@@ -360,10 +355,15 @@ mod tests {
                     ));
                 }
             }
-            let numbered = text.contains("surface: Surface").then_some("numbered");
+            let over_surfaces = text.contains("Surface");
+            let carried = if over_surfaces {
+                &["numbered", "material"][..]
+            } else {
+                &[]
+            };
             let with = |set: &[&'static str], more: &[&'static str]| {
                 let all = set.iter().chain(more).copied();
-                all.chain(numbered).collect::<Vec<_>>()
+                all.chain(carried.iter().copied()).collect::<Vec<_>>()
             };
             let views = own
                 .iter()

@@ -1,16 +1,14 @@
 // Slabs: the exported text's resolve; its composite alone where light takes a colour. The transmittance of the whole pixel is exp(-total absorbance).
-// Variants: none | apart | tinted | apart tinted
+// Variants: none | three | tinted | three tinted
 @if(tinted) import package::helpers::resolve::within;
 import package::helpers::screen::screen_corner;
 @if(tinted) import package::learned::weight::peelnet_composite;
 @if(!tinted) import package::learned::weight::peelnet_resolve;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
-@group(0) @binding(1) var between: texture_2d<f32>;
+@group(0) @binding(1) var sum: texture_2d<f32>;
 @group(0) @binding(2) var absorbances: texture_2d<f32>;
-@if(apart) @group(0) @binding(3) var ends: texture_2d<f32>;
-@if(tinted && !apart) @group(0) @binding(3) var tinted: texture_2d<f32>;
-@if(tinted && apart) @group(0) @binding(4) var tinted: texture_2d<f32>;
+@if(tinted) @group(0) @binding(3) var tinted: texture_2d<f32>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -21,15 +19,16 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let behind = textureLoad(background, pixel, 0).rgb;
-    let sums = textureLoad(between, pixel, 0);
-    let slabs = textureLoad(absorbances, pixel, 0);
-    let absorbance = slabs.x + slabs.y + slabs.z + slabs.w;
-    @if(!apart && !tinted) return peelnet_resolve(sums, absorbance, behind);
-    @if(apart && !tinted) return peelnet_resolve(sums, textureLoad(ends, pixel, 0), absorbance, behind);
+    let sums = textureLoad(sum, pixel, 0);
     @if(tinted) {
         let passing = textureLoad(tinted, pixel, 0).rgb;
         let coverage = 1.0 - dot(passing, vec3f(1.0 / 3.0));
-        @if(apart) return peelnet_composite(within(sums), within(textureLoad(ends, pixel, 0)), coverage, passing, behind);
-        @else return peelnet_composite(within(sums), coverage, passing, behind);
+        return peelnet_composite(within(sums), coverage, passing, behind);
+    }
+    @else {
+        let slabs = textureLoad(absorbances, pixel, 0);
+        @if(three) let absorbance = slabs.x + slabs.y + slabs.z;
+        @else let absorbance = slabs.x + slabs.y + slabs.z + slabs.w;
+        return peelnet_resolve(sums, absorbance, behind);
     }
 }

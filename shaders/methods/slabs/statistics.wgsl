@@ -1,6 +1,6 @@
 // Slabs, pass 2: the exported text's statistics: each slab's absorbance and mean depth, by adding, and its nearest and farthest fragment,
 // by MAX blending.
-// Variants: none | few | frame | few frame
+// Variants: none | small | medium | frame | small frame | medium frame
 import package::helpers::range::transparent_range;
 import package::learned::weight::{peelnet_statistics, peelnet_zeta_in};
 import package::scene::shade::opacity;
@@ -13,9 +13,9 @@ import package::scene::visible::visible;
 struct Statistics {
     @location(0) absorbances: vec4f,
     @location(1) nearest: vec4f,
-    @if(!few) @location(2) farthest: vec4f,
-    @if(few) @location(2) farthest: f32,
-    @location(3) firsts: vec2f,
+    @if(small) @location(2) farthest: vec2f,
+    @if(!small) @location(2) farthest: vec4f,
+    @if(!small && !medium) @location(3) firsts: vec4f,
 }
 
 @fragment
@@ -27,5 +27,6 @@ fn fragment_main(surface: Surface) -> Statistics {
     @if(frame) let span = vec2f(1.0);
     @else let span = textureLoad(range, vec2u(surface.position.xy), 0).xy;
     let s = peelnet_statistics(opacity(surface), zeta, span);
-    return Statistics(s.absorbances, s.nearest, s.farthest, s.firsts);
+    @if(small || medium) return Statistics(s.absorbances, s.nearest, s.farthest);
+    @else return Statistics(s.absorbances, s.nearest, s.farthest, s.firsts);
 }

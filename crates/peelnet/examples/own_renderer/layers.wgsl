@@ -30,8 +30,7 @@ fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
 @group(0) @binding(1) var absorbances: texture_2d<f32>;
 @group(0) @binding(2) var nearest: texture_2d<f32>;
 @group(0) @binding(3) var farthest: texture_2d<f32>;
-@group(0) @binding(4) var firsts: texture_2d<f32>;
-@group(0) @binding(5) var sums: texture_2d<f32>;
+@group(0) @binding(4) var sums: texture_2d<f32>;
 
 // In the range of depth that the layers span.
 fn zeta(depth: f32) -> f32 {
@@ -42,7 +41,6 @@ struct Statistics {
     @location(0) absorbances: vec4f,
     @location(1) nearest: vec4f,
     @location(2) farthest: vec4f,
-    @location(3) firsts: vec2f,
 }
 
 @fragment
@@ -53,7 +51,7 @@ fn range_of_pixel(in: Varyings) -> @location(0) vec2f {
 @fragment
 fn statistics(in: Varyings) -> Statistics {
     let s = peelnet_statistics(in.color.a, zeta(in.depth), textureLoad(range, vec2u(in.position.xy), 0).xy);
-    return Statistics(s.absorbances, s.nearest, s.farthest, s.firsts);
+    return Statistics(s.absorbances, s.nearest, s.farthest);
 }
 
 @fragment
@@ -66,7 +64,6 @@ fn weighted(in: Varyings) -> @location(0) vec4f {
         textureLoad(absorbances, at, 0),
         textureLoad(nearest, at, 0),
         textureLoad(farthest, at, 0),
-        textureLoad(firsts, at, 0).xy,
     ).x;
     return vec4f(in.color.rgb, 1.0) * in.color.a * w;
 }
@@ -74,7 +71,7 @@ fn weighted(in: Varyings) -> @location(0) vec4f {
 @fragment
 fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = vec2u(position.xy);
-    let absorbance = dot(textureLoad(absorbances, at, 0), vec4f(1.0));
+    let absorbance = dot(textureLoad(absorbances, at, 0).xyz, vec3f(1.0));
     let color = peelnet_resolve(textureLoad(sums, at, 0), absorbance, vec3f(0.0));
     // The background is opaque.
     return vec4f(color.rgb, 1.0);

@@ -27,9 +27,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target = |format, clear, blend| Target::new(&program.device, format, clear, blend);
     let range = target(Rg8Unorm, black, Some((Max, Max)));
     let absorbances = target(Rgba16Float, black, Some((Add, Add)));
-    let nearest = target(Rgba16Float, LOWEST, Some((Max, Max)));
-    let farthest = target(Rgba16Float, Color { a: 0.0, ..LOWEST }, Some((Max, Add)));
-    let firsts = target(Rg16Float, black, Some((Add, Add)));
+    let lowest = Color { a: 0.0, ..LOWEST };
+    let nearest = target(Rgba16Float, lowest, Some((Max, Add)));
+    let farthest = target(Rgba16Float, lowest, Some((Max, Add)));
     let sums = target(Rgba16Float, black, Some((Add, Add)));
     let picture = target(Rgba8Unorm, black, None);
 
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         entry_points: ["layer", "statistics"],
         instances: 4,
         reads: &[(0, &range)],
-        targets: &[&absorbances, &nearest, &farthest, &firsts],
+        targets: &[&absorbances, &nearest, &farthest],
     });
     program.draw(&Pass {
         entry_points: ["layer", "weighted"],
@@ -53,14 +53,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             (1, &absorbances),
             (2, &nearest),
             (3, &farthest),
-            (4, &firsts),
         ],
         targets: &[&sums],
     });
     program.draw(&Pass {
         entry_points: ["whole", "resolve"],
         instances: 1,
-        reads: &[(1, &absorbances), (5, &sums)],
+        reads: &[(1, &absorbances), (4, &sums)],
         targets: &[&picture],
     });
     let pixels = program.finish(&picture)?;

@@ -1,12 +1,12 @@
-//! `slabs`: known layers without ordered access. The pixel's own range of depth is cut into four slabs, and each slab has its own
-//! sums, its own nearest and its own farthest fragment.
+//! `slabs`: known layers without ordered access. The pixel's own range of depth is cut into three or four slabs, and each slab has
+//! its own sums, its own nearest and its own farthest fragment.
 //!
 //! What lies in other slabs is wholly in front of a fragment or wholly behind it, so that its absorbance is a plain sum. In the fragment's
 //! own slab the nearest and the farthest layer are known, and up to eight layers of a pixel are. What lies between them is
 //! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Between`].
 //!
 //! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
-//! ([`EndCode`]). The shader twin is `learned/slabs.wgsl`, with `slabs_many.wgsl` or `slabs_few.wgsl`.
+//! ([`EndCode`]). The shader twin is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
 mod inputs;
 
@@ -71,34 +71,80 @@ const fn until(end: f64, mean: bool, farthest: bool) -> Kept {
     }
 }
 
+/// What the shaders and the exported texts hold of a pixel. All sums and records fit the targets of one pass of plain WebGPU, which is why
+/// there are three: ten, twelve and sixteen values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// [`Design::SMALL`].
+    Small,
+    /// [`Design::MEDIUM`].
+    Medium,
+    /// [`Design::LARGE`].
+    Large,
+}
+
+impl Layout {
+    /// All, the smallest first.
+    pub const ALL: [Self; 3] = [Self::Small, Self::Medium, Self::Large];
+
+    /// Its name in methods, recipes and shaders.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Small => "small",
+            Self::Medium => "medium",
+            Self::Large => "large",
+        }
+    }
+
+    /// What it holds.
+    pub const fn design(self) -> Design {
+        match self {
+            Self::Small => Design::SMALL,
+            Self::Medium => Design::MEDIUM,
+            Self::Large => Design::LARGE,
+        }
+    }
+}
+
 impl Design {
-    /// 32 bytes a pixel, colours included.
+    /// 30 bytes a pixel, colours included: three targets beside the range.
     pub const SMALL: Self = Self {
         slabs: &[
-            until(0.2, true, true),
-            until(0.5, true, false),
-            until(0.8, false, false),
-            until(1.0, false, false),
+            until(0.25, true, true),
+            until(0.6, false, true),
+            until(1.0, false, true),
         ],
         records: FAR_END,
         extent: Extent::Pixel,
         apart: false,
     };
-    /// 38 bytes a pixel. The outer slabs are narrower: a pixel's own ends lie in them.
+    /// 34 bytes a pixel, three targets beside the range. The first slab is the narrowest: what is seen most lies in it.
     pub const MEDIUM: Self = Self {
+        slabs: &[
+            until(0.22, true, true),
+            until(0.55, true, true),
+            until(1.0, true, true),
+        ],
+        ..Self::SMALL
+    };
+    /// 42 bytes a pixel, four targets beside the range: as much as one pass of plain WebGPU writes.
+    pub const LARGE: Self = Self {
         slabs: &[
             until(0.2, true, true),
             until(0.5, true, true),
             until(0.8, true, true),
-            until(1.0, false, false),
+            until(1.0, true, true),
         ],
         ..Self::SMALL
     };
-    /// 46 bytes a pixel.
-    pub const LARGE: Self = Self {
-        apart: true,
-        ..Self::MEDIUM
-    };
+
+    /// The layout that holds it, over whatever is cut into slabs. Other designs have no shaders.
+    pub fn layout(&self) -> Option<Layout> {
+        Layout::ALL.into_iter().find(|layout| {
+            let has = layout.design();
+            (has.slabs, has.records, has.apart) == (self.slabs, self.records, self.apart)
+        })
+    }
 
     /// Bytes a pixel of all targets, colours included.
     pub fn bytes(&self) -> u32 {
@@ -111,11 +157,6 @@ impl Design {
         let channels: u32 = self.slabs.iter().map(channels).sum();
         let range = if self.extent == Extent::Pixel { 2 } else { 0 };
         range + 2 * channels + 8 * (1 + u32::from(self.apart))
-    }
-
-    /// Whether fewer means and farthest fragments are kept than [`Design::MEDIUM`] keeps: which of the two layouts of targets the shaders have.
-    pub const fn keeps_few(&self) -> bool {
-        !self.slabs[1].farthest
     }
 
     fn begin(&self, slab: usize) -> f64 {

@@ -67,7 +67,7 @@ const BEHIND_COINCIDENT: Flaw = Flaw::new(
 );
 
 /// Of no matter to what is drawn: exported texts have 32 bits.
-pub(super) const MAGNIFIED: Flaw = Flaw::new(
+const MAGNIFIED: Flaw = Flaw::new(
     Property::Half,
     &["half-float"],
     "weights of the hidden layers up to 10 magnify the roundings of half floats, which the limit counts in the last layer alone",

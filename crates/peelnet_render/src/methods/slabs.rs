@@ -1,10 +1,9 @@
-//! `deep-small`, `deep-medium`, `deep-large`: known layers without ordered access, in four slabs of the pixel's own range, and a learned
+//! `deep-small`, `deep-medium`, `deep-large`: known layers without ordered access, in three or four slabs of the pixel's own range, and a learned
 //! guess of what lies between them, drawn with the exported text itself. `slabs` is the same without a network. The CPU twin is
 //! `peelnet_core::methods::slabs`.
 
 use super::{
-    anchored::MAGNIFIED,
-    commutative::{self, Blend, ENDS, Gather, Plan, Target},
+    commutative::{self, Blend, Gather, Plan, Target},
     compositor::{Build, Compositor},
     method::{Method, Pixel, Promises},
     parameter::{Parameter, Word},
@@ -17,14 +16,14 @@ use crate::{
 };
 use peelnet_core::{
     absorbance::DepthWarp,
-    methods::slabs::{self, Design, Extent},
+    methods::slabs::{self, Design, Extent, Layout},
     statistics::SumPrecision,
 };
 use peelnet_model::{Inputs, Model};
 
 const KEEP: Word = Word {
     name: "keep",
-    about: "large (default, 46 bytes a pixel): three slabs' mean depth and farthest fragment, known fragments in a sum of their own; medium (38 bytes): one sum; small (32 bytes): two mean depths, one farthest fragment",
+    about: "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the mean depth of the nearest alone",
     words: &["large", "medium", "small"],
 };
 
@@ -35,12 +34,9 @@ const RANGE: Word = Word {
 };
 
 fn design(spec: &MethodSpec) -> Design {
-    let design = match KEEP.of(spec) {
-        "small" => Design::SMALL,
-        "medium" => Design::MEDIUM,
-        _ => Design::LARGE,
-    };
-    ranged(spec, design)
+    let asked = KEEP.of(spec);
+    let layout = Layout::ALL.into_iter().find(|l| l.name() == asked);
+    ranged(spec, layout.unwrap_or(Layout::Large).design())
 }
 
 /// A design over the range that is asked for.
@@ -65,16 +61,14 @@ const fn promises(_: &MethodSpec) -> Promises {
 
 const THIN: Flaw = Flaw::unsettled(Property::Order, &["thin-slab"]);
 
+fn is_of_pixel(spec: &MethodSpec) -> bool {
+    RANGE.of(spec) != "frame"
+}
+
 const BORDERS: Flaw = Flaw::new(
     Property::Steady,
     &["moving-camera"],
     "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
-);
-
-const COINCIDENT: Flaw = Flaw::new(
-    Property::Transmittance,
-    &["coplanar"],
-    "without a mean depth sixteen coincident layers between a slab's ends count as partly in front of each, and of what lies behind them",
 );
 
 pub(super) const METHOD: Method = Method {
@@ -102,16 +96,15 @@ pub(super) const METHOD: Method = Method {
         ))
     }),
     flaws: &[
-        Flaw::swallowed(&["alpha-tiny"]).when(|s| !is_small(s)),
-        Flaw::swallowed(&["deep"]).when(is_small),
+        Flaw::swallowed(&["alpha-tiny"]).when(|s| KEEP.of(s) == "large"),
+        Flaw::swallowed(&["deep"]),
         Flaw::reordered(&["deep"]).when(is_small),
-        THIN,
+        THIN.when(|s| !is_small(s) && is_of_pixel(s)),
         BORDERS,
-        COINCIDENT.when(is_small),
     ],
     ..Method::new(
         "slabs",
-        "four slabs of depth in the pixel's range, each with its own sums and known ends; no network",
+        "slabs of depth in the pixel's range, each with its own sums and known ends; no network",
         build_plain,
     )
 };
@@ -162,49 +155,32 @@ macro_rules! learned {
 }
 
 pub(super) const SMALL: Method = Method {
-    flaws: &[
-        Flaw::swallowed(&["deep"]),
-        THIN,
-        BORDERS,
-        COINCIDENT,
-        MAGNIFIED,
-        Flaw::new(
-            Property::Scale,
-            &["coplanar"],
-            "depths are rounded otherwise, which moves coincident layers into another bin, and without a mean depth the guess with them",
-        )
-        .seen_on_llvmpipe(),
-    ],
+    flaws: &[BORDERS],
     ..learned!(
         "deep-small",
-        "known layers of four slabs and a learned guess between them, 32 bytes a pixel"
+        "known layers of three slabs and a learned guess between them, 30 bytes a pixel"
     )
 };
 
 pub(super) const MEDIUM: Method = Method {
     curve: &["", ":range=frame", ":scale=0.5"],
-    flaws: &[
-        THIN,
-        BORDERS,
-        Flaw::new(
-            Property::Scale,
-            &["thin-slab"],
-            "depths are rounded otherwise, which moves layers of one bin into another, and other ones are known then",
-        )
-        .seen_on_llvmpipe(),
-    ],
+    flaws: &[THIN.when(is_of_pixel), BORDERS],
     ..learned!(
         "deep-medium",
-        "the same in 38 bytes a pixel: the one to ship"
+        "the same in 34 bytes a pixel: the one to ship"
     )
 };
 
 pub(super) const LARGE: Method = Method {
     curve: &["", ":range=frame"],
-    flaws: &[Flaw::swallowed(&["deep"]), THIN, BORDERS],
+    flaws: &[
+        Flaw::swallowed(&["alpha-tiny"]),
+        THIN.when(is_of_pixel),
+        BORDERS,
+    ],
     ..learned!(
         "deep-large",
-        "the same in 46 bytes a pixel: the most accurate"
+        "the same of four slabs, 42 bytes a pixel: the most accurate"
     )
 };
 
@@ -215,6 +191,34 @@ const fn half(label: &'static str, channels: u32, blend: Blend) -> Target {
         full: false,
         blend,
     }
+}
+
+/// What the statistics pass writes.
+fn kept(layout: Layout) -> Vec<Target> {
+    match layout {
+        Layout::Small => vec![
+            half("absorbances of slabs and mean of one", 4, Blend::Add),
+            half("nearest of slabs and farthest of one", 4, Blend::Max),
+            half("farthest of two slabs", 2, Blend::Max),
+        ],
+        Layout::Medium => vec![
+            half("absorbances of slabs and mean of one", 4, Blend::Add),
+            half("nearest of slabs and mean of one", 4, Blend::MaxAdd),
+            half("farthest of slabs and mean of one", 4, Blend::MaxAdd),
+        ],
+        Layout::Large => vec![
+            half("absorbances of slabs", 4, Blend::Add),
+            half("nearest of slabs", 4, Blend::Max),
+            half("farthest of slabs", 4, Blend::Max),
+            half("means of slabs", 4, Blend::Add),
+        ],
+    }
+}
+
+/// The layout of a recipe's design.
+fn layout(design: &Design) -> Layout {
+    let layout = design.layout();
+    layout.expect("recipes that are drawn keep what a layout holds")
 }
 
 fn build_learned(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
@@ -231,26 +235,17 @@ fn build_plain(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         "// The guess without a network: the middle between the bounds.\n\
          fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
     );
-    for module in peelnet_shaders::slab_modules(design.keeps_few(), design.apart) {
+    for module in peelnet_shaders::slab_modules(layout(&design).name()) {
         text.push_str(peelnet_shaders::source(module)?);
     }
     build(b, design, &text)
 }
 
 fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor>, RenderError> {
-    let few = design.keeps_few();
+    let layout = layout(&design);
     let framed = design.extent == Extent::Frame;
-    let mut targets = vec![
-        SUMS,
-        half("absorbances of slabs", 4, Blend::Add),
-        half("nearest of slabs", 4, Blend::Max),
-    ];
-    targets.push(if few {
-        half("farthest of the nearest slab", 1, Blend::Max)
-    } else {
-        half("farthest of three slabs and mean of one", 4, Blend::MaxAdd)
-    });
-    targets.push(half("means of two slabs", 2, Blend::Add));
+    let mut targets = vec![SUMS];
+    targets.extend(kept(layout));
     let kept: Vec<usize> = (1..targets.len()).collect();
     let mut reads = kept.clone();
     let mut statistics_reads = Vec::new();
@@ -259,23 +254,15 @@ fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor
         statistics_reads.push(targets.len());
         targets.push(half("range of depths", 2, Blend::MaxBytes));
     }
-    let (mut sums, mut resolve_reads) = (vec![0], vec![0, 1]);
-    let mut features: Vec<&str> = Vec::new();
-    if design.apart {
-        sums.push(targets.len());
-        resolve_reads.push(targets.len());
-        targets.push(Target {
-            label: ENDS,
-            ..SUMS
-        });
-        features.push("apart");
-    }
-    let resolve_features = features.clone();
-    let mut statistics_features = Vec::new();
-    for (feature, on) in [("few", few), ("frame", framed)] {
-        features.extend(on.then_some(feature));
-        statistics_features.extend(on.then_some(feature));
-    }
+    let mut features = Vec::new();
+    // The shaders' own case is the largest.
+    features.extend((layout != Layout::Large).then_some(layout.name()));
+    features.extend(framed.then_some("frame"));
+    let resolve_features: &[&str] = if design.slabs.len() < 4 {
+        &["three"]
+    } else {
+        &[]
+    };
     let extra = [("learned::weight", text)];
     let range = Gather {
         label: "range",
@@ -287,7 +274,7 @@ fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor
     let statistics = Gather {
         label: "statistics",
         shader: "methods::slabs::statistics",
-        features: &statistics_features,
+        features: &features,
         extra: &extra,
         writes: &kept,
         reads: &statistics_reads,
@@ -298,7 +285,7 @@ fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor
         shader: "methods::slabs::gather",
         features: &features,
         extra: &extra,
-        writes: &sums,
+        writes: &[0],
         reads: &reads,
         ..Gather::NONE
     };
@@ -310,9 +297,9 @@ fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor
             targets: &targets,
             passes,
             resolve: "methods::slabs::resolve",
-            resolve_features: &resolve_features,
+            resolve_features,
             resolve_extra: &extra,
-            resolve_reads: &resolve_reads,
+            resolve_reads: &[0, 1],
             tinted_by: Some(passes.len() - 1),
             ..Plan::NONE
         },
