@@ -9,7 +9,7 @@ use plain_wgpu::{Pass, Program, SIZE, Target};
 use std::error::Error;
 use wgpu::BlendOperation::{Add, Max};
 use wgpu::Color;
-use wgpu::TextureFormat::{Rg8Unorm, Rg16Float, Rgba8Unorm, Rgba16Float};
+use wgpu::TextureFormat::{Rg8Unorm, Rgba8Unorm, Rgba16Float};
 
 /// What maxima of levels start from: the lowest half float.
 const LOWEST: Color = Color {
