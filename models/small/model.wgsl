@@ -1,22 +1,18 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
-// Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe small, seed 1, 40 epochs.
+// Network: 5-1 (Relu hidden, Sigmoid last), 6 parameters, 5 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
 // Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 16.785595 in training.
 // Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999998 in training.
 // Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
-// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999885 in training.
-// Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000384, validation 0.000401, test 0.000401.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01064, cups-held 0.00759, foliage-held 0.00257, panes-held 0.00184, sixteen-held 0.00193, smoke-held 0.01035.
-// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(8.392797, 0.4999999, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999425, 0.5) = 5.0623803e-16
-// Self-test: peelnet_weight(16.785595, 0.9999998, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.9999885, 1.0) = 0.0
+// Loss: training 0.000494, validation 0.000502, test 0.000500.
+// Held-out error, mean |T - T_exact|: boxes-held 0.01117, cups-held 0.00875, foliage-held 0.00280, panes-held 0.00179, sixteen-held 0.00208, smoke-held 0.01253.
+// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
+// Self-test: peelnet_weight(8.392797, 0.4999999, 0.5, 0.5, 0.5) = 5.0623803e-16
+// Self-test: peelnet_weight(16.785595, 0.9999998, 1.0, 1.0, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
@@ -298,38 +294,24 @@ fn peelnet_composite(sums: vec4f, coverage: f32, transmittance: vec3f, backgroun
 // The network's answer for what is known of a fragment.
 fn peelnet_network(between: PeelnetBetween) -> f32 {
     return peelnet_share(
-        sqrt(between.absorbance), between.place, between.mean, between.low, between.high, sqrt(between.own), between.extent, between.absorbance / (between.absorbance + between.own + 1e-6), between.absorbance / (between.absorbance + between.nearest + 1e-6));
+        sqrt(between.absorbance), between.place, between.mean, between.low, between.high);
 }
 
 // Where between its bounds the share of the absorbance lies that is in front, for inputs as peelnet_network evaluates them.
-fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
+fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
-    let input_b = vec4f(share_high, root_own, half_extent, of_own);
-    let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(3.1123188, -2.5865164, 5.185004, 2.0149696)
-        + mat4x4f(vec4f(-0.019135818, 0.115697354, -0.04241212, -0.03302508), vec4f(-4.55579, 1.5101659, 0.2691026, 0.8301476), vec4f(4.6440635, -10.301589, 5.1571136, -0.41197023), vec4f(-4.2946825, -0.6640902, -3.9001062, -0.7588776)) * input_a
-        + mat4x4f(vec4f(-2.5805514, 3.0817335, -1.1661558, 1.7537258), vec4f(-0.52734935, 0.10109053, -0.8755783, -0.34982046), vec4f(0.09076549, -0.08924561, 0.5727824, -3.6837037), vec4f(-1.616743, -0.74291134, -2.4189873, -0.7532667)) * input_b
-        + vec4f(1.1928986, 3.8034, -4.760968, 0.6280914) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-3.0643501, -2.8498693, -7.4641066, 8.641286)
-        + mat4x4f(vec4f(0.1608382, -0.20475385, -0.01727476, -0.16391757), vec4f(-0.4395136, 0.37981305, -0.72151005, -1.1647537), vec4f(-1.5929867, 0.04825241, -3.2858853, -2.9248002), vec4f(-19.83453, 5.4553523, 5.1335664, 0.032118086)) * input_a
-        + mat4x4f(vec4f(1.2233456, 2.394567, 7.8576746, -5.615719), vec4f(-0.25601652, -0.17099853, 0.47079754, -0.87843645), vec4f(-0.8708622, 0.16140458, 1.0759127, -0.6760138), vec4f(-0.6975446, -2.946429, 1.4439423, -0.07755761)) * input_b
-        + vec4f(5.475206, 4.46018, -0.05908926, 1.6473831) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(5.464886, 3.3747797, 1.3993491, -1.0412363)
-        + mat4x4f(vec4f(0.16479927, 0.06837622, -0.04070889, -0.1485686), vec4f(-0.99869174, 4.8493824, -3.5694742, -3.7582836), vec4f(-2.951277, -3.7278416, -2.3710477, 0.39029276), vec4f(-10.628894, -0.5839514, -3.6359465, 1.7112252)) * input_a
-        + mat4x4f(vec4f(-1.5531603, 0.044064097, -0.1587575, -1.0088991), vec4f(0.35818097, -0.97540313, -0.2817452, -0.19706044), vec4f(-0.0120531, 0.28627473, -0.3228078, -0.10756849), vec4f(-3.1915922, -2.3530116, 1.0669887, -1.3856872)) * input_b
-        + vec4f(-0.9012394, -2.7006161, 0.18369423, 4.125574) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.22811404
-        + dot(vec4f(-0.8958171, 0.872417, -0.34098572, -0.21681777), layer_a_a)
-        + dot(vec4f(-0.595793, 0.47862333, -0.5789839, 0.60295653), layer_a_b)
-        + dot(vec4f(-0.7536308, 1.2284092, -1.6060749, -3.1960964), layer_a_c)), 80.0)));
-    return layer_b_a;
+    let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
+    let layer_a_a = 1.0 / (1.0 + exp(min(-(1.0783285
+        + dot(vec4f(-0.1358314, 4.3908134, -4.5101843, 1.5171951), input_a)
+        + -1.1958101 * input_b.x), 80.0)));
+    return layer_a_a;
 }
 
 // Its transmittance, for any finite inputs.
-fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
+fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -31649.232, 31657.889), clamp(depth_fraction, -2888.0073, 2889.0142), clamp(mean_fraction, -819.60406, 820.617), clamp(share_low, -1274.7275, 1274.8062), clamp(share_high, -1403.4729, 1405.3853), clamp(root_own, -5843.9663, 5845.595), clamp(half_extent, -1547.0103, 1548.771), clamp(of_own, -1648.2185, 1650.0273), clamp(of_nearest, -1632.6451, 1634.4557));
+        clamp(root_absorbance, -31649.232, 31657.889), clamp(depth_fraction, -2888.0073, 2889.0142), clamp(mean_fraction, -819.60406, 820.617), clamp(share_low, -1274.7275, 1274.8062), clamp(share_high, -1403.4729, 1405.3853));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

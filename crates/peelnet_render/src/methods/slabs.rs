@@ -155,7 +155,11 @@ macro_rules! learned {
 }
 
 pub(super) const SMALL: Method = Method {
-    flaws: &[BORDERS],
+    flaws: &[
+        Flaw::swallowed(&["deep"]),
+        Flaw::reordered(&["deep"]),
+        BORDERS,
+    ],
     ..learned!(
         "deep-small",
         "known layers of three slabs and a learned guess between them, 30 bytes a pixel"
