@@ -2,21 +2,21 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.056216 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999998 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.927986 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
 // Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999869 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999888 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000247, validation 0.000252, test 0.000242.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00533, cups-held 0.00371, foliage-held 0.00097, panes-held 0.00046, sixteen-held 0.00047, smoke-held 0.00833.
+// Loss: training 0.000152, validation 0.000164, test 0.000141.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00487, cups-held 0.00256, foliage-held 0.00077, panes-held 0.00016, sixteen-held 0.00062, smoke-held 0.00571.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(7.528108, 0.4999999, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999344, 0.5) = 4.9401726e-13
-// Self-test: peelnet_weight(15.056216, 0.9999998, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.9999869, 1.0) = 0.0
+// Self-test: peelnet_weight(7.963993, 0.5, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.4999944, 0.5) = 1.6880913e-14
+// Self-test: peelnet_weight(15.927986, 1.0, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.9999888, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
@@ -113,7 +113,7 @@ struct PeelnetBetween {
     absorbance: f32,
     // Depth of the fragment.
     place: f32,
-    // Mean depth of the absorbance; a half where the slab does not keep it.
+    // Mean depth of the absorbance.
     mean: f32,
     // The least and the most of the absorbance that can lie in front of the fragment, as shares.
     low: f32,
@@ -122,7 +122,7 @@ struct PeelnetBetween {
     extent: f32,
     // Absorbance of the fragment.
     own: f32,
-    // Absorbance of the nearer end; 0 where it does not lie in front.
+    // Absorbance of the ends that lies in front: the nearer end's, and half of an end's in the fragment's own bin.
     nearest: f32,
 }
 
@@ -181,8 +181,8 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
-fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
+// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none.
+fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
@@ -196,7 +196,7 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
     let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
     let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
-    let is_one = levels.y == near_level;
+    let is_one = levels.y == near_level || levels.y < 0.0;
     let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
@@ -204,21 +204,23 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     let moment = first - b * place.inside - near * begin - far * end;
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
+    // In one bin nobody knows which of two is in front: half of the other is.
+    let in_front = near * select(1.0, 0.5, near_bin == place.bin) + far * select(0.0, 0.5, far_bin == place.bin);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
     let per_extent = 1.0 / extent;
     let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
+    let mean = clamp((depth - begin) * per_extent, 0.0, 1.0);
     // Markov's bounds of the share in front.
     let before = x < mean;
     let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
-    let low = select(bound, 0.0, before || !keeps_mean);
-    let high = select(1.0, bound, before && keeps_mean);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
+    let low = select(bound, 0.0, before);
+    let high = select(1.0, bound, before);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, in_front);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
+// nearest, farthest: by slab. ends: how many of the nearer slabs keep a farthest fragment.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -226,14 +228,15 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    means: f32,
+    ends: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < ends);
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -241,7 +244,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < means);
+    let between = peelnet_between(place, total, first, levels);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);
@@ -250,9 +253,9 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.2;
-const PEELNET_SECOND_END: f32 = 0.5;
-const PEELNET_THIRD_END: f32 = 0.8;
+const PEELNET_FIRST_END: f32 = 0.12;
+const PEELNET_SECOND_END: f32 = 0.4;
+const PEELNET_THIRD_END: f32 = 0.75;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {
@@ -314,22 +317,22 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(4.054996, -9.829898, 2.064002, 0.5241928)
-        + mat4x4f(vec4f(-0.11973406, -0.16235696, -0.14148547, 0.11061637), vec4f(-1.2507079, 1.1110176, -0.960999, -0.044336002), vec4f(1.6600657, 0.019636726, 0.99253726, -0.9020999), vec4f(-2.7273283, 1.3131754, -5.771837, -1.4805175)) * input_a
-        + mat4x4f(vec4f(-1.144964, 5.5187254, -1.7038211, -0.21630187), vec4f(-0.5096233, 0.44637385, -0.084842026, 1.5770316), vec4f(0.040113755, 0.11241977, -0.43324995, 2.0301151), vec4f(-3.9272192, 0.41560614, 1.4830444, -5.0327296)) * input_b
-        + vec4f(0.19533597, 3.3317258, -0.048967328, 2.572144) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-1.2181553, 6.574016, 2.4618273, -2.1828845)
-        + mat4x4f(vec4f(0.01513933, 0.12222185, -0.060866542, 0.33694643), vec4f(-3.7517667, 0.8428816, -2.8319745, 1.2547894), vec4f(-1.5646298, -0.5615233, -2.8259845, -1.2692242), vec4f(-5.4639883, 2.5493815, -0.57500273, 1.0193163)) * input_a
-        + mat4x4f(vec4f(-0.3167329, -1.4189578, -3.0520668, 4.9679585), vec4f(1.1626663, -1.3305342, -0.27243212, -0.2576521), vec4f(0.64713615, -0.8560712, 0.28430778, -0.44347075), vec4f(-0.9391343, -4.826613, -1.3022465, -4.7325487)) * input_b
-        + vec4f(5.9019747, 0.2552146, 2.5720806, 0.20208287) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(6.5858154, 2.26499, 1.0644361, -1.8969043)
-        + mat4x4f(vec4f(0.192656, -0.0038423468, 0.036101613, 0.13753211), vec4f(-1.8089882, 1.2067385, -0.13933708, -0.515498), vec4f(-2.6600053, 1.3644714, -3.5918846, -3.1175208), vec4f(-4.4474063, -0.31853527, -5.7779255, -2.055619)) * input_a
-        + mat4x4f(vec4f(-2.314491, 0.5875215, -1.4059887, -4.904074), vec4f(0.10474695, -0.13639888, -0.095847994, -0.1033323), vec4f(0.2194886, 4.4807687, -1.7027814, 0.19746676), vec4f(-0.76777494, -4.811916, -0.91133034, 4.7062087)) * input_b
-        + vec4f(-3.651813, -3.8922586, 4.5546994, 4.137382) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.48279703
-        + dot(vec4f(-1.17559, 1.3123437, -0.41615537, -0.61662245), layer_a_a)
-        + dot(vec4f(0.72870034, 0.5047572, -3.93812, 1.3536268), layer_a_b)
-        + dot(vec4f(-0.8044576, 0.34033692, -0.9917361, -0.507461), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(2.4643872, -6.987039, -1.6444533, 5.5796533)
+        + mat4x4f(vec4f(0.052602544, 0.19700566, 0.10022535, 0.18433887), vec4f(-1.7041905, 2.1256914, -0.22469828, -2.386004), vec4f(1.9757235, 0.5659443, 1.9975252, -4.0594296), vec4f(-2.2550564, 1.877814, -2.5203216, -3.2679772)) * input_a
+        + mat4x4f(vec4f(-0.5271106, 5.745369, -1.2787654, -2.7531028), vec4f(-0.041769158, -0.18586318, 1.5831484, 0.33868885), vec4f(0.2206193, -0.18942657, -0.5469015, -0.8111552), vec4f(-4.597964, -2.2143333, 0.4807863, -1.9617972)) * input_b
+        + vec4f(0.32767063, 0.9379071, 1.089621, 1.3716104) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(2.2263641, 3.6016862, 1.7586099, 5.0866385)
+        + mat4x4f(vec4f(-0.13007939, 0.12264021, -0.011852887, 0.2694853), vec4f(-3.3032084, -0.65538144, -3.327861, 0.5746177), vec4f(-0.9883207, 0.87883997, -2.6507819, -0.5942581), vec4f(-2.8912957, 3.1549006, 0.06984105, 2.0241914)) * input_a
+        + mat4x4f(vec4f(-1.9582767, 1.5714363, -2.3219547, -1.7219647), vec4f(0.37269112, -1.8816584, -0.04668838, -0.39060807), vec4f(-0.9976328, 0.14647798, -0.021794185, 0.42603466), vec4f(-2.913082, -0.17868201, -0.42035082, -6.5924478)) * input_b
+        + vec4f(7.119819, -4.0740128, 1.8227041, -0.21480289) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(5.4789686, -7.128248, -6.3175154, 1.7390376)
+        + mat4x4f(vec4f(-0.11607167, 0.09588576, -0.06531605, 0.111126855), vec4f(-2.1142685, 1.0079565, -0.0957679, -0.6911834), vec4f(0.9522916, -2.215375, -3.4221494, 0.5089152), vec4f(-3.105718, -4.2589884, -5.672433, -3.7090554)) * input_a
+        + mat4x4f(vec4f(-1.6421492, 1.6899095, 1.1556636, -2.307099), vec4f(-0.3945044, -0.77359134, -0.18681453, -1.2028404), vec4f(0.62433994, 0.20998009, -0.31839263, -0.18173662), vec4f(-0.5341805, -1.6890203, 3.6606283, -5.3655663)) * input_b
+        + vec4f(-4.354002, 9.500281, 6.2751446, 6.4966626) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.72427064
+        + dot(vec4f(-1.9435571, 1.3063835, -0.36826128, -0.4883021), layer_a_a)
+        + dot(vec4f(0.51386124, 0.4705366, -3.509805, 1.7627314), layer_a_b)
+        + dot(vec4f(-1.0784829, 0.5562729, -0.55630404, -0.78178596), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -337,7 +340,7 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -27999.002, 28006.643), clamp(depth_fraction, -2902.757, 2903.7585), clamp(mean_fraction, -1531.5413, 1532.5449), clamp(share_low, -2246.2498, 2246.593), clamp(share_high, -2292.6687, 2294.319), clamp(root_own, -5859.378, 5861.003), clamp(half_extent, -1586.9026, 1588.6211), clamp(of_own, -1814.3054, 1816.0784), clamp(of_nearest, -1802.7184, 1804.4926));
+        clamp(root_absorbance, -29207.322, 29215.22), clamp(depth_fraction, -2898.9043, 2899.9014), clamp(mean_fraction, -1500.5107, 1501.5083), clamp(share_low, -2251.8335, 2252.1797), clamp(share_high, -2285.958, 2287.6113), clamp(root_own, -5866.857, 5868.486), clamp(half_extent, -1598.2828, 1600.0094), clamp(of_own, -1822.8363, 1824.6141), clamp(of_nearest, -1809.9419, 1811.7219));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -2,21 +2,21 @@
 // Licence of this generated text: MIT OR Apache-2.0.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 17.45139 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 18.207085 in training.
 // Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999997 in training.
 // Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
 // Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99998844 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999903 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000272, validation 0.000267, test 0.000260.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00706, cups-held 0.00556, foliage-held 0.00168, panes-held 0.00074, sixteen-held 0.00125, smoke-held 0.00915.
+// Loss: training 0.000184, validation 0.000186, test 0.000175.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00685, cups-held 0.00421, foliage-held 0.00155, panes-held 0.00043, sixteen-held 0.00163, smoke-held 0.00737.
 // Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0, 0.031630483, 0.00052083336, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(8.725695, 0.49999985, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999422, 0.5) = 2.9302066e-17
-// Self-test: peelnet_weight(17.45139, 0.9999997, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.99998844, 1.0) = 0.0
+// Self-test: peelnet_weight(9.103542, 0.49999985, 0.5, 0.5, 0.5, 1.2622724, 0.5002604, 0.49999514, 0.5) = 1.0093335e-18
+// Self-test: peelnet_weight(18.207085, 0.9999997, 1.0, 1.0, 1.0, 2.4929142, 1.0, 0.9999903, 1.0) = 0.0
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
@@ -112,7 +112,7 @@ struct PeelnetBetween {
     absorbance: f32,
     // Depth of the fragment.
     place: f32,
-    // Mean depth of the absorbance; a half where the slab does not keep it.
+    // Mean depth of the absorbance.
     mean: f32,
     // The least and the most of the absorbance that can lie in front of the fragment, as shares.
     low: f32,
@@ -121,7 +121,7 @@ struct PeelnetBetween {
     extent: f32,
     // Absorbance of the fragment.
     own: f32,
-    // Absorbance of the nearer end; 0 where it does not lie in front.
+    // Absorbance of the ends that lies in front: the nearer end's, and half of an end's in the fragment's own bin.
     nearest: f32,
 }
 
@@ -180,8 +180,8 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
-fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
+// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none.
+fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
@@ -195,7 +195,7 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
     let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
     let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
-    let is_one = levels.y == near_level;
+    let is_one = levels.y == near_level || levels.y < 0.0;
     let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
@@ -203,21 +203,23 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     let moment = first - b * place.inside - near * begin - far * end;
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
+    // In one bin nobody knows which of two is in front: half of the other is.
+    let in_front = near * select(1.0, 0.5, near_bin == place.bin) + far * select(0.0, 0.5, far_bin == place.bin);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
     let per_extent = 1.0 / extent;
     let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
+    let mean = clamp((depth - begin) * per_extent, 0.0, 1.0);
     // Markov's bounds of the share in front.
     let before = x < mean;
     let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
-    let low = select(bound, 0.0, before || !keeps_mean);
-    let high = select(1.0, bound, before && keeps_mean);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
+    let low = select(bound, 0.0, before);
+    let high = select(1.0, bound, before);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, in_front);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
+// nearest, farthest: by slab. ends: how many of the nearer slabs keep a farthest fragment.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -225,14 +227,15 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    means: f32,
+    ends: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < ends);
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -240,7 +243,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < means);
+    let between = peelnet_between(place, total, first, levels);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);
@@ -249,8 +252,8 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.22;
-const PEELNET_SECOND_END: f32 = 0.55;
+const PEELNET_FIRST_END: f32 = 0.15;
+const PEELNET_SECOND_END: f32 = 0.5;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -309,22 +312,22 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(3.3935356, 5.8347907, 6.6538205, -3.873926)
-        + mat4x4f(vec4f(-0.111133575, -0.2111261, -0.010409008, 0.1477073), vec4f(-1.2372341, 1.7986479, -1.4044187, 1.3466747), vec4f(1.7030135, 1.6124195, 2.2765281, -2.9122927), vec4f(-1.8155476, -1.0129492, -1.4952918, 2.9200475)) * input_a
-        + mat4x4f(vec4f(-0.9378126, 1.1495869, 0.29707363, 0.2421195), vec4f(0.20693892, 0.6084917, 1.0822641, 1.0580354), vec4f(0.27218717, 1.059934, -0.104120314, -0.8097296), vec4f(-3.8476062, -4.7627587, -4.17889, -1.7548307)) * input_b
-        + vec4f(-0.6952874, -5.2111697, -3.8944151, 6.4496355) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-1.5874934, -11.886118, 0.9641152, 0.113270015)
-        + mat4x4f(vec4f(0.010292462, 0.07813404, -0.09147709, 0.34670234), vec4f(-1.7420814, 1.281215, -3.0577893, 1.0864216), vec4f(-3.4582958, -0.84344316, -2.8077111, -0.70210403), vec4f(-3.6573894, 2.3078008, 0.7004464, 1.3964082)) * input_a
-        + mat4x4f(vec4f(0.33721384, 8.245953, -3.0330539, 3.098226), vec4f(1.3704988, 0.07569591, -0.020788727, -0.2781122), vec4f(-0.11498427, -0.5170471, 0.06251888, -0.12286844), vec4f(-2.0009322, -0.8630143, -0.17436637, -5.74606)) * input_b
-        + vec4f(6.9480643, 4.637382, 2.931796, -0.2518981) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(5.001616, 4.6935263, -0.33140454, -6.229739)
-        + mat4x4f(vec4f(0.20067921, 0.08282232, -0.07213993, 0.25878143), vec4f(-2.8421915, 0.6806998, -0.38182756, 1.6347768), vec4f(-3.3459382, -1.0751458, -3.891714, 1.4302219), vec4f(-4.7818427, 3.993018, -2.4153266, -2.9118886)) * input_a
-        + mat4x4f(vec4f(-1.6972584, 0.23685999, -4.051493, -1.0036377), vec4f(-0.07753822, -1.6057957, -0.52560705, 0.58281094), vec4f(-0.03405317, -0.5086381, -0.49457598, 3.8786626), vec4f(0.19430768, 0.49235117, -0.42295042, 4.1126547)) * input_b
-        + vec4f(-2.1449916, -3.6869931, 7.416252, -2.7632458) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-1.066652
-        + dot(vec4f(-1.2840198, 0.46027064, -0.44211313, -0.5954601), layer_a_a)
-        + dot(vec4f(0.60101956, 1.3819145, -6.878897, 1.2349877), layer_a_b)
-        + dot(vec4f(-0.908354, 0.46970716, -0.91686434, -0.2037116), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(2.3312724, 4.9566894, 2.4202383, 0.96182424)
+        + mat4x4f(vec4f(-0.098066635, -0.07826404, 0.035066344, -0.126479), vec4f(-1.5145702, -1.2749895, -1.8177481, -2.055795), vec4f(2.493586, -4.886961, 2.1493337, -2.2144907), vec4f(-4.962184, 3.4838874, -3.4367075, 3.8246207)) * input_a
+        + mat4x4f(vec4f(0.15692803, 0.4467104, 0.77941495, 1.9537058), vec4f(-0.2725536, 0.60726184, 0.2808186, 1.0752884), vec4f(0.046945237, 0.5638311, -2.8176577, 1.0956233), vec4f(-2.6219478, 0.5422855, 0.6592897, -0.44104582)) * input_b
+        + vec4f(-0.7404604, -4.873116, -1.3078395, -1.0939094) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-0.720969, -10.520854, 3.8593247, -0.8842787)
+        + mat4x4f(vec4f(-0.046288736, -0.06121178, -0.028030653, 0.3163491), vec4f(-1.6549274, 0.84612143, -3.0808828, 2.977994), vec4f(-4.022788, -1.6736771, -2.4822276, -2.918558), vec4f(-7.2243648, 2.8509064, -2.4859293, 0.9146151)) * input_a
+        + mat4x4f(vec4f(0.6232988, 2.4972525, -1.4379959, 3.9199123), vec4f(0.36106628, 0.05897052, 0.0061963205, -0.2969082), vec4f(-0.004271661, 0.59120893, 0.031270143, -0.032737527), vec4f(0.09889532, 2.6497672, 1.1113585, -5.486466)) * input_b
+        + vec4f(5.310882, 7.271696, -2.449796, 0.2108077) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(0.40991056, 3.1214416, -9.318755, -1.009016)
+        + mat4x4f(vec4f(0.122387454, 0.06696973, -0.17175767, 0.25807068), vec4f(-2.9326298, 2.0920212, -1.1362619, -1.0678394), vec4f(-0.736385, -1.6849476, 0.3479262, 0.82175463), vec4f(-4.0833974, -0.81576884, -5.3861623, -1.2917801)) * input_a
+        + mat4x4f(vec4f(0.16234668, 1.834429, 2.815761, -4.979944), vec4f(-0.37460542, -1.7184242, -0.13769281, 0.3251302), vec4f(-0.15287934, -0.016516851, -0.04973097, -0.20644546), vec4f(-3.2773483, 0.8251236, 7.1688538, -2.618714)) * input_b
+        + vec4f(3.663869, -3.5896435, 3.4000487, 6.7372603) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.58532107
+        + dot(vec4f(-1.2754409, 0.32686558, -0.14209025, -0.5072162), layer_a_a)
+        + dot(vec4f(0.56173533, 0.4152933, -1.5893403, 1.616162), layer_a_b)
+        + dot(vec4f(-1.5344069, 0.5171022, -0.7703004, -0.5448833), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -332,7 +335,7 @@ fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -32559.768, 32568.568), clamp(depth_fraction, -2894.1196, 2895.1226), clamp(mean_fraction, -1441.0531, 1442.0575), clamp(share_low, -2175.7192, 2176.0542), clamp(share_high, -2206.636, 2208.298), clamp(root_own, -5844.2617, 5845.8906), clamp(half_extent, -1527.3837, 1529.1498), clamp(of_own, -1635.837, 1637.6483), clamp(of_nearest, -1620.7386, 1622.5494));
+        clamp(root_absorbance, -34194.305, 34203.477), clamp(depth_fraction, -2907.2734, 2908.2734), clamp(mean_fraction, -1428.0237, 1429.022), clamp(share_low, -2173.027, 2173.365), clamp(share_high, -2198.7, 2200.365), clamp(root_own, -5847.0073, 5848.637), clamp(half_extent, -1469.9741, 1471.7517), clamp(of_own, -1635.5967, 1637.4138), clamp(of_nearest, -1626.5996, 1628.4153));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -27,7 +27,7 @@ struct PeelnetBetween {
     absorbance: f32,
     // Depth of the fragment.
     place: f32,
-    // Mean depth of the absorbance; a half where the slab does not keep it.
+    // Mean depth of the absorbance.
     mean: f32,
     // The least and the most of the absorbance that can lie in front of the fragment, as shares.
     low: f32,
@@ -36,7 +36,7 @@ struct PeelnetBetween {
     extent: f32,
     // Absorbance of the fragment.
     own: f32,
-    // Absorbance of the nearer end; 0 where it does not lie in front.
+    // Absorbance of the ends that lies in front: the nearer end's, and half of an end's in the fragment's own bin.
     nearest: f32,
 }
 
@@ -95,8 +95,8 @@ fn peelnet_in_slab(value: f32, slab: f32, elsewhere: f32) -> vec4f {
     );
 }
 
-// total and first: the slab's sums. levels: its nearest and its farthest fragment. keeps_mean: whether first is kept.
-fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, keeps_mean: bool) -> PeelnetBetween {
+// total and first: the slab's sums. levels: its nearest and its farthest fragment, -1 where it keeps none.
+fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f) -> PeelnetBetween {
     let b = place.absorbance;
     let others = max(total - b, 0.0);
     // Where the rest is no more than the rounding of 16-bit sums, its mean is noise.
@@ -110,7 +110,7 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     let all = known.x > others - (step * (1.0 + known.x) * (1.0 + known.x) + noise);
     let near = select(select(known.x, others, all), 0.0, near_bin > place.bin);
     let far_bin = floor(levels.y * (1.0 / PEELNET_OPACITIES));
-    let is_one = levels.y == near_level;
+    let is_one = levels.y == near_level || levels.y < 0.0;
     let far = select(known.y, 0.0, is_one || far_bin < place.bin);
     var begin = peelnet_middle_of(near_bin);
     var end = select(peelnet_middle_of(far_bin), 1.0, is_one);
@@ -118,21 +118,23 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f, k
     let moment = first - b * place.inside - near * begin - far * end;
     begin = select(begin, -1.0, begin > place.inside);
     end = select(end, 1.0, end < place.inside);
+    // In one bin nobody knows which of two is in front: half of the other is.
+    let in_front = near * select(1.0, 0.5, near_bin == place.bin) + far * select(0.0, 0.5, far_bin == place.bin);
     let extent = max(end - begin, 2.0 / PEELNET_BINS);
     let per_extent = 1.0 / extent;
     let x = clamp((place.inside - begin) * per_extent, 0.0, 1.0);
     let depth = clamp(moment / max(rest, noise), begin, end);
-    let mean = select(0.5, clamp((depth - begin) * per_extent, 0.0, 1.0), keeps_mean);
+    let mean = clamp((depth - begin) * per_extent, 0.0, 1.0);
     // Markov's bounds of the share in front.
     let before = x < mean;
     let bound = select(x - mean, 1.0 - mean, before) / max(select(x, 1.0 - x, before), 1e-6);
-    let low = select(bound, 0.0, before || !keeps_mean);
-    let high = select(1.0, bound, before && keeps_mean);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, near);
+    let low = select(bound, 0.0, before);
+    let high = select(1.0, bound, before);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, in_front);
 }
 
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
-// nearest, farthest: by slab. means: how many of the nearer slabs keep a mean depth.
+// nearest, farthest: by slab. ends: how many of the nearer slabs keep a farthest fragment.
 fn peelnet_weigh(
     place: PeelnetPlace,
     counts: bool,
@@ -140,14 +142,15 @@ fn peelnet_weigh(
     firsts: vec4f,
     nearest: vec4f,
     farthest: vec4f,
-    means: f32,
+    ends: f32,
 ) -> vec2f {
     // Sums of 16-bit targets may become infinite.
     let sums = min(absorbances, vec4f(65504.0));
     let total = peelnet_of_slab(sums, place.slab);
     let first = clamp(peelnet_of_slab(firsts, place.slab), -65504.0, 65504.0);
     let halves = vec2f(peelnet_of_slab(nearest, place.slab), peelnet_of_slab(farthest, place.slab));
-    let levels = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let decoded = peelnet_levels(vec3f(halves, halves.y)).xy;
+    let levels = select(vec2f(decoded.x, -1.0), decoded, place.slab < ends);
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
@@ -155,7 +158,7 @@ fn peelnet_weigh(
     let is_far = counts && place.far == levels.y && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
-    let between = peelnet_between(place, total, first, levels, place.slab < means);
+    let between = peelnet_between(place, total, first, levels);
     let share = between.low + (between.high - between.low) * peelnet_network(between);
     let at_end = select(0.0, max(total - place.absorbance, 0.0), is_far);
     let inside = select(between.nearest + between.absorbance * share, at_end, known);

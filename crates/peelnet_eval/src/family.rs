@@ -24,7 +24,7 @@ pub struct Family {
 }
 
 /// The families, in the order of tables. Methods that sort on the CPU belong to none.
-pub const FAMILIES: [Family; 7] = [
+pub const FAMILIES: [Family; 8] = [
     Family {
         exact: true,
         ..family(
@@ -37,15 +37,13 @@ pub const FAMILIES: [Family; 7] = [
         &["weighted-sum", "weighted-average", "blended", "wboit-*"],
     ),
     family("moments", &["mboit4", "mboit6", "mboit8", "mboit-trig-*"]),
-    family(
-        "intervals of depth",
-        &["wavelet-*", "bins-*", "avboit*", "slabs*"],
-    ),
+    family("intervals of depth", &["wavelet-*", "bins-*", "avboit*"]),
     family(
         "bounded exact",
         &["kbuffer-*", "hybrid-*", "stochastic-*", "mlab-*"],
     ),
     family("learned, published", &["deep-thesis", "nmt", "dfaoit"]),
+    family("known layers, ours", &["slabs"]),
     family(
         "learned, ours",
         &[

@@ -190,13 +190,9 @@ const SMALL_SLABS: &[Pass] = &[
     Pass {
         name: "statistics",
         compute: SLABS_COMPUTE,
-        targets: &[
-            ABSORBANCES,
-            NEAREST,
-            most("farthest", "rg16float", LEAST, "s.farthest"),
-        ],
+        targets: &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
     },
-    slab_weights("let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;"),
+    slab_weights("let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x;"),
 ];
 
 const MEDIUM_SLABS: &[Pass] = &[

@@ -26,6 +26,8 @@ impl Results<Designs> {
             "worst scene",
             "/ kbuffer-4",
             "contour pairs %",
+            "flicker % 0.1 px",
+            "1 px",
             "no network: / mboit4",
             "worst scene",
             "/ kbuffer-4",
@@ -36,6 +38,7 @@ impl Results<Designs> {
             let mut cells = vec![reference.method.clone()];
             cells.resize(11, String::new());
             cells.extend(score(&reference.score));
+            cells.extend(reference.score.flicker.map(percent));
             cells.resize(headings.len(), String::new());
             cells
         });
@@ -91,6 +94,7 @@ fn line(row: &Row) -> Vec<String> {
         format!("{:.1}", row.seconds),
     ];
     cells.extend(score(&row.network));
+    cells.extend(row.network.flicker.map(percent));
     cells.extend(score(&row.middle));
     cells
 }
@@ -111,13 +115,16 @@ fn score(score: &Score) -> [String; 4] {
         (Some(scene), Some(worst)) => format!("{} ({scene})", significant(worst)),
         _ => "–".to_owned(),
     };
-    let pairs = score.contour_pairs;
     [
         number(score.to_moments),
         worst,
         number(score.to_kbuffer),
-        pairs.map_or_else(|| "–".to_owned(), |share| format!("{:.2}", 100.0 * share)),
+        percent(score.contour_pairs),
     ]
+}
+
+fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "–".to_owned(), |share| format!("{:.2}", 100.0 * share))
 }
 
 /// Three digits of a ratio.
@@ -158,6 +165,7 @@ mod tests {
             worst_scene: Some("s".into()),
             worst: Some(0.5),
             contour_pairs: Some(0.003),
+            flicker: [Some(0.001), None],
         };
         let row = Row {
             design: "medium".into(),
@@ -192,7 +200,7 @@ mod tests {
         let results = Results::new(machine(), "peelnet bench s --designs d", designs);
         results.write(dir.path()).unwrap();
         let text = std::fs::read_to_string(dir.path().join("designs.md")).unwrap();
-        let line = "| medium | 0.5 1 | MNF N | 1920x32 | pixel | one, trained apart | image | 22 | 9-12-1 | 133 | 2.5 | 0.0100 | 0.500 (s) | 0.250 | 0.30 | – | – | – | – |";
+        let line = "| medium | 0.5 1 | MNF N | 1920x32 | pixel | one, trained apart | image | 22 | 9-12-1 | 133 | 2.5 | 0.0100 | 0.500 (s) | 0.250 | 0.30 | 0.10 | – | – | – | – | – |";
         assert!(text.contains(line), "{text}");
         let json = dir.path().join("designs.json");
         assert_eq!(Results::<Designs>::read(&json).unwrap(), results);

@@ -9,7 +9,8 @@ import package::scene::visible::visible;
 
 @group(1) @binding(0) var absorbances: texture_2d<f32>;
 @group(1) @binding(1) var nearest: texture_2d<f32>;
-@group(1) @binding(2) var farthest: texture_2d<f32>;
+@if(small) @group(1) @binding(2) var firsts: texture_2d<f32>;
+@if(!small) @group(1) @binding(2) var farthest: texture_2d<f32>;
 @if(!small && !medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
 @if(!frame && (small || medium)) @group(1) @binding(3) var range: texture_2d<f32>;
 @if(!frame && !small && !medium) @group(1) @binding(4) var range: texture_2d<f32>;
@@ -32,9 +33,9 @@ fn fragment_main(surface: Surface) -> Sums {
     @else let span = textureLoad(range, pixel, 0).xy;
     let a = textureLoad(absorbances, pixel, 0);
     let n = textureLoad(nearest, pixel, 0);
-    @if(small) let f = textureLoad(farthest, pixel, 0).xy;
-    @else let f = textureLoad(farthest, pixel, 0);
-    @if(small || medium) let w = peelnet_fragment(color.a, zeta, span, a, n, f).x;
+    @if(!small) let f = textureLoad(farthest, pixel, 0);
+    @if(small) let w = peelnet_fragment(color.a, zeta, span, a, n, textureLoad(firsts, pixel, 0).xy).x;
+    @elif(medium) let w = peelnet_fragment(color.a, zeta, span, a, n, f).x;
     @else let w = peelnet_fragment(color.a, zeta, span, a, n, f, textureLoad(firsts, pixel, 0)).x;
     @if(tinted) return Sums(color * w, vec4f(covering(surface), 0.0));
     @else return Sums(color * w);

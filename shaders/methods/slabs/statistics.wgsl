@@ -13,7 +13,7 @@ import package::scene::visible::visible;
 struct Statistics {
     @location(0) absorbances: vec4f,
     @location(1) nearest: vec4f,
-    @if(small) @location(2) farthest: vec2f,
+    @if(small) @location(2) firsts: vec2f,
     @if(!small) @location(2) farthest: vec4f,
     @if(!small && !medium) @location(3) firsts: vec4f,
 }
@@ -27,6 +27,7 @@ fn fragment_main(surface: Surface) -> Statistics {
     @if(frame) let span = vec2f(1.0);
     @else let span = textureLoad(range, vec2u(surface.position.xy), 0).xy;
     let s = peelnet_statistics(opacity(surface), zeta, span);
-    @if(small || medium) return Statistics(s.absorbances, s.nearest, s.farthest);
+    @if(small) return Statistics(s.absorbances, s.nearest, s.firsts);
+    @elif(medium) return Statistics(s.absorbances, s.nearest, s.farthest);
     @else return Statistics(s.absorbances, s.nearest, s.farthest, s.firsts);
 }

@@ -10,10 +10,12 @@ use peelnet_dataset::{Dataset, SplitBy};
 use peelnet_eval::{
     Machine,
     designs::{
-        self, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score, View,
+        self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
+        View,
     },
 };
 use peelnet_files::{Unfinished, printable};
+use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
 use peelnet_scene::Scene;
 use peelnet_train::{Config, End, RunOptions, TrainingData, train};
@@ -149,19 +151,22 @@ struct Judge<'a> {
     views: &'a [View],
     moments: Vec<Measured>,
     kbuffer: Vec<Measured>,
+    anchored: Vec<Measured>,
 }
 
 impl<'a> Judge<'a> {
     fn new(views: &'a [View]) -> Result<Self, Failure> {
-        let of = |name: &str| -> Result<Vec<Measured>, Failure> {
+        let of = |name: &str, model: Option<&Model>| -> Result<Vec<Measured>, Failure> {
             let method = name.parse()?;
-            let measured = views.iter().map(|view| view.measure_method(&method));
+            let measured = views.iter().map(|view| view.measure_method(&method, model));
             Ok(measured.collect())
         };
+        let anchored = Model::shipped(Recipe::ANCHORED_MEDIUM)?;
         Ok(Self {
             views,
-            moments: of(MOMENTS)?,
-            kbuffer: of(KBUFFER)?,
+            moments: of(MOMENTS, None)?,
+            kbuffer: of(KBUFFER, None)?,
+            anchored: of(ANCHORED, Some(&anchored))?,
         })
     }
 
@@ -174,6 +179,10 @@ impl<'a> Judge<'a> {
             method: name.to_owned(),
             score: self.score(measured),
         };
-        vec![of(MOMENTS, &self.moments), of(KBUFFER, &self.kbuffer)]
+        vec![
+            of(MOMENTS, &self.moments),
+            of(KBUFFER, &self.kbuffer),
+            of(ANCHORED, &self.anchored),
+        ]
     }
 }

@@ -40,12 +40,14 @@ pub struct Kept {
 }
 
 /// The range of depths that is cut into slabs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
     /// That of the pixel's fragments, in 8 bits for either end: a geometry pass more.
     Pixel,
     /// That of the frame's transparent objects.
     Frame,
+    /// What something else found for the pixel, in as many bits.
+    Given(Range),
 }
 
 /// What is kept of a pixel.
@@ -110,9 +112,9 @@ impl Design {
     /// 30 bytes a pixel, colours included: three targets beside the range.
     pub const SMALL: Self = Self {
         slabs: &[
-            until(0.25, true, true),
-            until(0.6, false, true),
-            until(1.0, false, true),
+            until(0.15, true, true),
+            until(0.5, true, false),
+            until(1.0, true, false),
         ],
         records: FAR_END,
         extent: Extent::Pixel,
@@ -121,8 +123,8 @@ impl Design {
     /// 34 bytes a pixel, three targets beside the range. The first slab is the narrowest: what is seen most lies in it.
     pub const MEDIUM: Self = Self {
         slabs: &[
-            until(0.22, true, true),
-            until(0.55, true, true),
+            until(0.15, true, true),
+            until(0.5, true, true),
             until(1.0, true, true),
         ],
         ..Self::SMALL
@@ -130,9 +132,9 @@ impl Design {
     /// 42 bytes a pixel, four targets beside the range: as much as one pass of plain WebGPU writes.
     pub const LARGE: Self = Self {
         slabs: &[
-            until(0.2, true, true),
-            until(0.5, true, true),
-            until(0.8, true, true),
+            until(0.12, true, true),
+            until(0.4, true, true),
+            until(0.75, true, true),
             until(1.0, true, true),
         ],
         ..Self::SMALL
@@ -155,7 +157,7 @@ impl Design {
                 .sum::<u32>()
         };
         let channels: u32 = self.slabs.iter().map(channels).sum();
-        let range = if self.extent == Extent::Pixel { 2 } else { 0 };
+        let range = if self.extent == Extent::Frame { 0 } else { 2 };
         range + 2 * channels + 8 * (1 + u32::from(self.apart))
     }
 
@@ -239,7 +241,7 @@ pub struct Between {
     pub extent: f64,
     /// Absorbance of the fragment.
     pub own: f64,
-    /// Absorbance of the nearer end; 0 where it is not known.
+    /// Absorbance of the ends that lies in front: the nearer end's, and half of an end's in the fragment's own bin.
     pub nearest: f64,
 }
 
@@ -263,6 +265,9 @@ impl Seen {
     }
 }
 
+/// A fragment: its absorbance, its warped depth, whether it is visible enough to be a slab's nearest or farthest.
+pub type Point = (f64, f64, bool);
+
 /// The slabs of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slabs {
@@ -272,13 +277,14 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// Of a pixel's fragments, given as (absorbance, warped depth, whether it is visible enough to be a slab's nearest or farthest).
-    pub fn of(fragments: &[(f64, f64, bool)], design: Design, precision: SumPrecision) -> Self {
+    /// Of a pixel's fragments.
+    pub fn of(fragments: &[Point], design: Design, precision: SumPrecision) -> Self {
         let mut all = Self {
             design,
             range: match design.extent {
                 Extent::Pixel => Range::of(fragments.iter().map(|f| f.1)),
                 Extent::Frame => Range::WHOLE,
+                Extent::Given(range) => range,
             },
             slabs: Default::default(),
         };
@@ -369,6 +375,14 @@ impl Slabs {
         let u = place.inside;
         let rest = slab.absorbance - place.absorbance - nearest - farthest;
         let first = slab.first - place.absorbance * u - nearest * begin - farthest * end;
+        // In one bin nobody knows which of two is in front: half of the other is.
+        let mut in_front = nearest;
+        if kept.nearest && near_bin == place.bin {
+            in_front *= 0.5;
+        }
+        if kept.farthest && slab.farthest / alphas == place.bin {
+            in_front += 0.5 * farthest;
+        }
         if begin > u {
             begin = -1.0;
         }
@@ -394,7 +408,7 @@ impl Slabs {
             bounds,
             extent: extent / 2.0,
             own: place.absorbance,
-            nearest,
+            nearest: in_front,
         }
     }
 }
@@ -408,7 +422,7 @@ pub fn seen(
 ) -> Vec<Seen> {
     let points = points(fragments, warp);
     let slabs = Slabs::of(&points, design, precision);
-    let of = |&(b, zeta, counts): &(f64, f64, bool)| slabs.seen(b, zeta, counts);
+    let of = |&(b, zeta, counts): &Point| slabs.seen(b, zeta, counts);
     points.iter().map(of).collect()
 }
 
@@ -436,11 +450,11 @@ pub fn seen_given(
     for (slab, &[absorbance, first]) in slabs.slabs.iter_mut().zip(sums) {
         (slab.absorbance, slab.first) = (absorbance, first);
     }
-    let of = |&(b, zeta, counts): &(f64, f64, bool)| slabs.seen(b, zeta, counts);
+    let of = |&(b, zeta, counts): &Point| slabs.seen(b, zeta, counts);
     points.iter().map(of).collect()
 }
 
-fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<(f64, f64, bool)> {
+fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
     let point = |&(depth, alpha): &(f32, f32)| {
         let zeta = warp.apply(depth.into());
         (absorbance(alpha), zeta, alpha >= FAINT)
@@ -480,14 +494,32 @@ pub fn composite_rounded(
     precision: SumPrecision,
     guess: impl Fn(&Between) -> f64,
 ) -> [f32; 3] {
-    let list: Vec<(f32, f32)> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
-    let total: f64 = list.iter().map(|&(_, alpha)| absorbance(alpha)).sum();
+    let zeta = |depth: f32| warp.apply(depth.into());
+    composite_on(fragments, background, zeta, design, precision, guess)
+}
+
+/// As [`composite_rounded`], with linear depths put on a scale of one's own, −1 … 1.
+pub fn composite_on(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    zeta: impl Fn(f32) -> f64,
+    design: Design,
+    precision: SumPrecision,
+    guess: impl Fn(&Between) -> f64,
+) -> [f32; 3] {
+    let points: Vec<Point> = fragments
+        .iter()
+        .map(|f| (absorbance(f.alpha), zeta(f.depth), f.alpha >= FAINT))
+        .collect();
+    let total: f64 = points.iter().map(|p| p.0).sum();
     if total == 0.0 {
         return background;
     }
+    let slabs = Slabs::of(&points, design, precision);
     // Premultiplied colour and alpha of what is guessed, and of what is known.
     let mut sums = [[0.0f64; 4]; 2];
-    for (f, seen) in fragments.iter().zip(seen(&list, warp, design, precision)) {
+    for (f, &(b, zeta, counts)) in fragments.iter().zip(&points) {
+        let seen = slabs.seen(b, zeta, counts);
         let w = seen.weight(&guess);
         let sum = &mut sums[usize::from(design.apart && seen.between.is_none())];
         for (sum, c) in sum.iter_mut().zip(f.premultiplied()) {

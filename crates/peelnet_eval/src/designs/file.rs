@@ -1,6 +1,6 @@
 //! The file of designs.
 
-use super::{DESIGNS, Entry};
+use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
     features::Feature,
@@ -57,7 +57,7 @@ struct RawDesign {
     farthest: Vec<bool>,
     records: Option<String>,
     #[serde(default)]
-    range: RawRange,
+    range: Source,
     #[serde(default)]
     apart: bool,
     train_apart: Option<bool>,
@@ -65,14 +65,6 @@ struct RawDesign {
     hidden: Option<Vec<usize>>,
     loss: Option<String>,
     seed: Option<u64>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum RawRange {
-    #[default]
-    Pixel,
-    Frame,
 }
 
 /// The designs that ship, `data/designs.toml`.
@@ -150,8 +142,8 @@ impl RawDesign {
             slabs: self.slabs()?,
             records: self.records()?,
             extent: match self.range {
-                RawRange::Pixel => Extent::Pixel,
-                RawRange::Frame => Extent::Frame,
+                Source::Frame | Source::Quantiles => Extent::Frame,
+                Source::Pixel | Source::Boxes | Source::Last => Extent::Pixel,
             },
             apart: self.apart,
         };
@@ -186,6 +178,7 @@ impl RawDesign {
         Ok(Entry {
             name: self.name,
             design,
+            source: self.range,
             inputs,
             recipe: Recipe::new(Box::leak(Box::new(declaration))),
             seed: self.seed.unwrap_or(1),

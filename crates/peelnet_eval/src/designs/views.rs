@@ -1,16 +1,27 @@
 //! Fragments of views in memory, and the error of whatever composites them.
 
-use super::Score;
+use super::{
+    MOTIONS, Score,
+    ranges::{Quantiles, Source, moved, of_boxes, of_last},
+};
 use crate::{
     EvalError,
     compare::{EXACT, is_too_large},
-    contours::Pairs,
+    contours::{Pairs, THRESHOLD},
     front::EXACT_MSE,
     geometric_mean,
-    metrics::error_image,
+    metrics::{ERROR_ROUNDING, error_image},
 };
-use peelnet_core::{absorbance::DepthWarp, fragment::Fragment, methods::over};
+use peelnet_core::{
+    absorbance::DepthWarp,
+    fragment::Fragment,
+    methods::{
+        over,
+        slabs::{Extent, Range as DepthRange},
+    },
+};
 use peelnet_gpu::Gpu;
+use peelnet_model::Model;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{
     Image, MethodOptions, MethodSpec, PixelSample, RenderError, Renderer, methods::Pixel,
@@ -53,6 +64,47 @@ pub struct View {
     fragments: Vec<Fragment>,
     /// None where the surfaces need more memory than there is.
     shown: Option<Shown>,
+    /// Of each pixel with fragments, the ranges of depth that boxes and the last frame give it. Empty of a view of lists.
+    boxes: Vec<DepthRange>,
+    last: Vec<DepthRange>,
+    quantiles: Option<Quantiles>,
+    /// The same view after each of [`MOTIONS`]; empty of a view of lists.
+    after: Vec<View>,
+}
+
+/// A pixel to composite.
+#[derive(Clone, Copy, Debug)]
+pub struct Stacked<'a> {
+    view: &'a View,
+    number: usize,
+    /// Its fragments, nearest first.
+    pub fragments: &'a [Fragment],
+}
+
+impl Stacked<'_> {
+    /// What is cut into slabs, and the scale of its depths.
+    pub(super) fn extent(&self, source: Source) -> Extent {
+        let given = |found: &[DepthRange]| {
+            found
+                .get(self.number)
+                .map_or(Extent::Frame, |&r| Extent::Given(r))
+        };
+        match source {
+            Source::Pixel => Extent::Pixel,
+            Source::Frame | Source::Quantiles => Extent::Frame,
+            Source::Boxes => given(&self.view.boxes),
+            Source::Last => given(&self.view.last),
+        }
+    }
+
+    /// A depth on the scale that is cut.
+    pub(super) fn zeta(&self, source: Source, depth: f32) -> f64 {
+        let zeta = self.view.warp.apply(depth.into());
+        match &self.view.quantiles {
+            Some(quantiles) if source == Source::Quantiles => quantiles.apply(zeta),
+            _ => zeta,
+        }
+    }
 }
 
 /// The error of a view.
@@ -62,6 +114,8 @@ pub struct Measured {
     pub mse_linear: f64,
     /// Share of contour pairs; `None` of a view without pairs.
     pub contour_pairs: Option<f64>,
+    /// Share of the frame's pixels whose error changes by more than [`THRESHOLD`] with each of [`MOTIONS`]; `None` where that was not asked.
+    pub flicker: [Option<f64>; MOTIONS.len()],
 }
 
 impl View {
@@ -79,6 +133,10 @@ impl View {
             stacks: Vec::new(),
             fragments: Vec::new(),
             shown: None,
+            boxes: Vec::new(),
+            last: Vec::new(),
+            quantiles: None,
+            after: Vec::new(),
         };
         for (place, list) in lists {
             view.push(place, list);
@@ -100,64 +158,114 @@ impl View {
         }
     }
 
+    /// The places of pixels with fragments.
+    pub(super) fn places(&self) -> impl Iterator<Item = usize> {
+        self.stacks.iter().map(|stack| stack.place)
+    }
+
+    /// The places of pixels with fragments, and their nearest and farthest depth.
+    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, [f32; 2])> {
+        self.stacks.iter().map(|stack| {
+            let Range { start, end } = stack.fragments;
+            let depth = |i: usize| self.fragments[i].depth;
+            (stack.place, [depth(start), depth(end - 1)])
+        })
+    }
+
+    /// All fragments.
+    pub(super) fn all(&self) -> &[Fragment] {
+        &self.fragments
+    }
+
     /// Number of fragments.
     pub const fn fragments(&self) -> usize {
         self.fragments.len()
     }
 
-    /// The error of what gives a pixel's colour over black from its fragments, nearest first. Components that are not finite count as
-    /// black.
+    /// The error of what gives a pixel's colour over black. Components that are not finite count as black.
     ///
     /// The background is none of a method's error: its share of a pixel is the same for all.
-    pub fn measure(&self, composite: impl Fn(&[Fragment]) -> [f32; 3] + Sync) -> Measured {
-        let colors: Vec<[f64; 3]> = self
-            .stacks
-            .par_iter()
-            .map(|stack| {
-                let color = composite(&self.fragments[stack.fragments.clone()]);
-                color.map(|c| if c.is_finite() { f64::from(c) } else { 0.0 })
-            })
-            .collect();
-        let pixels = || self.stacks.iter().zip(&colors);
-        let squares = pixels().map(|(stack, color)| {
+    pub fn measure(&self, composite: impl Fn(&Stacked<'_>) -> [f32; 3] + Sync) -> Measured {
+        let colors = self.colors(&composite);
+        let pixels = self.stacks.iter().zip(&colors);
+        let squares = pixels.map(|(stack, color)| {
             let channels = stack.exact.iter().zip(color);
             channels.map(|(e, c)| (c - e).powi(2)).sum::<f64>()
         });
         let mse_linear = squares.sum::<f64>() / (3 * self.frame).max(1) as f64;
-        let contour_pairs = self.shown.as_ref().and_then(|shown| {
-            let mut image = shown.image.pixels.clone();
-            for (stack, color) in pixels() {
-                for (k, shown) in image[stack.place][..3].iter_mut().enumerate() {
-                    *shown += (color[k] - stack.exact[k]) as f32;
-                }
-            }
-            let errors = error_image(&shown.image.pixels, &image).ok()?;
-            shown.pairs.share(&errors).ok()?
-        });
+        let errors = self.errors(&colors);
+        let contour_pairs = match (&self.shown, &errors) {
+            (Some(shown), Some(errors)) => shown.pairs.share(errors).ok().flatten(),
+            _ => None,
+        };
         Measured {
             mse_linear,
             contour_pairs,
+            flicker: [None; MOTIONS.len()],
         }
     }
 
-    /// The error of a method's CPU twin. What has none, or needs a network, leaves pixels black.
-    pub fn measure_method(&self, method: &MethodSpec) -> Measured {
-        self.measure(|fragments| {
+    /// The same, with the change of the error by each of [`MOTIONS`].
+    pub fn measure_moving(&self, composite: impl Fn(&Stacked<'_>) -> [f32; 3] + Sync) -> Measured {
+        let limit = (THRESHOLD + 2.0 * ERROR_ROUNDING) as f32;
+        let still = self.errors(&self.colors(&composite));
+        let mut flicker = [None; MOTIONS.len()];
+        for (view, flicker) in self.after.iter().zip(&mut flicker) {
+            let (Some(still), Some(after)) = (&still, view.errors(&view.colors(&composite))) else {
+                continue;
+            };
+            let changes = still.iter().zip(&after);
+            let changes = changes.filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > limit));
+            *flicker = Some(changes.count() as f64 / self.frame.max(1) as f64);
+        }
+        Measured {
+            flicker,
+            ..self.measure(composite)
+        }
+    }
+
+    fn colors(&self, composite: &(impl Fn(&Stacked<'_>) -> [f32; 3] + Sync)) -> Vec<[f64; 3]> {
+        let of = |(number, stack): (usize, &Stack)| {
+            let color = composite(&Stacked {
+                view: self,
+                number,
+                fragments: &self.fragments[stack.fragments.clone()],
+            });
+            color.map(|c| if c.is_finite() { f64::from(c) } else { 0.0 })
+        };
+        self.stacks.par_iter().enumerate().map(of).collect()
+    }
+
+    /// The error image of the frame; `None` of a view without an image.
+    fn errors(&self, colors: &[[f64; 3]]) -> Option<Vec<[f32; 3]>> {
+        let shown = self.shown.as_ref()?;
+        let mut image = shown.image.pixels.clone();
+        for (stack, color) in self.stacks.iter().zip(colors) {
+            for (k, shown) in image[stack.place][..3].iter_mut().enumerate() {
+                *shown += (color[k] - stack.exact[k]) as f32;
+            }
+        }
+        error_image(&shown.image.pixels, &image).ok()
+    }
+
+    /// The error of a method's CPU twin. What has none, or lacks its network, leaves pixels black.
+    pub fn measure_method(&self, method: &MethodSpec, model: Option<&Model>) -> Measured {
+        self.measure_moving(|stack| {
             let pixel = Pixel {
-                fragments,
+                fragments: stack.fragments,
                 background: [0.0; 3],
-                warp: self.warp,
+                warp: stack.view.warp,
                 position: [0; 2],
-                model: None,
+                model,
             };
             method.twin(&pixel).unwrap_or_default()
         })
     }
 }
 
-/// Peels all views of the scenes, or the first of each, and draws their exact images.
+/// Peels all views of the scenes, or the first of each, and draws their exact images; and once more after each of [`MOTIONS`].
 ///
-/// All fragments are held in memory: about 40 bytes each.
+/// All fragments are held in memory: about 120 bytes each.
 ///
 /// # Errors
 /// A view that cannot be drawn; [`EvalError::Interrupted`] once `stop` is set.
@@ -169,40 +277,65 @@ pub fn peel(
     stop: &AtomicBool,
 ) -> Result<Vec<View>, EvalError> {
     crate::bench::check_names(scenes)?;
+    let [width, height] = size.map(|s| s as usize);
     let mut views = Vec::new();
     for scene in scenes {
         let failed = |method| EvalError::render(&scene.name, method);
         let mut harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, false, None)
             .map_err(EvalError::peel(&scene.name))?;
         let renderer = Renderer::new(gpu, scene).map_err(failed(EXACT))?;
-        for camera in scene.views.iter().take(most.unwrap_or(usize::MAX)) {
+        let mut of_camera = |camera: &Camera| -> Result<View, EvalError> {
             if stop.load(Ordering::Relaxed) {
                 return Err(EvalError::Interrupted);
             }
-            let frame = size[0] as usize * size[1] as usize;
-            let mut view = View::new(&scene.name, harvester.depth_warp(camera), frame, []);
-            let mut take = |tile: RawTile| {
-                for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
-                    let run = run[0] as usize..run[1] as usize;
-                    let fragments = tile.depths[run.clone()].iter().zip(&tile.colors[run]);
-                    view.push(
-                        pixel as usize,
-                        fragments.map(|(&z, &[r, g, b, a])| Fragment::new(z, a, [r, g, b])),
-                    );
-                }
-                Ok(())
-            };
-            harvester
-                .harvest(camera, PixelSample::ALL, None, RawTile::default, &mut take)
-                .map_err(EvalError::peel(&scene.name))?;
-            view.shown = match shown(&renderer, size, camera) {
-                Err(e) if is_too_large(&e) => None,
-                shown => Some(shown.map_err(failed(EXACT))?),
-            };
+            let mut view = peel_one(&mut harvester, &renderer, scene, size, camera)?;
+            view.boxes = of_boxes(&view, scene, camera, size);
+            view.quantiles = Some(Quantiles::of(&view));
+            Ok(view)
+        };
+        for camera in scene.views.iter().take(most.unwrap_or(usize::MAX)) {
+            let mut view = of_camera(camera)?;
+            for pixels in MOTIONS {
+                let mut after = of_camera(&moved(camera, size, pixels))?;
+                after.last = of_last(&after, &view, width, height);
+                // Frames follow one another both ways.
+                view.last = of_last(&view, &after, width, height);
+                view.after.push(after);
+            }
             views.push(view);
         }
     }
     Ok(views)
+}
+
+fn peel_one(
+    harvester: &mut Harvester,
+    renderer: &Renderer,
+    scene: &Scene,
+    size: [u32; 2],
+    camera: &Camera,
+) -> Result<View, EvalError> {
+    let frame = size[0] as usize * size[1] as usize;
+    let mut view = View::new(&scene.name, harvester.depth_warp(camera), frame, []);
+    let mut take = |tile: RawTile| {
+        for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
+            let run = run[0] as usize..run[1] as usize;
+            let fragments = tile.depths[run.clone()].iter().zip(&tile.colors[run]);
+            view.push(
+                pixel as usize,
+                fragments.map(|(&z, &[r, g, b, a])| Fragment::new(z, a, [r, g, b])),
+            );
+        }
+        Ok(())
+    };
+    harvester
+        .harvest(camera, PixelSample::ALL, None, RawTile::default, &mut take)
+        .map_err(EvalError::peel(&scene.name))?;
+    view.shown = match shown(renderer, size, camera) {
+        Err(e) if is_too_large(&e) => None,
+        shown => Some(shown.map_err(EvalError::render(&scene.name, EXACT))?),
+    };
+    Ok(view)
 }
 
 fn shown(renderer: &Renderer, size: [u32; 2], camera: &Camera) -> Result<Shown, RenderError> {
@@ -232,13 +365,16 @@ pub fn score(
     }
     let worst = scenes.into_iter().map(|(scene, [a, b])| (scene, a / b));
     let worst = worst.max_by(|a, b| a.1.total_cmp(&b.1));
-    let contours: Vec<f64> = own.iter().filter_map(|m| m.contour_pairs).collect();
+    let mean = |of: &dyn Fn(&Measured) -> Option<f64>| {
+        let all: Vec<f64> = own.iter().filter_map(of).collect();
+        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+    };
     Score {
         to_moments: ratio(moments),
         to_kbuffer: ratio(kbuffer),
         worst_scene: worst.map(|(scene, _)| scene.to_owned()),
         worst: worst.map(|(_, ratio)| ratio),
-        contour_pairs: (!contours.is_empty())
-            .then(|| contours.iter().sum::<f64>() / contours.len() as f64),
+        contour_pairs: mean(&|m| m.contour_pairs),
+        flicker: std::array::from_fn(|k| mean(&|m| m.flicker[k])),
     }
 }

@@ -23,7 +23,7 @@ use peelnet_model::{Inputs, Model};
 
 const KEEP: Word = Word {
     name: "keep",
-    about: "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the mean depth of the nearest alone",
+    about: "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the farthest fragment of the nearest alone",
     words: &["large", "medium", "small"],
 };
 
@@ -71,6 +71,12 @@ const BORDERS: Flaw = Flaw::new(
     "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
 );
 
+const COINCIDENT: Flaw = Flaw::new(
+    Property::Transmittance,
+    &["coplanar"],
+    "sixteen coincident layers are a slab's nearest all at once, and without its farthest what lies behind them is guessed",
+);
+
 pub(super) const METHOD: Method = Method {
     parameters: &[Parameter::Word(KEEP), Parameter::Word(RANGE)],
     promises,
@@ -96,11 +102,11 @@ pub(super) const METHOD: Method = Method {
         ))
     }),
     flaws: &[
-        Flaw::swallowed(&["alpha-tiny"]).when(|s| KEEP.of(s) == "large"),
         Flaw::swallowed(&["deep"]),
-        Flaw::reordered(&["deep"]).when(is_small),
-        THIN.when(|s| !is_small(s) && is_of_pixel(s)),
-        BORDERS,
+        Flaw::reordered(&["deep"]),
+        THIN.when(is_of_pixel),
+        BORDERS.when(is_of_pixel),
+        COINCIDENT.when(is_small),
     ],
     ..Method::new(
         "slabs",
@@ -157,8 +163,9 @@ macro_rules! learned {
 pub(super) const SMALL: Method = Method {
     flaws: &[
         Flaw::swallowed(&["deep"]),
-        Flaw::reordered(&["deep"]),
-        BORDERS,
+        THIN.when(is_of_pixel),
+        BORDERS.when(is_of_pixel),
+        COINCIDENT,
     ],
     ..learned!(
         "deep-small",
@@ -168,7 +175,7 @@ pub(super) const SMALL: Method = Method {
 
 pub(super) const MEDIUM: Method = Method {
     curve: &["", ":range=frame", ":scale=0.5"],
-    flaws: &[THIN.when(is_of_pixel), BORDERS],
+    flaws: &[Flaw::swallowed(&["deep"]), THIN.when(is_of_pixel)],
     ..learned!(
         "deep-medium",
         "the same in 34 bytes a pixel: the one to ship"
@@ -178,9 +185,15 @@ pub(super) const MEDIUM: Method = Method {
 pub(super) const LARGE: Method = Method {
     curve: &["", ":range=frame"],
     flaws: &[
-        Flaw::swallowed(&["alpha-tiny"]),
+        Flaw::swallowed(&["deep"]),
         THIN.when(is_of_pixel),
-        BORDERS,
+        Flaw::new(
+            Property::Scale,
+            &["thin-slab"],
+            "depths are rounded otherwise, which moves layers of one bin into another, and other ones are known then",
+        )
+        .when(is_of_pixel)
+        .seen_on_llvmpipe(),
     ],
     ..learned!(
         "deep-large",
@@ -203,7 +216,7 @@ fn kept(layout: Layout) -> Vec<Target> {
         Layout::Small => vec![
             half("absorbances of slabs and mean of one", 4, Blend::Add),
             half("nearest of slabs and farthest of one", 4, Blend::Max),
-            half("farthest of two slabs", 2, Blend::Max),
+            half("means of two slabs", 2, Blend::Add),
         ],
         Layout::Medium => vec![
             half("absorbances of slabs and mean of one", 4, Blend::Add),

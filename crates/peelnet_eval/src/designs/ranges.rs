@@ -1,0 +1,299 @@
+//! Where a pixel's range of depth may come from, beside its own surfaces and the frame.
+
+use super::views::View;
+use glam::{Mat4, Vec3};
+use peelnet_core::{absorbance::absorbance, methods::slabs::Range};
+use peelnet_scene::{Camera, Scene};
+use rayon::prelude::*;
+use serde::Deserialize;
+
+/// What is cut into slabs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// The range of the pixel's fragments: a geometry pass more.
+    #[default]
+    Pixel,
+    /// That of the frame's transparent objects.
+    Frame,
+    /// From where the pixel's ray enters the first of the boxes around transparent parts to where it leaves the last: a pass over boxes.
+    Boxes,
+    /// That of all fragments that the frame before had within [`REACH`] pixels; the frame's where it had none.
+    Last,
+    /// The frame's, on a scale half way between that of depth and the distribution of the frame's absorbance over it.
+    Quantiles,
+}
+
+impl Source {
+    /// Its name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pixel => "pixel",
+            Self::Frame => "frame",
+            Self::Boxes => "boxes",
+            Self::Last => "last",
+            Self::Quantiles => "quantiles",
+        }
+    }
+}
+
+/// How far the last frame's range is spread, pixels along a row or a column.
+pub const REACH: usize = 2;
+
+/// A box around a transparent part: from world space to its own, and its corners there.
+struct PartBox {
+    own_from_world: Mat4,
+    low: Vec3,
+    high: Vec3,
+}
+
+fn boxes(scene: &Scene) -> Vec<PartBox> {
+    let mut all = Vec::new();
+    for object in &scene.objects {
+        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+            let vertices = object.mesh.triangles[part.triangles.clone()]
+                .iter()
+                .flatten();
+            let mut points = vertices.map(|&i| object.mesh.positions[i as usize]);
+            let Some(first) = points.next().filter(|_| !material.is_opaque()) else {
+                continue;
+            };
+            let (low, high) = points.fold((first, first), |(l, h), p| (l.min(p), h.max(p)));
+            // A flat part's box would be missed by rounding.
+            let grown = Vec3::splat(1e-4 * (high - low).max_element());
+            all.push(PartBox {
+                own_from_world: object.world_from_object.inverse(),
+                low: low - grown,
+                high: high + grown,
+            });
+        }
+    }
+    all
+}
+
+impl PartBox {
+    /// Where a ray from `origin` enters and leaves it, in lengths of `direction`.
+    fn crossed(&self, origin: Vec3, direction: Vec3) -> Option<[f32; 2]> {
+        let origin = self.own_from_world.transform_point3(origin);
+        let inverse = self.own_from_world.transform_vector3(direction).recip();
+        let (a, b) = (
+            (self.low - origin) * inverse,
+            (self.high - origin) * inverse,
+        );
+        let enters = a.min(b).max_element();
+        let leaves = a.max(b).min_element();
+        (leaves >= enters.max(0.0)).then_some([enters.max(0.0), leaves])
+    }
+}
+
+/// The range of boxes at each pixel of a view that has fragments.
+pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<Range> {
+    let boxes = boxes(scene);
+    let world_from_view = camera.view_from_world().inverse();
+    let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
+    let [width, height] = size.map(|s| s as f32);
+    let of_place = |place: usize| {
+        let [x, y] = [place % size[0] as usize, place / size[0] as usize];
+        let across = 2.0 * (x as f32 + 0.5) / width - 1.0;
+        let upward = 1.0 - 2.0 * (y as f32 + 0.5) / height;
+        // Of length 1 along the view axis: lengths are linear depths.
+        let direction = Vec3::new(across * up * width / height, upward * up, -1.0);
+        let direction = world_from_view.transform_vector3(direction);
+        let crossed = boxes
+            .iter()
+            .filter_map(|b| b.crossed(camera.position, direction));
+        let ends = crossed.flatten().map(|z| z.clamp(camera.near, camera.far));
+        let zetas: Vec<f64> = ends.map(|z| view.warp.apply(z.into())).collect();
+        if zetas.is_empty() {
+            Range::WHOLE
+        } else {
+            Range::of(zetas)
+        }
+    };
+    let places: Vec<usize> = view.places().collect();
+    places.into_par_iter().map(of_place).collect()
+}
+
+/// The range of the frame before at each pixel of a view that has fragments.
+pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -> Vec<Range> {
+    // The nearest and the farthest depth, spread along rows, then along columns.
+    let mut ends = vec![[f32::INFINITY, f32::NEG_INFINITY]; width * height];
+    for (place, depths) in before.ends() {
+        ends[place] = depths;
+    }
+    let spread =
+        |from: &[[f32; 2]], count: usize, step: usize, of_pixel: &dyn Fn(usize) -> usize| {
+            let pixels = (0..from.len()).map(|i| {
+                let at = of_pixel(i);
+                let near = at.saturating_sub(REACH)..(at + REACH + 1).min(count);
+                near.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], k| {
+                    let [l, h] = from[i + k * step - at * step];
+                    [low.min(l), high.max(h)]
+                })
+            });
+            pixels.collect::<Vec<_>>()
+        };
+    let ends = spread(&ends, width, 1, &|i| i % width);
+    let ends = spread(&ends, height, width, &|i| i / width);
+    let of_place = |place: usize| match ends[place] {
+        [low, high] if low <= high => Range::of([low, high].map(|z| view.warp.apply(z.into()))),
+        _ => Range::WHOLE,
+    };
+    view.places().map(of_place).collect()
+}
+
+/// Bins of the distribution of a frame's absorbance over depth.
+const BINS: usize = 256;
+
+/// A scale of depth half way to the distribution of the frame's absorbance.
+#[derive(Clone, Debug)]
+pub(super) struct Quantiles {
+    /// The share of the absorbance in front of each bin, and 1.
+    before: Vec<f64>,
+}
+
+impl Quantiles {
+    pub fn of(view: &View) -> Self {
+        let mut bins = vec![0.0; BINS];
+        for f in view.all() {
+            let t = 0.5 + 0.5 * view.warp.apply(f.depth.into());
+            bins[((t * BINS as f64) as usize).min(BINS - 1)] += absorbance(f.alpha);
+        }
+        let total: f64 = bins.iter().sum();
+        let mut before = vec![0.0];
+        for bin in bins {
+            before.push(before[before.len() - 1] + bin / total.max(f64::MIN_POSITIVE));
+        }
+        Self { before }
+    }
+
+    /// Where a warped depth lies on it, −1 … 1.
+    pub fn apply(&self, zeta: f64) -> f64 {
+        let t = 0.5 + 0.5 * zeta;
+        let bin = ((t * BINS as f64) as usize).min(BINS - 1);
+        let [from, to] = [self.before[bin], self.before[bin + 1]];
+        let share = from + (to - from) * (t * BINS as f64 - bin as f64);
+        t + share - 1.0
+    }
+}
+
+/// The camera moved to its right, so that what it looks at moves by so many pixels of an image.
+pub(super) fn moved(camera: &Camera, size: [u32; 2], pixels: f32) -> Camera {
+    let toward = camera.target - camera.position;
+    let right = toward.cross(camera.up).normalize_or(Vec3::X);
+    let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
+    let pixel = 2.0 * up * toward.length() / size[1] as f32;
+    let by = right * (pixels * pixel);
+    Camera {
+        position: camera.position + by,
+        target: camera.target + by,
+        ..*camera
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+    use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
+    use peelnet_scene::Material;
+
+    fn camera() -> Camera {
+        Camera {
+            position: Vec3::ZERO,
+            target: Vec3::new(0.0, 0.0, -5.0),
+            up: Vec3::Y,
+            fov_y_degrees: 90.0,
+            near: 0.1,
+            far: 100.0,
+        }
+    }
+
+    fn one(depth: f32) -> Vec<Fragment> {
+        vec![Fragment::new(depth, 0.5, [1.0; 3])]
+    }
+
+    /// A box from 2 to 4 before the camera is crossed there, and nothing beside it.
+    #[test]
+    fn boxes_are_crossed_where_they_are() {
+        let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
+        let triangles = [
+            [
+                corner(-0.5, -0.5, -2.0),
+                corner(0.5, -0.5, -2.0),
+                corner(0.0, 0.5, -2.0),
+            ],
+            [
+                corner(-0.5, -0.5, -4.0),
+                corner(0.5, -0.5, -4.0),
+                corner(0.0, 0.5, -4.0),
+            ],
+        ];
+        let scene = Scene {
+            objects: vec![peelnet_scene::Object::of_triangles(
+                "box",
+                &triangles,
+                Material::unlit([1.0; 3], 0.5),
+            )],
+            ..Scene::default()
+        };
+        let warp = DepthWarp::new(1.0, 8.0);
+        let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
+        let found = of_boxes(&view, &scene, &camera(), [3, 3]);
+        let expected = Range::of([2.0, 4.0].map(|z: f64| warp.apply(z)));
+        assert_eq!(found, [expected, Range::WHOLE]);
+    }
+
+    /// A fragment of the frame before is seen two pixels further, and not three.
+    #[test]
+    fn the_last_frame_is_spread() {
+        let warp = DepthWarp::new(1.0, 8.0);
+        let before = View::new("s", warp, 64, [(0, one(3.0)), (8 + 1, one(5.0))]);
+        let view = View::new(
+            "s",
+            warp,
+            64,
+            [(2, one(3.0)), (3, one(3.0)), (4, one(3.0)), (16, one(2.0))],
+        );
+        let of = |depths: &[f64]| Range::of(depths.iter().map(|&z| warp.apply(z)));
+        let found = of_last(&view, &before, 8, 8);
+        assert_eq!(
+            found,
+            [of(&[3.0, 5.0]), of(&[5.0]), Range::WHOLE, of(&[3.0, 5.0])]
+        );
+    }
+
+    /// Where all absorbance lies at one depth, that depth is the middle of half of the scale.
+    #[test]
+    fn quantiles_follow_absorbance() {
+        let warp = DepthWarp::new(1.0, 4.0);
+        let view = View::new("s", warp, 1, [(0, one(2.0))]);
+        let quantiles = Quantiles::of(&view);
+        // ζ of 2 is 0, at the beginning of bin 128.
+        for (zeta, expected) in [
+            (-1.0, -1.0),
+            (-0.5, -0.75),
+            (0.0, -0.5),
+            (1.0 / 128.0, 0.5 + 1.0 / 256.0),
+            (1.0, 1.0),
+        ] {
+            let found = quantiles.apply(zeta);
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{zeta}: {found}, not {expected}"
+            );
+        }
+    }
+
+    /// A point at the distance of what is looked at moves by what is asked.
+    #[test]
+    fn cameras_move_by_pixels() {
+        let size = [64, 48];
+        let shown = |camera: &Camera| {
+            let clip = camera.clip_from_view(64.0 / 48.0) * camera.view_from_world();
+            clip.project_point3(Vec3::new(0.3, 0.2, -5.0)).x * 32.0
+        };
+        let by = shown(&camera()) - shown(&moved(&camera(), size, 1.5));
+        assert!((by - 1.5).abs() < 1e-4, "{by}");
+    }
+}
