@@ -1,4 +1,4 @@
-// The only vertex shader of scene geometry: every pass shares it, so that depth comes out bit-identical in all of them.
+// The only vertex shader of surfaces: every pass shares it, so that depth comes out bit-identical in all of them.
 import package::scene::camera::camera;
 @if(material) import package::scene::material::materials;
 import package::scene::surface::Surface;

@@ -93,7 +93,7 @@ fn with_the_true_shares_nothing_is_scaled() {
 #[test]
 fn a_network_learns_from_whole_pixels_and_repeats() {
     let dir = tempfile::tempdir().unwrap();
-    let dataset = lists(&dir.path().join("d"), 6144, 5);
+    let dataset = lists(&dir.path().join("d"), 12288, 5);
     let mut config = Config::for_recipe(Recipe::MEDIUM);
     config.epochs = 6;
     config.batch = 128;

@@ -9,6 +9,7 @@
 //! Transparent passes have no fixed-function depth test. One shader function compares with the opaque depth, because
 //! storage writes of a fragment shader happen before that test; it exists only in frames that have opaque depth.
 
+mod boxes;
 pub mod count;
 pub mod dual;
 mod edit;
@@ -27,6 +28,7 @@ mod specialise;
 mod uniforms;
 mod upload;
 
+pub use boxes::BoxPass;
 pub use error::RasterError;
 pub use frame::{FrameTargets, OpaqueDepth};
 pub use pipelines::{GeometryPass, GeometryPipelines, Surfaces};

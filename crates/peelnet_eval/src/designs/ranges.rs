@@ -229,18 +229,14 @@ mod tests {
                 corner(0.0, 0.5, -4.0),
             ],
         ];
-        let scene = Scene {
-            objects: vec![peelnet_scene::Object::of_triangles(
-                "box",
-                &triangles,
-                Material::unlit([1.0; 3], 0.5),
-            )],
-            ..Scene::default()
-        };
+        let material = Material::unlit([1.0; 3], 0.5);
+        let object = peelnet_scene::Object::of_triangles("box", &triangles, material);
+        let scene = Scene::generated("s", "a test", [0.0; 3], camera(), vec![object]);
         let warp = DepthWarp::new(1.0, 8.0);
         let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
         let found = of_boxes(&view, &scene, &camera(), [3, 3]);
-        let expected = Range::of([2.0, 4.0].map(|z: f64| warp.apply(z)));
+        // Boxes are a ten-thousandth larger than what they hold.
+        let expected = Range::of([1.9998, 4.0002].map(|z: f64| warp.apply(z)));
         assert_eq!(found, [expected, Range::WHOLE]);
     }
 

@@ -86,8 +86,8 @@ fn statistics_are_rounded_to_halves() {
     let (entry, view) = (entry(FOUR), random_view(30));
     let found = entry.measure(&view, None);
     let with = |precision| {
-        view.measure(|f| {
-            let design = entry.design;
+        view.measure(|stack| {
+            let (f, design) = (stack.fragments, entry.design);
             slabs::composite_rounded(f, [0.0; 3], &view.warp, design, precision, slabs::middle)
         })
     };
@@ -98,7 +98,9 @@ fn statistics_are_rounded_to_halves() {
 #[test]
 fn references_are_the_twins() {
     let view = random_view(9);
-    let expected = |twin: &(dyn Fn(&[Fragment]) -> [f32; 3] + Sync)| view.measure(twin).mse_linear;
+    let expected = |twin: &(dyn Fn(&[Fragment]) -> [f32; 3] + Sync)| {
+        view.measure(|stack| twin(stack.fragments)).mse_linear
+    };
     let moments = expected(&|fragments| {
         let empty = mboit4::Moments::default();
         let settings = moments::Settings::PAPER;
@@ -106,7 +108,7 @@ fn references_are_the_twins() {
     });
     let nearest = expected(&|f| kbuffer::composite(f, [0.0; 3], 4, None, Colors::Full));
     for (name, expected) in [(MOMENTS, moments), (KBUFFER, nearest)] {
-        let found = view.measure_method(&name.parse().unwrap()).mse_linear;
+        let found = view.measure_method(&name.parse().unwrap(), None).mse_linear;
         assert!(
             found > 1e-8 && found == expected,
             "{name}: {found} {expected}"
@@ -169,6 +171,7 @@ fn scores_are_geometric_means_and_the_worst_scene() {
         [0, 1].map(|k| Measured {
             mse_linear: errors[k],
             contour_pairs: pairs[k],
+            flicker: [pairs[k], None],
         })
     };
     let own = of([1e-3, 1e-3], [Some(0.5), None]);
@@ -185,4 +188,5 @@ fn scores_are_geometric_means_and_the_worst_scene() {
         close(score.worst, 1.0) && close(score.contour_pairs, 0.5),
         "{score:?}"
     );
+    assert!(close(score.flicker[0], 0.5) && score.flicker[1].is_none());
 }

@@ -15,7 +15,7 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    GeometryPass, GeometryPipelines, Order, Sorted, Surfaces,
+    BoxPass, GeometryPass, GeometryPipelines, Order, Sorted, Surfaces,
     count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
     frame::clear_color,
     fullscreen::FullscreenPass,
@@ -126,6 +126,8 @@ pub(crate) struct Gather<'a> {
     pub reads: &'a [usize],
     pub loads: &'a [usize],
     pub stores: &'a [usize],
+    /// Draws boxes around transparent parts instead of their surfaces.
+    pub boxes: bool,
 }
 
 impl Gather<'_> {
@@ -139,6 +141,7 @@ impl Gather<'_> {
         reads: &[],
         loads: &[],
         stores: &[],
+        boxes: false,
     };
 }
 
@@ -196,9 +199,16 @@ impl Plan<'_> {
 #[derive(Debug)]
 struct BuiltPass {
     label: &'static str,
-    pipelines: GeometryPipelines,
+    drawn: Drawn,
     group: Option<Bound>,
     writes: Vec<usize>,
+}
+
+/// What a pass draws.
+#[derive(Debug)]
+enum Drawn {
+    Surfaces(GeometryPipelines),
+    Boxes(BoxPass),
 }
 
 #[derive(Debug)]
@@ -445,15 +455,26 @@ fn build_pass(
         targets: &written,
         ..GeometryPass::NONE
     };
-    let pipelines = b
-        .scene
-        .pipelines(b.gpu, b.frame, Surfaces::Transparent, &pass)?;
+    let drawn = if gather.boxes {
+        Drawn::Boxes(BoxPass::new(b.gpu, b.scene, b.frame, &pass)?)
+    } else {
+        let pipelines = b
+            .scene
+            .pipelines(b.gpu, b.frame, Surfaces::Transparent, &pass);
+        Drawn::Surfaces(pipelines?)
+    };
     Ok(BuiltPass {
         label: gather.label,
-        pipelines,
+        drawn,
         group,
         writes,
     })
+}
+
+impl BuiltPass {
+    const fn draws_surfaces(&self) -> bool {
+        matches!(self.drawn, Drawn::Surfaces(_))
+    }
 }
 
 impl Compositor for Commutative {
@@ -476,15 +497,22 @@ impl Compositor for Commutative {
             if let (true, Some(view)) = (colors.is_empty(), &self.attachment) {
                 colors.push(unwritten_attachment(view));
             }
+            if let Drawn::Boxes(boxes) = &p.drawn {
+                boxes.update(cx.recorder, cx.scene);
+            }
             let mut pass = cx.recorder.render(p.label, &colors, None);
             if let Some(group) = &p.group {
                 pass.set_bind_group(1, &group.group, &[]);
             }
-            match &self.sorted {
-                Some(sorted) => sorted.draw(&mut pass, cx.scene, cx.frame, &p.pipelines),
-                None => cx
-                    .scene
-                    .draw(&mut pass, cx.frame, Surfaces::Transparent, &p.pipelines),
+            match (&p.drawn, &self.sorted) {
+                (Drawn::Boxes(boxes), _) => boxes.draw(&mut pass, cx.frame),
+                (Drawn::Surfaces(of_pass), Some(sorted)) => {
+                    sorted.draw(&mut pass, cx.scene, cx.frame, of_pass);
+                }
+                (Drawn::Surfaces(of_pass), None) => {
+                    let half = Surfaces::Transparent;
+                    cx.scene.draw(&mut pass, cx.frame, half, of_pass);
+                }
             }
             drop(pass);
             if let Some(kernel) = self.kernel.as_ref().filter(|k| k.after == number) {
@@ -497,7 +525,7 @@ impl Compositor for Commutative {
         cx.resolve(&self.resolve);
         Ok(FrameStats {
             tiles: 1,
-            geometry_passes: self.passes.len() as u32,
+            geometry_passes: self.passes.iter().filter(|p| p.draws_surfaces()).count() as u32,
             fullscreen_passes: 1 + u32::from(self.kernel.is_some()),
             bytes_per_pixel: self.bytes_per_pixel,
             ..Default::default()

@@ -29,8 +29,8 @@ const KEEP: Word = Word {
 
 const RANGE: Word = Word {
     name: "range",
-    about: "what is cut into slabs: the pixel's own range of depth (pixel, by default), found by a geometry pass of its own, or the frame's (frame), with a pass less and several times the error",
-    words: &["pixel", "frame"],
+    about: "what is cut into slabs: the pixel's own range of depth (pixel, by default), found by a geometry pass of its own; from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's (frame), with a pass less and several times the error",
+    words: &["pixel", "boxes", "frame"],
 };
 
 fn design(spec: &MethodSpec) -> Design {
@@ -62,7 +62,12 @@ const fn promises(_: &MethodSpec) -> Promises {
 const THIN: Flaw = Flaw::unsettled(Property::Order, &["thin-slab"]);
 
 fn is_of_pixel(spec: &MethodSpec) -> bool {
-    RANGE.of(spec) != "frame"
+    RANGE.of(spec) == "pixel"
+}
+
+/// Lists of fragments have no boxes: what is drawn with them has no CPU twin.
+fn is_of_boxes(spec: &MethodSpec) -> bool {
+    RANGE.of(spec) == "boxes"
 }
 
 const BORDERS: Flaw = Flaw::new(
@@ -82,6 +87,9 @@ pub(super) const METHOD: Method = Method {
     promises,
     curve: &["", ":keep=medium", ":keep=small"],
     twin: Some(|s, p| {
+        if is_of_boxes(s) {
+            return None;
+        }
         let (fragments, c0, warp) = (p.fragments, p.background, &p.warp);
         Some(slabs::composite(
             fragments,
@@ -92,6 +100,9 @@ pub(super) const METHOD: Method = Method {
         ))
     }),
     transmittances: Some(|s, fragments, warp, _| {
+        if is_of_boxes(s) {
+            return None;
+        }
         let half = SumPrecision::Half;
         Some(slabs::weights(
             fragments,
@@ -122,7 +133,7 @@ fn transmittances(
     warp: &DepthWarp,
     model: Option<&Model>,
 ) -> Option<Vec<f64>> {
-    let model = model?;
+    let model = model.filter(|_| !is_of_boxes(spec))?;
     let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
         return None;
     };
@@ -133,7 +144,7 @@ fn transmittances(
 }
 
 fn twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
-    let model = p.model?;
+    let model = p.model.filter(|_| !is_of_boxes(spec))?;
     let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
         return None;
     };
@@ -281,11 +292,17 @@ fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor
         &[]
     };
     let extra = [("learned::weight", text)];
+    let boxes = is_of_boxes(b.spec);
     let range = Gather {
         label: "range",
-        shader: "methods::slabs::range",
+        shader: if boxes {
+            "methods::slabs::boxes"
+        } else {
+            "methods::slabs::range"
+        },
         extra: &extra,
         writes: &statistics_reads,
+        boxes,
         ..Gather::NONE
     };
     let statistics = Gather {
