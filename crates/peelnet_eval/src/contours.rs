@@ -17,7 +17,7 @@ use peelnet_scene::Camera;
 pub const THRESHOLD: f64 = 2.0;
 
 /// What a difference of two errors must exceed: the threshold and the rounding of both errors, so that exactly two steps are no contour.
-const LIMIT: f64 = THRESHOLD + 2.0 * ERROR_ROUNDING;
+pub(crate) const LIMIT: f64 = THRESHOLD + 2.0 * ERROR_ROUNDING;
 
 /// The pair with the next pixel of the row.
 const RIGHT: u8 = 1;

@@ -101,11 +101,6 @@ impl BoxPass {
         pass.set_vertex_buffer(0, self.boxes.slice(..));
         pass.draw(0..VERTICES, 0..self.count);
     }
-
-    /// Bytes of all boxes.
-    pub fn bytes(&self) -> u64 {
-        self.boxes.size()
-    }
 }
 
 /// The lower and the upper corner of each box, in world space.

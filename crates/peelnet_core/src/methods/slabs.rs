@@ -455,11 +455,12 @@ pub fn seen_given(
 }
 
 fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
-    let point = |&(depth, alpha): &(f32, f32)| {
-        let zeta = warp.apply(depth.into());
-        (absorbance(alpha), zeta, alpha >= FAINT)
-    };
-    fragments.iter().map(point).collect()
+    let of = |&(depth, alpha): &(f32, f32)| point(alpha, warp.apply(depth.into()));
+    fragments.iter().map(of).collect()
+}
+
+fn point(alpha: f32, zeta: f64) -> Point {
+    (absorbance(alpha), zeta, alpha >= FAINT)
 }
 
 /// The guess without a network: the middle of the bounds.
@@ -475,30 +476,12 @@ pub fn composite(
     design: Design,
     guess: impl Fn(&Between) -> f64,
 ) -> [f32; 3] {
-    composite_rounded(
-        fragments,
-        background,
-        warp,
-        design,
-        SumPrecision::Exact,
-        guess,
-    )
-}
-
-/// As [`composite`], with the sums of the statistics kept in a precision.
-pub fn composite_rounded(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    design: Design,
-    precision: SumPrecision,
-    guess: impl Fn(&Between) -> f64,
-) -> [f32; 3] {
     let zeta = |depth: f32| warp.apply(depth.into());
-    composite_on(fragments, background, zeta, design, precision, guess)
+    let exact = SumPrecision::Exact;
+    composite_on(fragments, background, zeta, design, exact, guess)
 }
 
-/// As [`composite_rounded`], with linear depths put on a scale of one's own, −1 … 1.
+/// As [`composite`], with linear depths put on a scale of one's own, −1 … 1, and the sums of the statistics kept in a precision.
 pub fn composite_on(
     fragments: &[Fragment],
     background: [f32; 3],
@@ -509,7 +492,7 @@ pub fn composite_on(
 ) -> [f32; 3] {
     let points: Vec<Point> = fragments
         .iter()
-        .map(|f| (absorbance(f.alpha), zeta(f.depth), f.alpha >= FAINT))
+        .map(|f| point(f.alpha, zeta(f.depth)))
         .collect();
     let total: f64 = points.iter().map(|p| p.0).sum();
     if total == 0.0 {

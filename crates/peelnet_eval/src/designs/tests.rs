@@ -88,7 +88,8 @@ fn statistics_are_rounded_to_halves() {
     let with = |precision| {
         view.measure(|stack| {
             let (f, design) = (stack.fragments, entry.design);
-            slabs::composite_rounded(f, [0.0; 3], &view.warp, design, precision, slabs::middle)
+            let zeta = |depth: f32| view.warp.apply(depth.into());
+            slabs::composite_on(f, [0.0; 3], zeta, design, precision, slabs::middle)
         })
     };
     assert_eq!(found, with(SumPrecision::Half));

@@ -7,10 +7,10 @@ use super::{
 use crate::{
     EvalError,
     compare::{EXACT, is_too_large},
-    contours::{Pairs, THRESHOLD},
+    contours::{LIMIT, Pairs},
     front::EXACT_MSE,
     geometric_mean,
-    metrics::{ERROR_ROUNDING, error_image},
+    metrics::error_image,
 };
 use peelnet_core::{
     absorbance::DepthWarp,
@@ -114,7 +114,7 @@ pub struct Measured {
     pub mse_linear: f64,
     /// Share of contour pairs; `None` of a view without pairs.
     pub contour_pairs: Option<f64>,
-    /// Share of the frame's pixels whose error changes by more than [`THRESHOLD`] with each of [`MOTIONS`]; `None` where that was not asked.
+    /// Share of the frame's pixels whose error changes by more than [`crate::contours::THRESHOLD`] with each of [`MOTIONS`]; `None` where that was not asked.
     pub flicker: [Option<f64>; MOTIONS.len()],
 }
 
@@ -186,42 +186,43 @@ impl View {
     ///
     /// The background is none of a method's error: its share of a pixel is the same for all.
     pub fn measure(&self, composite: impl Fn(&Stacked<'_>) -> [f32; 3] + Sync) -> Measured {
-        let colors = self.colors(&composite);
-        let pixels = self.stacks.iter().zip(&colors);
+        self.measured(&self.colors(&composite)).0
+    }
+
+    /// The same, with the change of the error by each of [`MOTIONS`].
+    pub fn measure_moving(&self, composite: impl Fn(&Stacked<'_>) -> [f32; 3] + Sync) -> Measured {
+        let (mut measured, still) = self.measured(&self.colors(&composite));
+        for (view, flicker) in self.after.iter().zip(&mut measured.flicker) {
+            let (Some(still), Some(after)) = (&still, view.errors(&view.colors(&composite))) else {
+                continue;
+            };
+            let changes = still.iter().zip(&after);
+            let changes =
+                changes.filter(|(a, b)| (0..3).any(|k| f64::from((a[k] - b[k]).abs()) > LIMIT));
+            *flicker = Some(changes.count() as f64 / self.frame.max(1) as f64);
+        }
+        measured
+    }
+
+    /// The error of these colours, as figures and as an image.
+    fn measured(&self, colors: &[[f64; 3]]) -> (Measured, Option<Vec<[f32; 3]>>) {
+        let pixels = self.stacks.iter().zip(colors);
         let squares = pixels.map(|(stack, color)| {
             let channels = stack.exact.iter().zip(color);
             channels.map(|(e, c)| (c - e).powi(2)).sum::<f64>()
         });
         let mse_linear = squares.sum::<f64>() / (3 * self.frame).max(1) as f64;
-        let errors = self.errors(&colors);
+        let errors = self.errors(colors);
         let contour_pairs = match (&self.shown, &errors) {
             (Some(shown), Some(errors)) => shown.pairs.share(errors).ok().flatten(),
             _ => None,
         };
-        Measured {
+        let measured = Measured {
             mse_linear,
             contour_pairs,
             flicker: [None; MOTIONS.len()],
-        }
-    }
-
-    /// The same, with the change of the error by each of [`MOTIONS`].
-    pub fn measure_moving(&self, composite: impl Fn(&Stacked<'_>) -> [f32; 3] + Sync) -> Measured {
-        let limit = (THRESHOLD + 2.0 * ERROR_ROUNDING) as f32;
-        let still = self.errors(&self.colors(&composite));
-        let mut flicker = [None; MOTIONS.len()];
-        for (view, flicker) in self.after.iter().zip(&mut flicker) {
-            let (Some(still), Some(after)) = (&still, view.errors(&view.colors(&composite))) else {
-                continue;
-            };
-            let changes = still.iter().zip(&after);
-            let changes = changes.filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > limit));
-            *flicker = Some(changes.count() as f64 / self.frame.max(1) as f64);
-        }
-        Measured {
-            flicker,
-            ..self.measure(composite)
-        }
+        };
+        (measured, errors)
     }
 
     fn colors(&self, composite: &(impl Fn(&Stacked<'_>) -> [f32; 3] + Sync)) -> Vec<[f64; 3]> {
@@ -298,9 +299,11 @@ pub fn peel(
             for pixels in MOTIONS {
                 let mut after = of_camera(&moved(camera, size, pixels))?;
                 after.last = of_last(&after, &view, width, height);
-                // Frames follow one another both ways.
-                view.last = of_last(&view, &after, width, height);
                 view.after.push(after);
+            }
+            // Frames follow one another both ways: it comes after the one that moved most.
+            if let Some(before) = view.after.last() {
+                view.last = of_last(&view, before, width, height);
             }
             views.push(view);
         }

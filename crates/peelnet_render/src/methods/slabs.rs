@@ -33,19 +33,20 @@ const RANGE: Word = Word {
     words: &["pixel", "boxes", "frame"],
 };
 
-fn design(spec: &MethodSpec) -> Design {
-    let asked = KEEP.of(spec);
-    let layout = Layout::ALL.into_iter().find(|l| l.name() == asked);
-    ranged(spec, layout.unwrap_or(Layout::Large).design())
+fn asked(spec: &MethodSpec) -> Layout {
+    let name = KEEP.of(spec);
+    let found = Layout::ALL.into_iter().find(|l| l.name() == name);
+    found.unwrap_or(Layout::Large)
 }
 
-/// A design over the range that is asked for.
-fn ranged(spec: &MethodSpec, design: Design) -> Design {
+/// A design over the range that is asked for, for the CPU twin. Lists of fragments have no boxes: what is drawn with them has none.
+fn ranged(spec: &MethodSpec, design: Design) -> Option<Design> {
     let extent = match RANGE.of(spec) {
+        "boxes" => return None,
         "frame" => Extent::Frame,
         _ => Extent::Pixel,
     };
-    Design { extent, ..design }
+    Some(Design { extent, ..design })
 }
 
 fn is_small(spec: &MethodSpec) -> bool {
@@ -65,11 +66,6 @@ fn is_of_pixel(spec: &MethodSpec) -> bool {
     RANGE.of(spec) == "pixel"
 }
 
-/// Lists of fragments have no boxes: what is drawn with them has no CPU twin.
-fn is_of_boxes(spec: &MethodSpec) -> bool {
-    RANGE.of(spec) == "boxes"
-}
-
 const BORDERS: Flaw = Flaw::new(
     Property::Steady,
     &["moving-camera"],
@@ -87,30 +83,15 @@ pub(super) const METHOD: Method = Method {
     promises,
     curve: &["", ":keep=medium", ":keep=small"],
     twin: Some(|s, p| {
-        if is_of_boxes(s) {
-            return None;
-        }
+        let design = ranged(s, asked(s).design())?;
         let (fragments, c0, warp) = (p.fragments, p.background, &p.warp);
-        Some(slabs::composite(
-            fragments,
-            c0,
-            warp,
-            design(s),
-            slabs::middle,
-        ))
+        let guess = slabs::middle;
+        Some(slabs::composite(fragments, c0, warp, design, guess))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        if is_of_boxes(s) {
-            return None;
-        }
+        let design = ranged(s, asked(s).design())?;
         let half = SumPrecision::Half;
-        Some(slabs::weights(
-            fragments,
-            warp,
-            design(s),
-            half,
-            slabs::middle,
-        ))
+        Some(slabs::weights(fragments, warp, design, half, slabs::middle))
     }),
     flaws: &[
         Flaw::swallowed(&["deep"]),
@@ -133,18 +114,18 @@ fn transmittances(
     warp: &DepthWarp,
     model: Option<&Model>,
 ) -> Option<Vec<f64>> {
-    let model = model.filter(|_| !is_of_boxes(spec))?;
+    let model = model?;
     let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
         return None;
     };
-    let (design, half) = (ranged(spec, design), SumPrecision::Half);
+    let (design, half) = (ranged(spec, design)?, SumPrecision::Half);
     Some(slabs::weights(fragments, warp, design, half, |between| {
         model.answer(features, between)
     }))
 }
 
 fn twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
-    let model = p.model.filter(|_| !is_of_boxes(spec))?;
+    let model = p.model?;
     let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
         return None;
     };
@@ -152,7 +133,7 @@ fn twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
         p.fragments,
         p.background,
         &p.warp,
-        ranged(spec, design),
+        ranged(spec, design)?,
         |between| model.answer(features, between),
     ))
 }
@@ -243,35 +224,30 @@ fn kept(layout: Layout) -> Vec<Target> {
     }
 }
 
-/// The layout of a recipe's design.
-fn layout(design: &Design) -> Layout {
-    let layout = design.layout();
-    layout.expect("recipes that are drawn keep what a layout holds")
-}
-
 fn build_learned(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let learned = b.learned_weight()?;
     let Inputs::Slabs(design, _) = learned.recipe.inputs else {
         unreachable!("the recipe of a method of slabs reads slabs");
     };
-    build(b, ranged(b.spec, design), &learned.wgsl)
+    let layout = design.layout();
+    let layout = layout.expect("recipes that are drawn keep what a layout holds");
+    build(b, layout, &learned.wgsl)
 }
 
 fn build_plain(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let design = design(b.spec);
+    let layout = asked(b.spec);
     let mut text = String::from(
         "// The guess without a network: the middle between the bounds.\n\
          fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
     );
-    for module in peelnet_shaders::slab_modules(layout(&design).name()) {
+    for module in peelnet_shaders::slab_modules(layout.name()) {
         text.push_str(peelnet_shaders::source(module)?);
     }
-    build(b, design, &text)
+    build(b, layout, &text)
 }
 
-fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor>, RenderError> {
-    let layout = layout(&design);
-    let framed = design.extent == Extent::Frame;
+fn build(b: &Build<'_>, layout: Layout, text: &str) -> Result<Box<dyn Compositor>, RenderError> {
+    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.of(b.spec) == word);
     let mut targets = vec![SUMS];
     targets.extend(kept(layout));
     let kept: Vec<usize> = (1..targets.len()).collect();
@@ -286,13 +262,11 @@ fn build(b: &Build<'_>, design: Design, text: &str) -> Result<Box<dyn Compositor
     // The shaders' own case is the largest.
     features.extend((layout != Layout::Large).then_some(layout.name()));
     features.extend(framed.then_some("frame"));
-    let resolve_features: &[&str] = if design.slabs.len() < 4 {
-        &["three"]
-    } else {
-        &[]
+    let resolve_features: &[&str] = match layout {
+        Layout::Small | Layout::Medium => &["three"],
+        Layout::Large => &[],
     };
     let extra = [("learned::weight", text)];
-    let boxes = is_of_boxes(b.spec);
     let range = Gather {
         label: "range",
         shader: if boxes {
