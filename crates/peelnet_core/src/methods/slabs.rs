@@ -125,7 +125,7 @@ impl Design {
     pub const MEDIUM: Self = Self {
         slabs: &[
             until(0.15, true, true),
-            until(0.5, true, true),
+            until(0.55, true, true),
             until(1.0, true, true),
         ],
         ..Self::SMALL
