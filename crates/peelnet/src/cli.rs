@@ -286,6 +286,15 @@ pub enum Precision {
     F16,
 }
 
+impl From<Precision> for peelnet_export::Precision {
+    fn from(precision: Precision) -> Self {
+        match precision {
+            Precision::F32 => Self::F32,
+            Precision::F16 => Self::F16,
+        }
+    }
+}
+
 /// `peelnet export`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:

@@ -10,11 +10,6 @@ use peelnet_model::Model;
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failure> {
-    if args.precision != Precision::F32 {
-        return Err(Failure::Usage(
-            "--precision f16: this version does not write it yet; use --precision f32".into(),
-        ));
-    }
     let mut outputs = Outputs::new(context, [&args.model]);
     outputs.file("--out", &args.out, peelnet_export::KIND)?;
     if let Some(description) = peelnet_export::description_path(&args.out) {
@@ -24,12 +19,11 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     let model = Model::load(&args.model)?;
     let gpu = context.gpu()?;
     outputs.begin(&[])?;
-    let verification = peelnet_export::export(
-        &gpu,
-        &model,
-        &args.out,
-        &peelnet_export::Options { language },
-    )?;
+    let options = peelnet_export::Options {
+        language,
+        precision: args.precision.into(),
+    };
+    let verification = peelnet_export::export(&gpu, &model, &args.out, &options)?;
     context.console.result(
         || {
             format!(
@@ -45,7 +39,10 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
                 "model": json_path(&args.model),
                 "recipe": model.meta.recipe,
                 "lang": language.name(),
-                "precision": "f32",
+                "precision": match args.precision {
+                    Precision::F32 => "f32",
+                    Precision::F16 => "f16",
+                },
                 "adapter": gpu.info.name,
                 "samples": verification.samples,
                 "worst_absolute": verification.worst_absolute,
