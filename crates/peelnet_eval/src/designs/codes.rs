@@ -38,7 +38,7 @@ pub(super) fn surfaces(scene: &Scene, camera: &Camera) -> Vec<u32> {
     all
 }
 
-/// The two channels of a surface. Neighbouring numbers share none.
+/// The two channels of a surface; all pairs are used before one is used again.
 fn channels(surface: u32) -> [usize; 2] {
     let mut left = (surface.wrapping_mul(11) % PAIRS) as usize;
     for first in 0..CHANNELS {
