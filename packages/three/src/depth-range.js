@@ -41,8 +41,9 @@ export class DepthRange {
 	}
 
 	/**
-	 * The range clipped to the camera's, as `[ offset, near, far ]`: `offset` is subtracted from z first. An orthographic
-	 * camera's range starts at 0, which makes the scale of depth linear.
+	 * Writes what shaders need of the range, clipped to the camera's: what to subtract from z, then the fields of the texts'
+	 * PeelnetRange, as their function peelnet_range computes them. An orthographic camera's z starts at 0 in it, which makes the
+	 * scale of depth linear.
 	 */
 	write( camera, target ) {
 
@@ -57,9 +58,16 @@ export class DepthRange {
 
 		}
 
-		if ( camera.isPerspectiveCamera === true && near > 0 ) return target.set( 0, near, far );
+		if ( camera.isPerspectiveCamera === true && near > 0 ) {
 
-		return target.set( near, 0, far - near );
+			const extent = Math.log( far / near );
+
+			// Closer than that, depths hardly differ.
+			return target.set( 0, 1 / near, near, extent <= 1e-6 ? 0 : 2 / extent );
+
+		}
+
+		return target.set( near, 0, 0, far > near ? 2 / ( far - near ) : 0 );
 
 	}
 

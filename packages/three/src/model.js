@@ -53,6 +53,8 @@ export function modelProblem( model ) {
 
 	}
 
+	if ( model.wgsl.includes( 'fn peelnet_zeta_in(' ) === false ) return `The recipe "${ recipe }" cannot be drawn by this package: its text has no peelnet_zeta_in.`;
+
 	const unsupported = ( what ) => `The recipe "${ recipe }" cannot be drawn by this package: ${ what }.`;
 	const passes = list( description.passes );
 

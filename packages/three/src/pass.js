@@ -1,7 +1,7 @@
 // The pass that replaces three.js's sorted drawing of transparent objects by a learned, order-independent one.
 
-import { NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector3 } from 'three/webgpu';
-import { uniform } from 'three/tsl';
+import { NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector4 } from 'three/webgpu';
+import { renderGroup, uniform } from 'three/tsl';
 import { DepthRange } from './depth-range.js';
 import { deviceProblem, watchDevice } from './device.js';
 import { modelProblem } from './model.js';
@@ -51,7 +51,7 @@ export class PeelnetPassNode extends PassNode {
 
 		this._model = model;
 		this._range = range;
-		this._span = uniform( new Vector3( 0, 0.1, 1 ) );
+		this._span = uniform( new Vector4() ).setGroup( renderGroup );
 		this._depths = new DepthRange();
 		this._stages = null;
 		this._stale = true;

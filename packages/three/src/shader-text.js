@@ -80,8 +80,8 @@ const parameters = ( names, drawn ) => names.filter( ( name ) => drawn.has( name
 /**
  * A pass as one function of the fragment. It returns a matrix: a column per target.
  *
- * `color` is the fragment's colour with opacity in alpha, `z` its distance along the view axis, `span` the frame's range of z:
- * what to subtract from z, then near and far.
+ * `color` is the fragment's colour with opacity in alpha, `distance_view` its distance along the view axis, `span` what to
+ * subtract from that and then the frame's PeelnetRange: one logarithm less for each fragment than near and far.
  */
 export function passText( model, pass, drawn, isGlsl ) {
 
@@ -91,11 +91,11 @@ export function passText( model, pass, drawn, isGlsl ) {
 
 	while ( columns.length < 4 ) columns.push( language.zero );
 
-	return language.function( `peelnet_pass_${ pass.name }`, [ [ 'color', 'vec4' ], [ 'distance_view', 'float' ], [ 'span', 'vec3' ], ...parameters( pass.reads, drawn ) ], language.matrix, [
+	return language.function( `peelnet_pass_${ pass.name }`, [ [ 'color', 'vec4' ], [ 'distance_view', 'float' ], [ 'span', 'vec4' ], ...parameters( pass.reads, drawn ) ], language.matrix, [
 		'\t' + language.constant( 'float', 'alpha', 'clamp(color.a, 0.0, 1.0)' ),
 		'\t' + language.constant( 'vec3', 'rgb', 'color.rgb' ),
 		'\t' + language.constant( 'float', 'z', 'distance_view - span.x' ),
-		'\t' + language.constant( 'float', 'zeta', 'peelnet_zeta(z, span.y, span.z)' ),
+		'\t' + language.constant( 'float', 'zeta', 'peelnet_zeta_in(z, PeelnetRange(span.y, span.z, span.w))' ),
 		...reads( language, model, pass.reads, drawn ),
 		'\t' + language.statements( pass.compute, library ),
 		`\treturn ${ language.matrix }(${ columns.join( ', ' ) });`

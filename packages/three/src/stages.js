@@ -4,7 +4,7 @@ import {
 	AddEquation, BlendMode, CustomBlending, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
 	OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, ZeroFactor
 } from 'three/webgpu';
-import { Fn, code, ivec2, mrt, output, positionView, screenCoordinate, textureLoad, vec4, glslFn, wgslFn } from 'three/tsl';
+import { Fn, code, diffuseColor, ivec2, mrt, output, positionView, screenCoordinate, textureLoad, vec4, glslFn, wgslFn } from 'three/tsl';
 import { isShaded, passesOf } from './model.js';
 import { libraryText, passText, resolveText } from './shader-text.js';
 
@@ -52,6 +52,9 @@ function renderTarget( pass, depthTexture ) {
 
 // What the material wrote, with the colour that it had before it was multiplied by its opacity.
 const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
+
+	// three.js keeps as many channels of a material's output as the first target has.
+	if ( builder.renderer.getRenderTarget().texture.format !== RGBAFormat ) return vec4( 0, 0, 0, diffuseColor.a );
 
 	if ( builder.material.premultipliedAlpha !== true ) return output;
 

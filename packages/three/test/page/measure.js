@@ -26,6 +26,16 @@ const float = ( count ) => new THREE.RenderTarget( WIDTH, HEIGHT, { count, type:
 
 const read = ( renderer, target, index = 0 ) => renderer.readRenderTargetPixelsAsync( target, 0, 0, target.width, target.height, index );
 
+/**
+ * Begins a frame, as the renderer does when the browser is about to draw. Without it a second drawing in the same frame would not
+ * draw its passes again.
+ */
+export function nextFrame( renderer ) {
+
+	renderer._nodes.nodeFrame.update();
+
+}
+
 /** The linear colours that a node shows, as RGBA. The second frame is read: the first may differ by what it initialises. */
 export async function imageOf( renderer, node, frames = 2 ) {
 
@@ -36,6 +46,7 @@ export async function imageOf( renderer, node, frames = 2 ) {
 
 	for ( let i = 0; i < frames; i ++ ) {
 
+		nextFrame( renderer );
 		renderer.setRenderTarget( target );
 		pipeline.render();
 		renderer.setRenderTarget( null );
@@ -214,6 +225,7 @@ export async function frameTime( renderer, draw, frames ) {
 
 	for ( let i = 0; i < frames; i ++ ) {
 
+		nextFrame( renderer );
 		draw();
 		await done();
 

@@ -111,3 +111,103 @@ export function fifty( { alphaMap = null } = {} ) {
 	return scene;
 
 }
+
+// A texture of soft blobs: opacity in every channel, as alpha maps read green.
+function blobs( size = 64 ) {
+
+	const data = new Uint8Array( 4 * size * size );
+
+	for ( let y = 0; y < size; y ++ ) {
+
+		for ( let x = 0; x < size; x ++ ) {
+
+			const v = 127.5 + 127.5 * Math.sin( x * 0.35 ) * Math.cos( y * 0.25 );
+
+			data.set( [ v, v, v, 255 ], 4 * ( y * size + x ) );
+
+		}
+
+	}
+
+	const texture = new THREE.DataTexture( data, size, size );
+
+	texture.magFilter = THREE.LinearFilter;
+	texture.minFilter = THREE.LinearFilter;
+	texture.needsUpdate = true;
+
+	return texture;
+
+}
+
+function skinned() {
+
+	// A strip of four segments along y; its two bones bend it towards the camera.
+	const geometry = new THREE.PlaneGeometry( 0.8, 2, 1, 4 );
+	const { position } = geometry.attributes;
+	const indices = [];
+	const weights = [];
+
+	for ( let i = 0; i < position.count; i ++ ) {
+
+		const upper = ( position.getY( i ) + 1 ) / 2;
+
+		indices.push( 0, 1, 0, 0 );
+		weights.push( 1 - upper, upper, 0, 0 );
+
+	}
+
+	geometry.setAttribute( 'skinIndex', new THREE.Uint16BufferAttribute( indices, 4 ) );
+	geometry.setAttribute( 'skinWeight', new THREE.Float32BufferAttribute( weights, 4 ) );
+
+	const bones = [ new THREE.Bone(), new THREE.Bone() ];
+
+	bones[ 0 ].add( bones[ 1 ] );
+
+	const mesh = new THREE.SkinnedMesh( geometry, new THREE.MeshStandardMaterial( { color: 0x60c040, transparent: true, opacity: 0.6, side: THREE.DoubleSide } ) );
+
+	mesh.add( bones[ 0 ] );
+	mesh.bind( new THREE.Skeleton( bones ) );
+	bones[ 1 ].rotation.x = 1.2;
+	mesh.position.set( 0.9, 0.4, 0.1 );
+
+	return mesh;
+
+}
+
+/** Instances, a skinned mesh, alpha maps, vertex opacities, alpha tests and sprites between one another, in fog. */
+export function mixed() {
+
+	const scene = fifty( { alphaMap: blobs() } );
+	const next = random( 11 );
+	const matrix = new THREE.Matrix4();
+	const instances = new THREE.InstancedMesh( new THREE.PlaneGeometry( 0.5, 0.5 ), new THREE.MeshStandardMaterial( { transparent: true, opacity: 0.45, side: THREE.DoubleSide } ), 20 );
+
+	for ( let i = 0; i < instances.count; i ++ ) {
+
+		matrix.makeRotationY( next() * 2 - 1 ).setPosition( next() * 4 - 2, next() * 2.4 - 1, next() * 4 - 2 );
+		instances.setMatrixAt( i, matrix );
+		instances.setColorAt( i, new THREE.Color().setHSL( next(), 0.8, 0.5 ) );
+
+	}
+
+	const faded = new THREE.PlaneGeometry( 1.5, 1.5 );
+
+	faded.setAttribute( 'color', new THREE.Float32BufferAttribute( [ 1, 0, 0, 0.9, 0, 1, 0, 0.2, 0, 0, 1, 0.5, 1, 1, 1, 0.7 ], 4 ) );
+
+	const veil = new THREE.Mesh( faded, new THREE.MeshBasicMaterial( { vertexColors: true, transparent: true, side: THREE.DoubleSide } ) );
+
+	veil.position.set( - 0.8, 0.5, 1.31 );
+
+	const tested = new THREE.Mesh( new THREE.PlaneGeometry( 1.5, 1.5 ), new THREE.MeshBasicMaterial( { color: 0xffd020, alphaMap: blobs(), alphaTest: 0.4, transparent: true, side: THREE.DoubleSide } ) );
+
+	tested.position.set( 0.5, - 0.3, 1.57 );
+
+	const sprite = new THREE.Sprite( new THREE.SpriteMaterial( { color: 0x40e0ff, opacity: 0.5 } ) );
+
+	sprite.position.set( - 0.4, 0.9, 0.83 );
+	scene.add( instances, veil, tested, sprite, skinned() );
+	scene.fog = new THREE.Fog( 0xa0b0c0, 4, 12 );
+
+	return scene;
+
+}
