@@ -4,7 +4,7 @@ import * as THREE from 'three/webgpu';
 import { pass, renderOutput, screenUV, texture, vec2 } from 'three/tsl';
 import { oitPass } from 'three/addons/tsl/display/OITPassNode.js';
 import { peelnetPass } from '@peelnet/three';
-import { HEIGHT, WIDTH, errors, frameTime, imageOf, makeRenderer, peeled } from './measure.js';
+import { HEIGHT, WIDTH, errors, frameTime, imageOf, makeRenderer, nextFrame, peeled } from './measure.js';
 import * as scenes from './scenes.js';
 
 const modelOf = async ( name ) => ( await import( `@peelnet/three/models/${ name }.js` ) ).default;
@@ -226,3 +226,371 @@ export async function settings( backend ) {
 	return { before, after, changed: errors( added, image ), added: errors( added, sorted ) };
 
 }
+
+/** Ranges of z of scenes whose boxes are known, as `[near, far]`. */
+export async function depthRanges( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const camera = scenes.perspective( aspect );
+
+	camera.position.set( 0, 0, 7 );
+	camera.rotation.set( 0, 0, 0 );
+
+	const model = await modelOf( 'medium' );
+	const glass = () => new THREE.MeshBasicMaterial( { transparent: true, opacity: 0.5, side: THREE.DoubleSide } );
+	const card = ( z ) => {
+
+		const mesh = new THREE.Mesh( new THREE.PlaneGeometry( 1, 1 ), glass() );
+
+		mesh.position.z = z;
+
+		return mesh;
+
+	};
+
+	const rangeOf = async ( objects, change = () => {} ) => {
+
+		const scene = new THREE.Scene();
+
+		scene.add( ...objects );
+
+		const { node } = await drawn( renderer, scene, camera, { model } );
+
+		if ( change( node ) !== undefined ) await imageOf( renderer, node );
+
+		// What the uniform holds, read back as near and far.
+		const [ , inverse, near, scale ] = node._span.value.toArray();
+
+		return [ near, near * Math.exp( 2 / scale ) ].map( ( v ) => Math.round( v * 1e4 ) / 1e4 ).concat( Math.abs( inverse * near - 1 ) < 1e-6 );
+
+	};
+
+	const instances = new THREE.InstancedMesh( new THREE.PlaneGeometry( 0.5, 0.5 ), glass(), 2 );
+
+	instances.setMatrixAt( 0, new THREE.Matrix4().setPosition( 0, 0, 1 ) );
+	instances.setMatrixAt( 1, new THREE.Matrix4().setPosition( 0, 0, - 3 ) );
+
+	const strip = scenes.skinned();
+
+	strip.position.set( 0, 0, 0 );
+
+	const opaque = card( 4 );
+
+	opaque.material = new THREE.MeshBasicMaterial();
+
+	const hidden = card( 3 );
+
+	hidden.visible = false;
+
+	const aside = card( 2 );
+
+	aside.position.x = 40;
+
+	return {
+		cards: await rangeOf( [ card( 1 ), card( - 2 ) ] ),
+		ignored: await rangeOf( [ card( 1 ), card( - 2 ), opaque, hidden, aside ] ),
+		instances: await rangeOf( [ instances ] ),
+		moved: await rangeOf( [ instances ], () => {
+
+			instances.setMatrixAt( 1, new THREE.Matrix4().setPosition( 0, 0, - 5 ) );
+			instances.instanceMatrix.needsUpdate = true;
+
+			return true;
+
+		} ),
+		clipped: await rangeOf( [ card( 6.95 ), card( - 2 ) ] ),
+		skinned: await rangeOf( [ strip ] ),
+		given: await rangeOf( [ card( 1 ), card( - 2 ) ], ( node ) => ( node.depthRange = [ 2, 20 ] ) )
+	};
+
+}
+
+// The device's own objects, counted as they are made.
+function counted( renderer ) {
+
+	const counts = {};
+	const { backend } = renderer;
+	const wrap = ( object, names ) => {
+
+		for ( const name of names ) {
+
+			const method = object[ name ];
+
+			object[ name ] = ( ...rest ) => {
+
+				counts[ name ] = ( counts[ name ] ?? 0 ) + 1;
+
+				return method.apply( object, rest );
+
+			};
+
+		}
+
+	};
+
+	if ( backend.isWebGPUBackend === true ) wrap( backend.device, [ 'createTexture', 'createBuffer', 'createShaderModule', 'createRenderPipeline', 'createBindGroup', 'createSampler' ] );
+	else wrap( backend.gl, [ 'createTexture', 'createBuffer', 'createShader', 'createProgram', 'createFramebuffer', 'createRenderbuffer', 'createVertexArray' ] );
+
+	return counts;
+
+}
+
+/** What frames make on the device after the first ones, with objects and camera moving. */
+export async function steady( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.mixed();
+	const camera = scenes.perspective( aspect );
+	const pipeline = new THREE.RenderPipeline( renderer, peelnetPass( scene, camera, { model: await modelOf( 'medium' ) } ) );
+	const frame = ( i ) => {
+
+		scene.children[ 10 ].position.x = Math.sin( i );
+		camera.position.x = 0.1 * i;
+		nextFrame( renderer );
+		pipeline.render();
+
+	};
+
+	for ( let i = 0; i < 3; i ++ ) frame( i );
+
+	const counts = counted( renderer );
+
+	for ( let i = 3; i < 13; i ++ ) frame( i );
+
+	return counts;
+
+}
+
+/** What three.js counts as memory, and its objects, before a pass, with it, after changes of the model, and after dispose. */
+export async function memory( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.fifty();
+	const camera = scenes.perspective( aspect );
+	const base = pass( scene, camera );
+
+	await imageOf( renderer, base );
+
+	const now = () => ( { ...renderer.info.memory, renderObjects: renderer._objects._renderObjects.size, contexts: Object.keys( renderer._renderContexts._renderContexts ).length } );
+	const before = now();
+	const node = peelnetPass( scene, camera, { model: await modelOf( 'medium' ) } );
+
+	await imageOf( renderer, node );
+
+	const withPass = now();
+
+	for ( const name of [ 'small', 'large', 'medium' ] ) {
+
+		node.model = await modelOf( name );
+		await imageOf( renderer, node );
+
+	}
+
+	const afterChanges = now();
+
+	node.dispose();
+
+	return { before, withPass, afterChanges, after: now() };
+
+}
+
+/** A model set at run time draws what a new pass with it draws. */
+export async function swapped( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.fifty();
+	const camera = scenes.perspective( aspect );
+	const { node, image: medium } = await drawn( renderer, scene, camera, { model: await modelOf( 'medium' ) } );
+
+	node.model = await modelOf( 'large' );
+
+	const large = await imageOf( renderer, node );
+	const fresh = await drawn( renderer, scene, camera, { model: node.model } );
+
+	node.range = 'frame';
+
+	const frame = await imageOf( renderer, node );
+	const freshFrame = await drawn( renderer, scene, camera, { model: node.model, range: 'frame' } );
+
+	return { changed: errors( large, medium ), fresh: errors( large, fresh.image ), frame: errors( frame, freshFrame.image ), passes: node._stages.passes.length };
+
+}
+
+/** Every bad input: its messages, and how far the image is from three.js's sorted one. */
+export async function bad( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.twoCards();
+	const camera = scenes.perspective( aspect );
+	const good = await modelOf( 'medium' );
+	const sorted = await imageOf( renderer, pass( scene, camera ) );
+	const result = {};
+
+	const described = ( change ) => {
+
+		const description = structuredClone( good.description );
+
+		change( description );
+
+		return { ...good, description };
+
+	};
+
+	const inputs = {
+		none: {},
+		'no model': { model: { weights: [] } },
+		version: { model: described( ( d ) => ( d.format_version = 2 ) ) },
+		recipe: { model: described( ( d ) => ( d.passes[ 1 ].reads = [ 'front' ] ) ) },
+		format: { model: described( ( d ) => ( d.passes[ 1 ].targets[ 0 ].format = 'rgba64float' ) ) },
+		blend: { model: described( ( d ) => ( d.passes[ 1 ].targets[ 0 ].color = 'min' ) ) },
+		name: { model: described( ( d ) => ( d.passes[ 1 ].targets[ 0 ].name = 'x; }' ) ) },
+		text: { model: { ...good, wgsl: '' } },
+		glsl: { model: { ...good, glsl: null } },
+		range: { model: good, range: 'tile' },
+		multisampling: { model: good, samples: 4 },
+		depth: { model: good, depthBuffer: false }
+	};
+
+	for ( const [ key, options ] of Object.entries( inputs ) ) {
+
+		const { image, problems, node } = await drawn( renderer, scene, camera, options );
+
+		result[ key ] = { problems, ...errors( image, sorted ) };
+		node.dispose();
+
+	}
+
+	// The device's own limits, taken away one by one.
+	const { backend: device } = renderer;
+	const lacking = async ( key, object, name, value ) => {
+
+		const kept = Object.getOwnPropertyDescriptor( object, name );
+
+		Object.defineProperty( object, name, { value, configurable: true, writable: true } );
+
+		const { image, problems, node } = await drawn( renderer, scene, camera, { model: good } );
+
+		if ( kept === undefined ) delete object[ name ];
+		else Object.defineProperty( object, name, kept );
+
+		result[ key ] = { problems, ...errors( image, sorted ) };
+		node.dispose();
+
+	};
+
+	if ( backend === 'webgpu' ) {
+
+		await lacking( 'compatibility', device, 'compatibilityMode', true );
+		await lacking( 'bytes', device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 16 } );
+
+	} else {
+
+		await lacking( 'indexed blends', device, 'drawBuffersIndexedExt', null );
+
+	}
+
+	return result;
+
+}
+
+/** A renderer with multisampling, whose pass takes it over. */
+export async function multisampled( backend ) {
+
+	const renderer = await makeRenderer( backend, { antialias: true } );
+	const { problems, node } = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ) } );
+	const off = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ), samples: 0 } );
+
+	return { problems, samples: node.renderTarget.samples, off: off.problems };
+
+}
+
+/** A scene without transparent objects costs what three.js's pass costs; and one that gets and loses them is drawn right. */
+export async function empty( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.twoCards();
+	const cards = [ ...scene.children ];
+	const camera = scenes.perspective( aspect );
+	const model = await modelOf( 'medium' );
+	const draws = async ( node ) => {
+
+		await imageOf( renderer, node );
+		renderer.info.reset();
+
+		const image = await imageOf( renderer, node, 1 );
+
+		return { image, calls: renderer.info.render.frameCalls };
+
+	};
+
+	scene.remove( ...cards );
+
+	const node = peelnetPass( scene, camera, { model } );
+	const nothing = await draws( node );
+	const plain = await draws( pass( scene, camera ) );
+
+	scene.add( ...cards );
+
+	const something = await draws( node );
+	const exact = await peeled( renderer, scene, camera );
+
+	scene.remove( ...cards );
+
+	const again = await draws( node );
+
+	return { nothing: errors( nothing.image, plain.image ), calls: [ nothing.calls, plain.calls, something.calls ], something: errors( something.image, exact.image ), again: errors( again.image, plain.image ), problem: node.problem };
+
+}
+
+/** What is said when the device is lost, and when it is destroyed on purpose. */
+export async function lost( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	let lose;
+
+	if ( backend === 'webgpu' ) {
+
+		// A page cannot lose a device but by destroying it, so the promise is one of the test.
+		const promise = new Promise( ( resolve ) => ( lose = () => resolve( { reason: 'unknown', message: 'test' } ) ) );
+
+		Object.defineProperty( renderer.backend.device, 'lost', { value: promise } );
+
+	} else {
+
+		lose = () => renderer.backend.extensions.get( 'WEBGL_lose_context' ).loseContext();
+
+	}
+
+	const { problems } = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ) } );
+	const other = await makeRenderer( backend );
+	const { problems: silent } = await drawn( other, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ) } );
+
+	other.dispose();
+	lose();
+	await new Promise( ( resolve ) => setTimeout( resolve, 200 ) );
+
+	return { problems, silent };
+
+}
+
+/** A picture of the canvas, as a data URL. */
+export async function picture( backend, { scene: name = 'fifty', model = 'medium' } ) {
+
+	const renderer = await makeRenderer( backend );
+
+	renderer.setSize( 640, 480 );
+
+	const pipeline = new THREE.RenderPipeline( renderer, peelnetPass( scenes[ name ](), scenes.perspective( 640 / 480 ), { model: await modelOf( model ) } ) );
+
+	for ( let i = 0; i < 2; i ++ ) {
+
+		nextFrame( renderer );
+		pipeline.render();
+
+	}
+
+	return renderer.domElement.toDataURL();
+
+}
+
+export const versions = () => ( { three: THREE.REVISION, agent: navigator.userAgent } );

@@ -157,7 +157,13 @@ export async function peeled( renderer, scene, camera, mostLayers = 64 ) {
 
 	}
 
-	for ( let i = 0; i < through.length; i ++ ) for ( let k = 0; k < 3; k ++ ) image[ 4 * i + k ] += through[ i ] * below[ 4 * i + k ];
+	for ( let i = 0; i < through.length; i ++ ) {
+
+		for ( let k = 0; k < 3; k ++ ) image[ 4 * i + k ] += through[ i ] * below[ 4 * i + k ];
+
+		image[ 4 * i + 3 ] = 1 - through[ i ] * ( 1 - below[ 4 * i + 3 ] );
+
+	}
 
 	renderer.setRenderObjectFunction( kept.fn );
 	renderer.setMRT( null );

@@ -65,3 +65,17 @@ export async function pieces( backend, { rounds = 6, frames = 3 } ) {
 	for ( let r = 0; r <= rounds; r ++ ) for ( const k in ps ) { const x = await frameTime( renderer, () => ps[ k ].render(), frames ); if ( r ) t[ k ].push( x ); }
 	return Object.fromEntries( Object.entries( t ).map( ( [ k, v ] ) => [ k, Math.min( ...v ).toFixed( 1 ) ] ) );
 }
+export async function tm( backend ) {
+	const { renderOutput } = await import( 'three/tsl' );
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.fifty(); const camera = scenes.perspective( 320 / 240 );
+	const m = ( await import( '@peelnet/three/models/medium.js' ) ).default;
+	const px = ( a ) => [ ...a.slice( 4 * ( 120 * 320 + 160 ), 4 * ( 120 * 320 + 160 ) + 4 ) ];
+	const o = {};
+	o.peel = px( await imageOf( renderer, peelnetPass( scene, camera, { model: m } ) ) );
+	o.peelT = px( await imageOf( renderer, renderOutput( peelnetPass( scene, camera, { model: m } ), THREE.ACESFilmicToneMapping, THREE.LinearSRGBColorSpace ) ) );
+	o.passT = px( await imageOf( renderer, renderOutput( pass( scene, camera ), THREE.ACESFilmicToneMapping, THREE.LinearSRGBColorSpace ) ) );
+	o.pass = px( await imageOf( renderer, renderOutput( pass( scene, camera ), THREE.NoToneMapping, THREE.LinearSRGBColorSpace ) ) );
+	o.oitT = px( await imageOf( renderer, renderOutput( oitPass( scene, camera ), THREE.ACESFilmicToneMapping, THREE.LinearSRGBColorSpace ) ) );
+	return o;
+}

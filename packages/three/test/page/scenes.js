@@ -139,7 +139,7 @@ function blobs( size = 64 ) {
 
 }
 
-function skinned() {
+export function skinned() {
 
 	// A strip of four segments along y; its two bones bend it towards the camera.
 	const geometry = new THREE.PlaneGeometry( 0.8, 2, 1, 4 );
