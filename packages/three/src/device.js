@@ -62,35 +62,27 @@ function webglProblem( { backend }, model, passes, targets, count, lacks ) {
 }
 
 /**
- * Calls back once when the renderer's device is lost, unless it was destroyed on purpose.
+ * Calls back when the renderer's device is lost. A renderer that is disposed loses nothing.
  *
  * @returns {() => void} stops watching
  */
 export function watchDevice( renderer, onLost ) {
 
+	const before = renderer.onDeviceLost;
 	let watching = true;
-	const lost = ( why ) => watching && onLost( `The graphics device was lost${ why }. Nothing can be drawn until a new renderer and a new peelnetPass are made.` );
 
-	if ( renderer.backend.isWebGPUBackend === true ) {
+	renderer.onDeviceLost = ( info ) => {
 
-		renderer.backend.device.lost.then( ( { reason, message } ) => reason !== 'destroyed' && lost( message ? ` (${ message })` : '' ) );
+		before.call( renderer, info );
 
-		return () => {
+		if ( watching ) onLost( 'The graphics device was lost. Nothing can be drawn until a new renderer and a new peelnetPass are made.' );
 
-			watching = false;
-
-		};
-
-	}
-
-	const listener = () => lost( '' );
-
-	renderer.domElement.addEventListener( 'webglcontextlost', listener );
+	};
 
 	return () => {
 
+		// What another has put over it since then stays, and calls this one.
 		watching = false;
-		renderer.domElement.removeEventListener( 'webglcontextlost', listener );
 
 	};
 

@@ -112,7 +112,7 @@ export class PeelnetPassNode extends PassNode {
 		super.setSize( width, height );
 
 		this._finished.setSize( this.renderTarget.width, this.renderTarget.height );
-		this._stages?.setSize( this.renderTarget.width, this.renderTarget.height );
+		this._stages?.setSize( this.renderTarget );
 
 	}
 

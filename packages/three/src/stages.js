@@ -109,9 +109,17 @@ export class Stages {
 
 	}
 
-	setSize( width, height ) {
+	/** Takes size, viewport and scissor of the target of the opaque objects over. */
+	setSize( { width, height, viewport, scissor, scissorTest } ) {
 
-		for ( const { target } of this.passes ) target.setSize( width, height );
+		for ( const { target } of this.passes ) {
+
+			target.setSize( width, height );
+			target.viewport.copy( viewport );
+			target.scissor.copy( scissor );
+			target.scissorTest = scissorTest;
+
+		}
 
 	}
 
