@@ -18,7 +18,8 @@ const PACKAGE = dirname( dirname( fileURLToPath( import.meta.url ) ) );
 const EXPORTS = join( PACKAGE, '../../models' );
 const MOST_BYTES = 10_000;
 
-const names = process.argv.length > 2 ? process.argv.slice( 2 ) : [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ];
+const isMain = process.argv[ 1 ] === fileURLToPath( import.meta.url );
+const names = isMain && process.argv.length > 2 ? process.argv.slice( 2 ) : [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ];
 
 // Comments cost bytes in every page; the licence's line stays.
 const withoutComments = ( text ) => text.split( '\n' ).filter( ( line ) => /^\s*(\/\/|$)/.test( line ) === false ).map( ( line ) => line.replace( /^ +/, '' ) ).join( '\n' );
