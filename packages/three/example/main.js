@@ -1,5 +1,5 @@
 // One scene, drawn by three.js's sorting, by its weighted OIT and by a learned model, with each one's error against peeling.
-// One renderer draws all views; each is copied to a canvas of its own.
+// Each view has a renderer of its own; they share the scene.
 
 import { RenderPipeline } from 'three/webgpu';
 import { pass } from 'three/tsl';
@@ -22,33 +22,45 @@ const REST_MS = 400;
 const element = ( id ) => document.getElementById( id );
 const message = ( text ) => ( element( 'message' ).textContent = text );
 
-function figure( parent, title ) {
+function figure( parent, title, canvas ) {
 
 	const result = document.createElement( 'figure' );
-	const canvas = document.createElement( 'canvas' );
 	const caption = document.createElement( 'figcaption' );
 
-	canvas.width = WIDTH;
-	canvas.height = HEIGHT;
 	caption.textContent = title;
 	result.append( canvas, caption );
 	element( parent ).append( result );
 
-	return { canvas, caption, context: canvas.getContext( '2d' ) };
+	return caption;
 
 }
 
-// Black, red, yellow, white.
-function heat( context, image, exact ) {
+function blank() {
 
+	const canvas = document.createElement( 'canvas' );
+
+	canvas.width = WIDTH;
+	canvas.height = HEIGHT;
+
+	return canvas;
+
+}
+
+// Black, red, yellow, white. WebGL reads images from the bottom up.
+function heat( canvas, image, exact, isFlipped ) {
+
+	const context = canvas.getContext( '2d' );
 	const data = context.createImageData( WIDTH, HEIGHT );
 
 	for ( let i = 0; i < exact.length; i += 4 ) {
 
+		const y = Math.floor( i / 4 / WIDTH );
+		const to = i + ( isFlipped ? 4 * WIDTH * ( HEIGHT - 1 - 2 * y ) : 0 );
+
 		const error = Math.max( ...[ 0, 1, 2 ].map( ( k ) => Math.abs( shown( image[ i + k ] ) - shown( exact[ i + k ] ) ) ) );
 		const t = 3 * Math.min( error / WHITE, 1 );
 
-		data.data.set( [ 255 * Math.min( t, 1 ), 255 * Math.min( Math.max( t - 1, 0 ), 1 ), 255 * Math.max( t - 2, 0 ), 255 ], i );
+		data.data.set( [ 255 * Math.min( t, 1 ), 255 * Math.min( Math.max( t - 1, 0 ), 1 ), 255 * Math.max( t - 2, 0 ), 255 ], to );
 
 	}
 
@@ -59,9 +71,10 @@ function heat( context, image, exact ) {
 async function start() {
 
 	const backend = new URLSearchParams( location.search ).get( 'backend' ) === 'webgl2' ? 'webgl2' : 'webgpu';
-	const renderer = await makeRenderer( backend );
+	const renderers = [];
 
-	renderer.domElement.remove();
+	for ( let i = 0; i < 3; i ++ ) renderers.push( await makeRenderer( backend ) );
+
 	element( 'backend' ).textContent = backend === 'webgpu' ? 'Draw with WebGL 2' : 'Draw with WebGPU';
 	element( 'backend' ).href = backend === 'webgpu' ? '?backend=webgl2' : '?';
 	element( 'model' ).append( ...Object.keys( MODELS ).map( ( name ) => new Option( name, name, false, name === 'medium' ) ) );
@@ -81,7 +94,16 @@ async function start() {
 	};
 
 	const choice = () => ( { model: MODELS[ element( 'model' ).value ], range: element( 'range' ).value, samples: 0, onProblem: message } );
-	const panels = [ 'three.js, sorted', 'three.js, weighted OIT', 'peelnet' ].map( ( title ) => ( { title, view: figure( 'views', title ), error: figure( 'errors', '' ) } ) );
+	const panels = [ 'three.js, sorted', 'three.js, weighted OIT', 'peelnet' ].map( ( title, i ) => {
+
+		const canvas = renderers[ i ].domElement;
+		const heatMap = blank();
+
+		figure( 'views', title, canvas );
+
+		return { renderer: renderers[ i ], canvas, heatMap, caption: figure( 'errors', '', heatMap ) };
+
+	} );
 
 	const build = () => {
 
@@ -94,11 +116,11 @@ async function start() {
 
 		const nodes = [ pass( scene, camera, { samples: 0 } ), oitPass( scene, camera, { samples: 0 } ), peelnetPass( scene, camera, choice() ) ];
 
-		views = nodes.map( ( node ) => ( { node, pipeline: new RenderPipeline( renderer, node ) } ) );
+		views = nodes.map( ( node, i ) => ( { node, pipeline: new RenderPipeline( renderers[ i ], node ) } ) );
 		controls.forEach( ( control ) => control.dispose() );
-		controls = panels.map( ( { view } ) => {
+		controls = panels.map( ( { canvas } ) => {
 
-			const control = new OrbitControls( camera, view.canvas );
+			const control = new OrbitControls( camera, canvas );
 
 			control.addEventListener( 'change', changed );
 
@@ -113,16 +135,17 @@ async function start() {
 
 		judged = true;
 
-		const exact = await peeled( renderer, scene, camera );
+		const exact = await peeled( renderers[ 0 ], scene, camera );
 		const results = [];
 
 		for ( const [ i, { node } ] of views.entries() ) {
 
+			const { renderer, heatMap, caption } = panels[ i ];
 			const image = await imageOf( renderer, node, 1 );
 			const { rmse, largest } = errors( image, exact.image );
 
-			heat( panels[ i ].error.context, image, exact.image );
-			panels[ i ].error.caption.textContent = `RMSE ${ rmse.toFixed( 2 ) } of 255, largest ${ largest.toFixed( 0 ) }`;
+			heat( heatMap, image, exact.image, backend === 'webgl2' );
+			caption.textContent = `RMSE ${ rmse.toFixed( 2 ) } of 255, largest ${ largest.toFixed( 0 ) }`;
 			results.push( rmse );
 
 		}
@@ -174,18 +197,13 @@ async function start() {
 
 	let busy = false;
 
-	renderer.setAnimationLoop( async () => {
+	renderers[ 0 ].setAnimationLoop( async () => {
 
 		if ( busy ) return;
 
 		busy = true;
 
-		for ( const [ i, { pipeline } ] of views.entries() ) {
-
-			pipeline.render();
-			panels[ i ].view.context.drawImage( renderer.domElement, 0, 0 );
-
-		}
+		for ( const { pipeline } of views ) pipeline.render();
 
 		if ( judged === false && performance.now() - changedAt > REST_MS ) await judge().catch( ( error ) => message( error.message ) );
 

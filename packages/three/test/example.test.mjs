@@ -82,14 +82,28 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			assert.ok( layers > 10 );
 			assert.ok( learned < sorted / 2 && learned < weighted / 3, `${ learned } ${ sorted } ${ weighted }` );
 
-			const image = await browser.page.evaluate( () => {
+			// A canvas of WebGPU can be read only as a data URL here.
+			const image = await browser.page.evaluate( async () => {
 
 				const canvases = [ ...document.querySelectorAll( 'canvas' ) ];
 				const all = document.createElement( 'canvas' );
+				const context = all.getContext( '2d' );
+				const { width, height } = canvases[ 0 ];
 
-				all.width = 3 * canvases[ 0 ].width;
-				all.height = 2 * canvases[ 0 ].height;
-				canvases.forEach( ( canvas, i ) => all.getContext( '2d' ).drawImage( canvas, ( i % 3 ) * canvas.width, Math.floor( i / 3 ) * canvas.height ) );
+				Object.assign( all, { width: 3 * width, height: 2 * height } );
+
+				// Views can be read in the frame that draws them, after it was drawn.
+				const urls = await new Promise( ( resolve ) => requestAnimationFrame( () => resolve( canvases.map( ( canvas ) => canvas.toDataURL() ) ) ) );
+
+				for ( const [ i, url ] of urls.entries() ) {
+
+					const part = new Image();
+
+					part.src = url;
+					await part.decode();
+					context.drawImage( part, ( i % 3 ) * width, Math.floor( i / 3 ) * height );
+
+				}
 
 				return all.toDataURL();
 

@@ -64,28 +64,43 @@ export async function timed( backend, { scene: name = 'fifty', models = [ 'mediu
 	for ( const model of models ) for ( const range of ranges ) nodes[ `${ model }:${ range }` ] = peelnetPass( scene, camera, { model: await modelOf( model ), range } );
 
 	const pipelines = Object.entries( nodes ).map( ( [ key, node ] ) => [ key, new THREE.RenderPipeline( renderer, node ) ] );
-	const times = Object.fromEntries( pipelines.map( ( [ key ] ) => [ key, [] ] ) );
+	const rows = Object.fromEntries( pipelines.map( ( [ key ] ) => [ key, { wall: [], processor: [] } ] ) );
 
 	for ( let round = 0; round <= rounds; round ++ ) {
 
 		for ( const [ key, pipeline ] of pipelines ) {
 
-			const time = await frameTime( renderer, () => pipeline.render(), frames );
+			const before = await window.processorTime();
+			const wall = await frameTime( renderer, () => pipeline.render(), frames );
+			const processor = ( await window.processorTime() - before ) / ( frames + 1 );
 
 			// The first round compiles.
-			if ( round > 0 ) times[ key ].push( time );
+			if ( round > 0 ) {
+
+				rows[ key ].wall.push( wall );
+				rows[ key ].processor.push( processor );
+
+			}
 
 		}
 
 	}
 
-	const median = ( values ) => values.sort( ( a, b ) => a - b )[ Math.floor( values.length / 2 ) ];
-	const ratios = Object.fromEntries( Object.keys( times ).map( ( key ) => [ key, median( times[ key ].map( ( time, i ) => time / times.weighted[ i ] ) ) ] ) );
-	const ms = Object.fromEntries( Object.keys( times ).map( ( key ) => [ key, median( [ ...times[ key ] ] ) ] ) );
+	const median = ( values ) => values.toSorted( ( a, b ) => a - b )[ Math.floor( values.length / 2 ) ];
+	const rounded = ( value ) => Math.round( 100 * value ) / 100;
+	const result = {};
+
+	for ( const [ key, row ] of Object.entries( rows ) ) {
+
+		result[ key ] = { ms: rounded( median( row.wall ) ) };
+
+		for ( const kind of [ 'wall', 'processor' ] ) result[ key ][ `of weighted, ${ kind }` ] = rounded( median( row[ kind ].map( ( time, i ) => time / rows.weighted[ kind ][ i ] ) ) );
+
+	}
 
 	renderer.dispose();
 
-	return { ms, ratios };
+	return result;
 
 }
 

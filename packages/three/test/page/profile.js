@@ -24,7 +24,7 @@ export async function profile( backend, { model = 'medium', rounds = 6, frames =
 		all: mk( () => {} )
 	};
 	const t = Object.fromEntries( Object.keys( ps ).map( ( k ) => [ k, [] ] ) );
-	for ( let r = 0; r <= rounds; r ++ ) for ( const k in ps ) { const x = await frameTime( renderer, () => ps[ k ].render(), frames ); if ( r ) t[ k ].push( x ); }
+	for ( let r = 0; r <= rounds; r ++ ) for ( const k in ps ) { const c0 = await window.cpu(); const x = await frameTime( renderer, () => ps[ k ].render(), frames ); const c1 = await window.cpu(); if ( r ) t[ k ].push( ( c1 - c0 ) / ( frames + 1 ) ); }
 	return Object.fromEntries( Object.entries( t ).map( ( [ k, v ] ) => [ k, Math.min( ...v ).toFixed( 1 ) ] ) );
 }
 export async function dump( backend ) {
@@ -62,7 +62,7 @@ export async function pieces( backend, { rounds = 6, frames = 3 } ) {
 		statsPlace: mk( null, ( x ) => x, 1, ( p ) => { p.compute = 'let s = peelnet_place(alpha, zeta, range);'; p.targets.forEach( ( t ) => ( t.write = 'vec4f(s.near, s.far, s.inside, s.slab)' ) ); } ),
 	};
 	const t = Object.fromEntries( Object.keys( ps ).map( ( k ) => [ k, [] ] ) );
-	for ( let r = 0; r <= rounds; r ++ ) for ( const k in ps ) { const x = await frameTime( renderer, () => ps[ k ].render(), frames ); if ( r ) t[ k ].push( x ); }
+	for ( let r = 0; r <= rounds; r ++ ) for ( const k in ps ) { const c0 = await window.cpu(); const x = await frameTime( renderer, () => ps[ k ].render(), frames ); const c1 = await window.cpu(); if ( r ) t[ k ].push( ( c1 - c0 ) / ( frames + 1 ) ); }
 	return Object.fromEntries( Object.entries( t ).map( ( [ k, v ] ) => [ k, Math.min( ...v ).toFixed( 1 ) ] ) );
 }
 export async function tm( backend ) {
@@ -77,5 +77,19 @@ export async function tm( backend ) {
 	o.passT = px( await imageOf( renderer, renderOutput( pass( scene, camera ), THREE.ACESFilmicToneMapping, THREE.LinearSRGBColorSpace ) ) );
 	o.pass = px( await imageOf( renderer, renderOutput( pass( scene, camera ), THREE.NoToneMapping, THREE.LinearSRGBColorSpace ) ) );
 	o.oitT = px( await imageOf( renderer, renderOutput( oitPass( scene, camera ), THREE.ACESFilmicToneMapping, THREE.LinearSRGBColorSpace ) ) );
+	return o;
+}
+export async function copies( backend ) {
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.fifty(); const camera = scenes.perspective( 320 / 240 );
+	const p = new THREE.RenderPipeline( renderer, pass( scene, camera ) );
+	const c = document.createElement( 'canvas' ); c.width = 320; c.height = 240; const x = c.getContext( '2d', { willReadFrequently: true } );
+	const mean = () => { const d = x.getImageData( 0, 0, 320, 240 ).data; let s = 0; for ( const v of d ) s += v; return s / d.length; };
+	const o = {};
+	nextFrame( renderer ); p.render(); x.drawImage( renderer.domElement, 0, 0 ); o.attached = mean();
+	nextFrame( renderer ); p.render(); const b = await createImageBitmap( renderer.domElement ); x.clearRect( 0, 0, 320, 240 ); x.drawImage( b, 0, 0 ); o.bitmap = mean();
+	nextFrame( renderer ); p.render(); const u = renderer.domElement.toDataURL(); const im = new Image(); im.src = u; await im.decode(); x.clearRect( 0, 0, 320, 240 ); x.drawImage( im, 0, 0 ); o.url = mean();
+	const c2 = document.createElement( 'canvas' ); c2.width = 320; c2.height = 240; const x2 = c2.getContext( '2d' ); nextFrame( renderer ); p.render(); x2.drawImage( renderer.domElement, 0, 0 ); x.clearRect( 0, 0, 320, 240 ); x.drawImage( c2, 0, 0 ); o.plain2d = mean();
+	renderer.domElement.remove(); nextFrame( renderer ); p.render(); x.drawImage( renderer.domElement, 0, 0 ); o.detached = mean();
 	return o;
 }
