@@ -1,5 +1,6 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
+// WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 5-12-1 (Relu hidden, Sigmoid last), 85 parameters, 72 multiply-adds. Recipe anchored-medium, seed 1, 80 epochs.
 // Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
 // Input 0: root_absorbance (root of the rest's absorbance), 0.0 .. 21.672869 in training.
@@ -10,18 +11,26 @@
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.000286, validation 0.000283, test 0.000284.
 // Held-out error, mean |T - T_exact|: boxes-held 0.01767, cups-held 0.01845, foliage-held 0.00934, panes-held 0.00575, sixteen-held 0.01032, smoke-held 0.01492.
-// Self-test: peelnet_weight(0.0, 0.0, 0.0, 0.0, 0.0) = 1.0
-// Self-test: peelnet_weight(10.836434, 0.5, 0.5, 0.5, 0.5) = 4.3367993e-25
-// Self-test: peelnet_weight(21.672869, 1.0, 1.0, 1.0, 1.0) = 0.0
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(8.434867, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.13616015
+// peelnet_weight(12.38736, 0.06893927, 0.677021, 0.9734965, 0.49854618) = 0.07002933
+// peelnet_weight(3.30784, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.13059078
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.49881455
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25946447
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
+//    colour of the pixel: 0.615625, 0.3654342, 0.2501908
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
 // 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta);
 //    moments: rgba16float, cleared to 0, blending ADD, from s.moments
 //    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
-// 2. Pass "weights": draw all transparent surfaces, in any order. let f = peelnet_fragment(alpha, zeta, moments, extent); let w = f.x; let end = f.y > 0.0;
-//    sums: rgba16float, cleared to 0, blending ADD, from select(vec4f(alpha * rgb, alpha) * w, vec4f(0.0), end)
-//    ends: rgba16float, cleared to 0, blending ADD, from select(vec4f(0.0), vec4f(alpha * rgb, alpha) * w, end)
+// 2. Pass "weights": draw all transparent surfaces, in any order. let f = peelnet_fragment(alpha, zeta, moments, extent);
+//    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * (f.x * (1.0 - f.y))
+//    ends: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * (f.x * f.y)
 // 3. Resolve: peelnet_resolve(sums, ends, moments.x, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.

@@ -1,5 +1,6 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
+// WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 10-32-16-3 (Relu hidden, Sigmoid last), 931 parameters, 880 multiply-adds. Recipe dfaoit, seed 1, 80 epochs.
 // Answers: linear RGB of all transparent fragments over black, kept in 0 .. 1.
 // Input 0: average_alpha (1), 0.0009999871 .. 0.9968691 in training.
@@ -15,9 +16,11 @@
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.029213, validation 0.029830, test 0.030060.
 // Held-out error: not measured.
-// Self-test: peelnet_color(0.0009999871, 0.000017803908, 0.00002731681, 0.000014126301, 0.000022806082, 0.00008407443, 0.00012758934, 0.0, 0.0000023829562, 0.000006549183) = 0.015832042, 0.016533332, 0.015237284
-// Self-test: peelnet_color(0.49893454, 0.56000316, 0.57405984, 0.57418126, 32.19918, 32.305763, 31.991425, 0.5469757, 0.5618446, 0.554082) = 0.6113237, 0.6900124, 0.6604914
-// Self-test: peelnet_color(0.9968691, 1.1199884, 1.1480924, 1.1483483, 64.39834, 64.61144, 63.98272, 1.0939513, 1.1236868, 1.1081574) = 0.9305273, 0.9644161, 0.9537181
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_color(0.12901771, 0.48814502, 0.8798075, 0.25024742, 51.831226, 45.61385, 54.950882, 1.0285736, 0.0970773, 0.8838439) = 0.8760686, 0.08804324, 0.81630087
+// peelnet_color(0.36053663, 0.17250448, 0.51982284, 0.8352883, 57.589027, 58.289486, 34.403847, 0.9756609, 0.39438033, 0.635563) = 0.9202888, 0.17447427, 0.4297853
+// peelnet_color(0.6020318, 0.0709633, 0.077931054, 0.6669274, 13.86327, 32.770977, 12.301881, 1.0207328, 0.40882134, 0.6197012) = 0.72496265, 0.622202, 0.85906094
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. Composite the two nearest fragments of each pixel exactly, by depth peeling or insertion, into front: premultiplied colour, and transmittance in alpha. The pass below draws them again, with front = true.

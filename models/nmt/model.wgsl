@@ -1,5 +1,6 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
+// WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 7-32-16-1 (Relu hidden, Sigmoid last), 801 parameters, 752 multiply-adds. Recipe nmt, seed 1, 80 epochs.
 // Answers: transmittance in front, kept in 0.000061035156 .. 1.0.
 // Input 0: depth (exponentially, 0 .. 1 from the pixel's nearest to its farthest fragment), 0.0 .. 1.0 in training.
@@ -12,9 +13,17 @@
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.007198, validation 0.007181, test 0.007143.
 // Held-out error, mean |T - T_exact|: boxes-held 0.08453, cups-held 0.06040, foliage-held 0.06456, panes-held 0.03089, sixteen-held 0.04972, smoke-held 0.05938.
-// Self-test: peelnet_weight(0.0, 1.0, 0.0010004875, -80.85934, 3.7754373e-11, -57.520317, 3.5329184e-20) = 1.0
-// Self-test: peelnet_weight(0.5, 80.5, 235.12599, 35.059273, 96.62249, 19.061394, 72.81276) = 0.000061035156
-// Self-test: peelnet_weight(1.0, 160.0, 470.25098, 150.97787, 193.24498, 95.643105, 145.62552) = 0.000061035156
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(0.018830061, 57.07815, 241.96938, -46.578133, 50.34723, 63.05597, 44.85323) = 0.8982961
+// peelnet_weight(0.10960746, 26.60792, 32.12202, -53.79111, 29.232393, -44.68416, 47.719048) = 0.07236152
+// peelnet_weight(0.32296264, 97.54397, 83.583275, 4.4620743, 20.028915, 80.53683, 13.9612255) = 0.59069395
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 0.9952261
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.3993589
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.29710189
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.08558102
+//    colour of the pixel: 0.61800605, 0.30233145, 0.25074708
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.

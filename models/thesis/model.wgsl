@@ -1,5 +1,6 @@
 // A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
 // Licence of this generated text: MIT OR Apache-2.0.
+// WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 3-10-8-1 (Relu hidden, Identity last), 137 parameters, 118 multiply-adds. Recipe thesis, seed 1, 80 epochs.
 // Answers: transmittance in front, kept in 0.000061035156 .. 1.0.
 // Input 0: linear_depth (scene units), 0.0024710565 .. 104389.4 in training.
@@ -8,9 +9,17 @@
 // Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
 // Loss: training 0.047925, test 0.047930.
 // Held-out error, mean |T - T_exact|: boxes-held 0.23040, cups-held 0.18727, foliage-held 0.26137, panes-held 0.20116, sixteen-held 0.26588, smoke-held 0.15981.
-// Self-test: peelnet_weight(0.0024710565, 0.001, 1.0) = 1.0
-// Self-test: peelnet_weight(52194.703, 74.119156, 80.5) = 0.000061035156
-// Self-test: peelnet_weight(104389.4, 148.23732, 160.0) = 0.000061035156
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(83258.75, 11.463098, 5.8220344) = 0.4349108
+// peelnet_weight(86725.37, 9.456088, 3.9939797) = 0.6371832
+// peelnet_weight(10160.313, 2.612433, 13.811376) = 0.05943969
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 0.39276522
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.39227504
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.39129454
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.38933375
+//    colour of the pixel: 0.5784145, 0.58128166, 0.58389086
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. z is the distance along the view axis, in the unit of the scenes that the network was trained on.

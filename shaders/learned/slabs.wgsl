@@ -133,6 +133,13 @@ fn peelnet_between(place: PeelnetPlace, total: f32, first: f32, levels: vec2f) -
     return PeelnetBetween(max(rest, 0.0), x, mean, low, high, 0.5 * extent, b, in_front);
 }
 
+// Whether a fragment's level is the one kept. Two passes may round a depth on the edge of two bins to either, so a bin's difference counts
+// as none.
+fn peelnet_is_kept(own: f32, kept: f32) -> bool {
+    let apart = abs(own - kept);
+    return apart == 0.0 || apart == PEELNET_OPACITIES;
+}
+
 // The weight of a fragment, and whether it is known without the network: 1 where it is its slab's nearest or farthest. absorbances, firsts,
 // nearest, farthest: by slab. ends: how many of the nearer slabs keep a farthest fragment.
 fn peelnet_weigh(
@@ -154,8 +161,8 @@ fn peelnet_weigh(
     let before = select(0.0, sums.x, place.slab > 0.0)
         + select(0.0, sums.y, place.slab > 1.0)
         + select(0.0, sums.z, place.slab > 2.0);
-    let is_near = counts && place.near == levels.x;
-    let is_far = counts && place.far == levels.y && !is_near;
+    let is_near = counts && peelnet_is_kept(place.near, levels.x);
+    let is_far = counts && levels.y >= 0.0 && peelnet_is_kept(place.far, levels.y) && !is_near;
     let known = is_near || is_far;
     // No branch around it: neighbouring fragments are rarely all known, and then it only costs.
     let between = peelnet_between(place, total, first, levels);

@@ -1,6 +1,6 @@
 // Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
 const PEELNET_FIRST_END: f32 = 0.15;
-const PEELNET_SECOND_END: f32 = 0.5;
+const PEELNET_SECOND_END: f32 = 0.55;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 

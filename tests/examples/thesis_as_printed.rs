@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let model = model.map_or_else(|| Model::shipped(Recipe::THESIS), Ok)?;
     let learned = LearnedWeight {
         recipe: model.meta.recipe,
-        wgsl: peelnet_export::wgsl(&model, &Default::default())?,
+        wgsl: peelnet_export::wgsl(&model)?,
     };
     let gpu = peelnet_tests::gpu();
     print!("| scene | reference |");

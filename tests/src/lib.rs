@@ -29,7 +29,7 @@ pub fn shipped(recipe: Recipe) -> Model {
 pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
     let recipe = Recipe::of_method(method.name())?;
     let model = shipped(recipe);
-    let wgsl = peelnet_export::wgsl(&model, &Default::default());
+    let wgsl = peelnet_export::wgsl(&model);
     let wgsl = wgsl.unwrap_or_else(|e| panic!("{method}: {e}"));
     Some((LearnedWeight { recipe, wgsl }, model))
 }

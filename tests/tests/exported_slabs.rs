@@ -7,7 +7,7 @@ use peelnet_core::{
     methods::slabs::{self, Design, Layout, Range, Seen},
     random::Random,
 };
-use peelnet_export::{Blend, Description, Target};
+use peelnet_export::{Blend, Description, SelfTest, Target};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Inputs, Model, Recipe};
 use peelnet_tests::{Points, gpu, in_runs, run_text, shipped, stored};
@@ -96,11 +96,24 @@ fn pixels(design: &Design) -> Vec<Points> {
 /// What the exported functions say of a fragment.
 #[derive(Clone, Copy)]
 struct Answer {
-    /// Of each slab; 0 where there is none, or none is kept.
-    absorbances: [f32; 4],
-    firsts: [f32; 4],
+    /// What the targets of the statistics hold, in the description's order; 0 where there are fewer.
+    targets: [[f32; 4]; 4],
     known: bool,
     weight: f32,
+}
+
+impl Answer {
+    /// Absorbance of each slab, and absorbance times depth in it; 0 where there is none, or none is kept.
+    fn sums(&self, layout: Layout) -> [[f64; 2]; 4] {
+        let [a, b, c, d] = self.targets;
+        let firsts = match layout {
+            Layout::Small => [a[3], c[0], c[1], 0.0],
+            Layout::Medium => [a[3], b[3], c[3], 0.0],
+            Layout::Large => d,
+        };
+        let slabs = layout.design().slabs.len();
+        std::array::from_fn(|k| [if k < slabs { a[k] } else { 0.0 }, firsts[k]].map(f64::from))
+    }
 }
 
 /// A target of the statistics as a variable of the driver: its declaration, and what a fragment does to it.
@@ -135,9 +148,9 @@ fn variable(target: &Target) -> [String; 2] {
 fn on_the_gpu(
     gpu: &Gpu,
     model: &Model,
-    layout: Layout,
     pixels: &[Points],
     half: bool,
+    warp: &DepthWarp,
 ) -> Vec<Vec<Answer>> {
     let rounded = stored(half);
     let description = Description::of(model.meta.recipe);
@@ -149,22 +162,24 @@ fn on_the_gpu(
         let parts: Vec<&str> = variables.iter().map(|v| v[k].as_str()).collect();
         parts.join("\n")
     });
-    let compute = statistics.compute;
-    let call = weights
-        .compute
-        .trim_start_matches("let w = ")
-        .trim_end_matches(".x;");
-    let [absorbances, firsts] = match layout {
-        Layout::Small => [
-            "vec4f(absorbances.xyz, 0.0)",
-            "vec4f(absorbances.w, firsts, 0.0)",
-        ],
-        Layout::Medium => [
-            "vec4f(absorbances.xyz, 0.0)",
-            "vec4f(absorbances.w, nearest.w, farthest.w, 0.0)",
-        ],
-        Layout::Large => ["absorbances", "firsts"],
-    };
+    let compute = statistics.compute.unwrap();
+    let call = weights.compute.unwrap().call.trim_end_matches(".x");
+    let kept: String = statistics
+        .targets
+        .iter()
+        .zip(1..)
+        .map(|(target, k)| {
+            let zeros = if target.format == "rg16float" {
+                ", 0.0, 0.0"
+            } else {
+                ""
+            };
+            format!(
+                "answers[5u * id.x + {k}u] = vec4f({}{zeros});\n",
+                target.name
+            )
+        })
+        .collect();
     let root = format!(
         "import package::learned::weight::{{peelnet_pixel_range, peelnet_statistics, peelnet_fragment}};
         @group(0) @binding(0) var<storage, read> fragments: array<vec4f>;
@@ -189,21 +204,19 @@ fn on_the_gpu(
             let zeta = own.x;
             let alpha = own.y;
             let w = {call};
-            answers[3u * id.x] = {absorbances};
-            answers[3u * id.x + 1u] = {firsts};
-            answers[3u * id.x + 2u] = vec4f(w, 0.0, 0.0);
+            answers[5u * id.x] = vec4f(w, 0.0, 0.0);
+            {kept}
         }}"
     );
-    let text = peelnet_export::wgsl(model, &Default::default()).unwrap();
+    let text = peelnet_export::wgsl(model).unwrap();
     let sources = [("driver", root.as_str()), ("learned::weight", &text)];
     let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap();
-    let fragments = in_runs(pixels, &warp());
-    let rows: Vec<[f32; 12]> = run_text(gpu, &wgsl, &fragments, fragments.len());
-    let mut rows = rows.into_iter().map(|a| Answer {
-        absorbances: [a[0], a[1], a[2], a[3]],
-        firsts: [a[4], a[5], a[6], a[7]],
-        known: a[9] == 1.0,
-        weight: a[8],
+    let fragments = in_runs(pixels, warp);
+    let rows: Vec<[[f32; 4]; 5]> = run_text(gpu, &wgsl, &fragments, fragments.len());
+    let mut rows = rows.into_iter().map(|[w, targets @ ..]| Answer {
+        targets,
+        known: w[1] == 1.0,
+        weight: w[0],
     });
     pixels
         .iter()
@@ -234,13 +247,11 @@ fn the_exported_text_is_the_twin_of_the_core() {
             pixels.len()
         );
         for half in [false, true] {
-            let answers = on_the_gpu(&gpu, &model, layout, &pixels, half);
+            let answers = on_the_gpu(&gpu, &model, &pixels, half, &warp());
             let mut random = Random::new(52, &[]);
             let (mut compared, mut outside, mut known) = (0, 0, 0);
             for (pixel, answers) in pixels.iter().zip(&answers) {
-                let found = answers[0];
-                let sums: [[f64; 2]; 4] =
-                    std::array::from_fn(|k| [found.absorbances[k].into(), found.firsts[k].into()]);
+                let sums = answers[0].sums(layout);
                 check_sums(pixel, &sums, half, &design);
                 let weights = |pixel: &Points, sums: &[[f64; 2]]| -> Vec<(f64, Seen)> {
                     let all = slabs::seen_given(pixel, &warp(), design, sums);
@@ -301,5 +312,48 @@ fn check_sums(pixel: &Points, sums: &[[f64; 2]; 4], half: bool, design: &Design)
             !kept.mean || sum[1].abs() <= sum[0] + bound,
             "half {half}: {sum:?} of {pixel:?}"
         );
+    }
+}
+
+/// What the header tells renderers to compare with is what the text answers: targets, weights and points of the network.
+///
+/// In 32 bits: logarithms near 1 err by 2⁻²¹, sums of four and weights by some roundings more.
+#[test]
+fn a_pasted_text_can_be_checked() {
+    const SOME_ROUNDINGS: f32 = 1e-5;
+    let gpu = gpu();
+    let close =
+        |found: f32, want: f32| (found - want).abs() <= SOME_ROUNDINGS * want.abs().max(1.0);
+    for recipe in Recipe::ALL {
+        let model = shipped(recipe);
+        let check = SelfTest::of(&model);
+        assert_eq!(check.network.len(), 3, "{recipe}: {check:?}");
+        let Inputs::Slabs(design, _) = recipe.inputs else {
+            continue;
+        };
+        let pixel = check.pixel.unwrap();
+        let points: Points = pixel.fragments.iter().map(|f| (f.z, f.alpha)).collect();
+        let warp = DepthWarp::new(pixel.near.into(), pixel.far.into());
+        let range = Range::of(pixel.fragments.iter().map(|f| f64::from(f.zeta))).stored();
+        let (name, values) = &pixel.targets[0];
+        assert_eq!(
+            (*name, values),
+            ("range", &range.map(|x| x as f32).to_vec())
+        );
+        let answers = on_the_gpu(&gpu, &model, &[points], false, &warp);
+        for (found, want) in answers[0].iter().zip(&pixel.fragments) {
+            assert!(close(found.weight, want.weight), "{recipe}: {want:?}");
+        }
+        let names: Vec<&str> = pixel.targets.iter().map(|t| t.0).collect();
+        let described = Description::of(recipe).passes[1].targets;
+        let described: Vec<&str> = described.iter().map(|t| t.name).collect();
+        assert_eq!(names[1..], described, "{recipe}");
+        let targets = pixel.targets[1..].iter().zip(&answers[0][0].targets);
+        for ((name, want), found) in targets {
+            let all = found.iter().zip(want);
+            let same = all.clone().all(|(f, w)| close(*f, *w));
+            assert!(same, "{recipe}, {name}: {found:?}, not {want:?}");
+        }
+        assert!(design.slabs.len() >= 3);
     }
 }

@@ -9,7 +9,7 @@ use peelnet_core::{
     random::Random,
     statistics::{FAR_END, NEAR_END},
 };
-use peelnet_export::Description;
+use peelnet_export::{Description, Language, Options};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Inputs, Model, Recipe};
 use peelnet_tests::{Points, evaluate_text, gpu, in_runs, run_text, shipped, stored};
@@ -21,7 +21,7 @@ use std::{
 const ANCHORED: [Recipe; 2] = [Recipe::ANCHORED_SMALL, Recipe::ANCHORED_MEDIUM];
 
 fn text(model: &Model) -> String {
-    peelnet_export::wgsl(model, &Default::default()).unwrap()
+    peelnet_export::wgsl(model).unwrap()
 }
 
 /// Relative rounding of a half float.
@@ -44,16 +44,24 @@ fn update() -> bool {
 /// What engines are given is what the renderer draws with.
 #[test]
 fn committed_texts_are_what_is_exported_today() {
-    for recipe in Recipe::ALL {
-        let file = format!("models/{recipe}/model.wgsl");
-        let model = shipped(recipe);
-        if update() {
-            peelnet_export::export(&gpu(), &model, &path(&file), &Default::default()).unwrap();
-        }
+    let is_current = |file: &str, text: &str| {
         assert!(
-            read(&file) == text(&model),
+            read(file) == text,
             "{file} is another text than the exporter writes: run this test with PEELNET_UPDATE=1"
         );
+    };
+    for recipe in Recipe::ALL {
+        let model = shipped(recipe);
+        for language in Language::ALL {
+            let file = format!("models/{recipe}/model.{}", language.extension());
+            let options = Options { language };
+            if update() {
+                peelnet_export::export(&gpu(), &model, &path(&file), &options).unwrap();
+            }
+            is_current(&file, &peelnet_export::text(&model, &options).unwrap());
+        }
+        let file = format!("models/{recipe}/model.json");
+        is_current(&file, &peelnet_export::json(&model).unwrap());
     }
 }
 

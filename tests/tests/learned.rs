@@ -21,7 +21,7 @@ const LEARNED: [Recipe; 5] = [
 fn learned(model: &Model) -> LearnedWeight {
     LearnedWeight {
         recipe: model.meta.recipe,
-        wgsl: peelnet_export::wgsl(model, &Default::default()).unwrap(),
+        wgsl: peelnet_export::wgsl(model).unwrap(),
     }
 }
 

@@ -297,7 +297,7 @@ fn model() -> Model {
 fn the_exported_network_draws_what_the_model_says() {
     let gpu = gpu();
     let model = model();
-    let wgsl = peelnet_export::wgsl(&model, &peelnet_export::Options::default()).unwrap();
+    let wgsl = peelnet_export::wgsl(&model).unwrap();
     let learned = LearnedWeight {
         recipe: Recipe::THESIS,
         wgsl,

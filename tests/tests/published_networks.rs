@@ -36,7 +36,7 @@ fn nmt_takes_56_bytes_a_pixel() {
 /// depth is a quotient of differences of 1, of which [`nmt::EXTENT_FLOOR`] is the least.
 #[test]
 fn the_inputs_of_nmt_are_those_of_the_twin() {
-    let text = peelnet_export::wgsl(&shipped(Recipe::NMT), &Default::default()).unwrap();
+    let text = peelnet_export::wgsl(&shipped(Recipe::NMT)).unwrap();
     let gpu = gpu();
     let mut random = Random::new(51, &[]);
     let inputs: Vec<[[f32; 4]; 2]> = (0..2000)

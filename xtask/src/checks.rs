@@ -1,6 +1,6 @@
 //! Tests, lints and the longer searches.
 
-use crate::setup::{ensure_browser, ensure_driver, ensure_program, ensure_subcommand};
+use crate::setup::{apt_install, ensure_browser, ensure_driver, ensure_program, ensure_subcommand};
 use crate::{cargo, run};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -103,6 +103,21 @@ pub fn wasm() -> Result<(), String> {
     run(&mut command, "wasm").map_err(|e| {
         format!("{e}; where the target is missing: rustup target add wasm32-unknown-unknown")
     })
+}
+
+/// The exported texts, by the compilers that renderers use.
+pub fn languages() -> Result<(), String> {
+    let glslang = Command::new("glslangValidator").arg("--version").output();
+    if glslang.is_err() {
+        println!("glslangValidator is not installed: installing it with apt-get (glslang-tools).");
+        apt_install(&["glslang-tools"]).map_err(|e| {
+            format!("{e}; install glslangValidator, of the Khronos Group's glslang")
+        })?;
+    }
+    run(
+        Command::new("python3").arg("benches/languages.py"),
+        "languages",
+    )
 }
 
 /// The book.

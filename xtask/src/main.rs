@@ -36,6 +36,7 @@ cargo xtask <command>
   search          a million random fragment lists for every property (minutes)
   faults          extract, train and bench killed fifty times each (minutes)
   fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust
+  languages       compile the exported texts with glslangValidator and DXC (installed from Debian and PyPI)
   peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
 
 Tools that are missing (a Vulkan driver, Chromium, subcommands of cargo) are installed, with a line that says so.
@@ -64,6 +65,7 @@ fn main() -> ExitCode {
         (Some("fuzz"), []) => checks::fuzz("1800"),
         (Some("fuzz"), [seconds]) => checks::fuzz(seconds),
         (Some("peers"), []) => product::peers(),
+        (Some("languages"), []) => checks::languages(),
         (None | Some("help" | "--help" | "-h"), _) => {
             print!("{HELP}");
             Ok(())

@@ -221,7 +221,16 @@ pub fn train_models() -> Result<(), String> {
     Ok(())
 }
 
-/// Trains a recipe in `out/models` and puts the model, its text and its figures into `models`.
+/// The languages of exported texts, and how their files end.
+const LANGUAGES: [(&str, &str); 5] = [
+    ("wgsl", "wgsl"),
+    ("glsl-es", "es.glsl"),
+    ("glsl", "glsl"),
+    ("hlsl", "hlsl"),
+    ("msl", "metal"),
+];
+
+/// Trains a recipe in `out/models` and puts the model, its texts and its figures into `models`.
 fn finish(program: &Path, recipe: &str, data: &[&str], more: &[&str]) -> Result<(), String> {
     let made = format!("out/models/{recipe}/model.safetensors");
     let shipped = root().join("models").join(recipe);
@@ -240,12 +249,12 @@ fn finish(program: &Path, recipe: &str, data: &[&str], more: &[&str]) -> Result<
         Command::new(program).args(&args),
         &format!("training {recipe}"),
     )?;
-    let text = format!("models/{recipe}/model.wgsl");
-    println!("== peelnet export {made} --out {text}");
-    run(
-        Command::new(program).args(["export", &made, "--out", &text]),
-        "export",
-    )?;
+    for (lang, extension) in LANGUAGES {
+        let text = format!("models/{recipe}/model.{extension}");
+        let args = ["export", &made, "--out", &text, "--lang", lang];
+        println!("== peelnet {}", args.join(" "));
+        run(Command::new(program).args(args), "export")?;
+    }
     std::fs::write(shipped.join("metrics.json"), metrics).map_err(io)?;
     std::fs::copy(root().join(made), shipped.join("model.safetensors")).map_err(io)?;
     Ok(())

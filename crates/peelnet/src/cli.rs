@@ -3,6 +3,7 @@
 use crate::parse::{MethodList, Size, ViewCount, fraction, positive, samples};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use peelnet_dataset::{Format, Shard};
+use peelnet_export::Language;
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
 use peelnet_peel::Peel;
@@ -95,7 +96,7 @@ pub enum Command {
   peelnet run --out out/full --full       the thesis's recipe in full: 1024x768, 1.5 million rows, 150 epochs
   peelnet run my.toml --out out/mine      the same for a scene of your own
 
-DIR gets dataset/, dataset-summary.json and .txt, loss.csv, loss.svg, model.safetensors, model.wgsl, images/,
+DIR gets dataset/, dataset-summary.json and .txt, loss.csv, loss.svg, model.safetensors, model.wgsl, model.json, images/,
 table.md, results.json and report.html. Scenes that are marked held-out are compared but never trained on.")]
 pub struct RunArgs {
     /// Scene files, or names of shipped scenes; by default the shipped sixteen-model scenes
@@ -254,14 +255,26 @@ pub enum LearningSchedule {
 pub enum Lang {
     /// WebGPU
     Wgsl,
-    /// OpenGL, Vulkan
+    /// GLSL ES 3.00: WebGL 2
+    GlslEs,
+    /// GLSL 4.50: OpenGL, Vulkan
     Glsl,
-    /// Direct3D
+    /// Shader model 6.0: Direct3D
     Hlsl,
-    /// Metal
+    /// Metal 2.4
     Msl,
-    /// Vulkan, binary
-    Spirv,
+}
+
+impl From<Lang> for Language {
+    fn from(lang: Lang) -> Self {
+        match lang {
+            Lang::Wgsl => Self::Wgsl,
+            Lang::GlslEs => Self::GlslEs,
+            Lang::Glsl => Self::Glsl,
+            Lang::Hlsl => Self::Hlsl,
+            Lang::Msl => Self::Msl,
+        }
+    }
 }
 
 /// Precisions of exported shaders.
@@ -277,8 +290,10 @@ pub enum Precision {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet export m.safetensors --out weight.wgsl
+  peelnet export m.safetensors --out weight.glsl --lang glsl
 
-The function is run on the GPU and compared with the network before the file is written.")]
+The functions are run on the GPU and compared with the network before a file is written. What a renderer does around them is described
+in the text's first lines, and for programs in a file of the same name that ends in .json.")]
 pub struct ExportArgs {
     /// The model file
     #[arg(value_name = "MODEL")]

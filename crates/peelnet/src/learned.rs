@@ -66,7 +66,7 @@ pub fn weight_of(
 /// # Errors
 /// A model that cannot be exported, or a text that does not agree with it.
 pub fn text_of(gpu: &Gpu, model: &Model) -> Result<LearnedWeight, Failure> {
-    let wgsl = peelnet_export::wgsl(model, &peelnet_export::Options::default())?;
+    let wgsl = peelnet_export::wgsl(model)?;
     peelnet_export::verify(gpu, model, &wgsl)?;
     Ok(LearnedWeight {
         recipe: model.meta.recipe,

@@ -25,7 +25,7 @@
 //! use peelnet::{Model, Recipe, export};
 //!
 //! let model = Model::shipped(Recipe::MEDIUM)?;
-//! let text = export::wgsl(&model, &export::Options::default())?;
+//! let text = export::wgsl(&model)?;
 //! assert!(text.contains("fn peelnet_fragment"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

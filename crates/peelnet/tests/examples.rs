@@ -69,7 +69,7 @@ fn a_network_draws_into_a_texture_of_ones_own() {
     let model = peelnet::Model::shipped(Recipe::MEDIUM).unwrap();
     let learned = LearnedWeight {
         recipe: Recipe::MEDIUM,
-        wgsl: peelnet::export::wgsl(&model, &Default::default()).unwrap(),
+        wgsl: peelnet::export::wgsl(&model).unwrap(),
     };
     let renderer = Renderer::new(&gpu, &scene).unwrap();
     let options = MethodOptions::sized([640, 480]).with(Some(&learned));

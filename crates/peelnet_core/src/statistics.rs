@@ -94,6 +94,12 @@ impl EndCode {
         (absorbance / (absorbance + 1.0) * MOST_LEVEL * top + 0.5).floor() as u32
     }
 
+    /// Whether a fragment's level is the one kept. Two passes may round a depth on the edge of two bins to either, so a bin's difference counts
+    /// as none; opacities are the same in both.
+    pub const fn is_kept(self, own: u32, kept: u32) -> bool {
+        own == kept || own.abs_diff(kept) == self.alphas
+    }
+
     /// The absorbance that a level stands for, at most [`ABSORBANCE_MAX`].
     pub fn absorbance(self, level: u32) -> f64 {
         let share = f64::from(level % self.alphas) / f64::from(self.alphas - 1);

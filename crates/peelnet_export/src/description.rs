@@ -1,9 +1,10 @@
 //! What a renderer must do around an exported text: the one source of the text's header and of the documents.
 
+use crate::language::{Dialect, WGSL};
 use peelnet_core::methods::slabs::{Design, Layout};
 use peelnet_model::{Inputs, Output, Recipe};
 use serde::Serialize;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
 /// How a target blends, per channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -44,13 +45,50 @@ pub struct Target {
     pub write: &'static str,
 }
 
+/// What an exported function returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// Two numbers.
+    Pair,
+    /// The text's `PeelnetStatistics`.
+    Statistics,
+}
+
+/// A value that a fragment computes before it writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Value {
+    /// Its name.
+    pub name: &'static str,
+    /// Its type.
+    pub kind: Kind,
+    /// The call of an exported function.
+    pub call: &'static str,
+}
+
+/// The WGSL statement.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&WGSL.declare(self))
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// A pass that draws all transparent surfaces, in any order.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pass {
     /// Its name.
     pub name: &'static str,
-    /// What each fragment computes first.
-    pub compute: &'static str,
+    /// The targets of earlier passes that each fragment reads at its own pixel: a number, two or four, as its format has channels.
+    pub reads: &'static [&'static str],
+    /// What each fragment computes first, as a WGSL statement in files.
+    pub compute: Option<Value>,
     /// Its attachments.
     pub targets: &'static [Target],
 }
@@ -64,6 +102,8 @@ pub struct Description {
     pub passes: &'static [Pass],
     /// The call that resolves each pixel.
     pub resolve: &'static str,
+    /// The targets that it reads.
+    pub resolve_reads: &'static [&'static str],
     /// What holds in all passes, and what breaks the result.
     pub rules: &'static [&'static str],
 }
@@ -84,6 +124,16 @@ const ZETA: &str = "zeta = peelnet_zeta(z, near, far): z is the distance along t
     you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: \
     peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.";
 
+const fn statistics(call: &'static str) -> Option<Value> {
+    let (name, kind) = ("s", Kind::Statistics);
+    Some(Value { name, kind, call })
+}
+
+const fn weight(call: &'static str) -> Option<Value> {
+    let (name, kind) = ("w", Kind::Number);
+    Some(Value { name, kind, call })
+}
+
 const WEIGHTED: &str = "vec4f(alpha * rgb, alpha) * w";
 
 const RULES: &[&str] = &[
@@ -95,7 +145,8 @@ const RULES: &[&str] = &[
 
 const ANCHORED_STATISTICS: Pass = Pass {
     name: "statistics",
-    compute: "let s = peelnet_statistics(alpha, zeta);",
+    reads: &[],
+    compute: statistics("peelnet_statistics(alpha, zeta)"),
     targets: &[
         sum("moments", "rgba16float", "s.moments"),
         Target {
@@ -113,7 +164,8 @@ const ONE_SUM: &[Pass] = &[
     ANCHORED_STATISTICS,
     Pass {
         name: "weights",
-        compute: "let w = peelnet_fragment(alpha, zeta, moments, extent).x;",
+        reads: &["moments", "extent"],
+        compute: weight("peelnet_fragment(alpha, zeta, moments, extent).x"),
         targets: &[sum("sums", "rgba16float", WEIGHTED)],
     },
 ];
@@ -122,17 +174,22 @@ const SEPARATE_ENDS: &[Pass] = &[
     ANCHORED_STATISTICS,
     Pass {
         name: "weights",
-        compute: "let f = peelnet_fragment(alpha, zeta, moments, extent); let w = f.x; let end = f.y > 0.0;",
+        reads: &["moments", "extent"],
+        compute: Some(Value {
+            name: "f",
+            kind: Kind::Pair,
+            call: "peelnet_fragment(alpha, zeta, moments, extent)",
+        }),
         targets: &[
             sum(
                 "sums",
                 "rgba16float",
-                "select(vec4f(alpha * rgb, alpha) * w, vec4f(0.0), end)",
+                "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - f.y))",
             ),
             sum(
                 "ends",
                 "rgba16float",
-                "select(vec4f(0.0), vec4f(alpha * rgb, alpha) * w, end)",
+                "vec4f(alpha * rgb, alpha) * (f.x * f.y)",
             ),
         ],
     },
@@ -151,7 +208,12 @@ const fn most(name: &'static str, format: &'static str, clear: f32, write: &'sta
 
 const RANGE: Pass = Pass {
     name: "range",
-    compute: "let r = peelnet_pixel_range(zeta);",
+    reads: &[],
+    compute: Some(Value {
+        name: "r",
+        kind: Kind::Pair,
+        call: "peelnet_pixel_range(zeta)",
+    }),
     targets: &[most("range", "rg8unorm", 0.0, "r")],
 };
 
@@ -173,14 +235,15 @@ const fn most_and_sum(name: &'static str, write: &'static str) -> Target {
     }
 }
 
-const SLABS_COMPUTE: &str = "let s = peelnet_statistics(alpha, zeta, range);";
+const IN_RANGE: Option<Value> = statistics("peelnet_statistics(alpha, zeta, range)");
 
 const SUMS: &[Target] = &[sum("sums", "rgba16float", WEIGHTED)];
 
-const fn slab_weights(compute: &'static str) -> Pass {
+const fn slab_weights(reads: &'static [&'static str], call: &'static str) -> Pass {
     Pass {
         name: "weights",
-        compute,
+        reads,
+        compute: weight(call),
         targets: SUMS,
     }
 }
@@ -189,31 +252,40 @@ const SMALL_SLABS: &[Pass] = &[
     RANGE,
     Pass {
         name: "statistics",
-        compute: SLABS_COMPUTE,
+        reads: &["range"],
+        compute: IN_RANGE,
         targets: &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
     },
-    slab_weights("let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x;"),
+    slab_weights(
+        &["range", "absorbances", "nearest", "firsts"],
+        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x",
+    ),
 ];
 
 const MEDIUM_SLABS: &[Pass] = &[
     RANGE,
     Pass {
         name: "statistics",
-        compute: SLABS_COMPUTE,
+        reads: &["range"],
+        compute: IN_RANGE,
         targets: &[
             ABSORBANCES,
             most_and_sum("nearest", "s.nearest"),
             most_and_sum("farthest", "s.farthest"),
         ],
     },
-    slab_weights("let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;"),
+    slab_weights(
+        &["range", "absorbances", "nearest", "farthest"],
+        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x",
+    ),
 ];
 
 const LARGE_SLABS: &[Pass] = &[
     RANGE,
     Pass {
         name: "statistics",
-        compute: SLABS_COMPUTE,
+        reads: &["range"],
+        compute: IN_RANGE,
         targets: &[
             ABSORBANCES,
             NEAREST,
@@ -222,19 +294,22 @@ const LARGE_SLABS: &[Pass] = &[
         ],
     },
     slab_weights(
-        "let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;",
+        &["range", "absorbances", "nearest", "farthest", "firsts"],
+        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x",
     ),
 ];
 
 const THESIS: &[Pass] = &[
     Pass {
         name: "statistics",
-        compute: "",
+        reads: &[],
+        compute: None,
         targets: &[sum("statistics", "rg16float", "peelnet_statistics(alpha)")],
     },
     Pass {
         name: "weights",
-        compute: "let w = peelnet_fragment(z, statistics);",
+        reads: &["statistics"],
+        compute: weight("peelnet_fragment(z, statistics)"),
         targets: &[
             sum("sums", "rgba16float", WEIGHTED),
             Target {
@@ -252,7 +327,8 @@ const THESIS: &[Pass] = &[
 const NMT: &[Pass] = &[
     Pass {
         name: "statistics",
-        compute: "let s = peelnet_statistics(alpha, zeta);",
+        reads: &[],
+        compute: statistics("peelnet_statistics(alpha, zeta)"),
         targets: &[
             sum("totals", "rgba32float", "s.totals"),
             sum("moments", "rgba32float", "s.moments"),
@@ -268,14 +344,16 @@ const NMT: &[Pass] = &[
     },
     Pass {
         name: "weights",
-        compute: "let w = peelnet_fragment(zeta, totals, moments, extent);",
+        reads: &["totals", "moments", "extent"],
+        compute: weight("peelnet_fragment(zeta, totals, moments, extent)"),
         targets: &[sum("sums", "rgba32float", WEIGHTED)],
     },
 ];
 
 const DFAOIT: &[Pass] = &[Pass {
     name: "statistics",
-    compute: "let s = peelnet_statistics(vec4f(rgb, alpha), front);",
+    reads: &["front"],
+    compute: statistics("peelnet_statistics(vec4f(rgb, alpha), front)"),
     targets: &[
         sum("behind", "rgba16float", "s.behind"),
         Target {
@@ -290,6 +368,11 @@ const DFAOIT: &[Pass] = &[Pass {
     ],
 }];
 
+const THESIS_BEFORE: &str = "z is the distance along the view axis, in the unit of the scenes that the network was trained on.";
+
+const DFAOIT_BEFORE: &str = "Composite the two nearest fragments of each pixel exactly, by depth peeling or insertion, into front: premultiplied colour, \
+    and transmittance in alpha. The pass below draws them again, with front = true.";
+
 /// The layout of a recipe's design.
 pub(crate) fn layout(design: &Design) -> Layout {
     let layout = design.layout();
@@ -299,68 +382,82 @@ pub(crate) fn layout(design: &Design) -> Layout {
 impl Description {
     /// Of the networks of a recipe.
     pub fn of(recipe: Recipe) -> Self {
-        let (before, passes, resolve) = match (recipe.inputs, recipe.output) {
+        let (before, passes, resolve, resolve_reads): (_, _, _, &[_]) = match (
+            recipe.inputs,
+            recipe.output,
+        ) {
             (Inputs::Rest(_), Output::AnchoredShareSeparateEnds) => (
                 ZETA,
                 SEPARATE_ENDS,
                 "peelnet_resolve(sums, ends, moments.x, background)",
+                &["sums", "ends", "moments"],
             ),
             (Inputs::Rest(_), _) => (
                 ZETA,
                 ONE_SUM,
                 "peelnet_resolve(sums, moments.x, background)",
+                &["sums", "moments"],
             ),
             (Inputs::Slabs(design, _), _) => {
-                let three = "peelnet_resolve(sums, dot(absorbances.xyz, vec3f(1.0)), background)";
-                let four = "peelnet_resolve(sums, dot(absorbances, vec4f(1.0)), background)";
+                let three = "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)";
+                let four = "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)";
                 let (passes, resolve) = match layout(&design) {
                     Layout::Small => (SMALL_SLABS, three),
                     Layout::Medium => (MEDIUM_SLABS, three),
                     Layout::Large => (LARGE_SLABS, four),
                 };
-                (ZETA, passes, resolve)
+                (ZETA, passes, resolve, &["sums", "absorbances"])
             }
             (Inputs::Row(_), _) => (
-                "z is the distance along the view axis, in the unit of the scenes that the network was trained on.",
+                THESIS_BEFORE,
                 THESIS,
                 "peelnet_resolve(sums, transmittance, background)",
+                &["sums", "transmittance"],
             ),
-            (Inputs::Moments(_), _) => (ZETA, NMT, "peelnet_resolve(sums, totals.x, background)"),
+            (Inputs::Moments(_), _) => (
+                ZETA,
+                NMT,
+                "peelnet_resolve(sums, totals.x, background)",
+                &["sums", "totals"],
+            ),
             (Inputs::Layers(_), _) => (
-                "Composite the two nearest fragments of each pixel exactly, by depth peeling or insertion, into front: premultiplied colour, \
-                 and transmittance in alpha. The pass below draws them again, with front = true.",
+                DFAOIT_BEFORE,
                 DFAOIT,
                 "peelnet_resolve(front, behind, all, count, background)",
+                &["front", "behind", "all", "count"],
             ),
         };
         Self {
             before,
             passes,
             resolve,
+            resolve_reads,
             rules: RULES,
         }
     }
 
-    /// As lines of a comment, without their marks.
-    pub(crate) fn lines(&self) -> Vec<String> {
+    /// As lines of a comment in a language, without their marks.
+    pub(crate) fn lines(&self, dialect: &dyn Dialect) -> Vec<String> {
         let mut lines = vec![
             "How to draw with it. Targets may have 32 bits a channel wherever 16 are named."
                 .to_owned(),
             format!("0. {}", self.before),
         ];
         for (k, pass) in (1..).zip(self.passes) {
+            let compute = pass.compute.map(|value| dialect.declare(&value));
             lines.push(format!(
                 "{k}. Pass \"{}\": draw all transparent surfaces, in any order. {}",
-                pass.name, pass.compute
+                pass.name,
+                compute.unwrap_or_default()
             ));
             for target in pass.targets {
-                lines.push(format!("   {}", target.line()));
+                lines.push(format!("   {}", target.line(dialect)));
             }
         }
         lines.push(format!(
             "{}. Resolve: {} is the colour of the pixel, and its coverage in alpha.",
             self.passes.len() + 1,
-            self.resolve
+            dialect.expression(self.resolve)
         ));
         lines.extend(self.rules.iter().map(|rule| format!("- {rule}")));
         lines
@@ -372,10 +469,9 @@ impl Description {
         // Writing to a string cannot fail.
         let _ = writeln!(t, "**0. Before.** {}\n", self.before);
         for (k, pass) in (1..).zip(self.passes) {
-            let compute = match pass.compute {
-                "" => String::new(),
-                code => format!(" Each fragment computes `{code}`"),
-            };
+            let compute = pass.compute.map_or_else(String::new, |value| {
+                format!(" Each fragment computes `{value}`")
+            });
             let _ = writeln!(
                 t,
                 "**{k}. Pass `{}`.** Draw all transparent surfaces, in any order.{compute}\n\n\
@@ -409,14 +505,14 @@ impl Description {
 }
 
 impl Target {
-    fn line(&self) -> String {
+    fn line(&self, dialect: &dyn Dialect) -> String {
         format!(
             "{}: {}, cleared to {}, blending {}, from {}",
             self.name,
             self.format,
             self.clear_text(),
             self.blend_text(),
-            self.write
+            dialect.expression(self.write)
         )
     }
 

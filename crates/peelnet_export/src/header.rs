@@ -2,9 +2,11 @@
 
 use crate::{
     description::Description,
+    language::Dialect,
     literal::{float, identifier},
     network::function_name,
-    wgsl::{multiply_adds, self_test_inputs},
+    self_test::SelfTest,
+    text::multiply_adds,
 };
 use peelnet_files::{printable, printable_lines};
 use peelnet_model::{Model, Output};
@@ -29,12 +31,13 @@ fn names<'a>(all: impl ExactSizeIterator<Item = Cow<'a, str>>) -> String {
 }
 
 /// What the text is, where it comes from, how to check it and what a renderer must do around it, as comments.
-pub(crate) fn header(model: &Model) -> String {
-    let mut lines = about(model);
+pub(crate) fn header(model: &Model, dialect: &dyn Dialect) -> String {
+    let mut lines = about(model, dialect);
     lines.extend(provenance(model));
-    lines.extend(self_tests(model));
     lines.push(String::new());
-    lines.extend(Description::of(model.meta.recipe).lines());
+    lines.extend(SelfTest::of(model).lines(function_name(model.meta.output)));
+    lines.push(String::new());
+    lines.extend(Description::of(model.meta.recipe).lines(dialect));
     let mut text: String = lines
         .iter()
         // Names were bounded; whatever else a line holds, it must not end it.
@@ -46,7 +49,7 @@ pub(crate) fn header(model: &Model) -> String {
 }
 
 /// The network, what it answers and what it reads.
-fn about(model: &Model) -> Vec<String> {
+fn about(model: &Model, dialect: &dyn Dialect) -> Vec<String> {
     let meta = &model.meta;
     let (low, high) = meta.output.range();
     let answer = match meta.output {
@@ -72,6 +75,7 @@ fn about(model: &Model) -> Vec<String> {
             env!("CARGO_PKG_VERSION")
         ),
         "Licence of this generated text: MIT OR Apache-2.0.".into(),
+        dialect.about().into(),
         format!(
             "Network: {} ({:?} hidden, {:?} last), {} parameters, {} multiply-adds. Recipe {}, seed {}, {} epochs.",
             model.mlp.topology(),
@@ -131,20 +135,4 @@ fn provenance(model: &Model) -> [String; 3] {
         errors => format!("Held-out error, mean |T - T_exact|: {errors}."),
     };
     [data, format!("Loss: {losses}."), errors]
-}
-
-/// Inputs of the network with its answers.
-fn self_tests(model: &Model) -> [String; 3] {
-    self_test_inputs(model).map(|inputs| {
-        let list = |values: &[f32]| -> String {
-            let all: Vec<_> = values.iter().map(|&x| float(x)).collect();
-            all.join(", ")
-        };
-        format!(
-            "Self-test: {}({}) = {}",
-            function_name(model.meta.output),
-            list(&inputs),
-            list(&model.shader_output(&inputs))
-        )
-    })
 }

@@ -1,28 +1,35 @@
 //! Bakes a trained network into one self-contained shader function, and proves that it is the same network.
 //!
 //! [`wgsl()`] writes the text: straight-line code on `vec4f` and `mat4x4f` literals, normalisation and guards inside, a
-//! header that names its source and says how to use it in another engine. [`verify()`] runs exactly that text on
+//! header that names its source and says how to use it in another engine. [`text()`] translates it into other languages, and [`json()`]
+//! says for programs what the header says for people. [`verify()`] runs exactly that text on
 //! the GPU over random, extreme and self-test inputs and compares with the trainer's forward pass. [`export()`] does
-//! both and writes the file only if they agree. The renderer draws with the same text, so that what is measured is
+//! all of it and writes the files only if they agree. The renderer draws with the same text, so that what is measured is
 //! what is shipped.
 
 mod description;
 mod header;
+mod json;
+mod language;
 mod literal;
 mod network;
+mod self_test;
+mod text;
 mod verify;
-mod wgsl;
 // A browser has no files.
 #[cfg(not(target_arch = "wasm32"))]
 mod write;
 
-pub use description::{Blend, Description, Pass, Target};
+pub use description::{Blend, Description, Kind as ValueKind, Pass, Target, Value};
+pub use json::json;
+pub use language::Language;
+pub use self_test::{Drawn, Pixel, Point, SelfTest};
+pub use text::{multiply_adds, text, wgsl};
 pub use verify::{Verification, evaluate_async, verify_async};
 #[cfg(not(target_arch = "wasm32"))]
 pub use verify::{evaluate, verify};
-pub use wgsl::{multiply_adds, wgsl};
 #[cfg(not(target_arch = "wasm32"))]
-pub use write::export;
+pub use write::{description_path, export};
 
 use peelnet_files::Kind;
 use std::path::PathBuf;
@@ -36,10 +43,22 @@ pub const KIND: Kind = Kind {
     },
 };
 
-/// How to export. Languages and precisions other than WGSL in 32 bits will add fields.
+/// By what the description beside an exported text is known.
+pub const JSON_KIND: Kind = Kind {
+    name: "an exported description",
+    is: |head| {
+        let start = String::from_utf8_lossy(&head[..head.len().min(512)]);
+        let start: String = start.split_whitespace().collect();
+        start.starts_with(&format!("{{\"format\":\"{}\"", json::FORMAT))
+    },
+};
+
+/// How to export.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Options {}
+pub struct Options {
+    /// Into which language.
+    pub language: Language,
+}
 
 /// What can go wrong while exporting.
 #[derive(Debug, thiserror::Error)]
@@ -58,6 +77,17 @@ pub enum ExportError {
         /// What it declares.
         found: String,
     },
+    /// A text that another language cannot hold: a bug here.
+    #[error("the text cannot be translated to {language}: {reason}; nothing was written")]
+    Language {
+        /// The language.
+        language: &'static str,
+        /// Why.
+        reason: String,
+    },
+    /// A description that cannot be written: a bug here.
+    #[error("the description cannot be written as JSON: {0}")]
+    Json(String),
     /// The GPU.
     #[error(transparent)]
     Gpu(#[from] peelnet_gpu::GpuError),

@@ -1,10 +1,6 @@
 //! The exported text, run on the GPU, against the trainer's forward pass.
 
-use crate::{
-    ExportError,
-    network::function_name,
-    wgsl::{code, self_test_inputs},
-};
+use crate::{ExportError, network::function_name, self_test::SelfTest, text::code};
 use peelnet_core::{random::Random, tolerance::EXPORT_F32};
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
@@ -163,7 +159,13 @@ fn declarations(wgsl: &str) -> Result<Vec<String>, ExportError> {
 
 fn samples(model: &Model) -> Vec<Vec<f32>> {
     let count = model.meta.inputs.len();
-    let mut all: Vec<Vec<f32>> = self_test_inputs(model).to_vec();
+    let points = SelfTest::of(model).network.into_iter();
+    let mut all: Vec<Vec<f32>> = points.map(|point| point.inputs).collect();
+    let between = |t: f32| -> Vec<f32> {
+        let inputs = model.meta.inputs.iter();
+        inputs.map(|i| i.min + t * (i.max - i.min)).collect()
+    };
+    all.extend([0.0, 0.5, 1.0].map(between));
     let mut random = Random::new(1, &[]);
     for _ in 0..RANDOM {
         let sample = model
@@ -177,7 +179,7 @@ fn samples(model: &Model) -> Vec<Vec<f32>> {
     for extreme in EXTREMES {
         all.push(vec![extreme; count]);
         for k in 0..count {
-            let mut sample = self_test_inputs(model)[1].clone();
+            let mut sample = between(0.5);
             sample[k] = extreme;
             all.push(sample);
         }
@@ -352,8 +354,8 @@ mod tests {
         let thesis = topologies.map(|hidden| model(hidden, 7));
         let recipes = Recipe::ALL.map(|recipe| model_of(recipe, &[8, 8], 11));
         for model in thesis.into_iter().chain(recipes) {
-            let text = wgsl(&model, &Options::default()).expect("exports");
-            assert_eq!(text, wgsl(&model, &Options::default()).expect("exports"));
+            let text = wgsl(&model).expect("exports");
+            assert_eq!(text, wgsl(&model).expect("exports"));
             let v = verify(&gpu, &model, &text).expect("agrees");
             assert!(
                 v.samples > RANDOM && v.worst_relative_to_tolerance > 0.0,
@@ -366,13 +368,13 @@ mod tests {
     fn a_changed_weight_is_found_and_nothing_is_written() {
         let gpu = gpu();
         let model = model(&[10, 8], 3);
-        let text = wgsl(&model, &Options::default()).expect("exports");
+        let text = wgsl(&model).expect("exports");
         let folder = tempfile::tempdir().expect("temporary folder");
         let path = folder.path().join("w.wgsl");
         let mut other = model.clone();
         other.mlp.layers[1].weights[3] += 0.01;
         assert!(matches!(
-            crate::write::write_verified(&gpu, &other, &path, &text),
+            crate::write::write_verified(&gpu, &other, &path, &Options::default(), &text),
             Err(ExportError::Differs { .. })
         ));
         assert!(!path.exists());
@@ -390,7 +392,7 @@ mod tests {
     #[test]
     fn the_header_says_what_a_user_needs() {
         let model = model(&[10, 8], 5);
-        let text = wgsl(&model, &Options::default()).expect("exports");
+        let text = wgsl(&model).expect("exports");
         for word in [
             "3-10-8-1",
             "118 multiply-adds",
@@ -400,7 +402,10 @@ mod tests {
         ] {
             assert!(text.contains(word), "{word} in {text}");
         }
-        let tests: Vec<_> = text.lines().filter(|l| l.contains("Self-test")).collect();
+        let tests: Vec<_> = text
+            .lines()
+            .filter(|l| l.starts_with("// peelnet_weight("))
+            .collect();
         assert_eq!(tests.len(), 3);
         for line in tests {
             let (call, answer) = line.rsplit_once(" = ").expect("a vector");

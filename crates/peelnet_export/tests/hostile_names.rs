@@ -1,6 +1,6 @@
 //! Names in a model's file are a stranger's: none of them becomes code of the exported text.
 
-use peelnet_export::{Options, verify, wgsl};
+use peelnet_export::{verify, wgsl};
 use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{DatasetRef, Model, Recipe};
 use std::collections::BTreeSet;
@@ -40,8 +40,8 @@ fn names_of_a_model_never_become_code() {
         let Ok(shipped) = Model::shipped(recipe) else {
             continue;
         };
-        let clean = wgsl(&shipped, &Options::default()).expect("exports");
-        let text = wgsl(&hostile(recipe, HOSTILE), &Options::default()).expect("exports");
+        let clean = wgsl(&shipped).expect("exports");
+        let text = wgsl(&hostile(recipe, HOSTILE)).expect("exports");
         assert_eq!(functions(&text), functions(&clean), "{recipe}");
         let header = |text: &str| text.lines().take_while(|l| l.starts_with("//")).count();
         assert_eq!(header(&text), header(&clean), "{recipe}");
@@ -58,7 +58,7 @@ fn names_of_a_model_never_become_code() {
 fn a_text_with_more_declarations_is_refused() {
     let gpu = Gpu::open(&AdapterRequest::Auto).expect("an adapter");
     let model = Model::shipped(Recipe::SMALL).expect("ships");
-    let text = wgsl(&model, &Options::default()).expect("exports");
+    let text = wgsl(&model).expect("exports");
     assert!(verify(&gpu, &model, &text).is_ok());
     for more in [
         "fn stolen() -> f32 { return 1.0; }",

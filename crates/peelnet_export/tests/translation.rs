@@ -23,7 +23,7 @@ fn has_loop(block: &naga::Block) -> bool {
 fn texts_are_portable() {
     for recipe in Recipe::ALL {
         let model = Model::shipped(recipe).unwrap();
-        let text = peelnet_export::wgsl(&model, &Default::default()).unwrap();
+        let text = peelnet_export::wgsl(&model).unwrap();
         let module =
             naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{recipe}: {e}"));
         let info = Validator::new(ValidationFlags::all(), Capabilities::empty())

@@ -33,7 +33,7 @@ impl Model {
     /// use peelnet_model::{Model, Recipe};
     ///
     /// let medium = Model::shipped(Recipe::MEDIUM)?;
-    /// assert_eq!(medium.mlp.topology(), "9-12-1");
+    /// assert_eq!(medium.mlp.topology(), "9-13-1");
     /// # Ok::<(), peelnet_model::ModelError>(())
     /// ```
     ///

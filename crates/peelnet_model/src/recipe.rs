@@ -236,7 +236,7 @@ impl Recipe {
         inputs: Inputs::Slabs(Design::MEDIUM, &slabs::NINE),
         output: Output::BoundedShare,
         sums: SumPrecision::Half,
-        network: relu(&[12], Activation::Sigmoid),
+        network: relu(&[13], Activation::Sigmoid),
         budget: PIXELS,
         loss: Some(PixelLoss::Image),
     });

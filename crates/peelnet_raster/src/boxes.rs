@@ -6,15 +6,13 @@ use peelnet_gpu::{Gpu, bind::Bound, record::Recorder, wgpu};
 /// Two triangles for each face.
 const VERTICES: u32 = 36;
 
-/// By how much boxes are larger than what they hold, of their longest side: rounding must not miss a flat part.
-const GROWN: f32 = 1e-3;
-
 /// The pipeline of such a pass, and the boxes.
 #[derive(Debug)]
 pub struct BoxPass {
     pipeline: wgpu::RenderPipeline,
+    /// Of each box the number of its object, and from the unit cube to the object's space.
+    parts: Vec<(usize, glam::Mat4)>,
     boxes: wgpu::Buffer,
-    count: u32,
 }
 
 impl BoxPass {
@@ -41,7 +39,9 @@ impl BoxPass {
         let pipeline = gpu.render_pipeline(key, || {
             let vertex = gpu.shader("scene::box_vertex", &vertex);
             let fragment = gpu.shader(pass.shader, &fragment);
-            let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+            let attributes = wgpu::vertex_attr_array![
+                0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4
+            ];
             let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
             gpu.device
                 .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -52,7 +52,7 @@ impl BoxPass {
                         entry_point: Some("vertex_main"),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         buffers: &[Some(wgpu::VertexBufferLayout {
-                            array_stride: size_of::<[f32; 6]>() as u64,
+                            array_stride: size_of::<BoxData>() as u64,
                             step_mode: wgpu::VertexStepMode::Instance,
                             attributes: &attributes,
                         })],
@@ -73,24 +73,30 @@ impl BoxPass {
                     cache: None,
                 })
         });
+        let parts: Vec<_> = scene
+            .transparent_parts()
+            .filter_map(|part| {
+                let (object, number) = part.place;
+                let found = scene.scene.objects[object].mesh.box_of(number)?;
+                Some((object, found))
+            })
+            .collect();
         // At least one: buffers are never empty.
-        let mut corners = corners(scene);
-        let count = corners.len() as u32;
-        corners.resize(corners.len().max(1), [0.0; 6]);
+        let mut data = placed(&parts, scene);
+        data.resize(data.len().max(1), [[0.0; 4]; 6]);
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
         Ok(Self {
             pipeline,
-            boxes: gpu.upload("boxes of parts", &corners, usage),
-            count,
+            parts,
+            boxes: gpu.upload("boxes of parts", &data, usage),
         })
     }
 
-    /// Takes over where the parts are now. A part more or less needs another pass ([`SceneBuffers::generation`]).
+    /// Takes over where the objects are now. A part more or less needs another pass ([`SceneBuffers::generation`]).
     pub fn update(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers) {
-        let mut corners = corners(scene);
-        corners.truncate(self.count as usize);
-        if !corners.is_empty() {
-            recorder.write(&self.boxes, &corners);
+        let data = placed(&self.parts, scene);
+        if !data.is_empty() {
+            recorder.write(&self.boxes, &data);
         }
     }
 
@@ -99,17 +105,27 @@ impl BoxPass {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &frame.scene_group.group, &[]);
         pass.set_vertex_buffer(0, self.boxes.slice(..));
-        pass.draw(0..VERTICES, 0..self.count);
+        pass.draw(0..VERTICES, 0..self.parts.len() as u32);
     }
 }
 
-/// The lower and the upper corner of each box, in world space.
-fn corners(scene: &SceneBuffers) -> Vec<[f32; 6]> {
-    let boxes = scene.transparent_parts().filter_map(|part| part.bounds);
-    let grown = boxes.map(|[low, high]| {
-        let by = glam::Vec3::splat(GROWN * (high - low).max_element());
-        let ([a, b, c], [d, e, f]) = ((low - by).to_array(), (high + by).to_array());
+/// A box as the shader reads it: three rows from the unit cube to world space, and three back.
+type BoxData = [[f32; 4]; 6];
+
+fn placed(parts: &[(usize, glam::Mat4)], scene: &SceneBuffers) -> Vec<BoxData> {
+    let of_part = |&(object, object_from_unit): &(usize, glam::Mat4)| {
+        let mut world_from_unit = scene.scene.objects[object].world_from_object * object_from_unit;
+        if world_from_unit.determinant() < 0.0 {
+            // A mirror would turn the faces around.
+            let turned = glam::Vec3::new(-1.0, 1.0, 1.0);
+            world_from_unit *=
+                glam::Mat4::from_translation(glam::Vec3::X) * glam::Mat4::from_scale(turned);
+        }
+        let unit_from_world = world_from_unit.inverse();
+        let rows =
+            [world_from_unit, unit_from_world].map(|m| [0, 1, 2].map(|k| m.row(k).to_array()));
+        let [[a, b, c], [d, e, f]] = rows;
         [a, b, c, d, e, f]
-    });
-    grown.collect()
+    };
+    parts.iter().map(of_part).collect()
 }

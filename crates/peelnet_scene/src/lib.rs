@@ -44,6 +44,6 @@ pub use camera::Camera;
 pub use census::{Census, Effect, Setting, Variant};
 pub use error::SceneError;
 pub use material::{Lighting, Material};
-pub use mesh::{Mesh, Part};
+pub use mesh::{BOX_MARGIN, Mesh, Part};
 pub use scene::{Light, Object, Scene, Source, State};
 pub use texture::{Maps, Texture, Wrap};

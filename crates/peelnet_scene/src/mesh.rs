@@ -1,9 +1,12 @@
 use crate::{material::Material, texture::Maps};
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 use std::{collections::HashMap, ops::Range};
 
 /// Stands behind the name of a part whose maps cannot be drawn.
 pub(crate) const NO_UVS: &str = " with textures and no texture coordinates: plain values are drawn";
+
+/// By how much [`Mesh::box_of`] is larger than what it holds on either side, of its longest side: rounding must not miss a flat part.
+pub const BOX_MARGIN: f32 = 1e-3;
 
 /// Triangles with a normal at every vertex.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,13 +190,23 @@ impl Mesh {
 
     /// The box around all vertices that triangles use; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut vertices = self
-            .triangles
-            .iter()
-            .flatten()
-            .map(|&i| self.positions[i as usize]);
+        self.bounds_of(0..self.triangles.len())
+    }
+
+    fn bounds_of(&self, triangles: Range<usize>) -> Option<(Vec3, Vec3)> {
+        let vertices = self.triangles[triangles].iter().flatten();
+        let mut vertices = vertices.map(|&i| self.positions[i as usize]);
         let first = vertices.next()?;
         Some(vertices.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
+    }
+
+    /// From the unit cube, 0 … 1, to the box around a part, which is larger by [`BOX_MARGIN`]; `None` of a part that covers nothing.
+    pub fn box_of(&self, part: usize) -> Option<Mat4> {
+        let (low, high) = self.bounds_of(self.parts[part].triangles.clone())?;
+        let margin = Vec3::splat(BOX_MARGIN * (high - low).max_element());
+        let sides = high - low + 2.0 * margin;
+        let some = sides.min_element() > 0.0;
+        some.then(|| Mat4::from_translation(low - margin) * Mat4::from_scale(sides))
     }
 }
 

@@ -2,14 +2,13 @@
 import package::helpers::range::transparent_range;
 import package::learned::weight::{peelnet_pixel_range, peelnet_zeta_in};
 import package::scene::box_vertex::BoxFace;
-import package::scene::camera::camera;
 
 @fragment
 fn fragment_main(face: BoxFace) -> @location(0) vec2f {
-    let ray = face.world - camera.eye;
+    let ray = face.inside - face.eye;
     // A ray along a side never crosses its planes; any large number says so.
     let along = select(ray, vec3f(1e-20), abs(ray) < vec3f(1e-20));
-    let crossed = min((face.low - camera.eye) / along, (face.high - camera.eye) / along);
+    let crossed = min(-face.eye / along, (1.0 - face.eye) / along);
     let enters = clamp(max(crossed.x, max(crossed.y, crossed.z)), 0.0, 1.0);
     let range = transparent_range();
     let nearest = peelnet_pixel_range(peelnet_zeta_in(enters * face.depth_linear, range));

@@ -113,6 +113,7 @@ fn outputs<'a>(context: &'a Context<'a>, args: &RunArgs) -> Result<Outputs<'a>, 
     let networks = [
         ("model.safetensors", peelnet_model::KIND),
         ("model.wgsl", peelnet_export::KIND),
+        ("model.json", peelnet_export::JSON_KIND),
         ("loss.csv", CurveFormat::Csv.kind()),
         ("loss.svg", CurveFormat::Svg.kind()),
     ];

@@ -16,8 +16,9 @@ use super::anchored::{FAINT, resolve, resolve_separate_ends};
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
-    statistics::{EndCode, FAR_END, SumPrecision},
+    statistics::{EndCode, FAR_END, SumPrecision, half_of_code},
 };
+use half::f16;
 use serde::{Deserialize, Serialize};
 
 /// Slabs of a pixel, at most.
@@ -124,7 +125,7 @@ impl Design {
     pub const MEDIUM: Self = Self {
         slabs: &[
             until(0.15, true, true),
-            until(0.5, true, true),
+            until(0.55, true, true),
             until(1.0, true, true),
         ],
         ..Self::SMALL
@@ -201,6 +202,11 @@ impl Range {
             (low.min(level.floor()), high.max(level.ceil()))
         });
         Self { low, high }
+    }
+
+    /// What the targets of the range hold: the lower end counted from the far end, and the upper one, 0 … 1.
+    pub fn stored(&self) -> [f64; 2] {
+        [RANGE_TOP - self.low, self.high].map(|level| level / RANGE_TOP)
     }
 
     /// Where in the range a warped depth lies, 0 … 1.
@@ -301,6 +307,19 @@ impl Slabs {
         all
     }
 
+    /// The range that is cut.
+    pub const fn range(&self) -> Range {
+        self.range
+    }
+
+    /// What targets hold of each slab: its absorbance, absorbance times depth in the slab, and the halves that stand for its nearest and its
+    /// farthest fragment. Where a design keeps less, so do its targets.
+    pub fn stored(&self) -> impl Iterator<Item = [f64; 4]> + '_ {
+        let half = |level| f64::from(f16::from_bits(half_of_code(level)));
+        let slabs = self.slabs.iter().take(self.design.slabs.len());
+        slabs.map(move |s| [s.absorbance, s.first, half(s.nearest), half(s.farthest)])
+    }
+
     fn place(&self, absorbance: f64, zeta: f64) -> Place {
         let (t, records) = (self.range.place(zeta), &self.design.records);
         let inner = self.design.slabs.iter().take(self.design.slabs.len() - 1);
@@ -325,9 +344,10 @@ impl Slabs {
         let before: f64 = self.slabs[..place.slab].iter().map(|s| s.absorbance).sum();
         let others = (slab.absorbance - absorbance).max(0.0);
         let kept = &self.design.slabs[place.slab];
-        let known = if counts && kept.nearest && place.near == slab.nearest {
+        let records = self.design.records;
+        let known = if counts && kept.nearest && records.is_kept(place.near, slab.nearest) {
             Some(0.0)
-        } else if counts && kept.farthest && place.far == slab.farthest {
+        } else if counts && kept.farthest && records.is_kept(place.far, slab.farthest) {
             Some(others)
         } else {
             None

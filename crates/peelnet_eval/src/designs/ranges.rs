@@ -40,50 +40,24 @@ impl Source {
 /// How far the last frame's range is spread, pixels along a row or a column.
 pub const REACH: usize = 2;
 
-/// A box around a transparent part: from world space to its own, and its corners there.
-struct PartBox {
-    own_from_world: Mat4,
-    low: Vec3,
-    high: Vec3,
+/// From world space to where the box around a transparent part is the unit cube.
+fn boxes(scene: &Scene) -> Vec<Mat4> {
+    let objects = scene.objects.iter().flat_map(|object| {
+        let transparent = (object.materials.iter().enumerate()).filter(|(_, m)| !m.is_opaque());
+        let found = transparent.filter_map(|(part, _)| object.mesh.box_of(part));
+        found.map(|object_from_unit| (object.world_from_object * object_from_unit).inverse())
+    });
+    objects.collect()
 }
 
-fn boxes(scene: &Scene) -> Vec<PartBox> {
-    let mut all = Vec::new();
-    for object in &scene.objects {
-        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
-            let vertices = object.mesh.triangles[part.triangles.clone()]
-                .iter()
-                .flatten();
-            let mut points = vertices.map(|&i| object.mesh.positions[i as usize]);
-            let Some(first) = points.next().filter(|_| !material.is_opaque()) else {
-                continue;
-            };
-            let (low, high) = points.fold((first, first), |(l, h), p| (l.min(p), h.max(p)));
-            // A flat part's box would be missed by rounding.
-            let grown = Vec3::splat(1e-4 * (high - low).max_element());
-            all.push(PartBox {
-                own_from_world: object.world_from_object.inverse(),
-                low: low - grown,
-                high: high + grown,
-            });
-        }
-    }
-    all
-}
-
-impl PartBox {
-    /// Where a ray from `origin` enters and leaves it, in lengths of `direction`.
-    fn crossed(&self, origin: Vec3, direction: Vec3) -> Option<[f32; 2]> {
-        let origin = self.own_from_world.transform_point3(origin);
-        let inverse = self.own_from_world.transform_vector3(direction).recip();
-        let (a, b) = (
-            (self.low - origin) * inverse,
-            (self.high - origin) * inverse,
-        );
-        let enters = a.min(b).max_element();
-        let leaves = a.max(b).min_element();
-        (leaves >= enters.max(0.0)).then_some([enters.max(0.0), leaves])
-    }
+/// Where a ray from `origin` enters and leaves a box, in lengths of `direction`.
+fn crossed(unit_from_world: &Mat4, origin: Vec3, direction: Vec3) -> Option<[f32; 2]> {
+    let origin = unit_from_world.transform_point3(origin);
+    let inverse = unit_from_world.transform_vector3(direction).recip();
+    let (a, b) = (-origin * inverse, (1.0 - origin) * inverse);
+    let enters = a.min(b).max_element().max(0.0);
+    let leaves = a.max(b).min_element();
+    (leaves >= enters).then_some([enters, leaves])
 }
 
 /// The range of boxes at each pixel of a view that has fragments.
@@ -101,7 +75,7 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         let direction = world_from_view.transform_vector3(direction);
         let crossed = boxes
             .iter()
-            .filter_map(|b| b.crossed(camera.position, direction));
+            .filter_map(|b| crossed(b, camera.position, direction));
         let ends = crossed.flatten().map(|z| z.clamp(camera.near, camera.far));
         let zetas: Vec<f64> = ends.map(|z| view.warp.apply(z.into())).collect();
         if zetas.is_empty() {
@@ -235,8 +209,8 @@ mod tests {
         let warp = DepthWarp::new(1.0, 8.0);
         let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
         let found = of_boxes(&view, &scene, &camera(), [3, 3]);
-        // Boxes are a ten-thousandth larger than what they hold.
-        let expected = Range::of([1.9998, 4.0002].map(|z: f64| warp.apply(z)));
+        let margin = f64::from(2.0 * peelnet_scene::BOX_MARGIN);
+        let expected = Range::of([2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z)));
         assert_eq!(found, [expected, Range::WHOLE]);
     }
 

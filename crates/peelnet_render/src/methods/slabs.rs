@@ -166,7 +166,7 @@ pub(super) const SMALL: Method = Method {
 };
 
 pub(super) const MEDIUM: Method = Method {
-    curve: &["", ":range=frame", ":scale=0.5"],
+    curve: &["", ":range=boxes", ":range=frame", ":scale=0.5"],
     flaws: &[Flaw::swallowed(&["deep"]), THIN.when(is_of_pixel)],
     ..learned!(
         "deep-medium",
@@ -175,7 +175,7 @@ pub(super) const MEDIUM: Method = Method {
 };
 
 pub(super) const LARGE: Method = Method {
-    curve: &["", ":range=frame"],
+    curve: &["", ":range=boxes", ":range=frame"],
     flaws: &[
         Flaw::swallowed(&["deep"]),
         THIN.when(is_of_pixel),

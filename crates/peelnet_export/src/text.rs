@@ -1,7 +1,7 @@
-//! The text in WGSL: a header, what surrounds the network, and the network.
+//! The text: a header, what surrounds the network, and the network.
 
 use crate::{
-    ExportError, Options,
+    ExportError, Language, Options,
     description::layout,
     header::header,
     network::{call, weight_function},
@@ -14,30 +14,27 @@ pub fn multiply_adds(mlp: &Mlp) -> usize {
     mlp.layers.iter().map(|l| l.inputs * l.outputs).sum()
 }
 
-/// Three inputs that the header and the verification use: the low end, the middle and the high end of the range seen
-/// in training.
-pub(crate) fn self_test_inputs(model: &Model) -> [Vec<f32>; 3] {
-    [0.0, 0.5, 1.0].map(|t: f32| {
-        model
-            .meta
-            .inputs
-            .iter()
-            .map(|i| i.min + t * (i.max - i.min))
-            .collect()
-    })
-}
-
 /// The self-contained text of a model: a header, depth, statistics, the weight of a fragment and the resolve, and the network.
 ///
 /// The same model gives the same bytes.
 ///
 /// # Errors
 /// A model that does not hold together, or whose output has no shader function.
-pub fn wgsl(model: &Model, _options: &Options) -> Result<String, ExportError> {
-    Ok(header(model) + &code(model)?)
+pub fn text(model: &Model, options: &Options) -> Result<String, ExportError> {
+    let dialect = options.language.dialect();
+    Ok(header(model, dialect) + &dialect.translate(&code(model)?)?)
 }
 
-/// The text without its header.
+/// [`text()`] in WGSL, with which the renderer draws.
+///
+/// # Errors
+/// Those of [`text()`].
+pub fn wgsl(model: &Model) -> Result<String, ExportError> {
+    let language = Language::Wgsl;
+    text(model, &Options { language })
+}
+
+/// The text in WGSL without its header.
 pub(crate) fn code(model: &Model) -> Result<String, ExportError> {
     model.check()?;
     let mut text = String::new();

@@ -1,0 +1,309 @@
+// A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
+// Licence of this generated text: MIT OR Apache-2.0.
+// Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.
+// Network: 5-12-1 (Relu hidden, Sigmoid last), 85 parameters, 72 multiply-adds. Recipe anchored-medium, seed 1, 80 epochs.
+// Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
+// Input 0: root_absorbance (root of the rest's absorbance), 0.0 .. 21.672869 in training.
+// Input 1: depth_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the pixel's depth range), 0.0 .. 1.0 in training.
+// Input 3: share_low (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Input 4: share_high (of the rest's absorbance), 0.0 .. 1.0 in training.
+// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
+// Loss: training 0.000286, validation 0.000283, test 0.000284.
+// Held-out error, mean |T - T_exact|: boxes-held 0.01767, cups-held 0.01845, foliage-held 0.00934, panes-held 0.00575, sixteen-held 0.01032, smoke-held 0.01492.
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(8.434867, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.13616015
+// peelnet_weight(12.38736, 0.06893927, 0.677021, 0.9734965, 0.49854618) = 0.07002933
+// peelnet_weight(3.30784, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.13059078
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.49881455
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25946447
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
+//    colour of the pixel: 0.615625, 0.3654342, 0.2501908
+//
+// How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 1. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta);
+//    moments: rgba16float, cleared to 0, blending ADD, from s.moments
+//    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
+// 2. Pass "weights": draw all transparent surfaces, in any order. float2 f = peelnet_fragment(alpha, zeta, moments, extent);
+//    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * (f.x * (1.0 - f.y))
+//    ends: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * (f.x * f.y)
+// 3. Resolve: peelnet_resolve(sums, ends, moments.x, background) is the colour of the pixel, and its coverage in alpha.
+// - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
+// - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
+// - z grows with distance, also where depth buffers are reversed.
+// - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
+
+// language: metal2.4
+#include <metal_stdlib>
+#include <simd/simd.h>
+
+using metal::uint;
+
+struct PeelnetRange {
+    float inverse_near;
+    float near;
+    float scale;
+};
+struct PeelnetStatistics {
+    metal::float4 moments;
+    metal::float4 extent;
+};
+struct PeelnetPlace {
+    float end;
+    float in_front;
+    char _pad2[8];
+    metal::float3 taken;
+    metal::float3 zeta;
+};
+struct PeelnetRest {
+    float root_absorbance;
+    float place;
+    char _pad2[8];
+    metal::float4 means;
+    float bias;
+    char _pad4[12];
+};
+constant float PEELNET_FAINT = 0.003921569;
+constant float PEELNET_TOP = 61439.0;
+constant metal::float2 PEELNET_BINS = metal::float2(240.0, 1920.0);
+constant metal::float2 PEELNET_OPACITIES = metal::float2(256.0, 32.0);
+constant metal::float2 PEELNET_OPACITY_STEP = metal::float2(0.003921569, 0.032258064);
+constant metal::float4 PEELNET_MEANS_MAX = metal::float4(1.0, 65536.0, 65536.0, 65536.0);
+
+PeelnetRange peelnet_range(
+    float near,
+    float far
+) {
+    bool linear = near <= 0.0;
+    float inverse_near = linear ? 0.0 : (1.0 / metal::max(near, 0.000000000000000000000000000000000000011754944));
+    float extent_3 = linear ? (far - near) : metal::log(metal::max(far * inverse_near, 1.0));
+    bool flat = extent_3 <= (linear ? 0.0 : 0.000001);
+    return PeelnetRange {inverse_near, near, flat ? 0.0 : (2.0 / metal::max(extent_3, 0.000000000000000000000000000001))};
+}
+
+float peelnet_zeta_in(
+    float z,
+    PeelnetRange range
+) {
+    float logarithmic = metal::log(metal::max(z * range.inverse_near, 1.0));
+    float from_near = (range.inverse_near == 0.0) ? (z - range.near) : logarithmic;
+    return metal::clamp((from_near * range.scale) - 1.0, -1.0, 1.0);
+}
+
+float peelnet_zeta(
+    float z_1,
+    float near_1,
+    float far_1
+) {
+    PeelnetRange _e3 = peelnet_range(near_1, far_1);
+    float _e4 = peelnet_zeta_in(z_1, _e3);
+    return _e4;
+}
+
+float peelnet_absorbance(
+    float alpha
+) {
+    return -(metal::log(metal::max(1.0 - alpha, 0.00000011253517)));
+}
+
+metal::int3 naga_f2i32(metal::float3 value) {
+    return static_cast<metal::int3>(metal::clamp(value, -2147483600.0, 2147483500.0));
+}
+
+metal::float3 peelnet_halves(
+    metal::float3 levels
+) {
+    metal::float3 from_middle = levels - metal::float3(30719.5);
+    return metal::sign(from_middle) * as_type<metal::float3>(naga_f2i32((metal::abs(from_middle) * 8192.0) + metal::float3(947908600.0)));
+}
+
+metal::float3 peelnet_levels(
+    metal::float3 halves
+) {
+    metal::float3 from_middle_1 = (static_cast<metal::float3>(as_type<metal::int3>(metal::abs(halves))) * 0.00012207031) - metal::float3(115711.5);
+    return metal::float3(30719.5) + (metal::sign(halves) * from_middle_1);
+}
+
+float peelnet_level(
+    float zeta
+) {
+    return metal::floor((((zeta * 0.5) + 0.5) * PEELNET_TOP) + 0.5);
+}
+
+metal::float2 peelnet_ends(
+    float b,
+    float zeta_1
+) {
+    metal::float2 bins = metal::min(metal::floor(((zeta_1 * 0.5) + 0.5) * PEELNET_BINS), metal::float2(239.0, 1919.0));
+    metal::float2 opacity = metal::floor(((b / (b + 1.0)) * metal::float2(270.9375, 32.9375)) + metal::float2(0.5));
+    return (metal::float2(239.0 - bins.x, bins.y) * PEELNET_OPACITIES) + opacity;
+}
+
+PeelnetStatistics peelnet_statistics(
+    float alpha_1,
+    float zeta_2
+) {
+    float _e2 = peelnet_absorbance(alpha_1);
+    float square = zeta_2 * zeta_2;
+    float _e5 = peelnet_level(zeta_2);
+    metal::float2 _e7 = peelnet_ends(_e2, zeta_2);
+    metal::float3 _e9 = peelnet_halves(metal::float3(PEELNET_TOP - _e5, _e7));
+    return PeelnetStatistics {_e2 * metal::float4(1.0, zeta_2, square, square * zeta_2), metal::float4((alpha_1 < PEELNET_FAINT) ? metal::float3(-65504.0) : _e9, (_e2 * square) * square)};
+}
+
+PeelnetPlace peelnet_place(
+    float alpha_2,
+    float zeta_3,
+    metal::float4 moments,
+    metal::float4 extent
+) {
+    bool local = {};
+    float _e4 = peelnet_absorbance(alpha_2);
+    float _e5 = peelnet_level(zeta_3);
+    metal::float3 _e7 = peelnet_levels(extent.xyz);
+    float first = PEELNET_TOP - _e7.x;
+    metal::float2 ends_2 = _e7.yz;
+    metal::float2 _e12 = peelnet_ends(_e4, zeta_3);
+    float at_end = (_e5 <= (first + 1.0)) ? 1.0 : ((_e12.y == ends_2.y) ? 2.0 : 0.0);
+    float end = (alpha_2 < PEELNET_FAINT) ? 0.0 : at_end;
+    metal::float2 bins_1 = metal::floor(ends_2 / PEELNET_OPACITIES);
+    metal::float2 share = (ends_2 - (bins_1 * PEELNET_OPACITIES)) * PEELNET_OPACITY_STEP;
+    metal::float2 known = share / (metal::float2(1.0625) - share);
+    if (_e5 > first) {
+        local = _e12.x != ends_2.x;
+    } else {
+        local = false;
+    }
+    bool _e48 = local;
+    float nearest = _e48 ? known.x : 0.0;
+    float farthest = (_e12.y < ends_2.y) ? known.y : 0.0;
+    float others = metal::max(moments.x - _e4, 0.0);
+    return PeelnetPlace {end, (end == 1.0) ? 0.0 : ((end == 2.0) ? others : nearest), {}, metal::float3(_e4, nearest, farthest), metal::float3(zeta_3, (first * 0.000032552613) - 1.0, ((bins_1.y + 0.5) * 0.0010416667) - 1.0)};
+}
+
+PeelnetRest peelnet_rest(
+    PeelnetPlace place,
+    metal::float4 moments_1,
+    metal::float4 extent_1
+) {
+    metal::float3 z_2 = place.zeta;
+    metal::float3 square_1 = z_2 * z_2;
+    metal::float4 left = moments_1 - metal::float4((place.taken.x + place.taken.y) + place.taken.z, metal::dot(place.taken, z_2), metal::dot(place.taken, square_1), metal::dot(place.taken, square_1 * z_2));
+    float absorbance_1 = metal::max(left.x, 0.0);
+    float inverse_total = 1.0 / metal::max(metal::max(absorbance_1, moments_1.x * 0.0009765625), 0.000001);
+    metal::float4 mean = metal::float4(left.yzw, extent_1.w - metal::dot(place.taken, square_1 * square_1)) * inverse_total;
+    float middle = 0.5 * (place.zeta.y + place.zeta.z);
+    float scale = 2.0 / metal::max(place.zeta.z - place.zeta.y, 0.000032552613);
+    float scale_square = scale * scale;
+    metal::float4 means = metal::float4((mean.x - middle) * scale, (mean.y - (middle * ((2.0 * mean.x) - middle))) * scale_square, ((mean.z - (middle * ((3.0 * mean.y) - (middle * ((3.0 * mean.x) - middle))))) * scale) * scale_square, ((mean.w - (middle * ((4.0 * mean.z) - (middle * ((6.0 * mean.y) - (middle * ((4.0 * mean.x) - middle))))))) * scale_square) * scale_square);
+    return PeelnetRest {metal::sqrt(absorbance_1), metal::clamp((place.zeta.x - middle) * scale, -1.0, 1.0), {}, metal::clamp(means, metal::float4(-1.0, -65536.0, -65536.0, -65536.0), PEELNET_MEANS_MAX), metal::min(0.0009765625 + ((scale_square * scale_square) * 0.000015258789), 0.25)};
+}
+
+metal::float2 peelnet_moment_bounds(
+    PeelnetRest rest
+) {
+    float x = rest.place;
+    metal::float4 m = metal::mix(rest.means, metal::float4(0.0, 0.375, 0.0, 0.375), rest.bias);
+    float variance = m.y - (m.x * m.x);
+    float third = m.z - (m.x * m.y);
+    float d = (variance * (m.w - (m.y * m.y))) - (third * third);
+    float linear_1 = x - m.x;
+    float quadratic = (((x * x) - m.y) * variance) - (third * linear_1);
+    float determinant = variance * d;
+    float kc = quadratic * variance;
+    float kb = (linear_1 * d) - (third * quadratic);
+    float ka = (determinant - (m.x * kb)) - (m.y * kc);
+    float whole = (determinant + ((linear_1 * linear_1) * d)) + (quadratic * quadratic);
+    float own = metal::clamp(determinant / ((metal::abs(whole) < 0.00000000000000000001) ? 0.00000000000000000001 : whole), -10000.0, 10000.0);
+    float half_ = 0.5 * kb;
+    float root = metal::sqrt(metal::max((half_ * half_) - (ka * kc), 0.0));
+    float inverse = ((half_ >= 0.0) ? -1.0 : 1.0) / metal::max(metal::abs(half_) + root, 0.00000000000000000001);
+    float p = ka * inverse;
+    float q = kc * inverse;
+    float apart = 1.0 - (p * q);
+    float at_p = metal::clamp(((1.0 - own) - (q * (m.x - (own * x)))) / ((apart == 0.0) ? 0.00000000000000000001 : apart), -10000.0, 10000.0);
+    float at_q = (1.0 - own) - at_p;
+    float low = ((p < x) ? at_p : 0.0) + ((((1.0 - (x * q)) * q) < 0.0) ? at_q : 0.0);
+    return metal::clamp(metal::float2(low, low + own), metal::float2(0.0), metal::float2(1.0));
+}
+
+float peelnet_share(
+    float root_absorbance,
+    float depth_fraction,
+    float mean_fraction,
+    float share_low,
+    float share_high
+) {
+    metal::float4 input_a = metal::float4(root_absorbance, depth_fraction, mean_fraction, share_low);
+    metal::float4 input_b = metal::float4(share_high, 0.0, 0.0, 0.0);
+    metal::float4 layer_a_a = metal::max((metal::float4(0.7271213, -0.2522731, -6.2262597, 1.3489159) + (metal::float4x4(metal::float4(-0.022978364, 0.041489735, -0.026803136, -0.0038914087), metal::float4(-8.930611, 2.5493624, -7.9762807, 1.8994282), metal::float4(-0.070468575, -2.5054536, 9.861962, -1.4394459), metal::float4(0.075987875, -6.393223, 6.827041, -12.16021)) * input_a)) + (metal::float4(-0.5287007, -2.4133942, -1.0519068, -1.7369345) * input_b.x), metal::float4(0.0));
+    metal::float4 layer_a_b = metal::max((metal::float4(-0.4029816, 2.673338, 4.5243855, 1.244728) + (metal::float4x4(metal::float4(0.1187417, -0.01221438, -0.19914894, 0.19657665), metal::float4(5.5338125, 0.9974758, 7.7009387, 0.6825083), metal::float4(-6.2322464, -2.2639256, -8.831479, 1.6443881), metal::float4(-3.0740392, -7.791208, 1.0749248, -9.23326)) * input_a)) + (metal::float4(1.7366083, -4.3891034, -4.030473, -2.4510674) * input_b.x), metal::float4(0.0));
+    metal::float4 layer_a_c = metal::max((metal::float4(-9.847884, -0.55330116, -0.6435262, 1.858057) + (metal::float4x4(metal::float4(-0.16843866, -0.20134947, 0.0016715517, -0.023076097), metal::float4(1.4405842, 5.2241726, -2.7744648, 0.3580333), metal::float4(-2.748782, -5.586635, 0.60922533, -1.2142211), metal::float4(-0.5700685, 6.842048, 0.26273173, -4.6382055)) * input_a)) + (metal::float4(11.166643, 1.4586995, 0.065701395, -6.3878007) * input_b.x), metal::float4(0.0));
+    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-((((-0.55472857 + metal::dot(metal::float4(-2.1254504, -3.0775745, -0.6885362, -1.0587276), layer_a_a)) + metal::dot(metal::float4(-0.15840325, -0.6901868, -0.3667487, -0.40382), layer_a_b)) + metal::dot(metal::float4(1.1485423, 0.47336403, -1.2541678, -1.6893119), layer_a_c))), 80.0)));
+    return layer_b_a;
+}
+
+float peelnet_network(
+    PeelnetRest rest_1
+) {
+    metal::float2 _e1 = peelnet_moment_bounds(rest_1);
+    float _e16 = peelnet_share(rest_1.root_absorbance, (0.5 * rest_1.place) + 0.5, (0.5 * rest_1.means.x) + 0.5, _e1.x, _e1.y);
+    return _e16;
+}
+
+metal::float2 peelnet_fragment(
+    float alpha_3,
+    float zeta_4,
+    metal::float4 moments_2,
+    metal::float4 extent_2
+) {
+    metal::float4 finite_moments = metal::clamp(moments_2, metal::float4(-65504.0), metal::float4(65504.0));
+    metal::float4 finite_extent = metal::float4(extent_2.xyz, metal::min(extent_2.w, 65504.0));
+    PeelnetPlace _e14 = peelnet_place(alpha_3, zeta_4, finite_moments, finite_extent);
+    PeelnetRest _e15 = peelnet_rest(_e14, finite_moments, finite_extent);
+    float _e16 = peelnet_network(_e15);
+    float between = (_e14.end > 0.0) ? 0.0 : ((_e15.root_absorbance * _e15.root_absorbance) * _e16);
+    return metal::float2(metal::exp(-((_e14.in_front + between))), _e14.end);
+}
+
+metal::float4 peelnet_composite(
+    metal::float4 sums,
+    metal::float4 ends,
+    float coverage,
+    metal::float3 transmittance,
+    metal::float3 background
+) {
+    float own_1 = metal::min(ends.w, coverage);
+    float left_1 = metal::min(coverage - own_1, 16.0 * sums.w);
+    float fill = coverage / metal::max(own_1 + left_1, 0.000000000000000000000000000000000000011754944);
+    metal::float2 shares = fill * metal::float2(own_1 / metal::max(ends.w, 0.000000000000000000000000000000000000011754944), left_1 / metal::max(sums.w, 0.000000000000000000000000000000000000011754944));
+    return metal::float4(((ends.xyz * shares.x) + (sums.xyz * shares.y)) + (background * transmittance), coverage);
+}
+
+metal::float4 peelnet_resolve(
+    metal::float4 sums_1,
+    metal::float4 ends_1,
+    float absorbance,
+    metal::float3 background_1
+) {
+    float transmittance_1 = metal::exp(-(absorbance));
+    metal::float4 most = metal::float4(65504.0);
+    metal::float4 _e13 = peelnet_composite(metal::min(sums_1, most), metal::min(ends_1, most), 1.0 - transmittance_1, metal::float3(transmittance_1), background_1);
+    return _e13;
+}
+
+float peelnet_weight(
+    float root_absorbance_1,
+    float depth_fraction_1,
+    float mean_fraction_1,
+    float share_low_1,
+    float share_high_1
+) {
+    float root_1 = metal::clamp(root_absorbance_1, 0.0, 256.0);
+    float _e23 = peelnet_share(metal::clamp(root_absorbance_1, -46960.414, 46974.063), metal::clamp(depth_fraction_1, -2907.894, 2908.9092), metal::clamp(mean_fraction_1, -1211.0835, 1212.094), metal::clamp(share_low_1, -2969.3333, 2969.953), metal::clamp(share_high_1, -2983.678, 2985.068));
+    return metal::exp((-(root_1) * root_1) * _e23);
+}

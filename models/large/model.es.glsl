@@ -1,0 +1,356 @@
+// A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
+// Licence of this generated text: MIT OR Apache-2.0.
+// GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;.
+// Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
+// Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.927986 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
+// Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
+// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999888 in training.
+// Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
+// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
+// Loss: training 0.000152, validation 0.000164, test 0.000141.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00487, cups-held 0.00256, foliage-held 0.00077, panes-held 0.00016, sixteen-held 0.00062, smoke-held 0.00571.
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(14.86192, 0.36382008, 0.55921507, 0.6518643, 0.0106291175, 0.79744774, 0.85728174, 0.8660555, 0.8008911) = 0.08047041
+// peelnet_weight(3.1536086, 0.34473258, 0.33871156, 0.35519254, 0.24246675, 1.3484817, 0.24470124, 0.5180234, 0.22806776) = 0.075014085
+// peelnet_weight(1.9897641, 0.025055587, 0.3786413, 0.595821, 0.28249002, 0.7963256, 0.6240396, 0.40492046, 0.91731685) = 0.14822036
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
+//    target range: 1.0, 1.0
+//    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
+//    target nearest: 64928.0, -3.4101562, -3.4101562, -64768.0
+//    target farthest: -65088.0, 3.4003906, 3.4003906, 65248.0
+//    target firsts: -0.6931472, 0.3630771, 0.3630771, 2.302585
+//    colour of the pixel: 0.615625, 0.36875, 0.246875
+//
+// How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 1. Pass "range": draw all transparent surfaces, in any order. vec2 r = peelnet_pixel_range(zeta);
+//    range: rg8unorm, cleared to 0, blending MAX, from r
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, range);
+//    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
+//    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
+//    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
+//    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
+//    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * w
+// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
+// - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
+// - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
+// - z grows with distance, also where depth buffers are reversed.
+// - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
+
+struct PeelnetRange {
+    float inverse_near;
+    float near;
+    float scale;
+};
+struct PeelnetPlace {
+    float absorbance;
+    float slab;
+    float inside;
+    float bin;
+    float near;
+    float far;
+};
+struct PeelnetBetween {
+    float absorbance;
+    float place;
+    float mean;
+    float low;
+    float high;
+    float extent;
+    float own;
+    float nearest;
+};
+struct PeelnetStatistics {
+    vec4 absorbances;
+    vec4 nearest;
+    vec4 farthest;
+    vec4 firsts;
+};
+const float PEELNET_FAINT = 0.003921569;
+const float PEELNET_RANGE_TOP = 255.0;
+const float PEELNET_BINS = 1920.0;
+const float PEELNET_OPACITIES = 32.0;
+const float PEELNET_EMPTY = -65504.0;
+const float PEELNET_FIRST_END = 0.12;
+const float PEELNET_SECOND_END = 0.4;
+const float PEELNET_THIRD_END = 0.75;
+const float PEELNET_LAST_SLAB = 3.0;
+
+
+PeelnetRange peelnet_range(float near, float far) {
+    bool linear = (near <= 0.0);
+    float inverse_near = (linear ? 0.0 : (1.0 / max(near, 1.1754944e-38)));
+    float extent = (linear ? (far - near) : log(max((far * inverse_near), 1.0)));
+    bool flat_ = (extent <= (linear ? 0.0 : 1e-6));
+    return PeelnetRange(inverse_near, near, (flat_ ? 0.0 : (2.0 / max(extent, 1e-30))));
+}
+
+float peelnet_zeta_in(float z, PeelnetRange range) {
+    float logarithmic = log(max((z * range.inverse_near), 1.0));
+    float from_near = ((range.inverse_near == 0.0) ? (z - range.near) : logarithmic);
+    return clamp(((from_near * range.scale) - 1.0), -1.0, 1.0);
+}
+
+float peelnet_zeta(float z_1, float near_1, float far_1) {
+    PeelnetRange _e3 = peelnet_range(near_1, far_1);
+    float _e4 = peelnet_zeta_in(z_1, _e3);
+    return _e4;
+}
+
+float peelnet_absorbance(float alpha) {
+    return -(log(max((1.0 - alpha), 1.1253517e-7)));
+}
+
+vec3 peelnet_halves(vec3 levels) {
+    vec3 from_middle = (levels - vec3(30719.5));
+    return (sign(from_middle) * intBitsToFloat(ivec3(((abs(from_middle) * 8192.0) + vec3(947908600.0)))));
+}
+
+vec3 peelnet_levels(vec3 halves) {
+    vec3 from_middle_1 = ((vec3(floatBitsToInt(abs(halves))) * 0.00012207031) - vec3(115711.5));
+    return (vec3(30719.5) + (sign(halves) * from_middle_1));
+}
+
+vec2 peelnet_pixel_range(float zeta) {
+    float level = (PEELNET_RANGE_TOP * ((zeta * 0.5) + 0.5));
+    return (vec2((PEELNET_RANGE_TOP - floor(level)), ceil(level)) / vec2(255.0));
+}
+
+float peelnet_of_slab(vec4 values, float slab) {
+    return ((slab >= 2.0) ? ((slab == 3.0) ? values.w : values.z) : ((slab == 1.0) ? values.y : values.x));
+}
+
+PeelnetPlace peelnet_place(float alpha_1, float zeta_1, vec2 range_1) {
+    vec2 ends_1 = floor(((range_1 * PEELNET_RANGE_TOP) + vec2(0.5)));
+    float low = (PEELNET_RANGE_TOP - ends_1.x);
+    float t = clamp((((PEELNET_RANGE_TOP * ((zeta_1 * 0.5) + 0.5)) - low) / max((ends_1.y - low), 1.0)), 0.0, 1.0);
+    float _e27 = peelnet_absorbance(alpha_1);
+    float first_1 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
+    float passed = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
+    float slab_2 = min(passed, PEELNET_LAST_SLAB);
+    float _e52 = peelnet_of_slab(vec4(0.0, 0.12, 0.4, 0.75), slab_2);
+    float _e58 = peelnet_of_slab(vec4(0.12, 0.4, 0.75, 1.0), slab_2);
+    float inside = ((t - _e52) / (_e58 - _e52));
+    float bin_1 = min(floor((inside * PEELNET_BINS)), 1919.0);
+    float opacity = floor((((_e27 / (_e27 + 1.0)) * 32.9375) + 0.5));
+    float near_2 = (((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity);
+    return PeelnetPlace(_e27, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
+}
+
+vec2 peelnet_records(float alpha_2, PeelnetPlace place) {
+    vec3 _e6 = peelnet_halves(vec3(place.near, place.far, place.far));
+    vec2 levels_3 = _e6.xy;
+    return ((alpha_2 < PEELNET_FAINT) ? vec2(-65504.0) : levels_3);
+}
+
+vec2 peelnet_absorbances_of(vec2 levels_1) {
+    vec2 share = ((levels_1 - (floor((levels_1 * 0.03125)) * PEELNET_OPACITIES)) * 0.032258064);
+    return (share / (vec2(1.0625) - share));
+}
+
+float peelnet_middle_of(float bin) {
+    return (((bin + 0.5) * 0.0010416667) - 1.0);
+}
+
+vec4 peelnet_in_slab(float value, float slab_1, float elsewhere) {
+    return vec4(((slab_1 == 0.0) ? value : elsewhere), ((slab_1 == 1.0) ? value : elsewhere), ((slab_1 == 2.0) ? value : elsewhere), ((slab_1 == 3.0) ? value : elsewhere));
+}
+
+PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, vec2 levels_2) {
+    bool local = false;
+    bool local_1 = false;
+    float begin = 0.0;
+    float end = 0.0;
+    float b = place_1.absorbance;
+    float others = max((total - b), 0.0);
+    float noise = max((total * 0.0009765625), 1e-6);
+    float near_back = floor((levels_2.x * 0.03125));
+    float near_bin = (1919.0 - near_back);
+    float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
+    vec2 _e23 = peelnet_absorbances_of(levels_2);
+    bool all_ = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
+    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_ ? others : _e23.x));
+    float far_bin = floor((levels_2.y * 0.03125));
+    if (!((levels_2.y == near_level))) {
+        local = (levels_2.y < 0.0);
+    } else {
+        local = true;
+    }
+    bool is_one = local;
+    if (!(is_one)) {
+        local_1 = (far_bin < place_1.bin);
+    } else {
+        local_1 = true;
+    }
+    bool _e64 = local_1;
+    float far_2 = (_e64 ? 0.0 : _e23.y);
+    float _e67 = peelnet_middle_of(near_bin);
+    begin = _e67;
+    float _e69 = peelnet_middle_of(far_bin);
+    end = (is_one ? 1.0 : _e69);
+    float rest = (((total - b) - near_3) - far_2);
+    float _e79 = begin;
+    float _e82 = end;
+    float moment = (((first - (b * place_1.inside)) - (near_3 * _e79)) - (far_2 * _e82));
+    float _e85 = begin;
+    float _e86 = begin;
+    begin = ((_e86 > place_1.inside) ? -1.0 : _e85);
+    float _e91 = end;
+    float _e92 = end;
+    end = ((_e92 < place_1.inside) ? 1.0 : _e91);
+    float in_front = ((near_3 * ((near_bin == place_1.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_1.bin) ? 0.5 : 0.0)));
+    float _e110 = end;
+    float _e111 = begin;
+    float extent_1 = max((_e110 - _e111), 0.0010416667);
+    float per_extent = (1.0 / extent_1);
+    float _e118 = begin;
+    float x = clamp(((place_1.inside - _e118) * per_extent), 0.0, 1.0);
+    float _e126 = begin;
+    float _e127 = end;
+    float depth = clamp((moment / max(rest, noise)), _e126, _e127);
+    float _e129 = begin;
+    float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
+    bool before = (x < mean);
+    float bound = ((before ? (1.0 - mean) : (x - mean)) / max((before ? (1.0 - x) : x), 1e-6));
+    float low_1 = (before ? 0.0 : bound);
+    float high = (before ? bound : 1.0);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low_1, high, (0.5 * extent_1), b, in_front);
+}
+
+bool peelnet_is_kept(float own, float kept) {
+    bool local_2 = false;
+    float apart = abs((own - kept));
+    if (!((apart == 0.0))) {
+        local_2 = (apart == PEELNET_OPACITIES);
+    } else {
+        local_2 = true;
+    }
+    bool _e12 = local_2;
+    return _e12;
+}
+
+float peelnet_share(float root_absorbance, float depth_fraction, float mean_fraction, float share_low, float share_high, float root_own, float half_extent, float of_own, float of_nearest) {
+    vec4 input_a = vec4(root_absorbance, depth_fraction, mean_fraction, share_low);
+    vec4 input_b = vec4(share_high, root_own, half_extent, of_own);
+    vec4 input_c = vec4(of_nearest, 0.0, 0.0, 0.0);
+    vec4 layer_a_a = max((((vec4(2.4643872, -6.987039, -1.6444533, 5.5796533) + (mat4x4(vec4(0.052602544, 0.19700566, 0.10022535, 0.18433887), vec4(-1.7041905, 2.1256914, -0.22469828, -2.386004), vec4(1.9757235, 0.5659443, 1.9975252, -4.0594296), vec4(-2.2550564, 1.877814, -2.5203216, -3.2679772)) * input_a)) + (mat4x4(vec4(-0.5271106, 5.745369, -1.2787654, -2.7531028), vec4(-0.041769158, -0.18586318, 1.5831484, 0.33868885), vec4(0.2206193, -0.18942657, -0.5469015, -0.8111552), vec4(-4.597964, -2.2143333, 0.4807863, -1.9617972)) * input_b)) + (vec4(0.32767063, 0.9379071, 1.089621, 1.3716104) * input_c.x)), vec4(0.0));
+    vec4 layer_a_b = max((((vec4(2.2263641, 3.6016862, 1.7586099, 5.0866385) + (mat4x4(vec4(-0.13007939, 0.12264021, -0.011852887, 0.2694853), vec4(-3.3032084, -0.65538144, -3.327861, 0.5746177), vec4(-0.9883207, 0.87883997, -2.6507819, -0.5942581), vec4(-2.8912957, 3.1549006, 0.06984105, 2.0241914)) * input_a)) + (mat4x4(vec4(-1.9582767, 1.5714363, -2.3219547, -1.7219647), vec4(0.37269112, -1.8816584, -0.04668838, -0.39060807), vec4(-0.9976328, 0.14647798, -0.021794185, 0.42603466), vec4(-2.913082, -0.17868201, -0.42035082, -6.5924478)) * input_b)) + (vec4(7.119819, -4.0740128, 1.8227041, -0.21480289) * input_c.x)), vec4(0.0));
+    vec4 layer_a_c = max((((vec4(5.4789686, -7.128248, -6.3175154, 1.7390376) + (mat4x4(vec4(-0.11607167, 0.09588576, -0.06531605, 0.111126855), vec4(-2.1142685, 1.0079565, -0.0957679, -0.6911834), vec4(0.9522916, -2.215375, -3.4221494, 0.5089152), vec4(-3.105718, -4.2589884, -5.672433, -3.7090554)) * input_a)) + (mat4x4(vec4(-1.6421492, 1.6899095, 1.1556636, -2.307099), vec4(-0.3945044, -0.77359134, -0.18681453, -1.2028404), vec4(0.62433994, 0.20998009, -0.31839263, -0.18173662), vec4(-0.5341805, -1.6890203, 3.6606283, -5.3655663)) * input_b)) + (vec4(-4.354002, 9.500281, 6.2751446, 6.4966626) * input_c.x)), vec4(0.0));
+    float layer_b_a = (1.0 / (1.0 + exp(min(-((((-0.72427064 + dot(vec4(-1.9435571, 1.3063835, -0.36826128, -0.4883021), layer_a_a)) + dot(vec4(0.51386124, 0.4705366, -3.509805, 1.7627314), layer_a_b)) + dot(vec4(-1.0784829, 0.5562729, -0.55630404, -0.78178596), layer_a_c))), 80.0))));
+    return layer_b_a;
+}
+
+float peelnet_network(PeelnetBetween between) {
+    float _e24 = peelnet_share(sqrt(between.absorbance), between.place, between.mean, between.low, between.high, sqrt(between.own), between.extent, (between.absorbance / ((between.absorbance + between.own) + 1e-6)), (between.absorbance / ((between.absorbance + between.nearest) + 1e-6)));
+    return _e24;
+}
+
+vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest, vec4 farthest, float ends) {
+    bool local_3 = false;
+    bool local_4 = false;
+    bool local_5 = false;
+    bool local_6 = false;
+    bool local_7 = false;
+    vec4 sums_2 = min(absorbances, vec4(65504.0));
+    float _e11 = peelnet_of_slab(sums_2, place_2.slab);
+    float _e13 = peelnet_of_slab(firsts, place_2.slab);
+    float first_2 = clamp(_e13, -65504.0, 65504.0);
+    float _e18 = peelnet_of_slab(nearest, place_2.slab);
+    float _e20 = peelnet_of_slab(farthest, place_2.slab);
+    vec2 halves_1 = vec2(_e18, _e20);
+    vec3 _e24 = peelnet_levels(vec3(halves_1, halves_1.y));
+    vec2 decoded = _e24.xy;
+    vec2 levels_4 = ((place_2.slab < ends) ? decoded : vec2(decoded.x, -1.0));
+    float before_1 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
+    if (counts) {
+        bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
+        local_3 = _e56;
+    } else {
+        local_3 = false;
+    }
+    bool is_near = local_3;
+    if (counts) {
+        local_4 = (levels_4.y >= 0.0);
+    } else {
+        local_4 = false;
+    }
+    bool _e65 = local_4;
+    if (_e65) {
+        bool _e70 = peelnet_is_kept(place_2.far, levels_4.y);
+        local_5 = _e70;
+    } else {
+        local_5 = false;
+    }
+    bool _e72 = local_5;
+    if (_e72) {
+        local_6 = !(is_near);
+    } else {
+        local_6 = false;
+    }
+    bool is_far = local_6;
+    if (!(is_near)) {
+        local_7 = is_far;
+    } else {
+        local_7 = true;
+    }
+    bool known = local_7;
+    PeelnetBetween _e83 = peelnet_between(place_2, _e11, first_2, levels_4);
+    float _e88 = peelnet_network(_e83);
+    float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
+    float at_end = (is_far ? max((_e11 - place_2.absorbance), 0.0) : 0.0);
+    float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
+    return vec2(exp(-((before_1 + inside_1))), (known ? 1.0 : 0.0));
+}
+
+PeelnetStatistics peelnet_statistics(float alpha_3, float zeta_2, vec2 range_2) {
+    PeelnetPlace _e3 = peelnet_place(alpha_3, zeta_2, range_2);
+    vec2 _e4 = peelnet_records(alpha_3, _e3);
+    vec4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
+    vec4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
+    vec4 _e18 = peelnet_in_slab((_e3.absorbance * _e3.inside), _e3.slab, 0.0);
+    vec4 _e22 = peelnet_in_slab(_e4.y, _e3.slab, PEELNET_EMPTY);
+    return PeelnetStatistics(_e8, _e12, _e22, _e18);
+}
+
+vec2 peelnet_fragment(float alpha_4, float zeta_3, vec2 range_3, vec4 absorbances_1, vec4 nearest_1, vec4 farthest_1, vec4 firsts_1) {
+    PeelnetPlace _e7 = peelnet_place(alpha_4, zeta_3, range_3);
+    vec2 _e11 = peelnet_weigh(_e7, (alpha_4 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_1, farthest_1, 4.0);
+    return _e11;
+}
+
+vec4 peelnet_composite(vec4 sums, float coverage, vec3 transmittance, vec3 background) {
+    bool local_8 = false;
+    if ((sums.w > 0.0)) {
+        local_8 = (coverage > 0.0);
+    } else {
+        local_8 = false;
+    }
+    bool _e20 = local_8;
+    vec3 average = (_e20 ? (sums.xyz / vec3(max(sums.w, 1.1754944e-38))) : vec3(0.0));
+    return vec4(((average * coverage) + (background * transmittance)), coverage);
+}
+
+vec4 peelnet_resolve(vec4 sums_1, float absorbance, vec3 background_1) {
+    float transmittance_1 = exp(-(absorbance));
+    vec4 _e11 = peelnet_composite(min(sums_1, vec4(65504.0)), (1.0 - transmittance_1), vec3(transmittance_1), background_1);
+    return _e11;
+}
+
+float peelnet_weight(float root_absorbance_1, float depth_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
+    float root = clamp(root_absorbance_1, 0.0, 256.0);
+    float _e39 = peelnet_share(clamp(root_absorbance_1, -29207.322, 29215.22), clamp(depth_fraction_1, -2898.9043, 2899.9014), clamp(mean_fraction_1, -1500.5107, 1501.5083), clamp(share_low_1, -2251.8335, 2252.1797), clamp(share_high_1, -2285.958, 2287.6113), clamp(root_own_1, -5866.857, 5868.486), clamp(half_extent_1, -1598.2828, 1600.0094), clamp(of_own_1, -1822.8363, 1824.6141), clamp(of_nearest_1, -1809.9419, 1811.7219));
+    vec2 bounds = clamp(vec2(share_low_1, share_high_1), vec2(0.0), vec2(1.0));
+    return exp(((-(root) * root) * mix(bounds.x, bounds.y, _e39)));
+}

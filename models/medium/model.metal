@@ -1,0 +1,457 @@
+// A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
+// Licence of this generated text: MIT OR Apache-2.0.
+// Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.
+// Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe medium, seed 1, 80 epochs.
+// Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 18.207085 in training.
+// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.9999997 in training.
+// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
+// Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
+// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999903 in training.
+// Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
+// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
+// Loss: training 0.000184, validation 0.000186, test 0.000175.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00685, cups-held 0.00421, foliage-held 0.00155, panes-held 0.00043, sixteen-held 0.00163, smoke-held 0.00737.
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(0.41411713, 0.6708578, 0.16887921, 0.7373583, 0.19208878, 0.11606197, 0.12900263, 0.43583506, 0.7663156) = 0.9196917
+// peelnet_weight(2.3180249, 0.21623933, 0.7240006, 0.37958002, 0.26558614, 2.0352807, 0.5804378, 0.9097892, 0.04841405) = 0.13643064
+// peelnet_weight(1.0149562, 0.55773157, 0.41844797, 0.7173642, 0.44993675, 1.6763307, 0.48404527, 0.3332266, 0.6325573) = 0.50523376
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
+//    target range: 1.0, 1.0
+//    target absorbances: 0.6931472, 0.6931472, 2.995732, -0.6931472
+//    target nearest: 64928.0, -0.00017380714, 0.061920166, 0.033007007
+//    target farthest: -65088.0, 0.0001732111, 65248.0, 2.0715358
+//    colour of the pixel: 0.615625, 0.36875, 0.246875
+//
+// How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 1. Pass "range": draw all transparent surfaces, in any order. float2 r = peelnet_pixel_range(zeta);
+//    range: rg8unorm, cleared to 0, blending MAX, from r
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, range);
+//    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
+//    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
+//    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;
+//    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * w
+// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
+// - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
+// - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
+// - z grows with distance, also where depth buffers are reversed.
+// - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
+
+// language: metal2.4
+#include <metal_stdlib>
+#include <simd/simd.h>
+
+using metal::uint;
+
+struct PeelnetRange {
+    float inverse_near;
+    float near;
+    float scale;
+};
+struct PeelnetPlace {
+    float absorbance;
+    float slab;
+    float inside;
+    float bin;
+    float near;
+    float far;
+};
+struct PeelnetBetween {
+    float absorbance;
+    float place;
+    float mean;
+    float low;
+    float high;
+    float extent;
+    float own;
+    float nearest;
+};
+struct PeelnetStatistics {
+    metal::float4 absorbances;
+    metal::float4 nearest;
+    metal::float4 farthest;
+};
+constant float PEELNET_FAINT = 0.003921569;
+constant float PEELNET_RANGE_TOP = 255.0;
+constant float PEELNET_BINS = 1920.0;
+constant float PEELNET_OPACITIES = 32.0;
+constant float PEELNET_EMPTY = -65504.0;
+constant float PEELNET_FIRST_END = 0.15;
+constant float PEELNET_SECOND_END = 0.5;
+constant float PEELNET_THIRD_END = 1.0;
+constant float PEELNET_LAST_SLAB = 2.0;
+
+PeelnetRange peelnet_range(
+    float near,
+    float far
+) {
+    bool linear = near <= 0.0;
+    float inverse_near = linear ? 0.0 : (1.0 / metal::max(near, 0.000000000000000000000000000000000000011754944));
+    float extent = linear ? (far - near) : metal::log(metal::max(far * inverse_near, 1.0));
+    bool flat = extent <= (linear ? 0.0 : 0.000001);
+    return PeelnetRange {inverse_near, near, flat ? 0.0 : (2.0 / metal::max(extent, 0.000000000000000000000000000001))};
+}
+
+float peelnet_zeta_in(
+    float z,
+    PeelnetRange range
+) {
+    float logarithmic = metal::log(metal::max(z * range.inverse_near, 1.0));
+    float from_near = (range.inverse_near == 0.0) ? (z - range.near) : logarithmic;
+    return metal::clamp((from_near * range.scale) - 1.0, -1.0, 1.0);
+}
+
+float peelnet_zeta(
+    float z_1,
+    float near_1,
+    float far_1
+) {
+    PeelnetRange _e3 = peelnet_range(near_1, far_1);
+    float _e4 = peelnet_zeta_in(z_1, _e3);
+    return _e4;
+}
+
+float peelnet_absorbance(
+    float alpha
+) {
+    return -(metal::log(metal::max(1.0 - alpha, 0.00000011253517)));
+}
+
+metal::int3 naga_f2i32(metal::float3 value) {
+    return static_cast<metal::int3>(metal::clamp(value, -2147483600.0, 2147483500.0));
+}
+
+metal::float3 peelnet_halves(
+    metal::float3 levels
+) {
+    metal::float3 from_middle = levels - metal::float3(30719.5);
+    return metal::sign(from_middle) * as_type<metal::float3>(naga_f2i32((metal::abs(from_middle) * 8192.0) + metal::float3(947908600.0)));
+}
+
+metal::float3 peelnet_levels(
+    metal::float3 halves
+) {
+    metal::float3 from_middle_1 = (static_cast<metal::float3>(as_type<metal::int3>(metal::abs(halves))) * 0.00012207031) - metal::float3(115711.5);
+    return metal::float3(30719.5) + (metal::sign(halves) * from_middle_1);
+}
+
+metal::float2 peelnet_pixel_range(
+    float zeta
+) {
+    float level = PEELNET_RANGE_TOP * ((zeta * 0.5) + 0.5);
+    return metal::float2(PEELNET_RANGE_TOP - metal::floor(level), metal::ceil(level)) / metal::float2(255.0);
+}
+
+float peelnet_of_slab(
+    metal::float4 values,
+    float slab
+) {
+    return (slab >= 2.0) ? ((slab == 3.0) ? values.w : values.z) : ((slab == 1.0) ? values.y : values.x);
+}
+
+PeelnetPlace peelnet_place(
+    float alpha_1,
+    float zeta_1,
+    metal::float2 range_1
+) {
+    metal::float2 ends_1 = metal::floor((range_1 * PEELNET_RANGE_TOP) + metal::float2(0.5));
+    float low = PEELNET_RANGE_TOP - ends_1.x;
+    float t = metal::clamp(((PEELNET_RANGE_TOP * ((zeta_1 * 0.5) + 0.5)) - low) / metal::max(ends_1.y - low, 1.0), 0.0, 1.0);
+    float _e27 = peelnet_absorbance(alpha_1);
+    float first_1 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
+    float passed = (first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
+    float slab_2 = metal::min(passed, PEELNET_LAST_SLAB);
+    float _e52 = peelnet_of_slab(metal::float4(0.0, 0.15, 0.5, 1.0), slab_2);
+    float _e58 = peelnet_of_slab(metal::float4(0.15, 0.5, 1.0, 1.0), slab_2);
+    float inside = (t - _e52) / (_e58 - _e52);
+    float bin_1 = metal::min(metal::floor(inside * PEELNET_BINS), 1919.0);
+    float opacity = metal::floor(((_e27 / (_e27 + 1.0)) * 32.9375) + 0.5);
+    float near_2 = ((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity;
+    return PeelnetPlace {_e27, slab_2, (2.0 * inside) - 1.0, bin_1, near_2, (bin_1 * PEELNET_OPACITIES) + opacity};
+}
+
+metal::float2 peelnet_records(
+    float alpha_2,
+    PeelnetPlace place
+) {
+    metal::float3 _e6 = peelnet_halves(metal::float3(place.near, place.far, place.far));
+    metal::float2 levels_3 = _e6.xy;
+    return (alpha_2 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_3;
+}
+
+metal::float2 peelnet_absorbances_of(
+    metal::float2 levels_1
+) {
+    metal::float2 share = (levels_1 - (metal::floor(levels_1 * 0.03125) * PEELNET_OPACITIES)) * 0.032258064;
+    return share / (metal::float2(1.0625) - share);
+}
+
+float peelnet_middle_of(
+    float bin
+) {
+    return ((bin + 0.5) * 0.0010416667) - 1.0;
+}
+
+metal::float4 peelnet_in_slab(
+    float value,
+    float slab_1,
+    float elsewhere
+) {
+    return metal::float4((slab_1 == 0.0) ? value : elsewhere, (slab_1 == 1.0) ? value : elsewhere, (slab_1 == 2.0) ? value : elsewhere, (slab_1 == 3.0) ? value : elsewhere);
+}
+
+PeelnetBetween peelnet_between(
+    PeelnetPlace place_1,
+    float total,
+    float first,
+    metal::float2 levels_2
+) {
+    bool local = {};
+    bool local_1 = {};
+    float begin = {};
+    float end = {};
+    float b = place_1.absorbance;
+    float others = metal::max(total - b, 0.0);
+    float noise = metal::max(total * 0.0009765625, 0.000001);
+    float near_back = metal::floor(levels_2.x * 0.03125);
+    float near_bin = 1919.0 - near_back;
+    float near_level = levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES);
+    metal::float2 _e23 = peelnet_absorbances_of(levels_2);
+    bool all = _e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise));
+    float near_3 = (near_bin > place_1.bin) ? 0.0 : (all ? others : _e23.x);
+    float far_bin = metal::floor(levels_2.y * 0.03125);
+    if (!((levels_2.y == near_level))) {
+        local = levels_2.y < 0.0;
+    } else {
+        local = true;
+    }
+    bool is_one = local;
+    if (!(is_one)) {
+        local_1 = far_bin < place_1.bin;
+    } else {
+        local_1 = true;
+    }
+    bool _e64 = local_1;
+    float far_2 = _e64 ? 0.0 : _e23.y;
+    float _e67 = peelnet_middle_of(near_bin);
+    begin = _e67;
+    float _e69 = peelnet_middle_of(far_bin);
+    end = is_one ? 1.0 : _e69;
+    float rest = ((total - b) - near_3) - far_2;
+    float _e79 = begin;
+    float _e82 = end;
+    float moment = ((first - (b * place_1.inside)) - (near_3 * _e79)) - (far_2 * _e82);
+    float _e85 = begin;
+    float _e86 = begin;
+    begin = (_e86 > place_1.inside) ? -1.0 : _e85;
+    float _e91 = end;
+    float _e92 = end;
+    end = (_e92 < place_1.inside) ? 1.0 : _e91;
+    float in_front = (near_3 * ((near_bin == place_1.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_1.bin) ? 0.5 : 0.0));
+    float _e110 = end;
+    float _e111 = begin;
+    float extent_1 = metal::max(_e110 - _e111, 0.0010416667);
+    float per_extent = 1.0 / extent_1;
+    float _e118 = begin;
+    float x = metal::clamp((place_1.inside - _e118) * per_extent, 0.0, 1.0);
+    float _e126 = begin;
+    float _e127 = end;
+    float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
+    float _e129 = begin;
+    float mean = metal::clamp((depth - _e129) * per_extent, 0.0, 1.0);
+    bool before = x < mean;
+    float bound = (before ? (1.0 - mean) : (x - mean)) / metal::max(before ? (1.0 - x) : x, 0.000001);
+    float low_1 = before ? 0.0 : bound;
+    float high = before ? bound : 1.0;
+    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low_1, high, 0.5 * extent_1, b, in_front};
+}
+
+bool peelnet_is_kept(
+    float own,
+    float kept
+) {
+    bool local_2 = {};
+    float apart = metal::abs(own - kept);
+    if (!((apart == 0.0))) {
+        local_2 = apart == PEELNET_OPACITIES;
+    } else {
+        local_2 = true;
+    }
+    bool _e12 = local_2;
+    return _e12;
+}
+
+float peelnet_share(
+    float root_absorbance,
+    float depth_fraction,
+    float mean_fraction,
+    float share_low,
+    float share_high,
+    float root_own,
+    float half_extent,
+    float of_own,
+    float of_nearest
+) {
+    metal::float4 input_a = metal::float4(root_absorbance, depth_fraction, mean_fraction, share_low);
+    metal::float4 input_b = metal::float4(share_high, root_own, half_extent, of_own);
+    metal::float4 input_c = metal::float4(of_nearest, 0.0, 0.0, 0.0);
+    metal::float4 layer_a_a = metal::max(((metal::float4(2.3312724, 4.9566894, 2.4202383, 0.96182424) + (metal::float4x4(metal::float4(-0.098066635, -0.07826404, 0.035066344, -0.126479), metal::float4(-1.5145702, -1.2749895, -1.8177481, -2.055795), metal::float4(2.493586, -4.886961, 2.1493337, -2.2144907), metal::float4(-4.962184, 3.4838874, -3.4367075, 3.8246207)) * input_a)) + (metal::float4x4(metal::float4(0.15692803, 0.4467104, 0.77941495, 1.9537058), metal::float4(-0.2725536, 0.60726184, 0.2808186, 1.0752884), metal::float4(0.046945237, 0.5638311, -2.8176577, 1.0956233), metal::float4(-2.6219478, 0.5422855, 0.6592897, -0.44104582)) * input_b)) + (metal::float4(-0.7404604, -4.873116, -1.3078395, -1.0939094) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_b = metal::max(((metal::float4(-0.720969, -10.520854, 3.8593247, -0.8842787) + (metal::float4x4(metal::float4(-0.046288736, -0.06121178, -0.028030653, 0.3163491), metal::float4(-1.6549274, 0.84612143, -3.0808828, 2.977994), metal::float4(-4.022788, -1.6736771, -2.4822276, -2.918558), metal::float4(-7.2243648, 2.8509064, -2.4859293, 0.9146151)) * input_a)) + (metal::float4x4(metal::float4(0.6232988, 2.4972525, -1.4379959, 3.9199123), metal::float4(0.36106628, 0.05897052, 0.0061963205, -0.2969082), metal::float4(-0.004271661, 0.59120893, 0.031270143, -0.032737527), metal::float4(0.09889532, 2.6497672, 1.1113585, -5.486466)) * input_b)) + (metal::float4(5.310882, 7.271696, -2.449796, 0.2108077) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_c = metal::max(((metal::float4(0.40991056, 3.1214416, -9.318755, -1.009016) + (metal::float4x4(metal::float4(0.122387454, 0.06696973, -0.17175767, 0.25807068), metal::float4(-2.9326298, 2.0920212, -1.1362619, -1.0678394), metal::float4(-0.736385, -1.6849476, 0.3479262, 0.82175463), metal::float4(-4.0833974, -0.81576884, -5.3861623, -1.2917801)) * input_a)) + (metal::float4x4(metal::float4(0.16234668, 1.834429, 2.815761, -4.979944), metal::float4(-0.37460542, -1.7184242, -0.13769281, 0.3251302), metal::float4(-0.15287934, -0.016516851, -0.04973097, -0.20644546), metal::float4(-3.2773483, 0.8251236, 7.1688538, -2.618714)) * input_b)) + (metal::float4(3.663869, -3.5896435, 3.4000487, 6.7372603) * input_c.x), metal::float4(0.0));
+    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-((((-0.58532107 + metal::dot(metal::float4(-1.2754409, 0.32686558, -0.14209025, -0.5072162), layer_a_a)) + metal::dot(metal::float4(0.56173533, 0.4152933, -1.5893403, 1.616162), layer_a_b)) + metal::dot(metal::float4(-1.5344069, 0.5171022, -0.7703004, -0.5448833), layer_a_c))), 80.0)));
+    return layer_b_a;
+}
+
+float peelnet_network(
+    PeelnetBetween between
+) {
+    float _e24 = peelnet_share(metal::sqrt(between.absorbance), between.place, between.mean, between.low, between.high, metal::sqrt(between.own), between.extent, between.absorbance / ((between.absorbance + between.own) + 0.000001), between.absorbance / ((between.absorbance + between.nearest) + 0.000001));
+    return _e24;
+}
+
+metal::float2 peelnet_weigh(
+    PeelnetPlace place_2,
+    bool counts,
+    metal::float4 absorbances,
+    metal::float4 firsts,
+    metal::float4 nearest,
+    metal::float4 farthest,
+    float ends
+) {
+    bool local_3 = {};
+    bool local_4 = {};
+    bool local_5 = {};
+    bool local_6 = {};
+    bool local_7 = {};
+    metal::float4 sums_2 = metal::min(absorbances, metal::float4(65504.0));
+    float _e11 = peelnet_of_slab(sums_2, place_2.slab);
+    float _e13 = peelnet_of_slab(firsts, place_2.slab);
+    float first_2 = metal::clamp(_e13, -65504.0, 65504.0);
+    float _e18 = peelnet_of_slab(nearest, place_2.slab);
+    float _e20 = peelnet_of_slab(farthest, place_2.slab);
+    metal::float2 halves_1 = metal::float2(_e18, _e20);
+    metal::float3 _e24 = peelnet_levels(metal::float3(halves_1, halves_1.y));
+    metal::float2 decoded = _e24.xy;
+    metal::float2 levels_4 = (place_2.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
+    float before_1 = (((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0);
+    if (counts) {
+        bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
+        local_3 = _e56;
+    } else {
+        local_3 = false;
+    }
+    bool is_near = local_3;
+    if (counts) {
+        local_4 = levels_4.y >= 0.0;
+    } else {
+        local_4 = false;
+    }
+    bool _e65 = local_4;
+    if (_e65) {
+        bool _e70 = peelnet_is_kept(place_2.far, levels_4.y);
+        local_5 = _e70;
+    } else {
+        local_5 = false;
+    }
+    bool _e72 = local_5;
+    if (_e72) {
+        local_6 = !(is_near);
+    } else {
+        local_6 = false;
+    }
+    bool is_far = local_6;
+    if (!(is_near)) {
+        local_7 = is_far;
+    } else {
+        local_7 = true;
+    }
+    bool known = local_7;
+    PeelnetBetween _e83 = peelnet_between(place_2, _e11, first_2, levels_4);
+    float _e88 = peelnet_network(_e83);
+    float share_1 = _e83.low + ((_e83.high - _e83.low) * _e88);
+    float at_end = is_far ? metal::max(_e11 - place_2.absorbance, 0.0) : 0.0;
+    float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_1));
+    return metal::float2(metal::exp(-((before_1 + inside_1))), known ? 1.0 : 0.0);
+}
+
+PeelnetStatistics peelnet_statistics(
+    float alpha_3,
+    float zeta_2,
+    metal::float2 range_2
+) {
+    PeelnetPlace _e3 = peelnet_place(alpha_3, zeta_2, range_2);
+    metal::float2 _e4 = peelnet_records(alpha_3, _e3);
+    metal::float4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
+    metal::float4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
+    metal::float4 _e18 = peelnet_in_slab(_e3.absorbance * _e3.inside, _e3.slab, 0.0);
+    metal::float4 _e22 = peelnet_in_slab(_e4.y, _e3.slab, PEELNET_EMPTY);
+    return PeelnetStatistics {metal::float4(_e8.xyz, _e18.x), metal::float4(_e12.xyz, _e18.y), metal::float4(_e22.xyz, _e18.z)};
+}
+
+metal::float2 peelnet_fragment(
+    float alpha_4,
+    float zeta_3,
+    metal::float2 range_3,
+    metal::float4 absorbances_1,
+    metal::float4 nearest_1,
+    metal::float4 farthest_1
+) {
+    PeelnetPlace _e6 = peelnet_place(alpha_4, zeta_3, range_3);
+    metal::float4 firsts_1 = metal::float4(absorbances_1.w, nearest_1.w, farthest_1.w, 0.0);
+    metal::float2 _e15 = peelnet_weigh(_e6, alpha_4 >= PEELNET_FAINT, absorbances_1, firsts_1, nearest_1, farthest_1, 3.0);
+    return _e15;
+}
+
+metal::float4 peelnet_composite(
+    metal::float4 sums,
+    float coverage,
+    metal::float3 transmittance,
+    metal::float3 background
+) {
+    bool local_8 = {};
+    if (sums.w > 0.0) {
+        local_8 = coverage > 0.0;
+    } else {
+        local_8 = false;
+    }
+    bool _e20 = local_8;
+    metal::float3 average = _e20 ? (sums.xyz / metal::float3(metal::max(sums.w, 0.000000000000000000000000000000000000011754944))) : metal::float3(0.0);
+    return metal::float4((average * coverage) + (background * transmittance), coverage);
+}
+
+metal::float4 peelnet_resolve(
+    metal::float4 sums_1,
+    float absorbance,
+    metal::float3 background_1
+) {
+    float transmittance_1 = metal::exp(-(absorbance));
+    metal::float4 _e11 = peelnet_composite(metal::min(sums_1, metal::float4(65504.0)), 1.0 - transmittance_1, metal::float3(transmittance_1), background_1);
+    return _e11;
+}
+
+float peelnet_weight(
+    float root_absorbance_1,
+    float depth_fraction_1,
+    float mean_fraction_1,
+    float share_low_1,
+    float share_high_1,
+    float root_own_1,
+    float half_extent_1,
+    float of_own_1,
+    float of_nearest_1
+) {
+    float root = metal::clamp(root_absorbance_1, 0.0, 256.0);
+    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -34194.305, 34203.477), metal::clamp(depth_fraction_1, -2907.2734, 2908.2734), metal::clamp(mean_fraction_1, -1428.0237, 1429.022), metal::clamp(share_low_1, -2173.027, 2173.365), metal::clamp(share_high_1, -2198.7, 2200.365), metal::clamp(root_own_1, -5847.0073, 5848.637), metal::clamp(half_extent_1, -1469.9741, 1471.7517), metal::clamp(of_own_1, -1635.5967, 1637.4138), metal::clamp(of_nearest_1, -1626.5996, 1628.4153));
+    metal::float2 bounds = metal::clamp(metal::float2(share_low_1, share_high_1), metal::float2(0.0), metal::float2(1.0));
+    return metal::exp((-(root) * root) * metal::mix(bounds.x, bounds.y, _e39));
+}
