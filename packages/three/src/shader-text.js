@@ -19,17 +19,13 @@ const GLSL = {
 	zero: 'vec4(0.0)',
 	function: ( name, parameters, result, body ) => `${ result.replace( /f$/, '' ) } ${ name }(${ parameters.map( ( [ n, t ] ) => `${ t } ${ n }` ).join( ', ' ) }) {\n${ body }\n}`,
 	constant: ( type, name, value ) => `${ type } ${ name } = ${ value };`,
-	expression: ( text ) => text.replace( /\bvec([234])f\b/g, 'vec$1' ).replace( /\bselect\(/g, 'peelnet_pick(' ),
+	expression: ( text ) => text.replace( /\bvec([234])f\b/g, 'vec$1' ),
 	// WGSL's `let` has no type; GLSL needs one.
 	statements: ( text, library ) => GLSL.expression( text ).replace( /\blet (\w+) = ([^;]+);/g, ( _, name, value ) => `${ typeOf( value, library ) } ${ name } = ${ value };` )
 };
 
-// WGSL's select() of the descriptions' expressions.
-const GLSL_PICK = 'vec4 peelnet_pick(vec4 no, vec4 yes, bool condition) { return condition ? yes : no; }\n';
-
+// The type of a value that a description computes: what an exported function returns, or a channel of it.
 function typeOf( value, library ) {
-
-	if ( /[<>]/.test( value ) ) return 'bool';
 
 	const call = value.match( /^(peelnet_\w+)\(.*\)$/ );
 
@@ -46,17 +42,8 @@ function widened( language, expression, channels ) {
 
 }
 
-/**
- * The text that a back end compiles.
- *
- * @param {{ description: object, wgsl: string, glsl?: string }} model
- * @param {boolean} isGlsl
- */
-export function libraryText( model, isGlsl ) {
-
-	return isGlsl ? GLSL_PICK + model.glsl : model.wgsl;
-
-}
+/** The text that a back end compiles. */
+export const libraryText = ( model, isGlsl ) => isGlsl ? model.glsl : model.wgsl;
 
 // What was read as four channels, as the names and types of the description. A target that was not drawn is the range of the
 // whole frame: both of its ends at their most.

@@ -83,7 +83,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			assert.ok( learned < sorted / 2 && learned < weighted / 3, `${ learned } ${ sorted } ${ weighted }` );
 
 			// A canvas of WebGPU can be read only as a data URL here.
-			const image = await browser.page.evaluate( async () => {
+			const { image, brightness } = await browser.page.evaluate( async () => {
 
 				const canvases = [ ...document.querySelectorAll( 'canvas' ) ];
 				const all = document.createElement( 'canvas' );
@@ -105,9 +105,20 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 				}
 
-				return all.toDataURL();
+				const brightness = [ 0, 1, 2 ].map( ( i ) => {
+
+					const { data } = context.getImageData( i * width, 0, width, height );
+
+					return data.reduce( ( sum, value, at ) => sum + ( at % 4 === 3 ? 0 : value ), 0 ) / data.length;
+
+				} );
+
+				return { image: all.toDataURL(), brightness };
 
 			} );
+
+			for ( const value of brightness ) assert.ok( value > 40, `a view is black: ${ brightness }` );
+
 
 			writeFileSync( join( OUT, `example-${ backend }.png` ), Buffer.from( image.split( ',' )[ 1 ], 'base64' ) );
 

@@ -114,6 +114,33 @@ const drawn = async ( renderer, scene, camera, options, frames ) => {
 
 };
 
+/** The colour of a pixel with the fragments of an export's self-test, as cards that fill the view. */
+export async function fourFragments( backend, { name, pixel } ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = new THREE.Scene();
+	const camera = new THREE.PerspectiveCamera( 40, aspect, 0.1, 100 );
+
+	scene.background = new THREE.Color().setRGB( ...pixel.background );
+
+	// The farthest first, which must not matter.
+	for ( const { z, alpha, rgb } of pixel.fragments.toReversed() ) {
+
+		const card = new THREE.Mesh( new THREE.PlaneGeometry( 40, 40 ), new THREE.MeshBasicMaterial( { transparent: true, opacity: alpha } ) );
+
+		card.material.color.setRGB( ...rgb );
+		card.position.z = - z;
+		scene.add( card );
+
+	}
+
+	const { image } = await drawn( renderer, scene, camera, { model: await modelOf( name ) } );
+	const at = 4 * ( HEIGHT / 2 * WIDTH + WIDTH / 2 );
+
+	return [ ...image.slice( at, at + 3 ) ];
+
+}
+
 /** How far the first frame is from the third: a target's first drawing must not clear what others share. */
 export async function firstFrame( backend ) {
 
