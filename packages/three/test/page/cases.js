@@ -254,7 +254,8 @@ export async function viewport( backend ) {
 	const image = async ( node ) => {
 
 		node.setViewport( 40, 30, WIDTH / 2, HEIGHT / 2 );
-		node.setScissor( 60, 30, WIDTH / 4, HEIGHT / 2 );
+		// Its right edge cuts the card.
+		node.setScissor( 60, 30, WIDTH / 6, HEIGHT / 2 );
 
 		return imageOf( renderer, node );
 
