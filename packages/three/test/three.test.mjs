@@ -122,7 +122,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		} );
 
-		test( 'sizes and cameras change', async () => {
+		test( 'sizes and cameras change, and two passes share a frame', async () => {
 
 			const result = await run( 'resized', backend );
 
@@ -130,6 +130,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			assert.equal( result.resized.largest, SAME );
 			assert.equal( result.parallel.largest, SAME );
 			assert.equal( result.back.largest, SAME );
+			assert.ok( result.both.largest < STEP, `two passes in one frame: ${ result.both.largest }` );
 			assert.ok( result.cameras.rmse > STEP, 'both cameras show the same' );
 
 		} );

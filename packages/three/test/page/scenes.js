@@ -174,7 +174,7 @@ export function skinned() {
 
 }
 
-/** Instances, a skinned mesh, alpha maps, vertex opacities, alpha tests and sprites between one another, in fog. */
+/** Instances, a batch, a skinned mesh, alpha maps, vertex opacities, alpha tests and sprites between one another, in fog. */
 export function mixed() {
 
 	const scene = fifty( { alphaMap: blobs() } );
@@ -205,7 +205,13 @@ export function mixed() {
 	const sprite = new THREE.Sprite( new THREE.SpriteMaterial( { color: 0x40e0ff, opacity: 0.5 } ) );
 
 	sprite.position.set( - 0.4, 0.9, 0.83 );
-	scene.add( instances, veil, tested, sprite, skinned() );
+
+	const batch = new THREE.BatchedMesh( 2, 8, 12, new THREE.MeshStandardMaterial( { color: 0xe080a0, transparent: true, opacity: 0.5, side: THREE.DoubleSide } ) );
+	const part = batch.addGeometry( new THREE.PlaneGeometry( 0.9, 0.9 ) );
+
+	for ( const x of [ - 1.3, 1.4 ] ) batch.setMatrixAt( batch.addInstance( part ), matrix.makeRotationX( 0.4 ).setPosition( x, 0.2, 1.13 ) );
+
+	scene.add( instances, veil, tested, sprite, skinned(), batch );
 	scene.fog = new THREE.Fog( 0xa0b0c0, 4, 12 );
 
 	return scene;
