@@ -3,7 +3,6 @@
 use crate::parse::{MethodList, Size, ViewCount, fraction, positive, samples};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use peelnet_dataset::{Format, Shard};
-use peelnet_export::Language;
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
 use peelnet_peel::Peel;
@@ -265,18 +264,6 @@ pub enum Lang {
     Msl,
 }
 
-impl From<Lang> for Language {
-    fn from(lang: Lang) -> Self {
-        match lang {
-            Lang::Wgsl => Self::Wgsl,
-            Lang::GlslEs => Self::GlslEs,
-            Lang::Glsl => Self::Glsl,
-            Lang::Hlsl => Self::Hlsl,
-            Lang::Msl => Self::Msl,
-        }
-    }
-}
-
 /// Precisions of exported shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
@@ -284,15 +271,6 @@ pub enum Precision {
     F32,
     /// 16-bit floats
     F16,
-}
-
-impl From<Precision> for peelnet_export::Precision {
-    fn from(precision: Precision) -> Self {
-        match precision {
-            Precision::F32 => Self::F32,
-            Precision::F16 => Self::F16,
-        }
-    }
 }
 
 /// `peelnet export`.

@@ -1,7 +1,7 @@
 //! `peelnet export`: weights into shader code.
 
 use super::Context;
-use crate::cli::{ExportArgs, Precision};
+use crate::cli::{ExportArgs, Lang, Precision};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
@@ -50,4 +50,25 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
             })
         },
     )
+}
+
+impl From<Lang> for Language {
+    fn from(lang: Lang) -> Self {
+        match lang {
+            Lang::Wgsl => Self::Wgsl,
+            Lang::GlslEs => Self::GlslEs,
+            Lang::Glsl => Self::Glsl,
+            Lang::Hlsl => Self::Hlsl,
+            Lang::Msl => Self::Msl,
+        }
+    }
+}
+
+impl From<Precision> for peelnet_export::Precision {
+    fn from(precision: Precision) -> Self {
+        match precision {
+            Precision::F32 => Self::F32,
+            Precision::F16 => Self::F16,
+        }
+    }
 }
