@@ -267,8 +267,10 @@ fn path_mean(method: &str, field: &str) -> f64 {
 
 /// A number in a committed file.
 fn json(file: &str, pointer: &str) -> f64 {
-    let (step, name) = file.split_once('/').unwrap();
-    let text = read(&format!("{}/{name}", results(step)));
+    let text = match file.split_once('/') {
+        Some((step, name)) => read(&format!("{}/{name}", results(step))),
+        None => read(&(results("") + file)),
+    };
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();
     let found = value.pointer(pointer).and_then(serde_json::Value::as_f64);
     found.unwrap_or_else(|| panic!("{file} has no number at {pointer}"))
