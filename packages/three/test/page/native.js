@@ -4,7 +4,7 @@ import * as THREE from 'three/webgpu';
 import { GLTFExporter } from 'three/addons/exporters/GLTFExporter.js';
 import { pass } from 'three/tsl';
 import { aspect, drawn, modelOf } from './helpers.js';
-import { HEIGHT, WIDTH, errors, imageOf, makeRenderer, peeled } from './measure.js';
+import { HEIGHT, WIDTH, errors, imageOf, makeRenderer, peeled, shown } from './measure.js';
 import { fifty, perspective } from './scenes.js';
 
 const BACKGROUND = [ 0.03, 0.035, 0.045 ];
@@ -63,12 +63,35 @@ export async function exportedScene() {
 
 }
 
-// A PNG's colours, linear, in the order of a target's rows.
-async function linear( png ) {
+// The root mean square of the differences of two errors, in steps of 255.
+function apart( image, exact, native, nativeExact ) {
+
+	let sum = 0;
+	let count = 0;
+
+	for ( let i = 0; i < exact.length; i ++ ) {
+
+		if ( i % 4 === 3 ) continue;
+
+		const page = shown( image[ i ] ) - shown( exact[ i ] );
+
+		sum += ( page - ( shown( native[ i ] ) - shown( nativeExact[ i ] ) ) ) ** 2;
+		count ++;
+
+	}
+
+	return Math.sqrt( sum / count );
+
+}
+
+// A PNG's colours, linear, in the order of a target's rows, which WebGL 2 reads from the bottom.
+async function linear( png, backend ) {
 
 	const bytes = Uint8Array.from( atob( png ), ( c ) => c.charCodeAt( 0 ) );
 	const bitmap = await createImageBitmap( new Blob( [ bytes ], { type: 'image/png' } ), { colorSpaceConversion: 'none' } );
 	const context = new OffscreenCanvas( bitmap.width, bitmap.height ).getContext( '2d' );
+
+	if ( backend === 'webgl2' ) context.setTransform( 1, 0, 0, - 1, 0, bitmap.height );
 
 	context.drawImage( bitmap, 0, 0 );
 
@@ -87,34 +110,36 @@ async function linear( png ) {
 
 }
 
-/** Differences from the native renderer's images: of exact ones, of each model's, and of drawings without transparency. */
+/**
+ * How far each model's errors, pixel by pixel, are from the native renderer's. Each is compared with its own exact image: along edges two
+ * rasterisers disagree on which pixels a triangle covers, whatever is drawn there. `exact` is by how much.
+ */
 export async function againstNative( backend, { images } ) {
 
 	const renderer = await makeRenderer( backend );
 	const scene = unlit();
 	const camera = perspective( aspect );
-	const result = { problems: [] };
+	const result = { problems: [], models: {} };
+	const { exact: exactPng, ...pngs } = images;
+	const exact = ( await peeled( renderer, scene, camera ) ).image;
+	const nativeExact = await linear( exactPng, backend );
 
-	for ( const [ name, png ] of Object.entries( images ) ) {
+	result.exact = errors( exact, nativeExact );
 
-		const native = await linear( png );
+	const compare = ( image, native ) => ( { apart: apart( image, exact, native, nativeExact ), page: errors( image, exact ).rmse, native: errors( native, nativeExact ).rmse } );
 
-		if ( name === 'exact' ) {
+	for ( const [ name, png ] of Object.entries( pngs ) ) {
 
-			result.exact = errors( ( await peeled( renderer, scene, camera ) ).image, native );
-			result.sorted = errors( await imageOf( renderer, pass( scene, camera ) ), native );
+		const { image, node, problems } = await drawn( renderer, scene, camera, { model: await modelOf( name ) } );
 
-		} else {
-
-			const { image, node, problems } = await drawn( renderer, scene, camera, { model: await modelOf( name ) } );
-
-			result[ name ] = errors( image, native );
-			result.problems.push( ...problems );
-			node.dispose();
-
-		}
+		result.models[ name ] = compare( image, await linear( png, backend ) );
+		result.problems.push( ...problems );
+		node.dispose();
 
 	}
+
+	// What a wrong picture would give.
+	result.sorted = compare( await imageOf( renderer, pass( scene, camera ) ), nativeExact );
 
 	renderer.dispose();
 
