@@ -200,8 +200,6 @@ fn links_lead_somewhere() {
     }
 }
 
-/// The committed comparison of all methods on the held-out scenes.
-
 /// The methods that the table of docs/benchmarks.md shows of it.
 const SHOWN: [&str; 34] = [
     "abuffer",
