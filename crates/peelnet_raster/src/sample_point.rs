@@ -1,15 +1,20 @@
-//! Where in a pixel a frame is sampled.
+//! Where a frame is sampled.
 
-/// Where in its pixel a frame takes its one sample.
+/// Where in its pixels a frame takes its samples, or which pixel of a larger frame it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplePoint {
     /// From the middle of the pixel, to the right and down, as shares of the width and height of the frame.
     offset: [f32; 2],
+    /// Pixels of the frame that is looked at over those that are drawn.
+    zoom: [f32; 2],
 }
 
 impl SamplePoint {
     /// The middle of the pixel.
-    pub const MIDDLE: Self = Self { offset: [0.0; 2] };
+    pub const MIDDLE: Self = Self {
+        offset: [0.0; 2],
+        zoom: [1.0; 2],
+    };
 
     /// The four samples of a pixel of a frame of this size, where WebGPU's multisampling has them ("standard sample patterns" of the
     /// specification, as in Direct3D): sixteenths of a pixel from its middle.
@@ -18,14 +23,26 @@ impl SamplePoint {
         let [width, height] = size.map(|n| 16.0 * n as f32);
         SIXTEENTHS.map(|[x, y]| Self {
             offset: [x / width, y / height],
+            ..Self::MIDDLE
         })
+    }
+
+    /// One pixel of a frame of this size, counted from the upper left corner: a frame of one pixel that has the larger one's aspect shows it.
+    pub fn of_pixel(size: [u32; 2], pixel: [u32; 2]) -> Self {
+        let share = |k: usize| (pixel[k] as f32 + 0.5) / size[k] as f32 - 0.5;
+        Self {
+            offset: [share(0), share(1)],
+            zoom: size.map(|n| n as f32),
+        }
     }
 
     /// Moves what lies at the sample into the middle of the pixel, in clip space.
     pub(crate) fn shift(self) -> glam::Mat4 {
         let [x, y] = self.offset;
+        let [wide, high] = self.zoom;
         // A frame is 2 wide and 2 high in normalised device coordinates, y up; w makes it independent of the distance.
-        glam::Mat4::from_translation(glam::Vec3::new(-2.0 * x, 2.0 * y, 0.0))
+        let moved = glam::Mat4::from_translation(glam::Vec3::new(-2.0 * x, 2.0 * y, 0.0));
+        glam::Mat4::from_scale(glam::Vec3::new(wide, high, 1.0)) * moved
     }
 }
 
@@ -51,5 +68,19 @@ mod tests {
             }
         }
         assert_eq!(SamplePoint::MIDDLE.shift(), glam::Mat4::IDENTITY);
+    }
+
+    /// The four corners of a pixel become the corners of the frame.
+    #[test]
+    fn a_pixel_fills_the_frame() {
+        let point = SamplePoint::of_pixel([8, 4], [5, 1]);
+        for (corner, want) in [([5.0, 1.0], [-1.0, 1.0]), ([6.0, 2.0], [1.0, -1.0])] {
+            for w in [0.5, 7.0] {
+                let ndc = [corner[0] / 4.0 - 1.0, 1.0 - corner[1] / 2.0];
+                let moved = point.shift() * Vec4::new(ndc[0] * w, ndc[1] * w, 0.3, w);
+                assert!((moved.x / w - want[0]).abs() < 1e-5, "{moved}");
+                assert!((moved.y / w - want[1]).abs() < 1e-5, "{moved}");
+            }
+        }
     }
 }

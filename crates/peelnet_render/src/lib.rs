@@ -30,9 +30,11 @@ mod frame;
 mod image;
 mod kind;
 pub mod methods;
+mod pixel;
 mod renderer;
 mod samples;
 mod target;
+mod whole;
 
 pub use error::RenderError;
 pub use flaw::{Flaw, Property};
@@ -43,5 +45,6 @@ pub use methods::{
     layers::{LayerFormula, LayerView},
 };
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
+pub use pixel::PixelFragment;
 pub use renderer::{Prepared, Renderer};
 pub use target::{FrameStatus, LearnedWeight, MethodOptions, Target};

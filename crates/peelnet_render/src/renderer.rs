@@ -1,16 +1,14 @@
-//! [`Renderer`]: a scene on a device, drawn into a caller's target, into an image, or for its time alone.
+//! [`Renderer`]: a scene on a device, drawn onto a caller's target. Images and times of whole frames are in `whole.rs`.
 
 use crate::{
     error::RenderError,
-    frame::{Frame, PROFILED, Profile},
-    image::Image,
     kind::Kind,
     methods::{
         compositor::{Compositor, DrawContext, Fit, FrameStats, Learning},
         layers::LayerView,
         spec::MethodSpec,
     },
-    samples::{self, Drawn, Mean},
+    samples::Mean,
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
 use peelnet_core::absorbance::DepthWarp;
@@ -26,10 +24,6 @@ use peelnet_raster::{
 };
 use peelnet_scene::{Camera, Light, Material, Scene};
 use std::collections::VecDeque;
-use web_time::Instant;
-
-/// Times that a frame is drawn until it has room for all of its fragments. Two do for a frame in one tile.
-const MOST_TRIES: u32 = 8;
 
 /// Frames whose counts may be on their way at one time.
 const FRAMES_IN_FLIGHT: usize = 3;
@@ -40,23 +34,25 @@ const FRAMES_IN_FLIGHT: usize = 3;
 pub struct Prepared {
     kind: Kind,
     options: MethodOptions,
-    ready: Option<Ready>,
+    pub(crate) ready: Option<Ready>,
     /// The target of profiles.
-    canvas: Option<wgpu::TextureView>,
+    pub(crate) canvas: Option<wgpu::TextureView>,
     /// The mean of the samples of profiles.
-    mean: Option<Mean>,
+    pub(crate) mean: Option<Mean>,
     /// Counts on their way, with the version of the capacities that their frames had.
-    pending: VecDeque<(u64, Vec<Download>)>,
+    pub(crate) pending: VecDeque<(u64, Vec<Download>)>,
     status: FrameStatus,
+    /// Of the last frame that was encoded onto a caller's target.
+    stats: FrameStats,
 }
 
 #[derive(Debug)]
-struct Ready {
+pub(crate) struct Ready {
     generation: u64,
     callers_depth: Option<wgpu::TextureView>,
-    frame: FrameTargets,
+    pub(crate) frame: FrameTargets,
     opaque: Option<GeometryPipelines>,
-    compositor: Box<dyn Compositor>,
+    pub(crate) compositor: Box<dyn Compositor>,
 }
 
 impl Prepared {
@@ -75,8 +71,13 @@ impl Prepared {
         self.options.samples
     }
 
+    /// What the method reports of the last frame that [`Renderer::draw`] encoded: passes and memory; fragments where it needs their number.
+    pub const fn stats(&self) -> FrameStats {
+        self.stats
+    }
+
     /// Where the repetitions of a frame sample its pixels.
-    fn points(&self) -> Vec<SamplePoint> {
+    pub(crate) fn points(&self) -> Vec<SamplePoint> {
         match self.options.samples {
             4 => SamplePoint::of_four(self.options.size).to_vec(),
             _ => vec![SamplePoint::MIDDLE],
@@ -106,6 +107,11 @@ impl Renderer {
     /// The device.
     pub const fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// The scene on the GPU.
+    pub(crate) const fn buffers(&self) -> &SceneBuffers {
+        &self.scene
     }
 
     /// The scene as it stands after all changes.
@@ -212,6 +218,7 @@ impl Renderer {
             mean: None,
             pending: VecDeque::new(),
             status: FrameStatus::Unknown,
+            stats: FrameStats::default(),
         };
         let size = method.size();
         self.ready(&mut method, size, Output::Image, None)?;
@@ -220,7 +227,7 @@ impl Renderer {
     }
 
     /// The method's targets and pipelines for a frame, made anew where anything that they depend on changed.
-    fn ready<'m>(
+    pub(crate) fn ready<'m>(
         &self,
         method: &'m mut Prepared,
         size: [u32; 2],
@@ -278,6 +285,33 @@ impl Renderer {
         camera: &Camera,
         target: &Target<'_>,
     ) -> Result<FrameStatus, RenderError> {
+        self.encode_over(encoder, method, camera, target, None)
+    }
+
+    /// The same as [`Self::draw`], measuring every pass: [`Timer::finish`] records the copy of the times, which are there once the commands
+    /// are done.
+    ///
+    /// # Errors
+    /// See [`Self::draw`].
+    pub fn draw_timed(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        method: &mut Prepared,
+        camera: &Camera,
+        target: &Target<'_>,
+        timer: &mut Timer,
+    ) -> Result<FrameStatus, RenderError> {
+        self.encode_over(encoder, method, camera, target, Some(timer))
+    }
+
+    fn encode_over(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        method: &mut Prepared,
+        camera: &Camera,
+        target: &Target<'_>,
+        timer: Option<&mut Timer>,
+    ) -> Result<FrameStatus, RenderError> {
         if method.samples() > 1 {
             return Err(RenderError::Target(
                 "the method is ready for images of 4 samples a pixel, which repeat the frame; make it ready with 1 sample".into(),
@@ -291,9 +325,9 @@ impl Renderer {
         let Some(ready) = &mut method.ready else {
             return Ok(FrameStatus::Unknown);
         };
-        let mut recorder = Recorder::new(&self.gpu, encoder, None);
+        let mut recorder = Recorder::new(&self.gpu, encoder, timer);
         let view = (camera, SamplePoint::MIDDLE);
-        self.encode(ready, &mut recorder, view, Some(target), true, false)?;
+        method.stats = self.encode(ready, &mut recorder, view, Some(target), true, false)?;
         let feedback = ready.compositor.feedback();
         if feedback.is_empty() {
             method.status = FrameStatus::Whole;
@@ -306,7 +340,7 @@ impl Renderer {
     }
 
     /// How pipelines write to a target.
-    fn output(&self, target: &Target<'_>) -> Result<([u32; 2], Output), RenderError> {
+    pub(crate) fn output(&self, target: &Target<'_>) -> Result<([u32; 2], Output), RenderError> {
         let texture = target.color.texture();
         let size = [texture.width(), texture.height()];
         let format = texture.format();
@@ -385,7 +419,7 @@ impl Renderer {
         Ok(())
     }
 
-    fn downloads(
+    pub(crate) fn downloads(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         feedback: Vec<(wgpu::Buffer, std::ops::Range<u64>)>,
@@ -396,7 +430,7 @@ impl Renderer {
     }
 
     /// Records all passes of a frame.
-    fn encode(
+    pub(crate) fn encode(
         &self,
         ready: &mut Ready,
         recorder: &mut Recorder<'_>,
@@ -426,168 +460,5 @@ impl Renderer {
             counting,
             only_count,
         })
-    }
-
-    /// Draws until the frame has room for all of its fragments (and, for times, no more than it needs): onto a target, or into an image
-    /// of its own.
-    async fn drawn(
-        &self,
-        method: &mut Prepared,
-        view: (&Camera, SamplePoint),
-        counting: bool,
-        target: Option<&Target<'_>>,
-    ) -> Result<Drawn, RenderError> {
-        let (size, output) = match target {
-            Some(target) => self.output(target)?,
-            None => (method.size(), Output::Image),
-        };
-        method.pending.clear();
-        let ready = self.ready(method, size, output, None)?;
-        // Passes of tries that were too small: the frame took them too.
-        let mut wasted = 0;
-        for _ in 0..MOST_TRIES {
-            let only_count = !ready.compositor.is_ready();
-            let start = Instant::now();
-            let mut encoder = self.gpu.encoder();
-            let mut timer = Timer::new(&self.gpu);
-            let mut recorder = Recorder::new(&self.gpu, &mut encoder, Some(&mut timer));
-            let mut stats =
-                self.encode(ready, &mut recorder, view, target, counting, only_count)?;
-            let downloads = self.downloads(&mut encoder, ready.compositor.feedback());
-            let times = timer.finish(&self.gpu, &mut encoder);
-            self.gpu.queue.submit([encoder.finish()]);
-            self.gpu.submitted_async().await;
-            let times = times.read().await?;
-            let mut words: Vec<Vec<u32>> = Vec::with_capacity(downloads.len());
-            for download in &downloads {
-                download.await;
-                words.push(download.take()?);
-            }
-            self.gpu.check()?;
-            let wall_micros = start.elapsed().as_secs_f64() * 1e6;
-            let fit = ready.compositor.learn(
-                &Learning {
-                    gpu: &self.gpu,
-                    scene: &self.scene,
-                    frame: &ready.frame,
-                    exact: true,
-                },
-                &words,
-                &mut stats,
-            )?;
-            if !only_count && (fit == Fit::Whole || (counting && fit == Fit::Loose)) {
-                stats.geometry_passes += wasted;
-                return Ok(Drawn {
-                    stats,
-                    times,
-                    wall_micros,
-                });
-            }
-            wasted += stats.geometry_passes;
-        }
-        Err(RenderError::NeverWhole(MOST_TRIES))
-    }
-
-    /// Draws a view, counts what its statistics need, and reads the image back. Of several samples a pixel the frame is drawn once for each,
-    /// through another place in every pixel, and the images are averaged: any method can, at so many times the time and no more memory.
-    ///
-    /// # Errors
-    /// A lost device, or a frame beyond the adapter's limits.
-    pub async fn image_async(
-        &self,
-        method: &mut Prepared,
-        camera: &Camera,
-    ) -> Result<Frame, RenderError> {
-        let [width, height] = method.size();
-        let mut pixels: Vec<[f32; 4]> = Vec::new();
-        let mut sum = Drawn::default();
-        let points = method.points();
-        for &point in &points {
-            sum.add(self.drawn(method, (camera, point), true, None).await?);
-            let view = method.ready.as_ref().and_then(|r| r.frame.image());
-            let read = match view {
-                Some(view) => self.gpu.read_rgba32f_async(view).await?,
-                None => Vec::new(),
-            };
-            pixels = samples::sum(pixels, read);
-        }
-        let share = 1.0 / points.len() as f32;
-        pixels
-            .as_flattened_mut()
-            .iter_mut()
-            .for_each(|c| *c *= share);
-        Ok(Frame {
-            image: Image {
-                width,
-                height,
-                pixels,
-            },
-            times: sum.times,
-            stats: sum.stats,
-            wall_micros: sum.wall_micros,
-        })
-    }
-
-    /// The same as [`Self::image_async`], waiting for the device. Not in a browser.
-    ///
-    /// # Errors
-    /// See [`Self::image_async`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn image(&self, method: &mut Prepared, camera: &Camera) -> Result<Frame, RenderError> {
-        self.gpu.block_on(self.image_async(method, camera))
-    }
-
-    /// Draws a view for its time alone, as an engine would: onto a target of 16-bit floats, over what is drawn there. Nothing is counted
-    /// or read back but what the method itself needs.
-    ///
-    /// # Errors
-    /// A lost device, or a frame beyond the adapter's limits.
-    pub async fn profile_async(
-        &self,
-        method: &mut Prepared,
-        camera: &Camera,
-    ) -> Result<Profile, RenderError> {
-        let size = method.size();
-        let texture = |v: &wgpu::TextureView| [v.texture().width(), v.texture().height()];
-        let canvas = match method.canvas.take().filter(|v| texture(v) == size) {
-            Some(canvas) => canvas,
-            None => {
-                let none = wgpu::TextureUsages::empty();
-                self.gpu.texture("canvas", PROFILED, size, 1, none)?
-            }
-        };
-        let target = Target::cleared(&canvas);
-        let points = method.points();
-        let mut sum = Drawn::default();
-        for (k, &point) in points.iter().enumerate() {
-            let drawn = self.drawn(method, (camera, point), false, Some(&target));
-            sum.add(drawn.await?);
-            if points.len() > 1 {
-                let mean = match method.mean.take().filter(|m| m.is_of(&canvas)) {
-                    Some(mean) => mean,
-                    None => Mean::new(&self.gpu, &canvas)?,
-                };
-                sum.add(mean.take(&self.gpu, k == 0).await?);
-                method.mean = Some(mean);
-            }
-        }
-        method.canvas = Some(canvas);
-        if points.len() > 1 {
-            sum.stats.bytes_per_pixel += samples::MEAN_BYTES;
-        }
-        Ok(Profile {
-            times: sum.times,
-            stats: sum.stats,
-            wall_micros: sum.wall_micros,
-        })
-    }
-
-    /// The same as [`Self::profile_async`], waiting for the device. Not in a browser.
-    ///
-    /// # Errors
-    /// See [`Self::profile_async`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn profile(&self, method: &mut Prepared, camera: &Camera) -> Result<Profile, RenderError> {
-        self.gpu.block_on(self.profile_async(method, camera))
     }
 }

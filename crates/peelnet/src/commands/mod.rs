@@ -14,6 +14,7 @@ mod render;
 mod run;
 mod stress;
 mod train;
+mod view;
 
 use crate::cli::{Cli, Command, Global};
 use crate::console::Console;
@@ -126,6 +127,7 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::Train(args) => train::run(&context, args),
         Command::Export(args) => export::run(&context, args),
         Command::Render(args) => render::run(&context, args),
+        Command::View(args) => view::run(&context, args),
         Command::Bench(args) => bench::run(&context, args),
         Command::Recommend(args) => recommend::run(&context, args),
         Command::Stress(args) => stress::run(&context, args),

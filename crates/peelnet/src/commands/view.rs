@@ -1,0 +1,71 @@
+//! `peelnet view`: the viewer, where the program was built with it.
+
+use super::Context;
+use crate::cli::ViewArgs;
+use crate::failure::Failure;
+
+#[cfg(not(feature = "view"))]
+pub(super) fn run(_: &Context<'_>, _: &ViewArgs) -> Result<(), Failure> {
+    Err(Failure::Failed(
+        "this program was built without the viewer; in the repository: cargo run --release --package peelnet --features view -- view"
+            .into(),
+    ))
+}
+
+#[cfg(feature = "view")]
+pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure> {
+    use crate::outputs::Outputs;
+    use crate::parse::shown;
+    use peelnet_render::ImageFormat;
+    use peelnet_view::{Script, Start};
+
+    let camera = args.camera.as_deref().map(peelnet_view::camera_numbers);
+    let camera = camera
+        .transpose()
+        .map_err(|e| Failure::Usage(format!("--camera: {e}")))?;
+    if let Some(path) = &args.screenshot {
+        if !matches!(ImageFormat::of(path), Ok(ImageFormat::Png)) {
+            return Err(Failure::Usage(format!(
+                "--screenshot {}: is a PNG file; let its name end in .png",
+                shown(path)
+            )));
+        }
+        let inputs = args.model.iter().chain([&args.scene]);
+        let mut outputs = Outputs::new(context, inputs);
+        outputs.file("--screenshot", path, ImageFormat::Png.kind())?;
+        outputs.begin(&[])?;
+    }
+    let is_script = args.frames.is_some() || args.screenshot.is_some();
+    // A script has nobody who reads messages in the window: what does not load ends it here.
+    if is_script {
+        let scene = context.scene_at(&args.scene, args.time)?;
+        if args.view as usize >= scene.views.len() {
+            return Err(Failure::Usage(format!(
+                "--view {}: {} has {}, numbered from 0",
+                args.view,
+                shown(&args.scene),
+                peelnet_files::counted(scene.views.len() as u64, "view")
+            )));
+        }
+    }
+    let gpu = context.gpu()?;
+    if is_script {
+        crate::learned::weight_of(context.console, &gpu, &args.method, args.model.as_deref())?;
+    }
+    let start = Start {
+        model: args.model.clone(),
+        view: args.view as usize,
+        camera,
+        time: args.time,
+        bare: args.bare,
+        script: is_script.then(|| Script::new(args.frames.unwrap_or(1), args.screenshot.clone())),
+        ..Start::new(&args.scene, args.method.clone())
+    };
+    peelnet_view::open(&gpu, start, args.size.0).map_err(Failure::Failed)?;
+    if let Some(path) = &args.screenshot {
+        context
+            .console
+            .message(format!("{} is written", shown(path)));
+    }
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! The fragments of one pixel, for people who want to see what a method composites.
+
+use crate::{error::RenderError, renderer::Renderer};
+use peelnet_gpu::record::Recorder;
+use peelnet_raster::{PixelSample, SamplePoint, frame::Output, sbuffer::SBuffer};
+use peelnet_scene::Camera;
+
+/// A transparent fragment of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelFragment {
+    /// Linear depth, scene units.
+    pub depth: f32,
+    /// Opacity.
+    pub alpha: f32,
+    /// Radiance, linear RGB, not multiplied with the opacity.
+    pub color: [f32; 3],
+    /// The triangle, in the order of the scene's objects.
+    pub triangle: u32,
+}
+
+impl PixelFragment {
+    /// The object that it belongs to, as a number in the scene's list, and its triangle there.
+    pub fn object(&self, scene: &peelnet_scene::Scene) -> Option<(usize, usize)> {
+        let mut triangle = self.triangle as usize;
+        for (number, object) in scene.objects.iter().enumerate() {
+            let all = object.mesh.triangles.len();
+            if triangle < all {
+                return Some((number, triangle));
+            }
+            triangle -= all;
+        }
+        None
+    }
+}
+
+impl Renderer {
+    /// The transparent fragments of one pixel of a frame of this size, nearest first. `pixel` counts from the upper left corner. What opaque
+    /// surfaces hide is left out.
+    ///
+    /// The pixel is drawn as a frame of its own, so this takes no memory to speak of; positions are rounded otherwise than in the large
+    /// frame, which moves depths by their last bits, and an edge that runs through the middle of the pixel may fall on its other side.
+    ///
+    /// # Errors
+    /// A pixel outside the frame, a scene whose transmission is coloured, or a lost device.
+    pub async fn pixel_async(
+        &self,
+        camera: &Camera,
+        size: [u32; 2],
+        pixel: [u32; 2],
+    ) -> Result<Vec<PixelFragment>, RenderError> {
+        let (gpu, scene) = (self.gpu(), self.buffers());
+        if pixel[0] >= size[0] || pixel[1] >= size[1] {
+            return Err(RenderError::Target(format!(
+                "pixel {}, {} lies outside its {} x {} pixels",
+                pixel[0], pixel[1], size[0], size[1]
+            )));
+        }
+        if scene.tinted {
+            return Err(RenderError::Target(
+                "this scene's transmission is coloured: its fragments have no single opacity to list".into(),
+            ));
+        }
+        let aspect = size[0] as f32 / size[1] as f32;
+        let frame = scene.targets_of(gpu, [1, 1], aspect, Output::Image, None)?;
+        let opaque = scene.opaque_pipelines(gpu, &frame)?;
+        let mut sbuffer = SBuffer::new(gpu, scene, &frame, None, &["dataset"])?;
+        let mut encoder = gpu.encoder();
+        let mut recorder = Recorder::new(gpu, &mut encoder, None);
+        let point = SamplePoint::of_pixel(size, pixel);
+        scene.set_view(&mut recorder, camera, &frame, PixelSample::ALL, point);
+        scene.draw_background(&mut recorder, &frame, opaque.as_ref(), None, true);
+        sbuffer.count.encode(&mut recorder, scene, &frame);
+        gpu.queue.submit([encoder.finish()]);
+        let total = peelnet_raster::count::CountPass::TOTAL;
+        let words: Vec<u32> = gpu.read_async(&sbuffer.count.total, total).await?;
+        let found = peelnet_raster::count::CountPass::found(&words)?;
+        let planned = sbuffer.plan(gpu, scene, &frame, found.total.max(1), None)?;
+        let Some((tiles, _)) = planned.filter(|_| found.total > 0) else {
+            return Ok(Vec::new());
+        };
+        let mut encoder = gpu.encoder();
+        let mut recorder = Recorder::new(gpu, &mut encoder, None);
+        for tile in &tiles {
+            sbuffer.store_and_sort(&mut recorder, scene, &frame, tile);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let Some(storage) = sbuffer.storage() else {
+            return Ok(Vec::new());
+        };
+        let (n, words) = (found.total, 0..found.total * 4);
+        let depths: Vec<f32> = gpu.read_async(&storage.depths, words.clone()).await?;
+        let triangles: Vec<u32> = gpu.read_async(&storage.triangles, words).await?;
+        let colors: Vec<[f32; 4]> = gpu.read_async(&storage.colors, 0..n * 16).await?;
+        let fragments = depths.into_iter().zip(triangles).zip(colors);
+        Ok(fragments
+            .map(|((depth, triangle), [r, g, b, alpha])| PixelFragment {
+                depth,
+                alpha,
+                color: [r, g, b],
+                triangle,
+            })
+            .collect())
+    }
+
+    /// The same as [`Self::pixel_async`], waiting for the device. Not in a browser.
+    ///
+    /// # Errors
+    /// See [`Self::pixel_async`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn pixel(
+        &self,
+        camera: &Camera,
+        size: [u32; 2],
+        pixel: [u32; 2],
+    ) -> Result<Vec<PixelFragment>, RenderError> {
+        self.gpu().block_on(self.pixel_async(camera, size, pixel))
+    }
+}

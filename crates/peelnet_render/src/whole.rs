@@ -1,0 +1,186 @@
+//! Whole frames of a [`Renderer`]: drawn again where they were too small, read back into images, or timed.
+
+use crate::{
+    error::RenderError,
+    frame::{Frame, PROFILED, Profile},
+    image::Image,
+    methods::compositor::{Fit, Learning},
+    renderer::{Prepared, Renderer},
+    samples::{self, Drawn, Mean},
+    target::Target,
+};
+use peelnet_gpu::{
+    record::{Recorder, Timer},
+    wgpu,
+};
+use peelnet_raster::{SamplePoint, frame::Output};
+use peelnet_scene::Camera;
+use web_time::Instant;
+
+/// Times that a frame is drawn until it has room for all of its fragments. Two do for a frame in one tile.
+const MOST_TRIES: u32 = 8;
+
+impl Renderer {
+    /// Draws until the frame has room for all of its fragments (and, for times, no more than it needs): onto a target, or into an image
+    /// of its own.
+    async fn drawn(
+        &self,
+        method: &mut Prepared,
+        view: (&Camera, SamplePoint),
+        counting: bool,
+        target: Option<&Target<'_>>,
+    ) -> Result<Drawn, RenderError> {
+        let (size, output) = match target {
+            Some(target) => self.output(target)?,
+            None => (method.size(), Output::Image),
+        };
+        method.pending.clear();
+        let ready = self.ready(method, size, output, None)?;
+        // Passes of tries that were too small: the frame took them too.
+        let mut wasted = 0;
+        for _ in 0..MOST_TRIES {
+            let only_count = !ready.compositor.is_ready();
+            let start = Instant::now();
+            let mut encoder = self.gpu().encoder();
+            let mut timer = Timer::new(self.gpu());
+            let mut recorder = Recorder::new(self.gpu(), &mut encoder, Some(&mut timer));
+            let mut stats =
+                self.encode(ready, &mut recorder, view, target, counting, only_count)?;
+            let downloads = self.downloads(&mut encoder, ready.compositor.feedback());
+            let times = timer.finish(self.gpu(), &mut encoder);
+            self.gpu().queue.submit([encoder.finish()]);
+            self.gpu().submitted_async().await;
+            let times = times.read().await?;
+            let mut words: Vec<Vec<u32>> = Vec::with_capacity(downloads.len());
+            for download in &downloads {
+                download.await;
+                words.push(download.take()?);
+            }
+            self.gpu().check()?;
+            let wall_micros = start.elapsed().as_secs_f64() * 1e6;
+            let fit = ready.compositor.learn(
+                &Learning {
+                    gpu: self.gpu(),
+                    scene: self.buffers(),
+                    frame: &ready.frame,
+                    exact: true,
+                },
+                &words,
+                &mut stats,
+            )?;
+            if !only_count && (fit == Fit::Whole || (counting && fit == Fit::Loose)) {
+                stats.geometry_passes += wasted;
+                return Ok(Drawn {
+                    stats,
+                    times,
+                    wall_micros,
+                });
+            }
+            wasted += stats.geometry_passes;
+        }
+        Err(RenderError::NeverWhole(MOST_TRIES))
+    }
+
+    /// Draws a view, counts what its statistics need, and reads the image back. Of several samples a pixel the frame is drawn once for each,
+    /// through another place in every pixel, and the images are averaged: any method can, at so many times the time and no more memory.
+    ///
+    /// # Errors
+    /// A lost device, or a frame beyond the adapter's limits.
+    pub async fn image_async(
+        &self,
+        method: &mut Prepared,
+        camera: &Camera,
+    ) -> Result<Frame, RenderError> {
+        let [width, height] = method.size();
+        let mut pixels: Vec<[f32; 4]> = Vec::new();
+        let mut sum = Drawn::default();
+        let points = method.points();
+        for &point in &points {
+            sum.add(self.drawn(method, (camera, point), true, None).await?);
+            let view = method.ready.as_ref().and_then(|r| r.frame.image());
+            let read = match view {
+                Some(view) => self.gpu().read_rgba32f_async(view).await?,
+                None => Vec::new(),
+            };
+            pixels = samples::sum(pixels, read);
+        }
+        let share = 1.0 / points.len() as f32;
+        pixels
+            .as_flattened_mut()
+            .iter_mut()
+            .for_each(|c| *c *= share);
+        Ok(Frame {
+            image: Image {
+                width,
+                height,
+                pixels,
+            },
+            times: sum.times,
+            stats: sum.stats,
+            wall_micros: sum.wall_micros,
+        })
+    }
+
+    /// The same as [`Self::image_async`], waiting for the device. Not in a browser.
+    ///
+    /// # Errors
+    /// See [`Self::image_async`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn image(&self, method: &mut Prepared, camera: &Camera) -> Result<Frame, RenderError> {
+        self.gpu().block_on(self.image_async(method, camera))
+    }
+
+    /// Draws a view for its time alone, as an engine would: onto a target of 16-bit floats, over what is drawn there. Nothing is counted
+    /// or read back but what the method itself needs.
+    ///
+    /// # Errors
+    /// A lost device, or a frame beyond the adapter's limits.
+    pub async fn profile_async(
+        &self,
+        method: &mut Prepared,
+        camera: &Camera,
+    ) -> Result<Profile, RenderError> {
+        let size = method.size();
+        let texture = |v: &wgpu::TextureView| [v.texture().width(), v.texture().height()];
+        let canvas = match method.canvas.take().filter(|v| texture(v) == size) {
+            Some(canvas) => canvas,
+            None => {
+                let none = wgpu::TextureUsages::empty();
+                self.gpu().texture("canvas", PROFILED, size, 1, none)?
+            }
+        };
+        let target = Target::cleared(&canvas);
+        let points = method.points();
+        let mut sum = Drawn::default();
+        for (k, &point) in points.iter().enumerate() {
+            let drawn = self.drawn(method, (camera, point), false, Some(&target));
+            sum.add(drawn.await?);
+            if points.len() > 1 {
+                let mean = match method.mean.take().filter(|m| m.is_of(&canvas)) {
+                    Some(mean) => mean,
+                    None => Mean::new(self.gpu(), &canvas)?,
+                };
+                sum.add(mean.take(self.gpu(), k == 0).await?);
+                method.mean = Some(mean);
+            }
+        }
+        method.canvas = Some(canvas);
+        if points.len() > 1 {
+            sum.stats.bytes_per_pixel += samples::MEAN_BYTES;
+        }
+        Ok(Profile {
+            times: sum.times,
+            stats: sum.stats,
+            wall_micros: sum.wall_micros,
+        })
+    }
+
+    /// The same as [`Self::profile_async`], waiting for the device. Not in a browser.
+    ///
+    /// # Errors
+    /// See [`Self::profile_async`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn profile(&self, method: &mut Prepared, camera: &Camera) -> Result<Profile, RenderError> {
+        self.gpu().block_on(self.profile_async(method, camera))
+    }
+}

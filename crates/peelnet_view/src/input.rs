@@ -1,0 +1,180 @@
+//! Keys and dropped files.
+
+use crate::{app::App, compare::Mode, eye, stage::Source};
+use egui::{Context, Key};
+use std::path::{Path, PathBuf};
+
+/// How far the eye flies in a second, in radii of the scene.
+const SPEED: f32 = 0.7;
+/// How far a press of an arrow key turns, radians.
+const TURN: f32 = 0.1;
+
+/// Keys, for the help.
+pub(crate) const KEYS: [(&str, &str); 14] = [
+    ("drag", "orbit"),
+    ("right drag, Shift + drag, two fingers", "pan"),
+    ("wheel, pinch", "zoom"),
+    ("click", "the pixel's fragments"),
+    ("arrows", "orbit"),
+    ("W A S D, Q E", "fly"),
+    ("F", "see everything"),
+    ("1 … 9", "the scene's cameras"),
+    ("M, Shift + M", "next, previous method"),
+    ("C", "next comparison"),
+    ("T", "turntable"),
+    ("Space", "play the timeline"),
+    ("Tab", "hide or show the panels"),
+    ("H", "this list"),
+];
+
+/// Digits in their order.
+const DIGITS: [Key; 9] = [
+    Key::Num1,
+    Key::Num2,
+    Key::Num3,
+    Key::Num4,
+    Key::Num5,
+    Key::Num6,
+    Key::Num7,
+    Key::Num8,
+    Key::Num9,
+];
+
+/// Endings of files that are scenes, best first: of several files dropped at once, the scene is the one of the first ending.
+const SCENES: [&str; 6] = ["toml", "glb", "gltf", "obj", "ply", "stl"];
+const MODEL: &str = "safetensors";
+
+fn ending(path: &Path) -> String {
+    let ending = path.extension().and_then(|e| e.to_str());
+    ending.unwrap_or_default().to_lowercase()
+}
+
+/// The scene among files, where there is one.
+pub(crate) fn scene_among<'a>(paths: impl Iterator<Item = &'a Path> + Clone) -> Option<&'a Path> {
+    let mut endings = SCENES.iter();
+    endings.find_map(|wanted| paths.clone().find(|p| ending(p) == **wanted))
+}
+
+impl App {
+    /// Opens what was dropped onto the window.
+    pub(crate) fn take_dropped(&mut self, ui: &Context) {
+        let files = ui.input(|i| i.raw.dropped_files.clone());
+        if files.is_empty() {
+            return;
+        }
+        let paths: Vec<PathBuf> = files.iter().map(|f| f.path().to_owned()).collect();
+        if let Some(model) = paths.iter().find(|p| ending(p) == MODEL) {
+            self.open_network(model.clone());
+        } else if let Some(scene) = scene_among(paths.iter().map(PathBuf::as_path)) {
+            self.open(Source::Named(scene.to_owned()), None);
+        } else if let Some(path) = paths.first() {
+            let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
+            self.messages.error(format!(
+                "{name}: not a scene or a network; drop a {} or .{MODEL} file",
+                SCENES.map(|e| format!(".{e}")).join(", ")
+            ));
+        }
+    }
+
+    /// Does what keys ask for, unless a text is typed.
+    pub(crate) fn take_keys(&mut self, ui: &Context) {
+        if ui.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |key: Key| ui.input(|i| i.key_pressed(key) && !i.modifiers.command);
+        for (number, key) in DIGITS.into_iter().enumerate() {
+            if pressed(key) {
+                self.show_view(number);
+            }
+        }
+        if pressed(Key::M) {
+            let back = ui.input(|i| i.modifiers.shift);
+            self.next_method(back);
+        }
+        if pressed(Key::C) {
+            let all = Mode::ALL.map(|(mode, _, _)| mode);
+            let now = all.iter().position(|m| *m == self.compare.mode);
+            self.compare.mode = all[now.map_or(0, |k| (k + 1) % all.len())];
+        }
+        if pressed(Key::F) {
+            self.fit();
+        }
+        if pressed(Key::T) {
+            self.motion.turns = !self.motion.turns;
+        }
+        if pressed(Key::Space) {
+            self.motion.plays = !self.motion.plays;
+        }
+        if pressed(Key::H) {
+            self.panels.help = !self.panels.help;
+        }
+        self.take_arrows(ui);
+        self.fly(ui);
+    }
+
+    fn take_arrows(&mut self, ui: &Context) {
+        // Where a control has the focus, arrows are its own.
+        if ui.memory(|m| m.focused().is_some()) {
+            return;
+        }
+        let pressed = |key: Key| ui.input(|i| i.key_pressed(key));
+        for (key, yaw, pitch) in [
+            (Key::ArrowLeft, -TURN, 0.0),
+            (Key::ArrowRight, TURN, 0.0),
+            (Key::ArrowUp, 0.0, TURN),
+            (Key::ArrowDown, 0.0, -TURN),
+        ] {
+            if pressed(key) {
+                self.move_eye(|camera, _| eye::orbit(camera, yaw, pitch));
+            }
+        }
+    }
+
+    fn fly(&mut self, ui: &Context) {
+        let down = |key: Key| ui.input(|i| i.key_down(key) && !i.modifiers.any());
+        let axis = |plus: Key, minus: Key| f32::from(down(plus)) - f32::from(down(minus));
+        let step = glam::Vec3::new(
+            axis(Key::D, Key::A),
+            axis(Key::E, Key::Q),
+            axis(Key::W, Key::S),
+        );
+        if step != glam::Vec3::ZERO {
+            let time = ui.input(|i| i.stable_dt).min(0.1);
+            self.move_eye(|camera, all| eye::fly(camera, step * (SPEED * time * all.radius)));
+            ui.request_repaint();
+        }
+    }
+
+    /// Looks at everything.
+    pub(crate) fn fit(&mut self) {
+        let [width, height] = self.size.map(|n| n.max(1) as f32);
+        self.move_eye(|camera, all| eye::fit(camera, all, width / height));
+    }
+
+    fn next_method(&mut self, back: bool) {
+        let all: Vec<_> = crate::panels::methods::offered().collect();
+        let own = self.first.spec().method().name;
+        let now = all.iter().position(|m| m.name == own).unwrap_or(0);
+        let step = if back { all.len() - 1 } else { 1 };
+        let next = all[(now + step) % all.len()];
+        if let Some(spec) = peelnet_render::MethodSpec::points(next).next() {
+            self.first.set_spec(spec);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scene_among_dropped_files_is_found() {
+        let of = |names: &[&str]| {
+            let paths: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
+            scene_among(paths.iter().map(PathBuf::as_path)).map(Path::to_owned)
+        };
+        assert_eq!(of(&["a.png", "b.obj", "b.mtl"]), Some("b.obj".into()));
+        assert_eq!(of(&["b.obj", "room.TOML"]), Some("room.TOML".into()));
+        assert_eq!(of(&["a.png", "glb"]), None);
+    }
+}

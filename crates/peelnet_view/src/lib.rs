@@ -1,0 +1,39 @@
+//! The viewer of peelnet: every transparency method live, in a window and in a web page.
+//!
+//! [`App`] is an application of [`eframe`]. A frame of it goes like this:
+//!
+//! 1. What was begun earlier goes on: errors, times, the fragments of a pixel, the front of all methods. All of it is futures that are polled,
+//!    because nothing may wait in a browser.
+//! 2. Panels read and change what is shown: the scene, the camera, one or two methods, and how their pictures are compared.
+//! 3. Each method draws its picture, in linear light, where anything changed. One more pass encodes it for the window, or makes a map of it.
+//! 4. Once the view rests, it is measured against the exact image.
+//!
+//! Controls of methods are made from the methods' declarations ([`peelnet_render::METHODS`]): a new method or parameter appears by itself.
+
+mod app;
+mod compare;
+mod display;
+mod eye;
+mod front;
+mod input;
+mod inspect;
+mod memory;
+mod messages;
+mod motion;
+mod numbers;
+mod output;
+mod panels;
+mod script;
+mod slot;
+mod stage;
+mod task;
+mod viewport;
+mod watch;
+#[cfg(not(target_arch = "wasm32"))]
+mod window;
+
+pub use app::{App, Start};
+pub use output::camera_numbers;
+pub use script::{Outcome, Script};
+#[cfg(not(target_arch = "wasm32"))]
+pub use window::open;

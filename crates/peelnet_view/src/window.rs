@@ -1,0 +1,64 @@
+//! The window of a native system.
+
+use crate::{
+    app::{App, Start},
+    memory,
+};
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
+use peelnet_gpu::Gpu;
+
+/// Opens the window and runs it until it is closed. `size` is that of its content, in pixels.
+///
+/// # Errors
+/// No display to open a window on, or what a script of `start` came to; one line.
+pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<(), String> {
+    let setup = WgpuSetupExisting {
+        instance: gpu.instance.clone(),
+        adapter: gpu.adapter.clone(),
+        device: gpu.device.clone(),
+        queue: gpu.queue.clone(),
+    };
+    let outcome = start.script.as_ref().map(|s| s.outcome());
+    let [width, height] = size.map(|n| n as f32);
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("peelnet")
+        .with_inner_size([width, height])
+        .with_min_inner_size([320.0, 240.0])
+        .with_drag_and_drop(true);
+    let options = eframe::NativeOptions {
+        viewport,
+        // Scripts ask for a size: what is remembered must not change it.
+        persist_window: outcome.is_none(),
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: WgpuSetup::Existing(setup),
+            ..Default::default()
+        },
+        ..Default::default()
+    };
+    let gpu = gpu.clone();
+    let run = eframe::run_native(
+        "peelnet",
+        options,
+        Box::new(move |cc| {
+            let recent = memory::load(cc.storage);
+            if start.script.is_some() {
+                // One pixel of the picture is one of the window.
+                cc.egui_ctx.set_pixels_per_point(1.0);
+            }
+            Ok(Box::new(App::new(&gpu, start, recent)))
+        }),
+    );
+    run.map_err(|e| {
+        format!(
+            "no window can be opened ({e}); where there is no display, peelnet render draws images, and xvfb-run lends a display"
+        )
+    })?;
+    let Some(outcome) = outcome else {
+        return Ok(());
+    };
+    let outcome = outcome
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
+        .take();
+    outcome.unwrap_or_else(|| Err("the window was closed before the script ended".into()))
+}
