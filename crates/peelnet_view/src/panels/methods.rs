@@ -18,7 +18,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         ui.label("Layers are shown: methods draw the scene again once no layer is highlighted.");
     }
     let mut spec = app.first.spec().clone();
-    choose(ui, "Method", &mut spec);
+    choose(ui, "Draw with", &mut spec);
     parameters(ui, "first", &mut spec);
     network(app, ui, &spec);
     app.first.set_spec(spec);
