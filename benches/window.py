@@ -96,8 +96,9 @@ class Window:
         return path
 
     def rest(self, name):
-        """A screenshot once nothing moves any more."""
+        """A screenshot once nothing moves any more: a busy machine may take seconds to the first change."""
         begin, before = time.monotonic(), None
+        time.sleep(1.5)
         while time.monotonic() - begin < PATIENCE:
             path = self.shot(name)
             now = pixels(path)
@@ -106,7 +107,7 @@ class Window:
                 self.last = now
                 return now
             before = now
-            time.sleep(0.7)
+            time.sleep(1.5)
         raise SystemExit(f"{name}: the window never rests")
 
     def key(self, *keys):

@@ -108,6 +108,8 @@ pub(super) fn passes(app: &mut App, ui: &mut Ui) {
             }
         }
         for (name, micros, n) in times {
+            // Some are named after their shader: methods::slabs::resolve.
+            let name = name.rsplit("::").next().unwrap_or(name);
             let name = if n > 1 {
                 format!("{name} ×{n}")
             } else {
