@@ -1,5 +1,6 @@
 //! The scene file: TOML, strict. A glTF or GLB file is a scene too, see [`Scene::load`].
 
+mod edited;
 mod gltf_scene;
 mod loader;
 pub(crate) mod materials;

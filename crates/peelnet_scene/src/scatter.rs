@@ -277,6 +277,12 @@ pub(crate) fn fixed_axes(degrees: [f32; 3]) -> Quat {
     Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x)
 }
 
+/// The degrees that [`fixed_axes`] makes a rotation of.
+pub(crate) fn from_fixed_axes(rotation: Quat) -> [f32; 3] {
+    let (z, y, x) = rotation.to_euler(glam::EulerRot::ZYX);
+    [x, y, z].map(f32::to_degrees)
+}
+
 /// Every orientation alike (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
 fn random_rotation(random: &mut Random) -> Quat {
     let (u, v, w) = (random.unit(), random.unit(), random.unit());

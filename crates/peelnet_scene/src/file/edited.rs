@@ -1,0 +1,402 @@
+//! A scene file with the changes that somebody made to the scene while looking at it.
+
+use crate::{
+    camera::Camera,
+    error::SceneError,
+    material::{Lighting, Material},
+    scatter::from_fixed_axes,
+    scene::{Light, Object, Scene, Source},
+};
+use glam::{Mat4, Quat, Vec3};
+use peelnet_files::printable;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// A scene file's text, and what of the changes it cannot say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edited {
+    /// The text. Names of files in it are relative to where the scene was read from.
+    pub text: String,
+    /// What is not in it, a line each; empty where everything is.
+    pub left_out: Vec<String>,
+}
+
+/// How far a transform may be from one that a scene file can say, as a share of its largest entry: rounding of a few 32-bit products.
+const CLOSE: f32 = 1e-4;
+
+impl Scene {
+    /// The text of a scene file that shows this scene. `text` is that of the scene file it was loaded from, as `loaded`; a mesh file has
+    /// none. Objects, materials and lights that differ are written into it; comments are lost. `view`, where there is one, becomes the
+    /// only camera.
+    ///
+    /// # Errors
+    /// A text that is no scene file.
+    pub fn edited(
+        &self,
+        loaded: &Self,
+        text: Option<&str>,
+        view: Option<&Camera>,
+    ) -> Result<Edited, SceneError> {
+        let mut table = match text {
+            Some(text) => text.parse::<Table>().map_err(|e| SceneError::Syntax {
+                path: self.source.clone(),
+                line: 1,
+                message: e.message().to_owned(),
+            })?,
+            None => mesh_scene(self),
+        };
+        let mut left_out = Vec::new();
+        if let Some(camera) = view {
+            for key in ["camera", "view", "orbit"] {
+                table.remove(key);
+            }
+            table.insert("camera".into(), camera_table(camera).into());
+        }
+        if self.lights != loaded.lights {
+            let lights = self.lights.iter().map(|l| Value::from(light_table(l)));
+            table.remove("light");
+            // An empty list is the same as none.
+            table.insert("light".into(), Value::Array(lights.collect()));
+        }
+        if !loaded.timeline.is_empty() && self.time != loaded.timeline[0].time {
+            left_out.push(format!(
+                "the time {}: a scene file begins at its first state",
+                self.time
+            ));
+        }
+        let changed = self.objects.iter().zip(&loaded.objects).enumerate();
+        for (number, (now, before)) in changed {
+            let mut objects = table.get_mut("object").and_then(Value::as_array_mut);
+            let own = objects.as_mut().and_then(|list| list.get_mut(number));
+            let name = printable(&now.name).to_string();
+            match own.and_then(Value::as_table_mut) {
+                // A mesh file with several objects is one object of a scene file.
+                Some(own) if text.is_some() || self.objects.len() == 1 => {
+                    write_object(own, now, before, &name, &mut left_out);
+                }
+                _ if differs(now, before) => {
+                    left_out.push(format!("changes of {name}: it is no [[object]] of its own"));
+                }
+                _ => {}
+            }
+        }
+        let text = toml::to_string(&table).map_err(|e| SceneError::Value {
+            path: self.source.clone(),
+            field: "scene".into(),
+            message: e.to_string(),
+        })?;
+        Ok(Edited { text, left_out })
+    }
+}
+
+fn differs(now: &Object, before: &Object) -> bool {
+    now.world_from_object != before.world_from_object || now.materials != before.materials
+}
+
+/// A scene of a mesh file alone, with the scene's cameras and lights.
+fn mesh_scene(scene: &Scene) -> Table {
+    let mut table = Table::new();
+    let name = scene
+        .source
+        .file_name()
+        .map(Path::new)
+        .unwrap_or(Path::new(""));
+    table.insert("name".into(), scene.name.clone().into());
+    table.insert("background".into(), numbers(scene.background));
+    let views = scene.views.iter().map(|v| Value::from(camera_table(v)));
+    table.insert("view".into(), Value::Array(views.collect()));
+    let lights = scene.lights.iter().map(|l| Value::from(light_table(l)));
+    table.insert("light".into(), Value::Array(lights.collect()));
+    let mut object = Table::new();
+    object.insert("mesh".into(), name.to_string_lossy().into_owned().into());
+    table.insert("object".into(), Value::Array(vec![object.into()]));
+    table
+}
+
+/// The shortest decimal number that is this one in 32 bits.
+fn number(x: f32) -> Value {
+    // A finite number's text is a number.
+    Value::Float(x.to_string().parse().unwrap_or(f64::from(x)))
+}
+
+fn numbers(x: impl Into<[f32; 3]>) -> Value {
+    Value::Array(x.into().map(number).to_vec())
+}
+
+fn camera_table(camera: &Camera) -> Table {
+    let mut table = Table::new();
+    table.insert("position".into(), numbers(camera.position));
+    table.insert("target".into(), numbers(camera.target));
+    table.insert("up".into(), numbers(camera.up));
+    table.insert("fov_y".into(), number(camera.fov_y_degrees));
+    table.insert("near".into(), number(camera.near));
+    table.insert("far".into(), number(camera.far));
+    table
+}
+
+fn light_table(light: &Light) -> Table {
+    let mut table = Table::new();
+    match light.source {
+        Source::Point(position) => table.insert("position".into(), numbers(position)),
+        // A scene file says where the light goes, not where it comes from.
+        Source::Toward(from) => table.insert("direction".into(), numbers(-from)),
+    };
+    table.insert("color".into(), numbers(light.color));
+    table.insert("intensity".into(), number(light.intensity));
+    table
+}
+
+fn write_object(
+    own: &mut Table,
+    now: &Object,
+    before: &Object,
+    name: &str,
+    left_out: &mut Vec<String>,
+) {
+    if now.world_from_object != before.world_from_object {
+        let old = placed(own);
+        // What a mesh's `fit` does comes first, and stays.
+        let wanted = now.world_from_object * before.world_from_object.inverse() * old;
+        match similarity(wanted) {
+            Some((scale, rotation, translation)) => {
+                own.insert("scale".into(), number(scale));
+                own.insert("rotate".into(), numbers(from_fixed_axes(rotation)));
+                own.insert("translate".into(), numbers(translation));
+            }
+            None => left_out.push(format!(
+                "the transform of {name}: a scene file scales all axes alike"
+            )),
+        }
+    }
+    let changed: Vec<(&Material, &Material)> = now
+        .materials
+        .iter()
+        .zip(&before.materials)
+        .filter(|(a, b)| a != b)
+        .collect();
+    match changed.as_slice() {
+        [] => {}
+        [(material, before)] if now.materials.len() == 1 => {
+            let table = own
+                .entry("material")
+                .or_insert_with(|| Value::Table(Table::new()));
+            if let Some(table) = table.as_table_mut() {
+                write_material(table, material, before, name, left_out);
+            }
+        }
+        _ => left_out.push(format!(
+            "materials of {name}: its mesh has several, and a scene file sets all of them alike"
+        )),
+    }
+}
+
+/// The transform that an object's keys say, without `fit`.
+fn placed(own: &Table) -> Mat4 {
+    let float = |v: &Value| match v {
+        Value::Float(x) => Some(*x as f32),
+        Value::Integer(n) => Some(*n as f32),
+        _ => None,
+    };
+    let vector = |key: &str| {
+        let list = own.get(key).and_then(Value::as_array);
+        let all: Vec<f32> = list.into_iter().flatten().filter_map(float).collect();
+        <[f32; 3]>::try_from(all).unwrap_or_default()
+    };
+    let scale = own.get("scale").and_then(float).unwrap_or(1.0);
+    Mat4::from_translation(vector("translate").into())
+        * Mat4::from_quat(crate::scatter::fixed_axes(vector("rotate")))
+        * Mat4::from_scale(Vec3::splat(scale))
+}
+
+/// A transform as one scale for all axes, a rotation and a translation.
+fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
+    let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+    // A mirrored object has a negative scale of its first axis; a scene file mirrors all three.
+    let (scale, rotation) = if scale.x < 0.0 {
+        let turned = Mat4::from_quat(rotation) * Mat4::from_scale(scale);
+        let (s, r, _) = (turned * Mat4::from_scale(Vec3::NEG_ONE)).to_scale_rotation_translation();
+        (-s, r)
+    } else {
+        (scale, rotation)
+    };
+    let again = Mat4::from_translation(translation)
+        * Mat4::from_quat(rotation)
+        * Mat4::from_scale(Vec3::splat(scale.x));
+    let largest = matrix
+        .to_cols_array()
+        .map(f32::abs)
+        .into_iter()
+        .fold(0.0, f32::max);
+    let close = again.abs_diff_eq(matrix, CLOSE * largest);
+    (close && scale.x != 0.0 && matrix.is_finite()).then_some((scale.x, rotation, translation))
+}
+
+fn write_material(
+    table: &mut Table,
+    now: &Material,
+    before: &Material,
+    name: &str,
+    left_out: &mut Vec<String>,
+) {
+    let mut put = |key: &str, changed: bool, value: Value| {
+        if changed {
+            table.insert(key.into(), value);
+        }
+    };
+    let lighting = match now.lighting {
+        Lighting::Unlit => "unlit",
+        Lighting::Phong => "phong",
+        Lighting::Pbr => "pbr",
+    };
+    put("lighting", now.lighting != before.lighting, lighting.into());
+    put("color", now.color != before.color, numbers(now.color));
+    put(
+        "emission",
+        now.emission != before.emission,
+        numbers(now.emission),
+    );
+    put(
+        "transmission_color",
+        now.transmission != before.transmission,
+        numbers(now.transmission),
+    );
+    for (key, new, old) in [
+        ("alpha", now.alpha, before.alpha),
+        ("specular", now.specular, before.specular),
+        ("shininess", now.shininess, before.shininess),
+        ("metallic", now.metallic, before.metallic),
+        ("roughness", now.roughness, before.roughness),
+    ] {
+        put(key, new != old, number(new));
+    }
+    put(
+        "double_sided",
+        now.double_sided != before.double_sided,
+        now.double_sided.into(),
+    );
+    if now.maps != before.maps {
+        for (key, gone) in [
+            ("color_map", now.maps.color.is_none()),
+            ("normal_map", now.maps.normal.is_none()),
+            (
+                "metallic_roughness_map",
+                now.maps.metallic_roughness.is_none(),
+            ),
+            ("occlusion_map", now.maps.occlusion.is_none()),
+            ("emissive_map", now.maps.emissive.is_none()),
+        ] {
+            if gone {
+                table.remove(key);
+            }
+        }
+        left_out.push(format!(
+            "textures of {name} that its mesh file brings stay: a scene file adds textures"
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::suite;
+
+    fn saved(scene: &Scene, loaded: &Scene, text: Option<&str>, view: Option<&Camera>) -> Edited {
+        scene.edited(loaded, text, view).expect("writes")
+    }
+
+    fn read(text: &str) -> Scene {
+        let name = Path::new("edited.toml");
+        Scene::from_bytes(name, |path| match path == name {
+            true => Ok(text.as_bytes().to_vec()),
+            false => Err(std::io::ErrorKind::NotFound.into()),
+        })
+        .expect("reads")
+    }
+
+    /// What is written reads back as what was shown.
+    #[test]
+    fn changes_come_back() {
+        let loaded = suite::load("cups").expect("loads");
+        let text = suite::find("cups").expect("ships").text;
+        let mut scene = loaded.clone();
+        let turn = Mat4::from_rotation_y(0.7) * Mat4::from_scale(Vec3::splat(1.5));
+        for (number, by) in [
+            (0, Mat4::from_translation(Vec3::new(0.25, -1.0, 2.0))),
+            (1, turn),
+            (2, Mat4::from_scale(Vec3::NEG_ONE)),
+        ] {
+            let object = &mut scene.objects[number];
+            object.world_from_object = by * object.world_from_object;
+        }
+        let material = &mut scene.objects[1].materials[0];
+        (material.alpha, material.color) = (0.125, [0.1, 0.2, 0.3]);
+        material.double_sided = !material.double_sided;
+        scene.lights[0].intensity = 2.5;
+        scene.lights.push(Light {
+            source: Source::Toward(Vec3::new(0.6, 0.8, 0.0)),
+            color: [1.0, 0.5, 0.25],
+            intensity: 0.5,
+        });
+        let mut camera = loaded.views[1];
+        camera.position.x += 0.1;
+        let edited = saved(&scene, &loaded, Some(text), Some(&camera));
+        assert_eq!(edited.left_out, [] as [String; 0]);
+        let back = read(&edited.text);
+        assert_eq!(back.views, [camera]);
+        assert_eq!(back.lights.len(), scene.lights.len());
+        for (a, b) in back.lights.iter().zip(&scene.lights) {
+            let [x, y] = [a, b].map(|l| match l.source {
+                Source::Point(p) | Source::Toward(p) => p,
+            });
+            assert!((x - y).length() < 1e-6 && a.intensity == b.intensity);
+            assert_eq!(a.color, b.color);
+        }
+        assert_eq!(back.objects.len(), scene.objects.len());
+        for (a, b) in back.objects.iter().zip(&scene.objects) {
+            assert_eq!(a.materials, b.materials, "{}", a.name);
+            let largest = b.world_from_object.to_cols_array().map(f32::abs);
+            let close = CLOSE * largest.into_iter().fold(0.0, f32::max);
+            let equal = a.world_from_object.abs_diff_eq(b.world_from_object, close);
+            assert!(
+                equal,
+                "{}: {} {}",
+                a.name, a.world_from_object, b.world_from_object
+            );
+        }
+    }
+
+    /// Without a change the file says the same, for every scene that ships.
+    #[test]
+    fn nothing_changed_is_the_same_scene() {
+        for file in suite::SCENES.iter().chain(suite::EFFECTS) {
+            let loaded = suite::load_file(file, None).expect("loads");
+            let edited = saved(&loaded, &loaded, Some(file.text), None);
+            assert_eq!(edited.left_out, [] as [String; 0], "{}", file.path);
+            let back = read(&edited.text);
+            assert_eq!(back.views, loaded.views);
+            assert_eq!(back.lights, loaded.lights);
+            for (a, b) in back.objects.iter().zip(&loaded.objects) {
+                assert_eq!(a.world_from_object, b.world_from_object);
+                assert_eq!(a.materials, b.materials);
+            }
+        }
+    }
+
+    /// What a scene file cannot say is reported, and not written wrong.
+    #[test]
+    fn what_cannot_be_said_is_reported() {
+        let loaded = suite::load("cups").expect("loads");
+        let text = suite::find("cups").expect("ships").text;
+        let mut scene = loaded.clone();
+        let object = &mut scene.objects[0];
+        object.world_from_object *= Mat4::from_scale(Vec3::new(1.0, 2.0, 1.0));
+        let edited = saved(&scene, &loaded, Some(text), None);
+        assert_eq!(edited.left_out.len(), 1);
+        assert!(edited.left_out[0].contains("scales all axes alike"));
+        let back = read(&edited.text);
+        assert_eq!(
+            back.objects[0].world_from_object,
+            loaded.objects[0].world_from_object
+        );
+    }
+}
