@@ -54,6 +54,31 @@ pub fn test() -> Result<(), String> {
     result
 }
 
+/// The Bevy plugin, a workspace of its own: its lints and tests, and its comparison against the exact image.
+pub fn bevy() -> Result<(), String> {
+    ensure_driver()?;
+    let steps: [(&str, &[&str]); 4] = [
+        ("formatting", &["fmt", "--check"]),
+        ("clippy", &["clippy", "--all-targets"]),
+        ("tests", &["test", "--no-fail-fast"]),
+        ("comparison", &["run", "--example", "compare"]),
+    ];
+    for (name, args) in steps {
+        println!("\n== {name} of bevy_peelnet: cargo {}", args.join(" "));
+        let mut command = cargo();
+        command
+            .args(args)
+            .args(["--manifest-path", "bevy/Cargo.toml"]);
+        match name {
+            "clippy" => command.args(["--", "-D", "warnings"]),
+            "comparison" => command.args(["--", "--out", "out/bevy"]),
+            _ => &mut command,
+        };
+        run(&mut command, name)?;
+    }
+    Ok(())
+}
+
 /// Whether the committed results are complete, and the documents show what they hold.
 pub fn results() -> Result<(), String> {
     let package = ["--quiet", "--package", "peelnet_tests"];
