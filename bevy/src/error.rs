@@ -14,7 +14,7 @@ use std::{
 #[derive(Debug, thiserror::Error)]
 pub enum PeelnetError {
     /// A file of the network cannot be read.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", .path.display())]
     Read {
         /// The file.
         path: PathBuf,

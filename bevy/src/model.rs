@@ -122,7 +122,6 @@ impl PeelnetModel {
         Self::shipped("large")
     }
 
-    #[allow(clippy::expect_used)]
     fn shipped(name: &str) -> Self {
         // Both are compiled in, and a test reads each of the three.
         let model = peelnet_models::find(name).expect("a shipped network");

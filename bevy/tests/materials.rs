@@ -176,9 +176,13 @@ fn premultiplied_colours_are_weighed_too() {
     let [near, far] = facing();
     let mut headless = application(Msaa::Off);
     let premultiplied = |color: LinearRgba| StandardMaterial {
-        base_color: (color.with_alpha(1.0) * color.alpha)
-            .with_alpha(color.alpha)
-            .into(),
+        base_color: LinearRgba::new(
+            color.red * color.alpha,
+            color.green * color.alpha,
+            color.blue * color.alpha,
+            color.alpha,
+        )
+        .into(),
         alpha_mode: AlphaMode::Premultiplied,
         ..cards::material(color)
     };

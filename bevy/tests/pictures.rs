@@ -116,9 +116,9 @@ fn a_depth_prepass_changes_nothing() {
 fn an_orthographic_camera_has_its_own_scale() {
     // Cards that face the camera, in another order than they are spawned in. Seen without perspective, every pixel of the middle is
     // composited alike.
-    let facing = |z: f32, color: [f32; 4]| Card {
+    let facing = |z: f32, [red, green, blue, alpha]: [f32; 4]| Card {
         transform: Transform::from_xyz(0.0, 0.0, z).with_scale(Vec3::splat(9.0)),
-        color: LinearRgba::from_f32_array(color),
+        color: LinearRgba::new(red, green, blue, alpha),
     };
     // The last one stands behind the camera's position, and is seen: the near plane is there, too.
     let scene = [

@@ -59,7 +59,7 @@ pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
         .iter()
         .map(|card| Plane {
             local_from_world: card.transform.to_matrix().as_dmat4().inverse(),
-            color: card.color.to_f32_array().map(f64::from),
+            color: channels_of(card.color),
         })
         .collect();
     let places = samples(sample_count);
@@ -128,8 +128,12 @@ fn composited(planes: &[Plane], hits: &[(f64, usize)]) -> DVec3 {
         color += transmittance * alpha * DVec3::new(red, green, blue);
         transmittance *= 1.0 - alpha;
     }
-    let [red, green, blue, _] = BACKGROUND.to_f32_array().map(f64::from);
+    let [red, green, blue, _] = channels_of(BACKGROUND);
     color + transmittance * DVec3::new(red, green, blue)
+}
+
+fn channels_of(color: LinearRgba) -> [f64; 4] {
+    [color.red, color.green, color.blue, color.alpha].map(f64::from)
 }
 
 /// The sRGB curve.

@@ -15,12 +15,17 @@ use bevy::{
     window::ExitCondition,
 };
 use bevy_peelnet::PeelnetPlugin;
-use std::sync::{Arc, Mutex};
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicBool, Ordering},
+};
 
 /// Frames after which all pipelines are there: Bevy's come in one frame, ours a frame later, and a shader may come late.
 const FRAMES_TO_SETTLE: u32 = 8;
 /// Frames that reading back may take.
 const FRAMES_TO_READ: u32 = 100;
+
+static LOGGED: AtomicBool = AtomicBool::new(false);
 
 /// The application, its camera and its image.
 pub struct Headless {
@@ -52,15 +57,23 @@ impl Headless {
             synchronous_pipeline_compilation: true,
             ..default()
         };
+        let plugins = DefaultPlugins
+            .set(window)
+            .set(render)
+            .set(bevy::log::LogPlugin {
+                level: bevy::log::Level::WARN,
+                filter: String::new(),
+                ..default()
+            })
+            // Several applications in one process would each want to be told.
+            .disable::<bevy::app::TerminalCtrlCHandlerPlugin>();
         let mut app = App::new();
-        app.add_plugins(
-            DefaultPlugins
-                .set(window)
-                .set(render)
-                // Several applications in one process would each want these.
-                .disable::<bevy::app::TerminalCtrlCHandlerPlugin>()
-                .disable::<bevy::log::LogPlugin>(),
-        );
+        // The first of a process logs for all.
+        if LOGGED.swap(true, Ordering::Relaxed) {
+            app.add_plugins(plugins.disable::<bevy::log::LogPlugin>());
+        } else {
+            app.add_plugins(plugins);
+        }
         app.add_plugins(plugin)
             .insert_resource(ClearColor(BACKGROUND.into()));
         let mut image =
