@@ -29,8 +29,8 @@
 //    moments: rgba16float, cleared to 0, blending ADD, from s.moments
 //    extent: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.extent
 // 2. Pass "weights": draw all transparent surfaces, in any order. vec2 f = peelnet_fragment(alpha, zeta, moments, extent);
-//    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * (f.x * (1.0 - f.y))
-//    ends: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * (f.x * f.y)
+//    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))
+//    ends: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))
 // 3. Resolve: peelnet_resolve(sums, ends, moments.x, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.

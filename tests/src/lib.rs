@@ -12,6 +12,16 @@ use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
 use std::sync::Arc;
 
+/// The folder of the committed results of a step of `cargo xtask measure`, such as `held-out`. Machines come and go: each step's results are of one,
+/// and its folder has that machine's name.
+pub fn results(step: &str) -> String {
+    let machine = match step {
+        "held-out" | "validation" | "path" | "samples" | "stress" => "llvmpipe-xeon-2cores",
+        _ => "llvmpipe-epyc-2cores",
+    };
+    format!("docs/results/{machine}/{step}")
+}
+
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
 pub fn gpu() -> Gpu {

@@ -7,6 +7,7 @@ use peelnet_eval::{
 };
 use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
+use peelnet_tests::results;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -91,7 +92,7 @@ fn files_are_short() {
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
             if path.is_dir()
                 && !name.starts_with('.')
-                && !["target", "out"].contains(&name.as_str())
+                && !["target", "out", "node_modules"].contains(&name.as_str())
             {
                 folders.push(path);
             } else if [".rs", ".wgsl", ".py"].iter().any(|e| name.ends_with(e)) {
@@ -199,9 +200,6 @@ fn links_lead_somewhere() {
     }
 }
 
-/// The committed comparison of all methods on the held-out scenes.
-const HELD_OUT: &str = "docs/results/llvmpipe-epyc-2cores/held-out";
-
 /// The methods that the table of docs/benchmarks.md shows of it.
 const SHOWN: [&str; 34] = [
     "abuffer",
@@ -262,7 +260,7 @@ fn generated(page: &str, name: &str, want: &str) {
 }
 
 fn held_out_run() -> Results<Bench> {
-    serde_json::from_str(&read(&format!("{HELD_OUT}/results.json"))).unwrap()
+    serde_json::from_str(&read(&format!("{}/results.json", results("held-out")))).unwrap()
 }
 
 /// The table of docs/benchmarks.md is the one that the committed rows give.
@@ -270,7 +268,7 @@ fn held_out_run() -> Results<Bench> {
 fn benchmarks_show_the_committed_run() {
     let run = held_out_run();
     let table = run.markdown();
-    assert_eq!(read(&format!("{HELD_OUT}/table.md")), table);
+    assert_eq!(read(&format!("{}/table.md", results("held-out"))), table);
     let rows = &run.measured.rows;
     let is_left_out = |line: &str| {
         let method = line.split(" | ").next().unwrap().trim_start_matches("| ");
@@ -291,7 +289,7 @@ fn benchmarks_show_the_committed_run() {
 fn the_readme_shows_one_setting_of_each_family() {
     let begin = "<!-- families:begin -->\n";
     let readme = read("README.md");
-    let validation = format!("{RESULTS}/validation/results.json");
+    let validation = format!("{}/results.json", results("validation"));
     if !root().join(&validation).exists() {
         assert!(
             !readme.contains(begin),
@@ -363,14 +361,12 @@ fn the_committed_rows_are_sound() {
     }
 }
 
-const RESULTS: &str = "docs/results/llvmpipe-epyc-2cores";
-
 /// The precision study shows what was measured, and nothing of it is beyond its bound.
 #[test]
 fn numerics_shows_the_committed_measurement() {
-    let want = read(&format!("{RESULTS}/numerics/numerics.md"));
+    let want = read(&format!("{}/numerics.md", results("numerics")));
     generated("docs/numerics.md", "numerics", &want);
-    let text = read(&format!("{RESULTS}/numerics/numerics.json"));
+    let text = read(&format!("{}/numerics.json", results("numerics")));
     let numerics: Results<Numerics> = serde_json::from_str(&text).unwrap();
     let numerics = numerics.measured;
     assert!(numerics.blended.len() >= 30 && numerics.added.len() >= 60);
@@ -385,22 +381,22 @@ fn numerics_shows_the_committed_measurement() {
 /// The table of the errors along a path is the committed one.
 #[test]
 fn the_path_is_the_committed_one() {
-    let want = read(&format!("{RESULTS}/path/path.md"));
+    let want = read(&format!("{}/path.md", results("path")));
     generated("docs/benchmarks.md", "path", &want);
 }
 
 /// Nothing failed in the committed run over the hard cases.
 #[test]
 fn nothing_failed_in_the_committed_stress() {
-    let rows = read(&format!("{RESULTS}/stress/stress.csv"));
+    let rows = read(&format!("{}/stress.csv", results("stress")));
     assert!(rows.lines().count() > 1000 && !rows.contains(",fail,"));
-    assert!(read(&format!("{RESULTS}/stress/stress.md")).contains(" 0 failures"));
+    assert!(read(&format!("{}/stress.md", results("stress"))).contains(" 0 failures"));
 }
 
 /// The thesis's scenes in docs/benchmarks.md are the rows of the committed run.
 #[test]
 fn the_thesis_table_is_the_committed_one() {
-    let measured = read(&format!("{RESULTS}/thesis-full/table.md"));
+    let measured = read(&format!("{}/table.md", results("thesis-full")));
     let mut want = "| scene | its analytic weight | learned | ratio | best published weight (eq 8) | thesis: its figures | thesis: ratio |\n\
                     |---|---:|---:|---:|---:|---:|---:|\n"
         .to_owned();
@@ -452,7 +448,7 @@ fn parts(measured: &Effects) -> String {
 #[test]
 fn costs_of_effects_are_those_measured() {
     let page = "docs/effects.md";
-    let measured = read(&format!("{RESULTS}/effects/effects.json"));
+    let measured = read(&format!("{}/effects.json", results("effects")));
     let measured: Results<Effects> = serde_json::from_str(&measured).unwrap();
     let measured = measured.measured;
     let mut shown = 0;
@@ -498,7 +494,7 @@ fn costs_of_effects_are_those_measured() {
 /// model file says so.
 #[test]
 fn budgets_of_training_are_those_of_the_search() {
-    let json = read("docs/results/llvmpipe-epyc-2cores/search/search.json");
+    let json = read(&format!("{}/search.json", results("search")));
     let search: serde_json::Value = serde_json::from_str(&json).unwrap();
     let recipes = search["recipes"].as_array().unwrap();
     assert_eq!(recipes.len(), Recipe::ALL.len());

@@ -54,7 +54,10 @@ fn committed_texts_are_what_is_exported_today() {
         let model = shipped(recipe);
         for language in Language::ALL {
             let file = format!("models/{recipe}/model.{}", language.extension());
-            let options = Options { language };
+            let options = Options {
+                language,
+                ..Options::default()
+            };
             if update() {
                 peelnet_export::export(&gpu(), &model, &path(&file), &options).unwrap();
             }

@@ -7,9 +7,8 @@
 
 use peelnet_eval::{Row, bench::Bench, front::EXACT_MSE, geometric_mean, methods_of, scenes_of};
 use peelnet_report::Results;
+use peelnet_tests::results;
 use std::{collections::BTreeSet, fs, path::PathBuf};
-
-const RESULTS: &str = "docs/results/llvmpipe-epyc-2cores";
 
 /// The pages that show figures.
 const PAGES: [&str; 9] = [
@@ -29,7 +28,7 @@ const DEFINITIONS: &[(&str, &str, &str)] = &[
     ("data/README.md", "| scene | what |", "opacities of scenes"),
     (
         "docs/benchmarks.md",
-        "All figures come from one machine",
+        "All figures come from two machines",
         "a version",
     ),
     (
@@ -124,8 +123,8 @@ struct Committed {
 impl Committed {
     fn load() -> Self {
         let held_out: Results<Bench> =
-            serde_json::from_str(&read(&format!("{RESULTS}/held-out/results.json"))).unwrap();
-        let stress = read(&format!("{RESULTS}/stress/stress.csv"));
+            serde_json::from_str(&read(&format!("{}/results.json", results("held-out")))).unwrap();
+        let stress = read(&format!("{}/stress.csv", results("stress")));
         // A method's name may hold commas and is quoted then.
         let fields = |line: &str| -> Vec<String> {
             let quoted = line.strip_prefix('"').and_then(|l| l.split_once("\","));
@@ -254,7 +253,7 @@ impl Committed {
 
 /// Mean over the scenes of a field along the committed path.
 fn path_mean(method: &str, field: &str) -> f64 {
-    let text = read(&format!("{RESULTS}/path/path.json"));
+    let text = read(&format!("{}/path.json", results("path")));
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();
     let rows = value["rows"].as_array().unwrap();
     let found: Vec<f64> = rows
@@ -268,7 +267,10 @@ fn path_mean(method: &str, field: &str) -> f64 {
 
 /// A number in a committed file.
 fn json(file: &str, pointer: &str) -> f64 {
-    let text = read(&format!("{RESULTS}/{file}"));
+    let text = match file.split_once('/') {
+        Some((step, name)) => read(&format!("{}/{name}", results(step))),
+        None => read(&(results("") + file)),
+    };
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();
     let found = value.pointer(pointer).and_then(serde_json::Value::as_f64);
     found.unwrap_or_else(|| panic!("{file} has no number at {pointer}"))

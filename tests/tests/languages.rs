@@ -16,6 +16,13 @@ use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_tests::{gpu, shipped};
 
+fn of(language: Language) -> Options {
+    Options {
+        language,
+        ..Options::default()
+    }
+}
+
 /// The same function of the same numbers, compiled twice, in different orders of operations.
 const SAME_TEXT: f32 = 1e-5;
 
@@ -86,7 +93,7 @@ fn glsl_texts_answer_what_the_network_answers() {
             rows.push(inputs.map(|i| random.between(i.min, i.max)).collect());
         }
         for language in [Language::Glsl, Language::GlslEs] {
-            let text = peelnet_export::text(&model, &Options { language }).unwrap();
+            let text = peelnet_export::text(&model, &of(language)).unwrap();
             let found = evaluate(&gpu, &model, &text, &rows);
             let want: Vec<f32> = rows.iter().flat_map(|r| model.shader_output(r)).collect();
             assert_eq!(found.len(), want.len());
@@ -107,7 +114,7 @@ fn names_survive() {
     for recipe in Recipe::ALL {
         let model = shipped(recipe);
         for language in Language::ALL {
-            let text = peelnet_export::text(&model, &Options { language }).unwrap();
+            let text = peelnet_export::text(&model, &of(language)).unwrap();
             let code: Vec<&str> = text.lines().filter(|l| !l.starts_with("//")).collect();
             let code = code.join("\n");
             for name in ["peelnet_statistics(", "peelnet_resolve("] {

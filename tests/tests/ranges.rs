@@ -34,7 +34,7 @@ fn square(world_from_object: Mat4, material: Material) -> Object {
 /// A square across the view axis, turned by 60 degrees: a box along the world's axes would be 3.5 deep.
 fn placed(number: usize) -> Mat4 {
     let z = NEAREST * 2.0f32.powf(PLACES[number]);
-    let mirror = if number % 2 == 0 { 1.0 } else { -1.0 };
+    let mirror = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
     Mat4::from_scale_rotation_translation(
         Vec3::new(4.0 * mirror, 4.0, 1.0),
         Quat::from_rotation_y(60f32.to_radians()),

@@ -1,7 +1,7 @@
 //! Tests, lints and the longer searches.
 
 use crate::setup::{apt_install, ensure_browser, ensure_driver, ensure_program, ensure_subcommand};
-use crate::{cargo, run};
+use crate::{cargo, root, run};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -128,6 +128,20 @@ pub fn wasm() -> Result<(), String> {
     run(&mut command, "wasm").map_err(|e| {
         format!("{e}; where the target is missing: rustup target add wasm32-unknown-unknown")
     })
+}
+
+/// The package for three.js.
+pub fn three() -> Result<(), String> {
+    ensure_browser()?;
+    let npm = |args: &[&str]| {
+        let mut command = Command::new("npm");
+        command
+            .args(args)
+            .current_dir(root().join("packages/three"));
+        run(&mut command, "npm")
+    };
+    npm(&["ci", "--no-audit", "--no-fund"])?;
+    npm(&["test"])
 }
 
 /// The exported texts, by the compilers that renderers use.

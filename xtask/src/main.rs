@@ -38,6 +38,7 @@ cargo xtask <command>
   search          a million random fragment lists for every property (minutes)
   faults          extract, train and bench killed fifty times each (minutes)
   fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust
+  three           the package for three.js: types, tests in Chromium on WebGPU and WebGL 2 (minutes; needs Node.js 20 and npm)
   languages       compile the exported texts with glslangValidator and DXC (installed from Debian and PyPI)
   peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
 
@@ -69,6 +70,7 @@ fn main() -> ExitCode {
         (Some("fuzz"), [seconds]) => checks::fuzz(seconds),
         (Some("peers"), []) => product::peers(),
         (Some("languages"), []) => checks::languages(),
+        (Some("three"), []) => checks::three(),
         (None | Some("help" | "--help" | "-h"), _) => {
             print!("{HELP}");
             Ok(())

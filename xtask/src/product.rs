@@ -73,8 +73,11 @@ const THESIS_BUDGET: [&str; 10] = [
 /// Where the table of the search is kept.
 const SEARCH: &str = "docs/results/llvmpipe-epyc-2cores/search";
 
-/// Where designs that are judged on the five other scenes are kept.
-const SEARCH_ACROSS: &str = "docs/results/llvmpipe-epyc-2cores/search/across";
+/// Where the table of designs is kept, and the one that judges them on the five other scenes.
+const DESIGNS: [&str; 2] = [
+    "docs/results/llvmpipe-xeon-2cores/designs",
+    "docs/results/llvmpipe-xeon-2cores/designs/across",
+];
 
 /// Training scenes of five kinds, which judge designs that were trained without them.
 const ACROSS: [&str; 5] = ["boxes", "cups", "foliage", "panes", "smoke-30"];
@@ -136,7 +139,7 @@ pub fn designs() -> Result<(), String> {
     let [training, validation] = search_scenes()?;
     search_data(&program, ["1", "204800"], &training, SEARCH_DATA)?;
     let data = SEARCH_DATA.join(",");
-    judge_designs(&program, &validation, &data, SEARCH)?;
+    judge_designs(&program, &validation, &data, DESIGNS[0])?;
     // The validation scenes resemble one another. These five do not, and are apart from what is trained on in a second run.
     let [synthetic, _] = SEARCH_DATA;
     let (across, peeled) = (ACROSS.map(scene_file), "out/search/peeled-across");
@@ -144,7 +147,7 @@ pub fn designs() -> Result<(), String> {
     let others: Vec<String> = all.filter(|s| !across.contains(s)).collect();
     peel_for_search(&program, &others, peeled)?;
     let data = [synthetic, peeled].join(",");
-    judge_designs(&program, &across, &data, SEARCH_ACROSS)
+    judge_designs(&program, &across, &data, DESIGNS[1])
 }
 
 fn judge_designs(

@@ -3,7 +3,6 @@
 use crate::parse::{MethodList, Size, ViewCount, fraction, positive, samples};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use peelnet_dataset::{Format, Shard};
-use peelnet_export::Language;
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
 use peelnet_peel::Peel;
@@ -263,18 +262,6 @@ pub enum Lang {
     Hlsl,
     /// Metal 2.4
     Msl,
-}
-
-impl From<Lang> for Language {
-    fn from(lang: Lang) -> Self {
-        match lang {
-            Lang::Wgsl => Self::Wgsl,
-            Lang::GlslEs => Self::GlslEs,
-            Lang::Glsl => Self::Glsl,
-            Lang::Hlsl => Self::Hlsl,
-            Lang::Msl => Self::Msl,
-        }
-    }
 }
 
 /// Precisions of exported shaders.

@@ -5,12 +5,14 @@
 //! targets round them; colours are not rounded. The errors are ratios to those of two references on the same fragments ([`MOMENTS`] and
 //! [`KBUFFER`]), composited by their CPU twins.
 
+mod codes;
 mod file;
 mod ranges;
 #[cfg(test)]
 mod tests;
 mod views;
 
+pub use codes::{CODES, composite as coded};
 pub use file::{parse, read, shipped};
 pub use ranges::{REACH, Source};
 pub use views::{Measured, Stacked, View, peel, score};

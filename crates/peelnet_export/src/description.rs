@@ -184,12 +184,12 @@ const SEPARATE_ENDS: &[Pass] = &[
             sum(
                 "sums",
                 "rgba16float",
-                "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - f.y))",
+                "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))",
             ),
             sum(
                 "ends",
                 "rgba16float",
-                "vec4f(alpha * rgb, alpha) * (f.x * f.y)",
+                "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))",
             ),
         ],
     },

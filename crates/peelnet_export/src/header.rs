@@ -1,13 +1,16 @@
 //! The comment at the beginning of an exported text.
 
 use crate::{
+    Options, Precision,
     description::Description,
     language::Dialect,
     literal::{float, identifier},
     network::function_name,
     self_test::SelfTest,
     text::multiply_adds,
+    verify::RANDOM as HALF_SAMPLES,
 };
+use peelnet_core::tolerance::EXPORT_F16;
 use peelnet_files::{printable, printable_lines};
 use peelnet_model::{Model, Output};
 use std::borrow::Cow;
@@ -31,8 +34,14 @@ fn names<'a>(all: impl ExactSizeIterator<Item = Cow<'a, str>>) -> String {
 }
 
 /// What the text is, where it comes from, how to check it and what a renderer must do around it, as comments.
-pub(crate) fn header(model: &Model, dialect: &dyn Dialect) -> String {
+pub(crate) fn header(model: &Model, options: &Options) -> String {
+    let dialect = options.language.dialect();
     let mut lines = about(model, dialect);
+    if options.precision == Precision::F16 {
+        lines.push(format!(
+            "Layers in 16 bits, the last one in 32: answers differ from the network's by {EXPORT_F16} at most, on {HALF_SAMPLES} random inputs of the range seen in training."
+        ));
+    }
     lines.extend(provenance(model));
     lines.push(String::new());
     lines.extend(SelfTest::of(model).lines(function_name(model.meta.output)));

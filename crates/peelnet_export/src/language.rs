@@ -72,6 +72,11 @@ pub(crate) trait Dialect: Sync {
     /// Types of a number, of two, three and four.
     fn types(&self) -> [&'static str; 4];
 
+    /// Whether texts of functions may compute in 16 bits.
+    fn has_halves(&self) -> bool {
+        true
+    }
+
     /// The text of WGSL functions.
     ///
     /// # Errors
@@ -152,6 +157,10 @@ impl Dialect for Glsl {
         if self.es { "es.glsl" } else { "glsl" }
     }
 
+    fn has_halves(&self) -> bool {
+        false
+    }
+
     fn about(&self) -> &'static str {
         if self.es {
             "GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;."
@@ -219,7 +228,8 @@ impl Dialect for Hlsl {
     fn translate(&self, wgsl: &str) -> Result<String, ExportError> {
         let (module, info) = parsed(wgsl)?;
         let options = hlsl::Options {
-            shader_model: hlsl::ShaderModel::V6_0,
+            // The first with 16-bit floats; the text needs no more than 6.0 without them.
+            shader_model: hlsl::ShaderModel::V6_2,
             ..Default::default()
         };
         let pipeline = hlsl::PipelineOptions::default();
@@ -275,7 +285,8 @@ trait Refused: Dialect {
 
 impl<T: Dialect> Refused for T {}
 
-fn parsed(wgsl: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), ExportError> {
-    let none = naga::valid::Capabilities::empty();
-    Ok(peelnet_shaders::validate("exported network", wgsl, none)?)
+/// A text, valid, whether it computes in 16 or in 32 bits.
+pub(crate) fn parsed(wgsl: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), ExportError> {
+    let halves = naga::valid::Capabilities::SHADER_FLOAT16;
+    Ok(peelnet_shaders::validate("exported network", wgsl, halves)?)
 }

@@ -58,6 +58,18 @@ pub const JSON_KIND: Kind = Kind {
 pub struct Options {
     /// Into which language.
     pub language: Language,
+    /// How the network's layers are computed.
+    pub precision: Precision,
+}
+
+/// How a network's layers are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// In 32 bits.
+    #[default]
+    F32,
+    /// In 16 bits, but the last one. A text whose answers differ by more than [`EXPORT_F16`](peelnet_core::tolerance::EXPORT_F16) is not written.
+    F16,
 }
 
 /// What can go wrong while exporting.
@@ -91,6 +103,11 @@ pub enum ExportError {
     /// The GPU.
     #[error(transparent)]
     Gpu(#[from] peelnet_gpu::GpuError),
+    /// A language in which half floats need more than a text of functions.
+    #[error(
+        "{0} has no portable 16-bit floats; choose wgsl, hlsl or msl, or 32 bits; nothing was written"
+    )]
+    NoHalves(&'static str),
     /// The text computes something else than the model.
     #[error(
         "the exported function differs from the model: inputs {inputs:?} give {found} instead of {expected} (allowed difference {tolerance:e}); nothing was written"

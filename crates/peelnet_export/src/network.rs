@@ -1,6 +1,9 @@
 //! The network itself as straight-line code.
 
-use crate::literal::{float, identifier, letters, vec4};
+use crate::{
+    Precision,
+    literal::{float, identifier, letters, vec4},
+};
 use peelnet_core::{
     guards::{INPUT_LIMIT, RAW_LIMIT, ROOT_ABSORBANCE_LIMIT},
     mlp::{Activation, Layer},
@@ -60,7 +63,7 @@ const fn kind(output: Output) -> &'static str {
 
 /// The network as straight-line code: the function that the model's inputs go to, and for shares of absorbance the share
 /// alone before it.
-pub(crate) fn weight_function(model: &Model) -> String {
+pub(crate) fn weight_function(model: &Model, precision: Precision) -> String {
     let inputs = &model.meta.inputs;
     let output = model.meta.output;
     let list = |each: &dyn Fn(&Input) -> String| -> String {
@@ -77,7 +80,7 @@ pub(crate) fn weight_function(model: &Model) -> String {
     let _ = match output {
         Output::Transmittance | Output::Color => {
             let _ = writeln!(t, "fn {name}({parameters}) -> {kind} {{");
-            let last = network(&mut t, model, true);
+            let last = network(&mut t, model, true, precision);
             let answer = if output.count() == 1 {
                 format!("clamp({last}_a, {low}, {high})")
             } else {
@@ -96,14 +99,14 @@ pub(crate) fn weight_function(model: &Model) -> String {
                 t,
                 "// {share}, for inputs as peelnet_network evaluates them.\nfn peelnet_share({parameters}) -> {kind} {{"
             );
-            let last = network(&mut t, model, false);
+            let last = network(&mut t, model, false, precision);
             let _ = writeln!(t, "    return {last}_a;\n}}\n");
             let _ = writeln!(
                 t,
                 "// Its transmittance, for any finite inputs.\nfn {name}({parameters}) -> {kind} {{"
             );
             let limited = list(&|i| {
-                let [low, high] = limits(i);
+                let [low, high] = limits(i, INPUT_LIMIT);
                 format!(
                     "clamp({}, {}, {})",
                     identifier(&i.name),
@@ -134,9 +137,12 @@ pub(crate) fn weight_function(model: &Model) -> String {
     t
 }
 
-/// The raw values at which the normalised ones reach [`INPUT_LIMIT`], or [`RAW_LIMIT`].
-fn limits(input: &Input) -> [f32; 2] {
-    let reach = (INPUT_LIMIT / input.scale.abs()).min(RAW_LIMIT);
+/// Normalised inputs of layers in 16 bits: twice what data have, and far from where half floats become infinite.
+const HALF_LIMIT: f32 = 16.0;
+
+/// The raw values at which the normalised ones reach a limit, or [`RAW_LIMIT`].
+fn limits(input: &Input, limit: f32) -> [f32; 2] {
+    let reach = (limit / input.scale.abs()).min(RAW_LIMIT);
     [input.offset - reach, input.offset + reach]
 }
 
@@ -144,8 +150,14 @@ fn limits(input: &Input) -> [f32; 2] {
 ///
 /// With limits the inputs are normalised as the model does it; without, they are known to be small (see
 /// `peelnet_network`), and the first layer takes the normalisation in.
-fn network(t: &mut String, model: &Model, limited: bool) -> String {
+///
+/// In 16 bits: all layers but the last one, whose sum of many terms is what is exponentiated. Their inputs are normalised in 32 bits and
+/// limited closer, so that no sum becomes infinite.
+fn network(t: &mut String, model: &Model, limited: bool, precision: Precision) -> String {
     let inputs = &model.meta.inputs;
+    let halves = precision == Precision::F16 && model.mlp.layers.len() > 1;
+    let limited = limited || halves;
+    let limits = |i: &Input| limits(i, if halves { HALF_LIMIT } else { INPUT_LIMIT });
     if limited {
         t.push_str("    // The limits never bind on real data and keep everything finite.\n");
     }
@@ -161,7 +173,15 @@ fn network(t: &mut String, model: &Model, limited: bool) -> String {
             vec4(&values)
         };
         let raw = format!("vec4f({})", names.join(", "));
-        let _ = if limited {
+        let _ = if halves {
+            let (low, high) = (column(&|i| limits(i)[0]), column(&|i| limits(i)[1]));
+            let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
+            writeln!(
+                t,
+                "    let {} = vec4h((clamp({raw}, {low}, {high}) - {offset}) * {scale});",
+                part("input", c)
+            )
+        } else if limited {
             let (low, high) = (column(&|i| limits(i)[0]), column(&|i| limits(i)[1]));
             let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
             writeln!(
@@ -182,6 +202,7 @@ fn network(t: &mut String, model: &Model, limited: bool) -> String {
             model.mlp.hidden
         };
         let name = format!("layer_{}", letters(l));
+        let begin = t.len();
         if l == 0 && !limited {
             layer_text(
                 t,
@@ -192,6 +213,21 @@ fn network(t: &mut String, model: &Model, limited: bool) -> String {
             );
         } else {
             layer_text(t, layer, &before, &name, activation);
+        }
+        if halves {
+            let text = t.split_off(begin);
+            if l == last {
+                // Back to 32 bits.
+                let parts = (0..layer.inputs.div_ceil(4)).map(|c| part(&before, c));
+                let whole = |text: String, part| text.replace(&part, &format!("vec4f({part})"));
+                t.push_str(&parts.fold(text, whole));
+            } else {
+                t.push_str(
+                    &text
+                        .replace("vec4f(", "vec4h(")
+                        .replace("mat4x4f(", "mat4x4h("),
+                );
+            }
         }
         before = name;
     }

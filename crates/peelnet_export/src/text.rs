@@ -1,13 +1,21 @@
 //! The text: a header, what surrounds the network, and the network.
 
 use crate::{
-    ExportError, Language, Options,
+    ExportError, Options, Precision,
     description::layout,
     header::header,
     network::{call, weight_function},
 };
 use peelnet_core::mlp::Mlp;
 use peelnet_model::{Inputs, Model, Output, Recipe};
+
+/// The directive that a text in 16 bits begins with, behind its header.
+const ENABLE_HALVES: &str = "enable f16;\n";
+
+/// Whether a WGSL text computes in 16 bits.
+pub(crate) fn has_halves(wgsl: &str) -> bool {
+    wgsl.lines().any(|line| line == ENABLE_HALVES.trim_end())
+}
 
 /// Multiply–adds of one evaluation of the network, as published costs count them (padding not included).
 pub fn multiply_adds(mlp: &Mlp) -> usize {
@@ -22,7 +30,10 @@ pub fn multiply_adds(mlp: &Mlp) -> usize {
 /// A model that does not hold together, or whose output has no shader function.
 pub fn text(model: &Model, options: &Options) -> Result<String, ExportError> {
     let dialect = options.language.dialect();
-    Ok(header(model, dialect) + &dialect.translate(&code(model)?)?)
+    if options.precision == Precision::F16 && !dialect.has_halves() {
+        return Err(ExportError::NoHalves(dialect.name()));
+    }
+    Ok(header(model, options) + &dialect.translate(&code(model, options.precision)?)?)
 }
 
 /// [`text()`] in WGSL, with which the renderer draws.
@@ -30,21 +41,24 @@ pub fn text(model: &Model, options: &Options) -> Result<String, ExportError> {
 /// # Errors
 /// Those of [`text()`].
 pub fn wgsl(model: &Model) -> Result<String, ExportError> {
-    let language = Language::Wgsl;
-    text(model, &Options { language })
+    text(model, &Options::default())
 }
 
 /// The text in WGSL without its header.
-pub(crate) fn code(model: &Model) -> Result<String, ExportError> {
+pub(crate) fn code(model: &Model, precision: Precision) -> Result<String, ExportError> {
     model.check()?;
     let mut text = String::new();
+    if precision == Precision::F16 {
+        text.push_str(ENABLE_HALVES);
+        text.push('\n');
+    }
     for module in modules(model.meta.recipe) {
         text.push_str(peelnet_shaders::source(module)?);
         text.push('\n');
     }
     text.push_str(&call(model));
     text.push('\n');
-    text.push_str(&weight_function(model));
+    text.push_str(&weight_function(model, precision));
     Ok(text)
 }
 

@@ -1,14 +1,23 @@
 //! The exported text, run on the GPU, against the trainer's forward pass.
 
-use crate::{ExportError, network::function_name, self_test::SelfTest, text::code};
-use peelnet_core::{random::Random, tolerance::EXPORT_F32};
+use crate::{
+    ExportError, Precision,
+    language::parsed,
+    network::function_name,
+    self_test::SelfTest,
+    text::{code, has_halves},
+};
+use peelnet_core::{
+    random::Random,
+    tolerance::{EXPORT_F16, EXPORT_F32},
+};
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
 use std::fmt;
 
 /// Random inputs, drawn evenly from the range that training saw.
-const RANDOM: usize = 4096;
+pub(crate) const RANDOM: usize = 4096;
 
 /// Inputs that nobody should pass and somebody will.
 const EXTREMES: [f32; 10] = [
@@ -86,7 +95,17 @@ pub async fn verify_async(
     model: &Model,
     wgsl: &str,
 ) -> Result<Verification, ExportError> {
-    let expected = declarations(&code(model)?)?;
+    let halves = has_halves(wgsl);
+    if halves {
+        let flag = wgpu::Features::SHADER_F16;
+        gpu.need(flag, "shader-f16", "a text in 16 bits", "export in 32 bits")?;
+    }
+    let precision = if halves {
+        Precision::F16
+    } else {
+        Precision::F32
+    };
+    let expected = declarations(&code(model, precision)?)?;
     let found = declarations(wgsl)?;
     if found != expected {
         return Err(ExportError::Declares {
@@ -105,9 +124,18 @@ pub async fn verify_async(
         worst_relative_to_tolerance: 0.0,
     };
     let count = model.meta.output.count();
+    let in_training = |inputs: &[f32]| {
+        let mut each = model.meta.inputs.iter().zip(inputs);
+        each.all(|(input, x)| (input.min..=input.max).contains(x))
+    };
     for (inputs, found) in samples.iter().zip(outputs.chunks_exact(count)) {
         let raw: Vec<f64> = inputs.iter().map(|&x| f64::from(x)).collect();
-        let tolerance = tolerance(model, &raw);
+        let tolerance = match (halves, in_training(inputs)) {
+            (false, _) => tolerance(model, &raw),
+            (true, true) => EXPORT_F16,
+            // Inputs of layers in 16 bits are limited closer: elsewhere an answer need only be one.
+            (true, false) => 1.0,
+        };
         for (&found, expected) in found.iter().zip(model.shader_output_f64(&raw)) {
             let tolerance = tolerance.max(EXPORT_F32 * expected.abs());
             let difference = (f64::from(found) - expected).abs();
@@ -134,8 +162,7 @@ pub async fn verify_async(
 
 /// Everything that a text declares, in order: nothing may come with the network, such as out of a name in its header.
 fn declarations(wgsl: &str) -> Result<Vec<String>, ExportError> {
-    let none = naga::valid::Capabilities::empty();
-    let (module, _) = peelnet_shaders::validate("exported network", wgsl, none)?;
+    let (module, _) = parsed(wgsl)?;
     let name = |name: &Option<String>| name.clone().unwrap_or_default();
     let functions = module.functions.iter();
     let functions = functions.map(|(_, f)| format!("fn {}", name(&f.name)));
@@ -229,7 +256,7 @@ pub async fn evaluate_async(
         })
         .collect();
     let driver = format!(
-        "import package::learned::weight::{function};
+        "{wgsl}
         @group(0) @binding(0) var<storage, read> inputs: array<f32>;
         @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;
         @compute @workgroup_size(64)
@@ -241,11 +268,7 @@ pub async fn evaluate_async(
         }}",
         arguments.join(", ")
     );
-    let linked = peelnet_shaders::link(
-        "learned::driver",
-        &[],
-        &[("learned::driver", &driver), ("learned::weight", wgsl)],
-    )?;
+    parsed(&driver)?;
     let flat: Vec<f32> = samples.iter().flatten().copied().collect();
     let inputs = gpu.upload("inputs", &flat, wgpu::BufferUsages::STORAGE);
     let bytes = (samples.len() * outputs) as u64 * 4;
@@ -257,7 +280,7 @@ pub async fn evaluate_async(
     );
     gpu.dispatch(
         "verification",
-        &linked,
+        &driver,
         &bound,
         (samples.len() as u32).div_ceil(64),
     );
@@ -267,7 +290,7 @@ pub async fn evaluate_async(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Options, export, wgsl};
+    use crate::{Language, Options, export, wgsl};
     use peelnet_core::mlp::{Activation, Layer, Mlp};
     use peelnet_gpu::AdapterRequest;
     use peelnet_model::{DatasetRef, Input, Losses, Metadata, Recipe};
@@ -386,6 +409,55 @@ mod tests {
             export(&gpu, &model, &missing, &Options::default()),
             Err(ExportError::Write { .. })
         ));
+    }
+
+    /// Half floats are written where they hold their bound, in languages that have them; a device without them says so.
+    #[test]
+    fn sixteen_bits_are_written_where_they_hold() {
+        let gpu = gpu();
+        let of = |model: &Model, language| {
+            let precision = Precision::F16;
+            crate::text(
+                model,
+                &Options {
+                    language,
+                    precision,
+                },
+            )
+        };
+        let model = model(&[8], 3);
+        let text = of(&model, Language::Wgsl).expect("exports");
+        assert!(text.contains("vec4h("), "{text}");
+        for language in [Language::Hlsl, Language::Msl] {
+            let text = of(&model, language).expect("exports");
+            assert!(text.contains("half"), "{text}");
+        }
+        for language in [Language::Glsl, Language::GlslEs] {
+            assert!(matches!(
+                of(&model, language),
+                Err(ExportError::NoHalves(_))
+            ));
+        }
+        if !gpu.has(wgpu::Features::SHADER_F16) {
+            let error = verify(&gpu, &model, &text).expect_err("the device lacks them");
+            assert!(error.to_string().contains("shader-f16"), "{error}");
+            return;
+        }
+        verify(&gpu, &model, &text).expect("agrees");
+        let samples = samples(&model);
+        let whole = wgsl(&model).expect("exports");
+        let [halves, whole] =
+            [&text, &whole].map(|t| evaluate(&gpu, &model, t, &samples).expect("runs"));
+        let apart = halves.iter().zip(&whole).map(|(a, b)| (a - b).abs());
+        let most = apart.fold(0.0, f32::max);
+        assert!(most > EXPORT_F32 as f32, "{most}: not in 16 bits");
+        let shipped = Model::shipped(Recipe::MEDIUM).expect("ships");
+        let text = of(&shipped, Language::Wgsl).expect("exports");
+        let found = verify(&gpu, &shipped, &text);
+        assert!(
+            matches!(found, Err(ExportError::Differs { .. })),
+            "{found:?}"
+        );
     }
 
     /// The header's vectors are what the model answers, to the bit.

@@ -1,6 +1,6 @@
 //! A verified text and its description as files.
 
-use crate::{ExportError, Options, Verification, json::json, text, verify::verify};
+use crate::{ExportError, Language, Options, Verification, json::json, text, verify::verify};
 use peelnet_files::{Destination, destination};
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
@@ -31,7 +31,11 @@ pub fn export(
     path: &Path,
     options: &Options,
 ) -> Result<Verification, ExportError> {
-    write_verified(gpu, model, path, options, &text::wgsl(model)?)
+    let in_wgsl = Options {
+        language: Language::Wgsl,
+        ..*options
+    };
+    write_verified(gpu, model, path, options, &text::text(model, &in_wgsl)?)
 }
 
 /// Writes if the text computes what the model does.

@@ -1,7 +1,7 @@
 //! `peelnet export`: weights into shader code.
 
 use super::Context;
-use crate::cli::{ExportArgs, Precision};
+use crate::cli::{ExportArgs, Lang, Precision};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
@@ -10,11 +10,6 @@ use peelnet_model::Model;
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failure> {
-    if args.precision != Precision::F32 {
-        return Err(Failure::Usage(
-            "--precision f16: this version does not write it yet; use --precision f32".into(),
-        ));
-    }
     let mut outputs = Outputs::new(context, [&args.model]);
     outputs.file("--out", &args.out, peelnet_export::KIND)?;
     if let Some(description) = peelnet_export::description_path(&args.out) {
@@ -24,12 +19,11 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     let model = Model::load(&args.model)?;
     let gpu = context.gpu()?;
     outputs.begin(&[])?;
-    let verification = peelnet_export::export(
-        &gpu,
-        &model,
-        &args.out,
-        &peelnet_export::Options { language },
-    )?;
+    let options = peelnet_export::Options {
+        language,
+        precision: args.precision.into(),
+    };
+    let verification = peelnet_export::export(&gpu, &model, &args.out, &options)?;
     context.console.result(
         || {
             format!(
@@ -45,7 +39,10 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
                 "model": json_path(&args.model),
                 "recipe": model.meta.recipe,
                 "lang": language.name(),
-                "precision": "f32",
+                "precision": match args.precision {
+                    Precision::F32 => "f32",
+                    Precision::F16 => "f16",
+                },
                 "adapter": gpu.info.name,
                 "samples": verification.samples,
                 "worst_absolute": verification.worst_absolute,
@@ -53,4 +50,25 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
             })
         },
     )
+}
+
+impl From<Lang> for Language {
+    fn from(lang: Lang) -> Self {
+        match lang {
+            Lang::Wgsl => Self::Wgsl,
+            Lang::GlslEs => Self::GlslEs,
+            Lang::Glsl => Self::Glsl,
+            Lang::Hlsl => Self::Hlsl,
+            Lang::Msl => Self::Msl,
+        }
+    }
+}
+
+impl From<Precision> for peelnet_export::Precision {
+    fn from(precision: Precision) -> Self {
+        match precision {
+            Precision::F32 => Self::F32,
+            Precision::F16 => Self::F16,
+        }
+    }
 }

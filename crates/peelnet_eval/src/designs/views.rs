@@ -2,6 +2,7 @@
 
 use super::{
     MOTIONS, Score,
+    codes::surfaces,
     ranges::{Quantiles, Source, moved, of_boxes, of_last},
 };
 use crate::{
@@ -82,6 +83,11 @@ pub struct Stacked<'a> {
 }
 
 impl Stacked<'_> {
+    /// The warp of the view's depths.
+    pub(super) const fn warp(&self) -> DepthWarp {
+        self.view.warp
+    }
+
     /// What is cut into slabs, and the scale of its depths.
     pub(super) fn extent(&self, source: Source) -> Extent {
         let given = |found: &[DepthRange]| {
@@ -284,6 +290,7 @@ pub fn peel(
         let failed = |method| EvalError::render(&scene.name, method);
         let mut harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, false, None)
             .map_err(EvalError::peel(&scene.name))?;
+        harvester.keep_triangles(true);
         let renderer = Renderer::new(gpu, scene).map_err(failed(EXACT))?;
         let mut of_camera = |camera: &Camera| -> Result<View, EvalError> {
             if stop.load(Ordering::Relaxed) {
@@ -320,14 +327,19 @@ fn peel_one(
 ) -> Result<View, EvalError> {
     let frame = size[0] as usize * size[1] as usize;
     let mut view = View::new(&scene.name, harvester.depth_warp(camera), frame, []);
+    let surfaces = surfaces(scene, camera);
     let mut take = |tile: RawTile| {
         for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
             let run = run[0] as usize..run[1] as usize;
-            let fragments = tile.depths[run.clone()].iter().zip(&tile.colors[run]);
-            view.push(
-                pixel as usize,
-                fragments.map(|(&z, &[r, g, b, a])| Fragment::new(z, a, [r, g, b])),
-            );
+            let fragments = run.map(|i| {
+                let [r, g, b, a] = tile.colors[i];
+                Fragment {
+                    // Whole surfaces are told apart instead of triangles.
+                    triangle: surfaces[tile.triangles[i] as usize],
+                    ..Fragment::new(tile.depths[i], a, [r, g, b])
+                }
+            });
+            view.push(pixel as usize, fragments);
         }
         Ok(())
     };

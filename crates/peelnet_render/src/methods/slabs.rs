@@ -60,8 +60,6 @@ const fn promises(_: &MethodSpec) -> Promises {
     }
 }
 
-const THIN: Flaw = Flaw::unsettled(Property::Order, &["thin-slab"]);
-
 fn is_of_pixel(spec: &MethodSpec) -> bool {
     RANGE.of(spec) == "pixel"
 }
@@ -96,7 +94,6 @@ pub(super) const METHOD: Method = Method {
     flaws: &[
         Flaw::swallowed(&["deep"]),
         Flaw::reordered(&["deep"]),
-        THIN.when(is_of_pixel),
         BORDERS.when(is_of_pixel),
         COINCIDENT.when(is_small),
     ],
@@ -155,7 +152,6 @@ macro_rules! learned {
 pub(super) const SMALL: Method = Method {
     flaws: &[
         Flaw::swallowed(&["deep"]),
-        THIN.when(is_of_pixel),
         BORDERS.when(is_of_pixel),
         COINCIDENT,
     ],
@@ -167,7 +163,7 @@ pub(super) const SMALL: Method = Method {
 
 pub(super) const MEDIUM: Method = Method {
     curve: &["", ":range=boxes", ":range=frame", ":scale=0.5"],
-    flaws: &[Flaw::swallowed(&["deep"]), THIN.when(is_of_pixel)],
+    flaws: &[Flaw::swallowed(&["deep"])],
     ..learned!(
         "deep-medium",
         "the same in 34 bytes a pixel: the one to ship"
@@ -176,17 +172,7 @@ pub(super) const MEDIUM: Method = Method {
 
 pub(super) const LARGE: Method = Method {
     curve: &["", ":range=boxes", ":range=frame"],
-    flaws: &[
-        Flaw::swallowed(&["deep"]),
-        THIN.when(is_of_pixel),
-        Flaw::new(
-            Property::Scale,
-            &["thin-slab"],
-            "depths are rounded otherwise, which moves layers of one bin into another, and other ones are known then",
-        )
-        .when(is_of_pixel)
-        .seen_on_llvmpipe(),
-    ],
+    flaws: &[Flaw::swallowed(&["deep"])],
     ..learned!(
         "deep-large",
         "the same of four slabs, 42 bytes a pixel: the most accurate"

@@ -1,0 +1,89 @@
+// What a model needs of the renderer's device, asked before anything is drawn with it.
+
+import { FORMATS, passesOf } from './model.js';
+
+// Bytes are counted as WebGPU counts them against maxColorAttachmentBytesPerSample.
+const bytesOf = ( pass ) => pass.targets.reduce( ( sum, target ) => sum + FORMATS[ target.format ].bytes, 0 );
+
+const isMixed = ( pass ) => pass.targets.some( ( target ) => target.color !== pass.targets[ 0 ].color || target.alpha !== pass.targets[ 0 ].color );
+
+/**
+ * What a device lacks for a model, as one sentence, or null where nothing is.
+ *
+ * @param {import('three/webgpu').Renderer} renderer
+ * @param {object} model
+ * @param {'pixel' | 'frame'} range
+ * @returns {string | null}
+ */
+export function deviceProblem( renderer, model, range ) {
+
+	const passes = passesOf( model.description, range );
+	const targets = passes.flatMap( ( pass ) => pass.targets );
+	const count = Math.max( ...passes.map( ( pass ) => pass.targets.length ) );
+	const lacks = ( what ) => `This device cannot draw the model "${ model.description.recipe }": ${ what }.`;
+
+	return renderer.backend.isWebGPUBackend === true ? webgpuProblem( renderer, passes, targets, count, lacks ) : webglProblem( renderer, model, passes, targets, count, lacks );
+
+}
+
+function webgpuProblem( { backend }, passes, targets, count, lacks ) {
+
+	const { limits, features } = backend.device;
+	const bytes = Math.max( ...passes.map( bytesOf ) );
+
+	if ( backend.compatibilityMode === true && passes.some( isMixed ) ) return lacks( 'WebGPU\'s compatibility mode has one blend for all targets' );
+
+	if ( limits.maxColorAttachments < count ) return lacks( `it needs ${ count } colour targets and has ${ limits.maxColorAttachments }` );
+
+	if ( limits.maxColorAttachmentBytesPerSample < bytes ) return lacks( `it needs ${ bytes } bytes a sample in one pass and has ${ limits.maxColorAttachmentBytesPerSample }` );
+
+	if ( targets.some( ( target ) => target.format.endsWith( '32float' ) ) && features.has( 'float32-blendable' ) === false ) return lacks( 'it needs the feature float32-blendable' );
+
+	return null;
+
+}
+
+function webglProblem( { backend }, model, passes, targets, count, lacks ) {
+
+	const { gl, extensions } = backend;
+
+	if ( typeof model.glsl !== 'string' || model.glsl.includes( 'peelnet_resolve(' ) === false ) return `The model "${ model.description.recipe }" has no GLSL text, which WebGL 2 needs.`;
+
+	if ( passes.some( isMixed ) && ! backend.drawBuffersIndexedExt ) return lacks( 'WebGL 2 needs the extension OES_draw_buffers_indexed for targets of different blends' );
+
+	if ( ! extensions.get( 'EXT_color_buffer_float' ) && ! extensions.get( 'EXT_color_buffer_half_float' ) ) return lacks( 'WebGL 2 needs the extension EXT_color_buffer_float or EXT_color_buffer_half_float' );
+
+	if ( targets.some( ( target ) => target.format.endsWith( '32float' ) ) && ! extensions.get( 'EXT_float_blend' ) ) return lacks( 'WebGL 2 needs the extension EXT_float_blend' );
+
+	const most = gl.getParameter( gl.MAX_DRAW_BUFFERS );
+
+	return most < count ? lacks( `it needs ${ count } colour targets and has ${ most }` ) : null;
+
+}
+
+/**
+ * Calls back when the renderer's device is lost. A renderer that is disposed loses nothing.
+ *
+ * @returns {() => void} stops watching
+ */
+export function watchDevice( renderer, onLost ) {
+
+	const before = renderer.onDeviceLost;
+	let watching = true;
+
+	renderer.onDeviceLost = ( info ) => {
+
+		before.call( renderer, info );
+
+		if ( watching ) onLost( 'The graphics device was lost. Nothing can be drawn until a new renderer and a new peelnetPass are made.' );
+
+	};
+
+	return () => {
+
+		// What another has put over it since then stays, and calls this one.
+		watching = false;
+
+	};
+
+}

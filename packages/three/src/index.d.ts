@@ -1,0 +1,90 @@
+import type { Camera, Material, PassNode, Scene } from 'three/webgpu';
+
+/** How a target blends: `dst + src`, `max(dst, src)` or `dst * (1 - src)`. */
+export type PeelnetBlend = 'add' | 'max' | 'transmit';
+
+export interface PeelnetTarget {
+	name: string;
+	/** WebGPU's name of the format. */
+	format: string;
+	clear: readonly number[];
+	/** Blending of red, green and blue. */
+	color: PeelnetBlend | ( string & {} );
+	/** Blending of alpha. */
+	alpha: PeelnetBlend | ( string & {} );
+	/** What each fragment writes. */
+	write: string;
+}
+
+/** A pass that draws all transparent surfaces, in any order. */
+export interface PeelnetPassDescription {
+	name: string;
+	/** Targets of earlier passes that it reads. */
+	reads: readonly string[];
+	/** What each fragment computes first. */
+	compute: string;
+	targets: readonly PeelnetTarget[];
+}
+
+/** The content of an exported `model.json`. */
+export interface PeelnetDescription {
+	format: string;
+	format_version: number;
+	tool_version: string;
+	recipe: string;
+	parameters: number;
+	topology: string;
+	passes: readonly PeelnetPassDescription[];
+	resolve: string;
+	resolve_reads: readonly string[];
+}
+
+/** A model: data that may be loaded, replaced and shared between passes. */
+export interface PeelnetModel {
+	description: PeelnetDescription;
+	wgsl: string;
+	/** GLSL ES 3.00, for the WebGL 2 back end. */
+	glsl?: string | null;
+}
+
+export interface PeelnetPassOptions {
+	model: PeelnetModel;
+	/** Where the slabs of depth come from: each pixel's own range, at one more pass (the default), or the frame's. */
+	range?: 'pixel' | 'frame';
+	/** `[near, far]` of the distance along the view axis. The default is the range of the transparent objects' boxes in view. */
+	depthRange?: readonly [ number, number ] | null;
+	/** Called once for each problem; the scene is then drawn sorted. The default writes to the console. */
+	onProblem?: ( message: string ) => void;
+	/** Samples a pixel. Only 0 and 1 are supported, so pass 0 where the renderer has `antialias: true`. */
+	samples?: number;
+	[ option: string ]: unknown;
+}
+
+/** A PassNode that draws a scene's transparent objects in any order. */
+export class PeelnetPassNode extends PassNode {
+
+	constructor( scene: Scene, camera: Camera, options: PeelnetPassOptions );
+
+	readonly isPeelnetPassNode: true;
+	/** The model that is drawn. May be set at any time. */
+	model: PeelnetModel;
+	/** May be set at any time. */
+	range: 'pixel' | 'frame';
+	depthRange: readonly [ number, number ] | null;
+	onProblem: ( message: string ) => void;
+	/** What keeps the model from being drawn, or null. */
+	readonly problem: string | null;
+
+}
+
+/** A pass that draws a scene with learned order-independent transparency. */
+export function peelnetPass( scene: Scene, camera: Camera, options: PeelnetPassOptions ): PeelnetPassNode;
+
+/** Whether a material is drawn by the learned weights. Others are drawn with the opaque objects, sorted. */
+export function isOrderIndependent( material: Material ): boolean;
+
+/** The version of `PeelnetDescription` that this package reads. */
+export const FORMAT_VERSION: 1;
+
+/** What is wrong with a model, as one sentence, or null where nothing is. */
+export function modelProblem( model: unknown ): string | null;

@@ -1,0 +1,117 @@
+// What a model must be, checked once before anything is built from it.
+
+/** The version of `description` that this package reads. */
+export const FORMAT_VERSION = 1;
+
+// Channels and bytes of every format a description may name.
+export const FORMATS = {
+	r8unorm: { channels: 1, bytes: 1 },
+	rg8unorm: { channels: 2, bytes: 2 },
+	rgba8unorm: { channels: 4, bytes: 8 },
+	r16float: { channels: 1, bytes: 2 },
+	rg16float: { channels: 2, bytes: 4 },
+	rgba16float: { channels: 4, bytes: 8 },
+	r32float: { channels: 1, bytes: 4 },
+	rg32float: { channels: 2, bytes: 8 },
+	rgba32float: { channels: 4, bytes: 16 }
+};
+
+export const BLENDS = [ 'add', 'max', 'transmit' ];
+
+// Names become identifiers of shader text, so nothing else may stand in them.
+const NAME = /^[a-z][a-z_]*$/;
+
+const list = ( value ) => Array.isArray( value ) ? value : [];
+
+/**
+ * What is wrong with a model, as one sentence, or null where nothing is.
+ *
+ * @param {unknown} model - `{ description, wgsl, glsl }`
+ * @returns {string | null}
+ */
+export function modelProblem( model ) {
+
+	const description = model?.description;
+
+	if ( description?.format !== 'peelnet-export' ) {
+
+		return 'The model is no peelnet export: pass { description, wgsl, glsl }, for example the default export of "@peelnet/three/models/medium".';
+
+	}
+
+	if ( description.format_version !== FORMAT_VERSION ) {
+
+		return `The model has format version ${ Number( description.format_version ) }, and this package reads version ${ FORMAT_VERSION }: export the model again, or install the package of its version.`;
+
+	}
+
+	const recipe = String( description.recipe );
+
+	if ( typeof model.wgsl !== 'string' || model.wgsl.includes( 'fn peelnet_resolve(' ) === false ) {
+
+		return `The model "${ recipe }" has no WGSL text with peelnet_resolve.`;
+
+	}
+
+	if ( model.wgsl.includes( 'fn peelnet_zeta_in(' ) === false ) return `The recipe "${ recipe }" cannot be drawn by this package: its text has no peelnet_zeta_in.`;
+
+	const unsupported = ( what ) => `The recipe "${ recipe }" cannot be drawn by this package: ${ what }.`;
+	const passes = list( description.passes );
+
+	if ( passes.length === 0 ) return unsupported( 'it describes no pass' );
+
+	const known = new Set();
+
+	for ( const pass of passes ) {
+
+		if ( NAME.test( pass.name ) === false || typeof pass.compute !== 'string' ) return unsupported( 'a pass has no valid name or computation' );
+
+		const unknown = list( pass.reads ).find( ( name ) => known.has( name ) === false );
+
+		if ( unknown !== undefined ) return unsupported( `its pass "${ pass.name }" reads "${ unknown }", which no pass before it writes` );
+
+		if ( list( pass.targets ).length === 0 || pass.targets.length > 4 ) return unsupported( `its pass "${ pass.name }" has ${ list( pass.targets ).length } targets, not 1 to 4` );
+
+		for ( const target of pass.targets ) {
+
+			const valid = NAME.test( target.name ) && FORMATS[ target.format ] !== undefined && typeof target.write === 'string'
+				&& BLENDS.includes( target.color ) && BLENDS.includes( target.alpha )
+				&& list( target.clear ).length === 4 && target.clear.every( Number.isFinite );
+
+			if ( valid === false ) return unsupported( `its target "${ target.name }" has an unknown format, blend or clear value` );
+
+		}
+
+		// A pass may read what passes before it wrote, never its own targets.
+		for ( const target of pass.targets ) known.add( target.name );
+
+	}
+
+	if ( typeof description.resolve !== 'string' ) return unsupported( 'it has no resolve' );
+
+	const unknown = list( description.resolve_reads ).find( ( name ) => known.has( name ) === false );
+
+	if ( unknown !== undefined ) return unsupported( `its resolve reads "${ unknown }", which no pass writes` );
+
+	return null;
+
+}
+
+/** Every target of a description by its name. */
+export function targetsByName( description ) {
+
+	return new Map( description.passes.flatMap( ( pass ) => pass.targets.map( ( target ) => [ target.name, target ] ) ) );
+
+}
+
+/**
+ * The passes to draw. With `range: 'frame'` the pass that finds each pixel's own range is left out.
+ */
+export function passesOf( description, range ) {
+
+	return range === 'frame' ? description.passes.filter( ( pass ) => pass.name !== 'range' ) : description.passes;
+
+}
+
+/** Whether a pass writes colours, and so needs light. */
+export const isShaded = ( pass ) => /\brgb\b/.test( [ pass.compute, ...pass.targets.map( ( target ) => target.write ) ].join( ';' ) );
