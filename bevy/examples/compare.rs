@@ -8,7 +8,7 @@
 mod support;
 
 use bevy::{core_pipeline::oit::OrderIndependentTransparencySettings, prelude::*};
-use bevy_peelnet::{LearnedTransparency, PeelnetPlugin};
+use bevy_peelnet::{LearnedTransparency, PeelnetModel, PeelnetPlugin};
 use std::{error::Error, fs, path::PathBuf};
 use support::{cards, exact, headless::Headless};
 
@@ -49,7 +49,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             .remove::<OrderIndependentTransparencySettings>();
     }
     headless.camera().insert(LearnedTransparency::default());
-    pictures.push(("learned", headless.picture()));
+    pictures.push(("medium", headless.picture()));
+    // An application has one network.
+    for (name, model) in [
+        ("small", PeelnetModel::small()),
+        ("large", PeelnetModel::large()),
+    ] {
+        let mut headless = Headless::new(SIZE, msaa, model.into());
+        cards::spawn(&mut headless.app, &scene);
+        headless.camera().insert(LearnedTransparency::default());
+        pictures.push((name, headless.picture()));
+    }
 
     fs::create_dir_all(&options.out)?;
     println!(

@@ -137,6 +137,7 @@ fn extent_of(view_from_local: Affine3A, bounds: Aabb) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::math::proj;
 
     fn placed(center: [f32; 3], half: [f32; 3], z: f32) -> Option<PlacedBox> {
         Some(PlacedBox {
@@ -149,7 +150,7 @@ mod tests {
     }
 
     fn perspective() -> Mat4 {
-        Mat4::perspective_infinite_reverse_rh(1.0, 1.0, 0.1)
+        proj::perspective_infinite_reverse(1.0, 1.0, 0.1)
     }
 
     #[test]
@@ -198,7 +199,7 @@ mod tests {
     #[test]
     fn orthographic_distances_count_from_the_nearest() {
         // Bevy's orthographic cameras swap the planes: depth is 1 at near.
-        let camera = Mat4::orthographic_rh(-1.0, 1.0, -1.0, 1.0, 100.0, -10.0);
+        let camera = proj::orthographic(-1.0, 1.0, -1.0, 1.0, 100.0, -10.0);
         let boxes = [placed([0.0; 3], [1.0; 3], 5.0)];
         let depths = Depths::of(Affine3A::IDENTITY, camera, boxes.into_iter());
         // Behind the camera's position, but in front of its near plane.

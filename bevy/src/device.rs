@@ -5,12 +5,35 @@ use crate::{
     pipelines::texture_format,
     shader_text::GROUP,
 };
-use bevy::render::{
-    render_resource::{
-        DownlevelFlags, TextureFormat, TextureFormatFeatureFlags, WgpuFeatures, WgpuLimits,
+use bevy::{
+    ecs::resource::Resource,
+    platform::collections::HashMap,
+    render::{
+        render_resource::{
+            DownlevelFlags, TextureFormat, TextureFormatFeatureFlags, WgpuFeatures, WgpuLimits,
+        },
+        renderer::{RenderAdapter, RenderDevice},
     },
-    renderer::{RenderAdapter, RenderDevice},
 };
+
+/// Why the present device cannot draw, by samples a pixel. Asked once; another device is asked again.
+#[derive(Default, Resource)]
+pub(crate) struct Refusals(HashMap<u32, Option<String>>);
+
+impl Refusals {
+    pub fn of(
+        &mut self,
+        model: &PeelnetModel,
+        samples: u32,
+        device: &RenderDevice,
+        adapter: &RenderAdapter,
+    ) -> Option<String> {
+        let refusal = self.0.entry(samples);
+        refusal
+            .or_insert_with(|| Abilities::of(device, adapter).refusal(model, samples))
+            .clone()
+    }
+}
 
 /// The abilities that matter, apart from the device for the sake of tests.
 pub(crate) struct Abilities {

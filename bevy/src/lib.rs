@@ -77,7 +77,7 @@ use bevy::{
     prelude::*,
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags,
-        RenderSystems,
+        RenderStartup, RenderSystems,
         render_phase::{AddRenderCommand, DrawFunctions, SortedRenderPhasePlugin},
         sync_world::RenderEntity,
     },
@@ -178,10 +178,12 @@ impl Plugin for PeelnetPlugin {
             .insert_resource(messages)
             .init_resource::<depths::Boxes>()
             .init_resource::<HookedShaders>()
+            .init_gpu_resource::<device::Refusals>()
             .init_gpu_resource::<LearnedPipelines>()
             .init_gpu_resource::<view::LearnedViews>()
             .init_resource::<DrawFunctions<phase::Learned3d>>()
             .add_render_command::<phase::Learned3d, pass::DrawLearned>()
+            .add_systems(RenderStartup, report_new_device)
             .add_systems(
                 ExtractSchedule,
                 (
@@ -237,6 +239,16 @@ fn setup_of(app: &mut App, model: &PeelnetModel) -> Setup {
         resolve,
         model: model.clone(),
     }
+}
+
+/// Bevy makes another device where the application's `RenderErrorHandler` asks for it. Pipelines and targets are of the device, and made again.
+fn report_new_device(messages: Res<PeelnetMessages>, mut had_one: Local<bool>) {
+    if *had_one {
+        let text =
+            "the device was lost and Bevy made another one: learned transparency goes on there";
+        messages.report(Gravity::Info, text.into());
+    }
+    *had_one = true;
 }
 
 fn extract_cameras(

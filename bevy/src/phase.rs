@@ -7,7 +7,7 @@
 use crate::{
     LearnedTransparency,
     depths::{Boxes, Depths},
-    device::Abilities,
+    device::Refusals,
     error::{Gravity, PeelnetMessages},
     pipelines::{Found, HookedShaders, LearnedPipelines, Setup},
     view::LearnedViews,
@@ -19,7 +19,7 @@ use bevy::{
     ecs::{entity::EntityHash, system::SystemParam},
     material::labels::DrawFunctionId,
     pbr::{DrawMaterial, PreparedMaterial, RenderMaterialInstances},
-    platform::collections::{HashMap, HashSet},
+    platform::collections::HashSet,
     prelude::*,
     render::{
         camera::ExtractedCamera,
@@ -137,7 +137,7 @@ pub(crate) fn lend_items(
     mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     mut learned: ResMut<ViewSortedRenderPhases<Learned3d>>,
     mut views: ResMut<LearnedViews>,
-    mut refusals: Local<HashMap<u32, Option<String>>>,
+    mut refusals: ResMut<Refusals>,
     cameras: Query<
         (
             &ExtractedView,
@@ -155,13 +155,10 @@ pub(crate) fn lend_items(
         let id = view.retained_view_entity;
         let camera = id.main_entity;
         let samples = msaa.samples();
-        let refusal = refusals
-            .entry(samples)
-            .or_insert_with(|| Abilities::of(&device, &adapter).refusal(&setup.model, samples));
         let refusal = if has_bevys {
             Some("it has OrderIndependentTransparencySettings, Bevy's own technique, as well; remove one of the two".to_owned())
         } else {
-            refusal.clone()
+            refusals.of(&setup.model, samples, &device, &adapter)
         };
         if let Some(reason) = refusal {
             messages.report(

@@ -6,7 +6,12 @@ mod support;
 use bevy::{
     core_pipeline::oit::OrderIndependentTransparencySettings,
     prelude::*,
-    render::settings::{WgpuLimits, WgpuSettings},
+    render::{
+        RenderApp,
+        error_handler::{RenderErrorHandler, RenderErrorPolicy},
+        renderer::{RenderAdapter, RenderDevice},
+        settings::{WgpuLimits, WgpuSettings},
+    },
 };
 use bevy_peelnet::{Gravity, LearnedTransparency, PeelnetMessages, PeelnetModel, PeelnetPlugin};
 use support::{cards, headless::Headless};
@@ -77,10 +82,8 @@ fn a_device_with_few_bind_groups() {
 fn unlimited() -> WgpuLimits {
     let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default());
     headless.run(1);
-    let render = headless.app.sub_app(bevy::render::RenderApp).world();
-    render
-        .resource::<bevy::render::renderer::RenderAdapter>()
-        .limits()
+    let render = headless.app.sub_app(RenderApp).world();
+    render.resource::<RenderAdapter>().limits()
 }
 
 #[test]
@@ -116,6 +119,23 @@ fn a_scene_without_transparent_surfaces() {
     assert_eq!(said.len(), 1, "{said:?}");
     assert_eq!(said[0].0, Gravity::Info);
     assert!(said[0].1.contains("no transparent surface"), "{said:?}");
+}
+
+#[test]
+fn a_lost_device_is_replaced_where_the_application_asks_for_it() {
+    let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default());
+    cards::spawn(&mut headless.app, &cards::crossing());
+    headless.camera().insert(LearnedTransparency::default());
+    let before = headless.picture();
+    let recover = RenderErrorHandler(|_, _, _| RenderErrorPolicy::Recover(default()));
+    headless.app.insert_resource(recover);
+    let render = headless.app.sub_app(RenderApp).world();
+    render.resource::<RenderDevice>().wgpu_device().destroy();
+    let after = headless.picture();
+    assert!(before == after);
+    let said = messages(&headless);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].1.contains("the device was lost"), "{said:?}");
 }
 
 #[test]
