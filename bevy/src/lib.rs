@@ -244,8 +244,7 @@ fn setup_of(app: &mut App, model: &PeelnetModel) -> Setup {
 /// Bevy makes another device where the application's `RenderErrorHandler` asks for it. Pipelines and targets are of the device, and made again.
 fn report_new_device(messages: Res<PeelnetMessages>, mut had_one: Local<bool>) {
     if *had_one {
-        let text =
-            "the device was lost and Bevy made another one: learned transparency goes on there";
+        let text = "Bevy replaced the graphics device, after an error or because it was lost: learned transparency uses the new one";
         messages.report(Gravity::Info, text.into());
     }
     *had_one = true;

@@ -368,11 +368,18 @@ mod tests {
     fn recipes_with_other_passes_are_refused_with_the_reason() {
         let thesis = refusal_of("thesis", &json_of("thesis"));
         assert!(
-            thesis.contains("\"thesis\"") && thesis.contains("distances"),
+            thesis.contains("\"thesis\"") && thesis.contains("no function peelnet_zeta"),
             "{thesis}"
         );
-        let dfaoit = refusal_of("dfaoit", &json_of("dfaoit"));
-        assert!(dfaoit.contains("reads \"front\""), "{dfaoit}");
+        // Plain distances are refused wherever they are wanted.
+        let mut json = json_of("medium");
+        json["passes"][1]["compute"] = "let s = peelnet_statistics(alpha, z, range);".into();
+        let distances = refusal_of("medium", &json);
+        assert!(distances.contains("wants plain distances"), "{distances}");
+        let mut json = json_of("medium");
+        json["passes"][1]["reads"] = serde_json::json!(["front"]);
+        let reads = refusal_of("medium", &json);
+        assert!(reads.contains("reads \"front\""), "{reads}");
     }
 
     #[test]

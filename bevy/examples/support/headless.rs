@@ -8,7 +8,7 @@ use bevy::{
     prelude::*,
     render::{
         RenderPlugin,
-        gpu_readback::{ReadbackComplete, ReadbackOnce},
+        gpu_readback::{Readback, ReadbackComplete},
         render_resource::{TextureFormat, TextureUsages},
         settings::WgpuSettings,
     },
@@ -117,10 +117,11 @@ impl Headless {
         self.run(FRAMES_TO_SETTLE);
         let bytes: Arc<Mutex<Option<Vec<u8>>>> = Arc::default();
         let into = Arc::clone(&bytes);
+        // Not `ReadbackOnce`: Bevy removes one before the frame if it was spawned between two frames.
         let reader = self
             .app
             .world_mut()
-            .spawn(ReadbackOnce::texture(self.image.clone()))
+            .spawn(Readback::texture(self.image.clone()))
             .observe(move |event: On<ReadbackComplete>| {
                 if let Ok(mut bytes) = into.lock() {
                     *bytes = Some(event.data.clone());
