@@ -5,6 +5,7 @@ mod support;
 
 use bevy::{
     asset::uuid_handle,
+    pbr::{ExtendedMaterial, MaterialExtension},
     prelude::*,
     reflect::TypePath,
     render::render_resource::AsBindGroup,
@@ -92,12 +93,24 @@ impl Material for Plain {
     }
 }
 
+/// Adds a number to Bevy's material, and keeps its shaders.
+#[derive(Asset, AsBindGroup, Clone, TypePath)]
+struct Extension {
+    #[uniform(100)]
+    number: f32,
+}
+
+impl MaterialExtension for Extension {}
+
+type Extended = ExtendedMaterial<StandardMaterial, Extension>;
+
 fn application(msaa: Msaa) -> Headless {
     let mut headless = Headless::new(SIZE, msaa, PeelnetPlugin::default());
     let app = &mut headless.app;
     app.add_plugins((
         MaterialPlugin::<Hooked>::default(),
         MaterialPlugin::<Plain>::default(),
+        MaterialPlugin::<Extended>::default(),
     ));
     let mut shaders = app.world_mut().resource_mut::<Assets<Shader>>();
     // Imports stand first.
@@ -169,6 +182,21 @@ fn a_material_without_the_hook_is_drawn_by_bevy_and_said_once() {
         warnings[0].contains("does not import bevy_peelnet::draw"),
         "{warnings:?}"
     );
+}
+
+#[test]
+fn an_extension_of_bevys_material_needs_nothing() {
+    let [near, far] = facing();
+    let mut headless = application(Msaa::Off);
+    let extended = |color| Extended {
+        base: cards::material(color),
+        extension: Extension { number: 1.0 },
+    };
+    spawn(&mut headless, &near, extended(near.color));
+    spawn(&mut headless, &far, cards::material(far.color));
+    let errors = exact::picture(&[near, far], SIZE, 1).errors_of(&headless.picture());
+    assert!(errors.max <= 1.0, "{errors:?}");
+    assert_eq!(warnings(&headless), [""; 0]);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 mod support;
 
 use bevy::{
-    camera::ScalingMode,
+    camera::{Hdr, ScalingMode, Viewport},
     core_pipeline::{oit::OrderIndependentTransparencySettings, prepass::DepthPrepass},
     prelude::*,
 };
@@ -146,6 +146,44 @@ fn an_orthographic_camera_has_its_own_scale() {
             "{byte}, not {expected}"
         );
     }
+}
+
+#[test]
+fn a_camera_without_hdr_has_the_same_colours() {
+    let scene = cards::crossing();
+    let mut headless = learned(&scene, Msaa::Off, PeelnetModel::medium());
+    headless.camera().remove::<Hdr>();
+    let errors = errors_of(&scene, 1, &headless.picture());
+    assert!(errors.max <= ROUNDED, "{errors:?}");
+}
+
+#[test]
+fn a_viewport_shows_the_scene_in_its_part_of_the_image() {
+    let scene = cards::crossing();
+    let mut headless = learned(&scene, Msaa::Off, PeelnetModel::medium());
+    let whole = headless.picture();
+    let (corner, size) = (UVec2::new(48, 64), SIZE / 2);
+    headless
+        .app
+        .world_mut()
+        .get_mut::<Camera>(headless.camera)
+        .expect("is a camera")
+        .viewport = Some(Viewport {
+        physical_position: corner,
+        physical_size: size,
+        ..default()
+    });
+    let picture = headless.picture();
+    assert!(picture != whole);
+    let rows = corner.y..corner.y + size.y;
+    let part: Vec<u8> = rows
+        .flat_map(|y| {
+            let at = 4 * (y * SIZE.x + corner.x) as usize;
+            picture[at..at + 4 * size.x as usize].to_vec()
+        })
+        .collect();
+    let errors = exact::picture(&scene, size, 1).errors_of(&part);
+    assert!(errors.max <= ROUNDED, "{errors:?}");
 }
 
 #[test]
