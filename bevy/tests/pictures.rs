@@ -120,9 +120,9 @@ fn an_orthographic_camera_has_its_own_scale() {
         transform: Transform::from_xyz(0.0, 0.0, z).with_scale(Vec3::splat(9.0)),
         color: LinearRgba::new(red, green, blue, alpha),
     };
-    // The last one stands behind the camera's position, and is seen: the near plane is there, too.
+    // Two stand behind the camera's position and are seen, because the near plane is there, too.
     let scene = [
-        facing(2.0, [1.0, 0.0, 0.0, 0.5]),
+        facing(8.5, [1.0, 0.0, 0.0, 0.5]),
         facing(-3.0, [0.0, 1.0, 0.0, 0.5]),
         facing(7.0, [0.0, 0.0, 1.0, 0.5]),
     ];
@@ -138,7 +138,7 @@ fn an_orthographic_camera_has_its_own_scale() {
             ..OrthographicProjection::default_3d()
         }));
     let picture = headless.picture();
-    let expected = [0.25 + 0.125 * 0.25, 0.125 + 0.125 * 0.5, 0.5 + 0.125 * 0.75];
+    let expected = [0.5 + 0.125 * 0.25, 0.125 + 0.125 * 0.5, 0.25 + 0.125 * 0.75];
     for (byte, linear) in picture.iter().zip(expected) {
         let expected = 255.0 * exact::encoded(linear);
         assert!(
