@@ -53,6 +53,8 @@
 //!
 //! A network of another version or recipe, a device without five bind groups or the needed blending, and a camera that has Bevy's
 //! own technique as well: one message each ([`PeelnetMessages`], and the log), and Bevy draws the scene as if the plugin were not there.
+//!
+//! A lost device is Bevy's to replace (`RenderErrorHandler`, by default it quits). Where it does, learned transparency uses the new one.
 
 mod depths;
 mod device;
