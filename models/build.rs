@@ -9,18 +9,18 @@ fn main() -> io::Result<()> {
     let mut entries = Vec::new();
     for folder in fs::read_dir(&root)? {
         let folder = folder?;
-        let (file, wgsl) = ("model.safetensors", "model.wgsl");
-        let (file, wgsl) = (folder.path().join(file), folder.path().join(wgsl));
-        if file.is_file() && wgsl.is_file() {
-            entries.push((folder.file_name(), file, wgsl));
+        let files = ["model.safetensors", "model.wgsl", "model.json"];
+        let files = files.map(|name| folder.path().join(name));
+        if files.iter().all(|file| file.is_file()) {
+            entries.push((folder.file_name(), files));
         }
     }
     entries.sort();
     let text: String = entries
         .iter()
-        .map(|(name, file, wgsl)| {
+        .map(|(name, [file, wgsl, json])| {
             format!(
-                "    Shipped {{ name: {name:?}, file: include_bytes!({file:?}), wgsl: include_str!({wgsl:?}) }},\n"
+                "    Shipped {{ name: {name:?}, file: include_bytes!({file:?}), wgsl: include_str!({wgsl:?}), json: include_str!({json:?}) }},\n"
             )
         })
         .collect();

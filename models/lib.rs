@@ -17,6 +17,8 @@ pub struct Shipped {
     pub file: &'static [u8],
     /// The text of `model.wgsl`: the exported and verified shader functions.
     pub wgsl: &'static str,
+    /// The text of `model.json`: what the header of `model.wgsl` says, for programs.
+    pub json: &'static str,
 }
 
 /// Every shipped network, sorted by name.

@@ -54,6 +54,33 @@ pub fn test() -> Result<(), String> {
     result
 }
 
+/// The Bevy plugin, a workspace of its own: its lints and tests, and its comparison against the exact image.
+pub fn bevy() -> Result<(), String> {
+    ensure_driver()?;
+    // The crate declares the compiler that Bevy asks for. Older ones compile it, down to that of this workspace.
+    const OLDER: &str = "--ignore-rust-version";
+    let steps: [(&str, &[&str]); 4] = [
+        ("formatting", &["fmt", "--check"]),
+        ("clippy", &["clippy", OLDER, "--all-targets"]),
+        ("tests", &["test", OLDER, "--no-fail-fast"]),
+        ("comparison", &["run", OLDER, "--example", "compare"]),
+    ];
+    for (name, args) in steps {
+        println!("\n== {name} of bevy_peelnet: cargo {}", args.join(" "));
+        let mut command = cargo();
+        command
+            .args(args)
+            .args(["--manifest-path", "bevy/Cargo.toml"]);
+        match name {
+            "clippy" => command.args(["--", "-D", "warnings"]),
+            "comparison" => command.args(["--", "--out", "out/bevy"]),
+            _ => &mut command,
+        };
+        run(&mut command, name)?;
+    }
+    Ok(())
+}
+
 /// Whether the committed results are complete, and the documents show what they hold.
 pub fn results() -> Result<(), String> {
     let package = ["--quiet", "--package", "peelnet_tests"];

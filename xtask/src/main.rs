@@ -31,6 +31,8 @@ cargo xtask <command>
                   every result in docs/results, of this machine and under its name (up to 40 minutes); with a program that was built
                   elsewhere neither a compiler nor a network is needed
   results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
+  bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
+                  minutes to compile)
   wasm            check the crates that run in a browser for wasm32
   docs            build the book in docs/ with mdBook, into target/book
   search          a million random fragment lists for every property (minutes)
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
             measure::Options::parse(rest).and_then(|options| measure::measure(&options))
         }
         (Some("results"), ["--check"]) => checks::results(),
+        (Some("bevy"), []) => checks::bevy(),
         (Some("wasm"), []) => checks::wasm(),
         (Some("docs"), []) => checks::docs(),
         (Some("search"), []) => checks::search(),

@@ -1,0 +1,145 @@
+//! Draws one scene with Bevy's sorted blending, Bevy's own order-independent transparency and learned weights, switching between them on one
+//! camera, and says how far each is from the exact image.
+//!
+//! `cargo run --example compare -- [--cards N] [--samples 1|4] [--out FOLDER]`
+//!
+//! Needs no window. The exact image is computed from the cards' planes, by rays in 64 bits.
+
+mod support;
+
+use bevy::{core_pipeline::oit::OrderIndependentTransparencySettings, prelude::*};
+use bevy_peelnet::{LearnedTransparency, PeelnetModel, PeelnetPlugin};
+use std::{error::Error, fs, path::PathBuf};
+use support::{cards, exact, headless::Headless};
+
+const SIZE: UVec2 = UVec2::new(640, 480);
+
+struct Options {
+    cards: usize,
+    samples: u32,
+    out: PathBuf,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse()?;
+    let scene = cards::many(options.cards);
+    let exact = exact::picture(&scene, SIZE, options.samples);
+
+    let msaa = Msaa::from_samples(options.samples);
+    let mut headless = Headless::new(SIZE, msaa, PeelnetPlugin::default());
+    cards::spawn(&mut headless.app, &scene);
+
+    let mut pictures = vec![("exact", exact.bytes())];
+    pictures.push(("sorted", headless.picture()));
+    // Bevy's own technique has no multisampling.
+    if options.samples == 1 {
+        let settings = OrderIndependentTransparencySettings::default();
+        headless.camera().insert(settings);
+        pictures.push(("linked-lists", headless.picture()));
+        headless
+            .camera()
+            .insert(OrderIndependentTransparencySettings {
+                sorted_fragment_max_count: 32,
+                fragments_per_pixel_average: 32.0,
+                ..settings
+            });
+        pictures.push(("linked-lists-32", headless.picture()));
+        headless
+            .camera()
+            .remove::<OrderIndependentTransparencySettings>();
+    }
+    headless.camera().insert(LearnedTransparency::default());
+    pictures.push(("medium", headless.picture()));
+    // An application has one network.
+    for (name, model) in [
+        ("small", PeelnetModel::small()),
+        ("large", PeelnetModel::large()),
+    ] {
+        let mut headless = Headless::new(SIZE, msaa, model.into());
+        cards::spawn(&mut headless.app, &scene);
+        headless.camera().insert(LearnedTransparency::default());
+        pictures.push((name, headless.picture()));
+    }
+
+    fs::create_dir_all(&options.out)?;
+    println!(
+        "{} cards, {SIZE}, {} samples a pixel; errors of 255 against the exact image",
+        options.cards, options.samples
+    );
+    println!("method           rmse    max  pixels off by more than 2");
+    for (name, picture) in &pictures {
+        let errors = exact.errors_of(picture);
+        println!(
+            "{name:15} {:5.2}  {:5.1}  {:.1} %",
+            errors.rmse,
+            errors.max,
+            100.0 * errors.visible
+        );
+        let path = options.out.join(format!("{name}.png"));
+        save(&path, SIZE, picture)?;
+    }
+    let judged = exact.certain.iter().filter(|&&certain| certain).count();
+    println!(
+        "judged: {:.1} % of the pixels; in the others an edge or a cut passes a sample within 0.02 pixels",
+        100.0 * judged as f64 / exact.certain.len() as f64
+    );
+    let path = options.out.join("all.png");
+    let all: Vec<&[u8]> = pictures
+        .iter()
+        .map(|(_, picture)| picture.as_slice())
+        .collect();
+    let (size, all) = beside(&all);
+    save(&path, size, &all)?;
+    println!(
+        "{}: the pictures in this order, from left to right",
+        path.display()
+    );
+    Ok(())
+}
+
+impl Options {
+    fn parse() -> Result<Self, Box<dyn Error>> {
+        let mut options = Self {
+            cards: 40,
+            samples: 1,
+            out: "out/compare".into(),
+        };
+        let mut arguments = std::env::args().skip(1);
+        while let Some(name) = arguments.next() {
+            let value = arguments
+                .next()
+                .ok_or_else(|| format!("{name} needs a value"))?;
+            match name.as_str() {
+                "--cards" => options.cards = value.parse()?,
+                "--samples" => options.samples = value.parse()?,
+                "--out" => options.out = value.into(),
+                _ => return Err(format!("{name} is not known: --cards, --samples or --out").into()),
+            }
+        }
+        if ![1, 4].contains(&options.samples) {
+            return Err("--samples takes 1 or 4".into());
+        }
+        Ok(options)
+    }
+}
+
+/// Pictures of one size in a row.
+fn beside(pictures: &[&[u8]]) -> (UVec2, Vec<u8>) {
+    let row = 4 * SIZE.x as usize;
+    let rows = 0..SIZE.y as usize;
+    let bytes = rows.flat_map(|y| {
+        let of_row = move |picture: &&[u8]| picture[y * row..(y + 1) * row].to_vec();
+        pictures.iter().flat_map(of_row).collect::<Vec<_>>()
+    });
+    let width = SIZE.x * u32::try_from(pictures.len()).unwrap_or(1);
+    (UVec2::new(width, SIZE.y), bytes.collect())
+}
+
+fn save(path: &std::path::Path, size: UVec2, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
+    let file = fs::File::create(path)?;
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), size.x, size.y);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.write_header()?.write_image_data(bytes)?;
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! The exact image of cards: rays through the samples of each pixel, in 64 bits, composited front to back.
+//!
+//! It shares no code with any renderer: planes are cut by rays, and colours are those that the scene says.
+
+use super::cards::{BACKGROUND, Card, EYE};
+use bevy::{
+    math::{DMat4, DVec2, DVec3, DVec4},
+    prelude::*,
+};
+
+/// Vertical field of view of the camera, Bevy's default.
+const FIELD_OF_VIEW: f64 = std::f64::consts::FRAC_PI_4;
+/// Rasterisers and rays may disagree about a pixel that an edge passes within this, in pixels.
+const MARGIN: f64 = 0.02;
+
+/// An image, and which pixels of it are beyond doubt.
+pub struct Exact {
+    /// Red, green and blue as a screen gets them, not rounded.
+    pub pixels: Vec<[f64; 3]>,
+    pub certain: Vec<bool>,
+}
+
+/// How far a picture is from the exact one, of 255.
+#[derive(Clone, Copy, Debug)]
+pub struct Errors {
+    /// Root of the mean square, of all channels.
+    pub rmse: f64,
+    pub max: f64,
+    /// Share of pixels with a channel that is more than 2 off.
+    pub visible: f64,
+    /// Share of pixels that were judged.
+    pub judged: f64,
+}
+
+/// Where the samples of a pixel lie, as Vulkan and Direct3D have them.
+pub fn samples(count: u32) -> Vec<DVec2> {
+    let places: &[[f64; 2]] = match count {
+        1 => &[[0.5, 0.5]],
+        4 => &[
+            [0.375, 0.125],
+            [0.875, 0.375],
+            [0.125, 0.625],
+            [0.625, 0.875],
+        ],
+        _ => panic!("{count} samples have no places here"),
+    };
+    places.iter().map(|&place| place.into()).collect()
+}
+
+/// A card as rays see it.
+struct Plane {
+    local_from_world: DMat4,
+    color: [f64; 4],
+}
+
+/// The image of cards at a size, with so many samples a pixel.
+pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
+    let planes: Vec<Plane> = cards
+        .iter()
+        .map(|card| Plane {
+            local_from_world: card.transform.to_matrix().as_dmat4().inverse(),
+            color: channels_of(card.color),
+        })
+        .collect();
+    let places = samples(sample_count);
+    let mut exact = Exact {
+        pixels: Vec::new(),
+        certain: Vec::new(),
+    };
+    for y in 0..size.y {
+        for x in 0..size.x {
+            let corner = DVec2::new(x.into(), y.into());
+            let mut sum = DVec3::ZERO;
+            let mut certain = true;
+            for &place in &places {
+                let hits = hits_at(&planes, corner + place, size);
+                sum += composited(&planes, &hits);
+                let margin = DVec2::splat(MARGIN);
+                for away in [
+                    margin,
+                    -margin,
+                    margin * DVec2::new(1.0, -1.0),
+                    margin * DVec2::new(-1.0, 1.0),
+                ] {
+                    certain &= same_order(&hits, &hits_at(&planes, corner + place + away, size));
+                }
+            }
+            let mean = sum / places.len() as f64;
+            exact
+                .pixels
+                .push(mean.to_array().map(|v| encoded(v) * 255.0));
+            exact.certain.push(certain);
+        }
+    }
+    exact
+}
+
+/// Which cards the ray through a point of the image meets, and where, front to back.
+fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<(f64, usize)> {
+    let size = size.as_dvec2();
+    let half = (FIELD_OF_VIEW * 0.5).tan();
+    let from_middle = (point / size * 2.0 - 1.0) * DVec2::new(half * size.x / size.y, -half);
+    // Its length along the view's axis is 1, so that hits are distances along that axis.
+    let direction = from_middle.extend(-1.0);
+    let mut hits = Vec::new();
+    for (index, plane) in planes.iter().enumerate() {
+        let from: DVec4 = plane.local_from_world * EYE.as_dvec3().extend(1.0);
+        let along = plane.local_from_world * direction.extend(0.0);
+        let distance = -from.z / along.z;
+        let at = from + along * distance;
+        if distance > 0.1 && at.x.abs() <= 0.5 && at.y.abs() <= 0.5 {
+            hits.push((distance, index));
+        }
+    }
+    hits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    hits
+}
+
+fn same_order(a: &[(f64, usize)], b: &[(f64, usize)]) -> bool {
+    a.iter().map(|hit| hit.1).eq(b.iter().map(|hit| hit.1))
+}
+
+fn composited(planes: &[Plane], hits: &[(f64, usize)]) -> DVec3 {
+    let mut color = DVec3::ZERO;
+    let mut transmittance = 1.0;
+    for &(_, index) in hits {
+        let [red, green, blue, alpha] = planes[index].color;
+        color += transmittance * alpha * DVec3::new(red, green, blue);
+        transmittance *= 1.0 - alpha;
+    }
+    let [red, green, blue, _] = channels_of(BACKGROUND);
+    color + transmittance * DVec3::new(red, green, blue)
+}
+
+fn channels_of(color: LinearRgba) -> [f64; 4] {
+    [color.red, color.green, color.blue, color.alpha].map(f64::from)
+}
+
+/// The sRGB curve.
+pub fn encoded(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+impl Exact {
+    /// Compares a picture of four bytes a pixel.
+    pub fn errors_of(&self, picture: &[u8]) -> Errors {
+        let (mut squares, mut max, mut visible, mut judged) = (0.0, 0.0f64, 0u32, 0u32);
+        for ((exact, bytes), &certain) in
+            self.pixels.iter().zip(picture.chunks(4)).zip(&self.certain)
+        {
+            if !certain {
+                continue;
+            }
+            judged += 1;
+            let differences = [0, 1, 2].map(|c| (exact[c] - f64::from(bytes[c])).abs());
+            let worst = differences.into_iter().fold(0.0, f64::max);
+            squares += differences.iter().map(|d| d * d).sum::<f64>();
+            max = max.max(worst);
+            visible += u32::from(worst > 2.0);
+        }
+        Errors {
+            rmse: (squares / f64::from(3 * judged)).sqrt(),
+            max,
+            visible: f64::from(visible) / f64::from(judged),
+            judged: f64::from(judged) / self.pixels.len() as f64,
+        }
+    }
+
+    /// As a picture of four bytes a pixel.
+    pub fn bytes(&self) -> Vec<u8> {
+        let bytes = |pixel: &[f64; 3]| {
+            let [red, green, blue] = pixel.map(|v| (v + 0.5) as u8);
+            [red, green, blue, 255]
+        };
+        self.pixels.iter().flat_map(bytes).collect()
+    }
+}

@@ -1,0 +1,397 @@
+//! The exported network: its shader text, and the description of the passes around it.
+
+use crate::error::PeelnetError;
+use serde::Deserialize;
+use std::{borrow::Cow, fs, ops::Range, path::Path};
+
+/// The value of `format` in every description.
+const FORMAT: &str = "peelnet-export";
+/// The version of the description that this crate reads.
+const FORMAT_VERSION: u32 = 1;
+
+/// How a target combines what fragments write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Blend {
+    Add,
+    Max,
+}
+
+/// The formats that descriptions name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    R16,
+    Rg8,
+    Rg16,
+    Rgba16,
+    R32,
+    Rg32,
+    Rgba32,
+}
+
+/// A texture that one pass draws into and later passes read.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Target {
+    pub name: String,
+    pub format: Format,
+    pub clear: [f64; 4],
+    pub color: Blend,
+    pub alpha: Blend,
+    /// The expression that each fragment writes.
+    pub write: String,
+}
+
+/// One drawing of all transparent surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Pass {
+    pub name: String,
+    /// Targets of earlier passes, as indices into [`PeelnetModel::targets`].
+    pub reads: Vec<usize>,
+    /// The statement before the writes.
+    pub compute: String,
+    /// Of [`PeelnetModel::targets`].
+    pub targets: Range<usize>,
+    /// Whether a fragment's opacity is needed, and whether its lit colour is.
+    pub needs_alpha: bool,
+    pub needs_color: bool,
+}
+
+/// An exported network: `model.wgsl` and `model.json` of one folder of `models/`.
+///
+/// The passes, targets, clear values and blends come from `model.json`; the mathematics are the functions of `model.wgsl`. Every recipe
+/// whose passes add or take maxima is accepted, as are networks of your own that `peelnet export` wrote.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PeelnetModel {
+    pub(crate) recipe: String,
+    pub(crate) wgsl: Cow<'static, str>,
+    pub(crate) targets: Vec<Target>,
+    pub(crate) passes: Vec<Pass>,
+    pub(crate) resolve: String,
+    pub(crate) resolve_reads: Vec<usize>,
+}
+
+#[derive(Deserialize)]
+struct Header {
+    format: String,
+    format_version: u32,
+    tool_version: String,
+}
+
+#[derive(Deserialize)]
+struct Description {
+    recipe: String,
+    passes: Vec<DescribedPass>,
+    resolve: String,
+    resolve_reads: Vec<String>,
+    multisampling: String,
+}
+
+#[derive(Deserialize)]
+struct DescribedPass {
+    name: String,
+    reads: Vec<String>,
+    compute: Option<String>,
+    targets: Vec<DescribedTarget>,
+}
+
+#[derive(Deserialize)]
+struct DescribedTarget {
+    name: String,
+    format: String,
+    clear: [f64; 4],
+    color: String,
+    alpha: String,
+    write: String,
+}
+
+impl PeelnetModel {
+    /// The network to take by default: three passes, 34 bytes a sample.
+    #[must_use]
+    pub fn medium() -> Self {
+        Self::shipped("medium")
+    }
+
+    /// Fewer bytes and less time, and a formula of six learned numbers instead of a network.
+    #[must_use]
+    pub fn small() -> Self {
+        Self::shipped("small")
+    }
+
+    /// The least error, 42 bytes a sample.
+    #[must_use]
+    pub fn large() -> Self {
+        Self::shipped("large")
+    }
+
+    fn shipped(name: &str) -> Self {
+        // Both are compiled in, and a test reads each of the three.
+        let model = peelnet_models::find(name).expect("a shipped network");
+        Self::new(model.wgsl, model.json).expect("a shipped network is valid")
+    }
+
+    /// Reads `model.wgsl` and `model.json` of a folder.
+    ///
+    /// # Errors
+    ///
+    /// Files that cannot be read, and all errors of [`Self::new`].
+    pub fn load(folder: impl AsRef<Path>) -> Result<Self, PeelnetError> {
+        let read = |name: &str| {
+            let path = folder.as_ref().join(name);
+            fs::read_to_string(&path).map_err(|source| PeelnetError::Read { path, source })
+        };
+        Self::new(read("model.wgsl")?, &read("model.json")?)
+    }
+
+    /// The network of an exported text and its description.
+    ///
+    /// # Errors
+    ///
+    /// A description that is not one, or is of another version; passes that this crate cannot draw; a text of another network.
+    pub fn new(wgsl: impl Into<Cow<'static, str>>, json: &str) -> Result<Self, PeelnetError> {
+        // The head first: a description of another version may differ in all else.
+        let header: Header = serde_json::from_str(json).map_err(PeelnetError::Description)?;
+        if header.format != FORMAT || header.format_version != FORMAT_VERSION {
+            return Err(PeelnetError::Version {
+                found: format!("{} {}", header.format, header.format_version),
+                known: format!("{FORMAT} {FORMAT_VERSION}"),
+                tool: header.tool_version,
+            });
+        }
+        let described: Description =
+            serde_json::from_str(json).map_err(PeelnetError::Description)?;
+        let wgsl = wgsl.into();
+        let recipe = described.recipe.clone();
+        Self::of(described, wgsl).map_err(|reason| PeelnetError::Recipe { recipe, reason })
+    }
+
+    fn of(described: Description, wgsl: Cow<'static, str>) -> Result<Self, String> {
+        if !wgsl.contains(&format!("Recipe {},", described.recipe)) {
+            return Err("the text is not of the network that the description is of".into());
+        }
+        for function in ["peelnet_zeta", "peelnet_fragment", "peelnet_resolve"] {
+            if !wgsl.contains(&format!("fn {function}(")) {
+                return Err(format!("its text has no function {function}"));
+            }
+        }
+        if described.multisampling != "by-sample" {
+            let found = described.multisampling;
+            return Err(format!(
+                "multisampling {found:?} is not known, only \"by-sample\""
+            ));
+        }
+        let mut targets: Vec<Target> = Vec::new();
+        let mut passes = Vec::new();
+        for pass in described.passes {
+            let name = pass.name;
+            let reads = found_in(&targets, &pass.reads).map_err(|target| {
+                format!("pass {name:?} reads {target:?}, which no pass before it draws")
+            })?;
+            let first = targets.len();
+            for target in pass.targets {
+                targets.push(Target::of(target)?);
+            }
+            let compute = pass.compute.unwrap_or_default();
+            let texts = || {
+                let writes = targets[first..].iter().map(|t| t.write.as_str());
+                writes.chain([compute.as_str()])
+            };
+            if texts().any(|text| mentions(text, "z")) {
+                return Err(format!(
+                    "pass {name:?} wants plain distances, which networks of this plugin do not use"
+                ));
+            }
+            let needs_alpha = texts().any(|text| mentions(text, "alpha"));
+            let needs_color = texts().any(|text| mentions(text, "rgb"));
+            passes.push(Pass {
+                name,
+                reads,
+                compute,
+                targets: first..targets.len(),
+                needs_alpha,
+                needs_color,
+            });
+        }
+        if passes.is_empty() {
+            return Err("its description has no passes".into());
+        }
+        let resolve_reads = found_in(&targets, &described.resolve_reads)
+            .map_err(|target| format!("its resolve reads {target:?}, which no pass draws"))?;
+        Ok(Self {
+            recipe: described.recipe,
+            wgsl,
+            targets,
+            passes,
+            resolve: described.resolve,
+            resolve_reads,
+        })
+    }
+
+    /// The recipe that made the network, such as `medium`.
+    #[must_use]
+    pub fn recipe(&self) -> &str {
+        &self.recipe
+    }
+
+    /// Bytes that the targets take a sample, beside Bevy's own.
+    #[must_use]
+    pub fn bytes_per_sample(&self) -> u32 {
+        self.targets.iter().map(|t| t.format.bytes()).sum()
+    }
+}
+
+impl Target {
+    fn of(described: DescribedTarget) -> Result<Self, String> {
+        let DescribedTarget { name, format, .. } = &described;
+        let format = Format::named(format)
+            .ok_or_else(|| format!("target {name:?} has the unknown format {format:?}"))?;
+        let blend = |operation: &str| match operation {
+            "add" => Ok(Blend::Add),
+            "max" => Ok(Blend::Max),
+            _ => Err(format!(
+                "target {name:?} blends with {operation:?}, this plugin with \"add\" and \"max\""
+            )),
+        };
+        Ok(Self {
+            format,
+            clear: described.clear,
+            color: blend(&described.color)?,
+            alpha: blend(&described.alpha)?,
+            write: described.write,
+            name: described.name,
+        })
+    }
+}
+
+impl Format {
+    const ALL: [(&'static str, Self, u32, u32); 7] = [
+        ("r16float", Self::R16, 1, 2),
+        ("rg8unorm", Self::Rg8, 2, 2),
+        ("rg16float", Self::Rg16, 2, 4),
+        ("rgba16float", Self::Rgba16, 4, 8),
+        ("r32float", Self::R32, 1, 4),
+        ("rg32float", Self::Rg32, 2, 8),
+        ("rgba32float", Self::Rgba32, 4, 16),
+    ];
+
+    fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|f| f.0 == name).map(|f| f.1)
+    }
+
+    fn row(self) -> (&'static str, Self, u32, u32) {
+        // Every variant has its row, in the order of the variants' declaration.
+        Self::ALL[self as usize]
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        self.row().0
+    }
+
+    pub(crate) fn channels(self) -> u32 {
+        self.row().2
+    }
+
+    pub(crate) fn bytes(self) -> u32 {
+        self.row().3
+    }
+}
+
+/// The indices of named targets, or the first name that is none.
+fn found_in(targets: &[Target], names: &[String]) -> Result<Vec<usize>, String> {
+    let find = |name: &String| {
+        let index = targets.iter().position(|t| t.name == *name);
+        index.ok_or_else(|| name.clone())
+    };
+    names.iter().map(find).collect()
+}
+
+/// Whether an expression uses a variable of this name; not as a member (`s.rgb`), and not as part of another name.
+fn mentions(text: &str, variable: &str) -> bool {
+    let in_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.match_indices(variable).any(|(at, _)| {
+        let before = text[..at].chars().next_back();
+        let after = text[at + variable.len()..].chars().next();
+        !before.is_some_and(|c| in_name(c) || c == '.') && !after.is_some_and(in_name)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn json_of(name: &str) -> serde_json::Value {
+        let model = peelnet_models::find(name).expect("ships");
+        serde_json::from_str(model.json).expect("is valid")
+    }
+
+    fn refusal_of(name: &str, json: &serde_json::Value) -> String {
+        let wgsl = peelnet_models::find(name).expect("ships").wgsl;
+        let error = PeelnetModel::new(wgsl, &json.to_string()).expect_err("is refused");
+        error.to_string()
+    }
+
+    #[test]
+    fn the_shipped_networks_are_read() {
+        for (model, passes, bytes) in [
+            (PeelnetModel::small(), 3, 30),
+            (PeelnetModel::medium(), 3, 34),
+            (PeelnetModel::large(), 3, 42),
+        ] {
+            assert_eq!(model.passes.len(), passes);
+            assert_eq!(model.bytes_per_sample(), bytes, "{}", model.recipe());
+            // Nothing is lit before the last pass, and the first needs depth alone.
+            let needs = |p: &Pass| (p.needs_alpha, p.needs_color);
+            let needs: Vec<_> = model.passes.iter().map(needs).collect();
+            assert_eq!(needs, [(false, false), (true, false), (true, true)]);
+        }
+    }
+
+    #[test]
+    fn formats_stand_in_the_order_of_their_declaration() {
+        for (name, format, ..) in Format::ALL {
+            assert_eq!(format.name(), name);
+        }
+    }
+
+    #[test]
+    fn another_version_is_refused_by_name() {
+        let mut json = json_of("medium");
+        json["format_version"] = 2.into();
+        // What else a later version changes does not matter.
+        json["passes"] = "elsewhere".into();
+        let text = refusal_of("medium", &json);
+        assert!(
+            text.contains("peelnet-export 2") && text.contains("peelnet-export 1"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn recipes_with_other_passes_are_refused_with_the_reason() {
+        let thesis = refusal_of("thesis", &json_of("thesis"));
+        assert!(
+            thesis.contains("\"thesis\"") && thesis.contains("no function peelnet_zeta"),
+            "{thesis}"
+        );
+        // Plain distances are refused wherever they are wanted.
+        let mut json = json_of("medium");
+        json["passes"][1]["compute"] = "let s = peelnet_statistics(alpha, z, range);".into();
+        let distances = refusal_of("medium", &json);
+        assert!(distances.contains("wants plain distances"), "{distances}");
+        let mut json = json_of("medium");
+        json["passes"][1]["reads"] = serde_json::json!(["front"]);
+        let reads = refusal_of("medium", &json);
+        assert!(reads.contains("reads \"front\""), "{reads}");
+    }
+
+    #[test]
+    fn a_text_of_another_network_is_refused() {
+        let text = refusal_of("small", &json_of("medium"));
+        assert!(text.contains("the text is not of the network"), "{text}");
+    }
+
+    #[test]
+    fn variables_are_told_from_members_and_longer_names() {
+        assert!(mentions("vec4f(alpha * rgb, alpha) * w", "rgb"));
+        assert!(!mentions("s.rgb", "rgb"));
+        assert!(!mentions("peelnet_statistics(alpha, zeta)", "z"));
+    }
+}

@@ -1,0 +1,172 @@
+//! The passes of a frame: those of the description over all weighed surfaces, and the resolve into the view.
+
+use crate::{
+    model::Target,
+    phase::Learned3d,
+    pipelines::{LearnedPipelines, Setup},
+    shader_text::GROUP,
+    view::{LearnedView, LearnedViews},
+};
+use bevy::{
+    camera::{MainPassResolutionOverride, Viewport},
+    log::error,
+    pbr::{
+        DrawMesh, MATERIAL_BIND_GROUP_INDEX, SetMaterialBindGroup, SetMeshBindGroup,
+        SetMeshViewBindGroup, SetMeshViewBindingArrayBindGroup,
+    },
+    prelude::*,
+    render::{
+        camera::ExtractedCamera,
+        diagnostic::RecordDiagnostics,
+        render_phase::{
+            CachedRenderPipelinePhaseItem, DrawError, DrawFunctions, PhaseItem, SortedRenderPhase,
+            TrackedRenderPass, ViewSortedRenderPhases,
+        },
+        render_resource::{
+            LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
+            StoreOp,
+        },
+        renderer::{RenderContext, ViewQuery},
+        texture::CachedTexture,
+        view::{ExtractedView, ViewDepthStencilTexture, ViewTarget},
+    },
+};
+
+/// What Bevy does to draw a material, but for the pipeline: that depends on the pass.
+pub(crate) type DrawLearned = (
+    SetMeshViewBindGroup<0>,
+    SetMeshViewBindingArrayBindGroup<1>,
+    SetMeshBindGroup<2>,
+    SetMaterialBindGroup<MATERIAL_BIND_GROUP_INDEX>,
+    DrawMesh,
+);
+
+/// Draws a view's weighed surfaces.
+pub(crate) fn learned_transparent_pass(
+    world: &World,
+    view: ViewQuery<(
+        &ExtractedCamera,
+        &ExtractedView,
+        &ViewTarget,
+        &ViewDepthStencilTexture,
+        Option<&MainPassResolutionOverride>,
+    )>,
+    setup: Option<Res<Setup>>,
+    views: Res<LearnedViews>,
+    phases: Res<ViewSortedRenderPhases<Learned3d>>,
+    pipelines: Res<LearnedPipelines>,
+    cache: Res<PipelineCache>,
+    mut context: RenderContext<'_, '_>,
+) {
+    let entity = view.entity();
+    let (camera, extracted, target, depth, resolution) = view.into_inner();
+    let id = extracted.retained_view_entity;
+    let (Some(setup), Some(state), Some(phase)) = (setup, views.get(&id), phases.get(&id)) else {
+        return;
+    };
+    let (Some(resolve_group), Some(resolve)) = (
+        &state.resolve_group,
+        cache.get_render_pipeline(state.resolve),
+    ) else {
+        return;
+    };
+    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+    let diagnostics = context.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+
+    for (number, pass) in setup.model.passes.iter().enumerate() {
+        let attachments = attachments_of(state, &setup.model.targets, pass.targets.clone());
+        let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("peelnet_pass"),
+            color_attachments: &attachments,
+            // Nothing writes depth here. It is stored because it would be lost otherwise.
+            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
+        if let Some(viewport) = &viewport {
+            drawing.set_camera_viewport(viewport);
+        }
+        drawing.set_bind_group(GROUP, &state.groups[number], &[]);
+        if let Err(problem) = draw(phase, world, &mut drawing, entity, &|item| {
+            cache.get_render_pipeline(pipelines.get(item.cached_pipeline(), number)?)
+        }) {
+            error!("peelnet pass {:?}: {problem}", pass.name);
+        }
+        span.end(&mut drawing);
+    }
+
+    let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
+        label: Some("peelnet_resolve"),
+        color_attachments: &[Some(target.get_color_attachment())],
+        depth_stencil_attachment: None,
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    let span = diagnostics.pass_span(&mut drawing, "peelnet_resolve");
+    if let Some(viewport) = &viewport {
+        drawing.set_camera_viewport(viewport);
+    }
+    drawing.set_render_pipeline(resolve);
+    drawing.set_bind_group(0, resolve_group, &[]);
+    drawing.draw(0..3, 0..1);
+    span.end(&mut drawing);
+}
+
+fn attachments_of<'a>(
+    state: &'a LearnedView,
+    targets: &[Target],
+    written: std::ops::Range<usize>,
+) -> Vec<Option<RenderPassColorAttachment<'a>>> {
+    let attachment = |(texture, target): (&'a CachedTexture, &Target)| {
+        // Clear values are small integers, or the least half float.
+        let [red, green, blue, alpha] = target.clear.map(|value| value as f32);
+        Some(RenderPassColorAttachment {
+            view: &texture.default_view,
+            depth_slice: None,
+            // Samples of coded levels must not be averaged.
+            resolve_target: None,
+            ops: Operations {
+                load: LoadOp::Clear(LinearRgba::new(red, green, blue, alpha).into()),
+                store: StoreOp::Store,
+            },
+        })
+    };
+    let textures = &state.textures[written.clone()];
+    textures
+        .iter()
+        .zip(&targets[written])
+        .map(attachment)
+        .collect()
+}
+
+/// Draws all batches with the pipelines of one pass.
+fn draw<'w>(
+    phase: &SortedRenderPhase<Learned3d>,
+    world: &'w World,
+    drawing: &mut TrackedRenderPass<'w>,
+    view: Entity,
+    pipeline_of: &dyn Fn(&Learned3d) -> Option<&'w bevy::render::render_resource::RenderPipeline>,
+) -> Result<(), DrawError> {
+    let functions = world.resource::<DrawFunctions<Learned3d>>();
+    let mut functions = functions.write();
+    functions.prepare(world);
+    let function = functions.id::<DrawLearned>();
+    let mut index = 0;
+    while let Some((_, item)) = phase.items.get_index(index) {
+        // A batch stands at its first item, and the others of it are passed over.
+        let instances = item.batch_range().len();
+        if instances > 0
+            && let Some(pipeline) = pipeline_of(item)
+            && let Some(function) = functions.get_mut(function)
+        {
+            drawing.set_render_pipeline(pipeline);
+            function.draw(world, drawing, view, item)?;
+        }
+        index += instances.max(1);
+    }
+    Ok(())
+}

@@ -1,0 +1,272 @@
+//! Materials: those of Bevy, lit; those with a hook; those without.
+
+#[path = "../examples/support/mod.rs"]
+mod support;
+
+use bevy::{
+    asset::uuid_handle,
+    pbr::{ExtendedMaterial, MaterialExtension},
+    prelude::*,
+    reflect::TypePath,
+    render::render_resource::AsBindGroup,
+    shader::{Shader, ShaderRef},
+};
+use bevy_peelnet::{Gravity, LearnedTransparency, PeelnetMessages, PeelnetPlugin};
+use support::{
+    cards::{self, Card},
+    exact,
+    headless::Headless,
+};
+
+const SIZE: UVec2 = UVec2::new(256, 192);
+
+const HOOKED: Handle<Shader> = uuid_handle!("6d1c1f9e-6f0b-4b53-9b8e-0a5a3c9d7e01");
+const PLAIN: Handle<Shader> = uuid_handle!("6d1c1f9e-6f0b-4b53-9b8e-0a5a3c9d7e02");
+
+const BINDING: &str = "
+import bevy_pbr::render::forward_io::VertexOutput;
+
+@group(constants::MATERIAL_BIND_GROUP) @binding(0) var<uniform> material_color: vec4f;
+
+fn shade(in: VertexOutput) -> vec4f {
+    return material_color;
+}
+";
+
+const WITH_HOOK: &str = "
+@if(PEELNET)
+import bevy_peelnet::draw::{PeelnetOutput, peelnet_output};
+";
+
+const ENTRY_POINTS: &str = "
+@if(!PEELNET)
+@fragment
+fn fragment(in: VertexOutput) -> @location(0) vec4f {
+    return shade(in);
+}
+
+@if(PEELNET)
+@fragment
+fn fragment(in: VertexOutput, @builtin(sample_index) sample_index: u32) -> PeelnetOutput {
+    return peelnet_output(in.position, sample_index, shade(in));
+}
+";
+
+const WITHOUT_HOOK: &str = "
+@fragment
+fn fragment(in: VertexOutput) -> @location(0) vec4f {
+    return shade(in);
+}
+";
+
+/// A material with a fragment shader of its own that takes part.
+#[derive(Asset, AsBindGroup, Clone, TypePath)]
+struct Hooked {
+    #[uniform(0)]
+    color: LinearRgba,
+}
+
+impl Material for Hooked {
+    fn fragment_shader() -> ShaderRef {
+        HOOKED.into()
+    }
+
+    fn alpha_mode(&self) -> AlphaMode {
+        AlphaMode::Blend
+    }
+}
+
+/// One that does not.
+#[derive(Asset, AsBindGroup, Clone, TypePath)]
+struct Plain {
+    #[uniform(0)]
+    color: LinearRgba,
+}
+
+impl Material for Plain {
+    fn fragment_shader() -> ShaderRef {
+        PLAIN.into()
+    }
+
+    fn alpha_mode(&self) -> AlphaMode {
+        AlphaMode::Blend
+    }
+}
+
+/// Adds a number to Bevy's material, and keeps its shaders.
+#[derive(Asset, AsBindGroup, Clone, TypePath)]
+struct Extension {
+    #[uniform(100)]
+    number: f32,
+}
+
+impl MaterialExtension for Extension {}
+
+type Extended = ExtendedMaterial<StandardMaterial, Extension>;
+
+fn application(msaa: Msaa) -> Headless {
+    let mut headless = Headless::new(SIZE, msaa, PeelnetPlugin::default());
+    let app = &mut headless.app;
+    app.add_plugins((
+        MaterialPlugin::<Hooked>::default(),
+        MaterialPlugin::<Plain>::default(),
+        MaterialPlugin::<Extended>::default(),
+    ));
+    let mut shaders = app.world_mut().resource_mut::<Assets<Shader>>();
+    // Imports stand first.
+    let hooked = [WITH_HOOK, BINDING, ENTRY_POINTS].concat();
+    let plain = [BINDING, WITHOUT_HOOK].concat();
+    for (handle, text, name) in [(HOOKED, hooked, "hooked"), (PLAIN, plain, "plain")] {
+        let shader = Shader::from_wesl(text, format!("tests/{name}.wesl"));
+        shaders
+            .insert(handle.id(), shader)
+            .expect("a constant handle");
+    }
+    headless.camera().insert(LearnedTransparency::default());
+    headless
+}
+
+fn spawn<M: Material>(headless: &mut Headless, card: &Card, material: M) {
+    let world = headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Rectangle::new(1.0, 1.0));
+    let material = world.resource_mut::<Assets<M>>().add(material);
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), card.transform));
+}
+
+/// Cards that face the camera: culled materials show their fronts.
+fn facing() -> [Card; 2] {
+    let [mut first, mut second] = <[Card; 2]>::try_from(cards::two()).expect("two cards");
+    first.color.alpha = 0.6;
+    second.color.alpha = 0.7;
+    [first, second]
+}
+
+fn warnings(headless: &Headless) -> Vec<String> {
+    let messages = headless.app.world().resource::<PeelnetMessages>().all();
+    let grave = messages
+        .into_iter()
+        .filter(|(gravity, _)| *gravity != Gravity::Info);
+    grave.map(|(_, text)| text).collect()
+}
+
+#[test]
+fn a_material_with_the_hook_is_weighed_like_bevys() {
+    // The far card is of the one kind and the near one of the other, spawned in both orders.
+    for (msaa, samples) in [(Msaa::Off, 1), (Msaa::Sample4, 4)] {
+        let [near, far] = facing();
+        let mut headless = application(msaa);
+        spawn(&mut headless, &near, cards::material(near.color));
+        spawn(&mut headless, &far, Hooked { color: far.color });
+        let picture = headless.picture();
+        let errors = exact::picture(&[near, far], SIZE, samples).errors_of(&picture);
+        assert!(errors.max <= 1.5, "{errors:?}");
+        assert_eq!(warnings(&headless), [""; 0]);
+    }
+}
+
+#[test]
+fn a_material_without_the_hook_is_drawn_by_bevy_and_said_once() {
+    let [near, far] = facing();
+    let mut headless = application(Msaa::Off);
+    // In front, where Bevy's drawing after the weighed surfaces is right.
+    spawn(&mut headless, &near, Plain { color: near.color });
+    spawn(&mut headless, &far, cards::material(far.color));
+    let picture = headless.picture();
+    let errors = exact::picture(&[near, far], SIZE, 1).errors_of(&picture);
+    assert!(errors.max <= 1.0, "{errors:?}");
+    let warnings = warnings(&headless);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(
+        warnings[0].contains("does not import bevy_peelnet::draw"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn an_extension_of_bevys_material_needs_nothing() {
+    let [near, far] = facing();
+    let mut headless = application(Msaa::Off);
+    let extended = |color| Extended {
+        base: cards::material(color),
+        extension: Extension { number: 1.0 },
+    };
+    spawn(&mut headless, &near, extended(near.color));
+    spawn(&mut headless, &far, cards::material(far.color));
+    let errors = exact::picture(&[near, far], SIZE, 1).errors_of(&headless.picture());
+    assert!(errors.max <= 1.0, "{errors:?}");
+    assert_eq!(warnings(&headless), [""; 0]);
+}
+
+#[test]
+fn premultiplied_colours_are_weighed_too() {
+    let [near, far] = facing();
+    let mut headless = application(Msaa::Off);
+    let premultiplied = |color: LinearRgba| StandardMaterial {
+        base_color: LinearRgba::new(
+            color.red * color.alpha,
+            color.green * color.alpha,
+            color.blue * color.alpha,
+            color.alpha,
+        )
+        .into(),
+        alpha_mode: AlphaMode::Premultiplied,
+        ..cards::material(color)
+    };
+    spawn(&mut headless, &near, premultiplied(near.color));
+    spawn(&mut headless, &far, premultiplied(far.color));
+    let errors = exact::picture(&[near, far], SIZE, 1).errors_of(&headless.picture());
+    assert!(errors.max <= 1.0, "{errors:?}");
+    assert_eq!(warnings(&headless), [""; 0]);
+}
+
+#[test]
+fn light_falls_on_weighed_surfaces_as_on_sorted_ones() {
+    // Bevy sorts two cards that face the camera rightly, so that both techniques must give one picture.
+    let [near, far] = facing();
+    let mut headless = application(Msaa::Off);
+    for card in [near, far] {
+        let lit = StandardMaterial {
+            unlit: false,
+            ..cards::material(card.color)
+        };
+        spawn(&mut headless, &card, lit);
+    }
+    let light = (PointLight::default(), Transform::from_xyz(1.0, 1.0, 3.0));
+    headless.app.world_mut().spawn(light);
+    let weighed = headless.picture();
+    headless.camera().remove::<LearnedTransparency>();
+    let sorted = headless.picture();
+    let most = weighed
+        .iter()
+        .zip(&sorted)
+        .map(|(a, b)| a.abs_diff(*b))
+        .max();
+    assert!(most <= Some(1), "{most:?}");
+    // And the light is seen: the near card is not of one colour.
+    let row = &sorted[(4 * SIZE.x * SIZE.y / 2) as usize..][..(4 * SIZE.x) as usize];
+    let reds: std::collections::HashSet<u8> = row.chunks(4).map(|pixel| pixel[0]).collect();
+    assert!(reds.len() > 5, "{reds:?}");
+}
+
+#[test]
+fn sums_of_light_stay_with_bevy() {
+    let [near, far] = facing();
+    let mut headless = application(Msaa::Off);
+    let added = StandardMaterial {
+        alpha_mode: AlphaMode::Add,
+        ..cards::material(near.color)
+    };
+    spawn(&mut headless, &near, added);
+    spawn(&mut headless, &far, cards::material(far.color));
+    let weighed = headless.picture();
+    headless.camera().remove::<LearnedTransparency>();
+    let sorted = headless.picture();
+    let most = weighed
+        .iter()
+        .zip(&sorted)
+        .map(|(a, b)| a.abs_diff(*b))
+        .max();
+    assert!(most <= Some(1), "{most:?}");
+}
