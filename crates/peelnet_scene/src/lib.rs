@@ -1,4 +1,4 @@
-//! Scenes: read from TOML, glTF and OBJ files, or built in code.
+//! Scenes: read from TOML files or mesh files, or built in code.
 //!
 //! [`Scene::load`] reads a scene file ([`mod@file`]): cameras, lights, and objects, which are meshes of OBJ and glTF files ([`obj`],
 //! [`mod@gltf`]), generated shapes ([`shapes`]), or many of either scattered from a seed ([`scatter`]). [`Scene::from_bytes`] reads the same
@@ -29,6 +29,7 @@ mod files;
 pub mod gltf;
 mod material;
 mod mesh;
+mod mesh_file;
 pub mod obj;
 pub mod pattern;
 mod polygons;

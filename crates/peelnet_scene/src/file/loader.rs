@@ -7,6 +7,7 @@ use crate::{
     gltf,
     material::{Lighting, Material},
     mesh::Mesh,
+    mesh_file::Format,
     obj,
     pattern::Pattern,
     shapes::Shape,
@@ -119,18 +120,17 @@ impl<'a> Loader<'a> {
     }
 
     fn mesh_file(&mut self, file: &Path, field: &str) -> Result<Mesh, SceneError> {
-        let ending = file.extension().and_then(|e| e.to_str());
-        let (mesh, warnings) = match ending.unwrap_or_default().to_lowercase().as_str() {
-            "obj" => {
+        let (mesh, warnings) = match Format::of(file) {
+            Some(Format::Obj) => {
                 let loaded = obj::load(file, self.lighting, &mut self.files)?;
                 (loaded.mesh, loaded.warnings)
             }
-            "gltf" | "glb" => {
+            Some(Format::Gltf) => {
                 // The scene file's lights and cameras replace those of the mesh.
                 let loaded = gltf::load(file, &mut self.files)?;
                 (loaded.mesh, loaded.warnings)
             }
-            _ => {
+            None => {
                 return Err(self.value(
                     field,
                     format!(
