@@ -25,7 +25,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 5] = [
+pub const READERS: [Reader; 7] = [
     Reader {
         name: "scene",
         read: scene,
@@ -50,6 +50,16 @@ pub const READERS: [Reader; 5] = [
         name: "gltf",
         read: gltf,
         seeds: gltf_seeds,
+    },
+    Reader {
+        name: "ply",
+        read: ply,
+        seeds: ply_seeds,
+    },
+    Reader {
+        name: "stl",
+        read: stl,
+        seeds: stl_seeds,
     },
 ];
 
@@ -243,6 +253,75 @@ fn obj_seeds() -> Vec<Vec<u8>> {
         b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end \xe9".to_vec(),
         mesh.replace('\n', "\r\n").into_bytes(),
     ]
+}
+
+/// A PLY file, as a scene.
+fn ply(bytes: &[u8]) {
+    if let Ok(scene) = Scene::load(put("f.ply", bytes)) {
+        is_sound(&scene);
+    }
+}
+
+/// Text, and both orders of bytes: polygons, colours, normals, texture coordinates, a strip, and elements of other kinds.
+fn ply_seeds() -> Vec<Vec<u8>> {
+    let vertex = "property float x\nproperty float y\nproperty float z\n";
+    let color =
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float alpha\n";
+    let face = "property list uchar int vertex_indices\n";
+    let text = format!(
+        "ply\r\nformat ascii 1.0\ncomment by hand\nelement vertex 4\n{vertex}{color}property float s\nproperty float t\n\
+         element face 2\n{face}property list uchar float texcoord\nelement edge 1\nproperty int v\nend_header\n\
+         0 0 0 255 0 0 1 0 0\n1 0 0 9 9 9 .5 1 0\n1 1 0 0 0 0 1 1 1\n0 1 0 0 0 0 1 0 1\n4 0 1 2 3 0\n3 0 1 2 6 0 0 1 0 1 1\n7\n"
+    );
+    let binary = |is_big: bool| {
+        let order = if is_big { "big" } else { "little" };
+        let number = |bytes: [u8; 4]| {
+            let mut bytes = bytes;
+            if is_big {
+                bytes.reverse();
+            }
+            bytes
+        };
+        let head = format!(
+            "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\n{vertex}property float nx\nelement face 1\n{face}\
+             element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        );
+        let mut bytes = head.into_bytes();
+        for k in 0..16u8 {
+            let x = f32::from(k * 7 % 5);
+            bytes.extend(number(x.to_le_bytes()));
+        }
+        bytes.push(3);
+        for i in [0i32, 1, 2, 6, 0, 1, 2, -1, 1, 3] {
+            bytes.extend(number(i.to_le_bytes()));
+        }
+        bytes
+    };
+    vec![text.into_bytes(), binary(false), binary(true)]
+}
+
+/// An STL file, as a scene.
+fn stl(bytes: &[u8]) {
+    if let Ok(scene) = Scene::load(put("f.stl", bytes)) {
+        is_sound(&scene);
+    }
+}
+
+fn stl_seeds() -> Vec<Vec<u8>> {
+    let facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+    let text = format!(
+        "solid a part\n{facet}{}endsolid a part\n",
+        facet.replace('0', "2")
+    );
+    let mut binary = b"solid by a program".to_vec();
+    binary.resize(80, 0);
+    binary.extend(2u32.to_le_bytes());
+    for k in 0..2u8 {
+        let numbers = (0..12u8).map(|i| f32::from((i * i + k) % 7));
+        binary.extend(numbers.flat_map(f32::to_le_bytes));
+        binary.extend([0, 0]);
+    }
+    vec![text.into_bytes(), binary]
 }
 
 /// A dataset of two parts: the first byte says which of its files the others replace, and in which format.

@@ -28,7 +28,7 @@ use timeline::{NO_TIMELINE, Snapshot};
 
 impl Scene {
     /// Reads a scene file and everything it names from the file system, a scene with a timeline in its first state. A mesh file (glTF, GLB,
-    /// OBJ) is a scene too: with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from
+    /// OBJ, PLY, STL) is a scene too: with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from
     /// three sides. Its materials are as the file says: opaque ones stay opaque.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Scene {
 }
 
 /// Endings of the names of files that are scenes, in lower case.
-pub const ENDINGS: [&str; 4] = ["toml", "gltf", "glb", "obj"];
+pub const ENDINGS: [&str; 6] = ["toml", "gltf", "glb", "obj", "ply", "stl"];
 
 /// Reads a scene file, or a mesh file as a scene.
 fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, SceneError> {

@@ -9,6 +9,10 @@ pub(crate) enum Format {
     Gltf,
     /// OBJ with MTL.
     Obj,
+    /// PLY, of text or binary.
+    Ply,
+    /// STL, of text or binary.
+    Stl,
 }
 
 impl Format {
@@ -18,6 +22,8 @@ impl Format {
         Some(match ending.as_str() {
             "gltf" | "glb" => Self::Gltf,
             "obj" => Self::Obj,
+            "ply" => Self::Ply,
+            "stl" => Self::Stl,
             _ => return None,
         })
     }

@@ -96,9 +96,48 @@ fn any_size_is_framed_or_refused() {
     assert!(e.contains("a.obj") && e.contains("scale it down"), "{e}");
 }
 
+/// A triangle of either format, alone and as a mesh of a scene file.
+#[test]
+fn scans_are_scenes_and_meshes() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
+        property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 255 0 0 128\n1 0 0 255 0 0 128\n0 1 0 255 0 0 128\n3 0 1 2\n";
+    let stl = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    let scene = load(&[("scan.PLY", ply.as_bytes())]).unwrap();
+    assert_framed(&scene);
+    // Its opacity is the file's.
+    assert!(!scene.objects[0].materials[0].is_opaque());
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let scene = load(&[("part.Stl", stl.as_bytes())]).unwrap();
+    assert_framed(&scene);
+    assert!(scene.objects[0].materials[0].is_opaque());
+    assert!(scene.warnings[0].contains("opaque"));
+    let text = "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100\n[[light]]\nposition = [1, 1, 1]\n\
+        [[object]]\nmesh = 'scan.ply'\nmaterial = { color = [0.5, 1, 1] }\n[[object]]\nmesh = 'part.stl'\nfit = 2.0\nmaterial = { alpha = 0.5 }\n";
+    let scene = load(&[
+        ("s.toml", text.as_bytes()),
+        ("scan.ply", ply.as_bytes()),
+        ("part.stl", stl.as_bytes()),
+    ]);
+    let scene = scene.unwrap();
+    assert_eq!((scene.triangles(), scene.files.len()), (2, 3));
+    let [scan, part] = [0, 1].map(|k: usize| &scene.objects[k].materials[0]);
+    assert_eq!(
+        (scan.color, scan.lighting),
+        ([0.5, 1.0, 1.0], Lighting::Phong)
+    );
+    assert!(!scan.is_opaque() && !part.is_opaque());
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
 #[test]
 fn errors_name_the_file() {
-    for (name, text) in [("a.obj", "f 1 2 3\n"), ("gone.obj", "")] {
+    for (name, text) in [
+        ("a.obj", "f 1 2 3\n"),
+        ("gone.obj", ""),
+        ("a.ply", "ply"),
+        ("a.stl", ""),
+    ] {
         let e = load(&[(name, text.as_bytes())]).unwrap_err();
         assert!(e.contains(name), "{e}");
     }

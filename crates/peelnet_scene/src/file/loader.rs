@@ -10,7 +10,9 @@ use crate::{
     mesh_file::Format,
     obj,
     pattern::Pattern,
+    ply,
     shapes::Shape,
+    stl,
     texture::Texture,
 };
 use std::{
@@ -130,11 +132,19 @@ impl<'a> Loader<'a> {
                 let loaded = gltf::load(file, &mut self.files)?;
                 (loaded.mesh, loaded.warnings)
             }
+            Some(Format::Ply) => {
+                let loaded = ply::load(file, self.lighting, &mut self.files)?;
+                (loaded.mesh, loaded.warnings)
+            }
+            Some(Format::Stl) => {
+                let loaded = stl::load(file, self.lighting, &mut self.files)?;
+                (loaded.mesh, loaded.warnings)
+            }
             None => {
                 return Err(self.value(
                     field,
                     format!(
-                        "{} is neither .obj, .gltf nor .glb; export the mesh as one of them",
+                        "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
                         shown(file)
                     ),
                 ));

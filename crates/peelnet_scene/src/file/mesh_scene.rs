@@ -8,8 +8,9 @@ use crate::{
     material::{Lighting, Material},
     mesh::Mesh,
     mesh_file::Format,
-    obj,
+    obj, ply,
     scene::{Light, Object, Scene, Source},
+    stl,
 };
 use glam::{Mat4, Vec3};
 use std::{path::Path, sync::Arc};
@@ -39,6 +40,14 @@ fn read(path: &Path, format: Format, files: &mut Files<'_>) -> Result<Loaded, Sc
         }
         Format::Obj => {
             let loaded = obj::load(path, Lighting::Phong, files)?;
+            (loaded.mesh, loaded.warnings)
+        }
+        Format::Ply => {
+            let loaded = ply::load(path, Lighting::Phong, files)?;
+            (loaded.mesh, loaded.warnings)
+        }
+        Format::Stl => {
+            let loaded = stl::load(path, Lighting::Phong, files)?;
             (loaded.mesh, loaded.warnings)
         }
     };
