@@ -168,6 +168,10 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
 "bufferViews""#,
         )
         .replace("IMAGE", IMAGE);
+    let specular = mapped.replace(
+        r#""KHR_materials_transmission":{"transmissionFactor":0.5}"#,
+        r#""KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.5,0,0,1],"specularGlossinessTexture":{"index":0}}"#,
+    );
     // Nodes that share a child, an accessor without data and a sparse one, a byte order mark, no scene, data without base 64.
     let shared = text.replace(r#""children":[1],"#, r#""children":[1,1],"#);
     let sparse = text.replace(
@@ -184,6 +188,7 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
     [
         text,
         mapped,
+        specular,
         shared,
         sparse,
         format!("\u{feff}{rootless}"),
@@ -209,6 +214,10 @@ fn scene_seeds() -> Vec<Vec<u8>> {
         format!(
             "{camera}[[light]]\ndirection = [0, -1, 0]\n{}",
             object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]")
+        ),
+        format!(
+            "{camera}[[light]]\nposition = [1, 2, 3]\n{}",
+            object.replace("'phong'", "'pbr'\nspecular_color = [1, 0.5, 0.25]\nglossiness_map = 'a.png'\nspecular_color_map = { pattern = 'noise', size = 8 }")
         ),
         format!(
             "{camera}[[object]]\nname = 'a'\nvertex_colors = [[0, 0, 0, 0], [1, 1, 1, 1]]\nmesh = {{ shape = 'lathe', triangles = 60, offset = 0.1, profile = [[0, -1], [1, 0], [0, 1]] }}\n[[timeline]]\ntime = 0\n[[timeline]]\ntime = 1\nlabel = 'b'\n[[timeline.object]]\nname = 'a'\nmaterial = {{ alpha = 0.5 }}\n"

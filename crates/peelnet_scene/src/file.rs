@@ -6,6 +6,7 @@ mod mesh_scene;
 mod objects;
 mod raw;
 pub(crate) mod references;
+mod specular;
 #[cfg(test)]
 mod tests;
 mod timeline;

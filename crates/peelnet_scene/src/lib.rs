@@ -38,6 +38,7 @@ mod scan;
 pub mod scatter;
 mod scene;
 pub mod shapes;
+mod specular_glossiness;
 pub mod stl;
 pub mod suite;
 mod texture;

@@ -12,6 +12,7 @@ use crate::{
     pattern::Pattern,
     ply,
     shapes::Shape,
+    specular_glossiness::Converter,
     stl,
     texture::Texture,
 };
@@ -35,6 +36,8 @@ pub(super) struct Loader<'a> {
     /// Generated textures, by pattern and key.
     patterns: HashMap<(String, &'static str), Arc<Texture>>,
     textures: HashMap<PathBuf, Arc<Texture>>,
+    /// For materials of the specular–glossiness workflow.
+    pub converter: Converter,
 }
 
 impl<'a> Loader<'a> {
@@ -48,6 +51,7 @@ impl<'a> Loader<'a> {
             shapes: HashMap::new(),
             patterns: HashMap::new(),
             textures: HashMap::new(),
+            converter: Converter::default(),
         }
     }
 

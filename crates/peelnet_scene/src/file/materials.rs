@@ -4,6 +4,7 @@ use super::{
     loader::Loader,
     raw::{AlphaMode, RawMaterial},
     references::MapRef,
+    specular::Finish,
 };
 use crate::{
     error::SceneError,
@@ -123,7 +124,7 @@ impl Loader<'_> {
         read: bool,
         field: &str,
     ) -> Result<Material, SceneError> {
-        let maps = self.maps(&base.maps, raw, read, field)?;
+        let mut maps = self.maps(&base.maps, raw, read, field)?;
         let fail = |(key, message): (&str, String)| {
             self.value(&format!("{field}.material.{key}"), message)
         };
@@ -139,18 +140,28 @@ impl Loader<'_> {
             let message = "belongs to lighting = \"pbr\": add that, or leave it out";
             return Err(fail(("metallic_roughness_map", message.into())));
         }
+        let converted = self.specular_glossiness(base, raw, &mut maps, (lighting, read), field)?;
         // A map multiplies the material's value, which is 1 where the file gives a map and no value.
         let by_map = |map: &Option<MapRef>, base: f32| if map.is_some() { 1.0 } else { base };
         let metal = &raw.metallic_roughness_map;
+        let Finish {
+            color,
+            metallic,
+            roughness,
+        } = converted.unwrap_or(Finish {
+            color: raw.color.unwrap_or(base.color),
+            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
+            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
+        });
         Ok(Material {
             name: base.name.clone(),
-            color: raw.color.unwrap_or(base.color),
+            color,
             alpha: raw.alpha.unwrap_or(base.alpha),
             lighting,
             specular: raw.specular.unwrap_or(base.specular),
             shininess: raw.shininess.unwrap_or(base.shininess),
-            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
-            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
+            metallic,
+            roughness,
             emission: raw
                 .emission
                 .unwrap_or(base.emission.map(|c| by_map(&raw.emissive_map, c))),
@@ -189,10 +200,14 @@ fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
     for x in raw.transmission_color.into_iter().flatten() {
         in_unit("transmission_color", x)?;
     }
+    for x in raw.specular_color.into_iter().flatten() {
+        in_unit("specular_color", x)?;
+    }
     for (key, x) in [
         ("alpha", raw.alpha),
         ("metallic", raw.metallic),
         ("roughness", raw.roughness),
+        ("glossiness", raw.glossiness),
     ] {
         x.map_or(Ok(0.0), |x| in_unit(key, x))?;
     }

@@ -7,6 +7,7 @@ use crate::{
     files::Files,
     mesh::Mesh,
     scene::{Light, Source},
+    specular_glossiness::Converter,
     texture::Texture,
     warnings::Warnings,
 };
@@ -19,6 +20,8 @@ pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
     pub buffers: Vec<Vec<u8>>,
+    /// For materials of the specular–glossiness workflow.
+    pub converter: Converter,
     /// By number, and whether their opacity is dropped; `None` for those that cannot be drawn.
     pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What the file uses and is not drawn.
@@ -57,6 +60,7 @@ impl<'a, 'f> Reader<'a, 'f> {
             path,
             files,
             buffers,
+            converter: Converter::default(),
             images: HashMap::new(),
             missing: Warnings::default(),
             loaded: LoadedGltf {
