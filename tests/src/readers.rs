@@ -213,7 +213,7 @@ fn scene_seeds() -> Vec<Vec<u8>> {
         camera.to_owned(),
         format!(
             "{camera}[[light]]\ndirection = [0, -1, 0]\n{}",
-            object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]")
+            object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]\ndisplacement_map = 'a.png'\ndisplacement_scale = 0.1\ndisplacement_level = 1")
         ),
         format!(
             "{camera}[[light]]\nposition = [1, 2, 3]\n{}",
@@ -256,7 +256,7 @@ fn obj(bytes: &[u8]) {
 
 fn obj_seeds() -> Vec<Vec<u8>> {
     let mesh = "mtllib m.mtl\no part\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvn 0 0 1\ng side\nusemtl red\ns 1\nf 1/1/1 2/2/1 3//1\nf -4 -2 -1\nf 1 2 3 4\n";
-    let materials = "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\nmap_d -clamp on a.png\nmap_Bump -bm 0.5 a.png\nmap_Ke a.png\n";
+    let materials = "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\nmap_d -clamp on a.png\nmap_Bump -bm 0.5 a.png\nmap_Ke a.png\ndisp -mm 0 0.5 a.png\n";
     vec![
         format!("{mesh}\0{materials}").into_bytes(),
         b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end \xe9".to_vec(),

@@ -1,5 +1,6 @@
 //! The scene file: TOML, strict. A mesh file is a scene too, see [`Scene::load`].
 
+mod displaced;
 mod loader;
 pub(crate) mod materials;
 mod mesh_scene;

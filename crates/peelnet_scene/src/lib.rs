@@ -23,6 +23,7 @@
 mod budget;
 mod camera;
 pub mod census;
+mod displacement;
 mod error;
 pub mod file;
 mod files;
@@ -47,6 +48,7 @@ mod warnings;
 
 pub use camera::Camera;
 pub use census::{Census, Effect, Setting, Variant};
+pub use displacement::Displacement;
 pub use error::SceneError;
 pub use material::{Lighting, Material};
 pub use mesh::{BOX_MARGIN, Mesh, Part};

@@ -93,7 +93,7 @@ impl Mesh {
             self.uvs.resize(first, [Vec2::ZERO; 3]);
             self.uvs
                 .extend(triangles.iter().map(|t| t.map(|i| uvs[i as usize])));
-        } else if part.material.maps.all().iter().any(Option::is_some) {
+        } else if part.material.maps.has_any() {
             part.material.maps = Maps::NONE;
             lost = true;
         }

@@ -1,6 +1,7 @@
 //! Materials: a mesh's own, with the values and textures that the scene file sets.
 
 use super::{
+    displaced,
     loader::Loader,
     raw::{AlphaMode, RawMaterial},
     references::MapRef,
@@ -77,6 +78,10 @@ impl Loader<'_> {
         if let Some(x) = strength {
             return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
         }
+        let displacement = match &raw.displacement_map {
+            Some(_) => self.displacement(raw, read, field)?,
+            None => base.displacement.clone(),
+        };
         let mut map = |map: &Option<MapRef>, of_pattern, key, base: &Option<Arc<Texture>>| {
             let own = map.as_ref().filter(|_| read);
             let own = self.map(own, of_pattern, key, &format!("{field}.material"))?;
@@ -109,6 +114,7 @@ impl Loader<'_> {
                 "emissive_map",
                 &base.emissive,
             )?,
+            displacement,
             normal_scale: raw.normal_scale.unwrap_or(base.normal_scale),
             occlusion_strength: raw.occlusion_strength.unwrap_or(base.occlusion_strength),
             wrap: raw.wrap.map_or(base.wrap, |wrap| [wrap; 2]),
@@ -175,7 +181,7 @@ impl Loader<'_> {
 }
 
 /// A key of a material, and what is wrong with its value.
-type Fault = (&'static str, String);
+pub(super) type Fault = (&'static str, String);
 
 fn in_unit(key: &'static str, x: f32) -> Result<f32, Fault> {
     if (0.0..=1.0).contains(&x) {
@@ -222,6 +228,7 @@ fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
             return Err((key, format!("{x} must be finite and not negative")));
         }
     }
+    displaced::check(raw)?;
     // pow(0, 0) is not defined in shaders.
     let is_sharp = |x: &f32| x.is_finite() && *x >= 1.0;
     match raw.shininess.filter(|x| !is_sharp(x)) {

@@ -2,6 +2,7 @@
 
 use crate::{
     camera::Camera,
+    displacement::displaced,
     error::{SceneError, shown},
     files::Files,
     gltf::{self, GltfCamera},
@@ -62,24 +63,31 @@ fn read(path: &Path, format: Format, files: &mut Files<'_>) -> Result<Loaded, Sc
 /// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
 pub(super) fn load(path: &Path, format: Format, mut files: Files<'_>) -> Result<Scene, SceneError> {
     let Loaded {
-        mesh,
+        mut mesh,
         mut lights,
         cameras,
         mut warnings,
     } = read(path, format, &mut files)?;
-    let bounds = Bounds::of(&mesh).map_err(|message| SceneError::Mesh {
+    let fail = |message: String| SceneError::Mesh {
         path: path.to_owned(),
         line: None,
         message,
-    })?;
+    };
+    let materials = mesh.parts.iter().map(|p| p.material.clone());
+    let mut materials: Vec<Material> = materials.collect();
+    if materials.iter().any(|m| m.maps.displacement.is_some()) {
+        mesh = displaced(&mesh, &materials, &mut files.budget).map_err(&fail)?;
+        for material in &mut materials {
+            material.maps.displacement = None;
+        }
+    }
+    let bounds = Bounds::of(&mesh).map_err(&fail)?;
     let cameras = cameras.iter();
     let mut views: Vec<Camera> = cameras.filter_map(|c| camera(c, bounds)).collect();
     if views.is_empty() {
         let first = fitting_camera(bounds);
         views.extend((0..VIEWS).map(|i| first.orbited(360.0 * i as f32 / VIEWS as f32)));
     }
-    let materials = mesh.parts.iter().map(|p| p.material.clone());
-    let mut materials: Vec<Material> = materials.collect();
     if lights.is_empty()
         && let Some(lighting) = one_lighting(&mut materials)
     {

@@ -142,6 +142,10 @@ pub(super) struct RawMaterial {
     pub specular_glossiness_map: Option<MapRef>,
     pub occlusion_map: Option<MapRef>,
     pub emissive_map: Option<MapRef>,
+    pub displacement_map: Option<MapRef>,
+    pub displacement_scale: Option<f32>,
+    pub displacement_middle: Option<f32>,
+    pub displacement_level: Option<u32>,
     pub normal_scale: Option<f32>,
     pub occlusion_strength: Option<f32>,
     pub wrap: Option<Wrap>,
@@ -162,6 +166,7 @@ impl RawMaterial {
             &self.specular_glossiness_map,
             &self.occlusion_map,
             &self.emissive_map,
+            &self.displacement_map,
         ];
         maps.into_iter().any(Option::is_some)
     }
@@ -191,6 +196,10 @@ impl RawMaterial {
             specular_glossiness_map,
             occlusion_map,
             emissive_map,
+            displacement_map,
+            displacement_scale,
+            displacement_middle,
+            displacement_level,
             normal_scale,
             occlusion_strength,
             wrap,

@@ -176,6 +176,7 @@ impl Reader<'_, '_> {
             metallic_roughness,
             occlusion,
             emissive,
+            displacement: None,
             normal_scale: finite(normal_scale, -100.0, 100.0),
             occlusion_strength: finite(occlusion_strength, 0.0, 1.0),
             wrap: [wrap(wrap_s), wrap(wrap_t)],
