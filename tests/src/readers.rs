@@ -25,7 +25,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 5] = [
+pub const READERS: [Reader; 7] = [
     Reader {
         name: "scene",
         read: scene,
@@ -50,6 +50,16 @@ pub const READERS: [Reader; 5] = [
         name: "gltf",
         read: gltf,
         seeds: gltf_seeds,
+    },
+    Reader {
+        name: "ply",
+        read: ply,
+        seeds: ply_seeds,
+    },
+    Reader {
+        name: "stl",
+        read: stl,
+        seeds: stl_seeds,
     },
 ];
 
@@ -158,6 +168,10 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
 "bufferViews""#,
         )
         .replace("IMAGE", IMAGE);
+    let specular = mapped.replace(
+        r#""KHR_materials_transmission":{"transmissionFactor":0.5}"#,
+        r#""KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.5,0,0,1],"specularGlossinessTexture":{"index":0}}"#,
+    );
     // Nodes that share a child, an accessor without data and a sparse one, a byte order mark, no scene, data without base 64.
     let shared = text.replace(r#""children":[1],"#, r#""children":[1,1],"#);
     let sparse = text.replace(
@@ -174,6 +188,7 @@ fn gltf_seeds() -> Vec<Vec<u8>> {
     [
         text,
         mapped,
+        specular,
         shared,
         sparse,
         format!("\u{feff}{rootless}"),
@@ -198,7 +213,11 @@ fn scene_seeds() -> Vec<Vec<u8>> {
         camera.to_owned(),
         format!(
             "{camera}[[light]]\ndirection = [0, -1, 0]\n{}",
-            object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]")
+            object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]\ndisplacement_map = 'a.png'\ndisplacement_scale = 0.1\ndisplacement_level = 1")
+        ),
+        format!(
+            "{camera}[[light]]\nposition = [1, 2, 3]\n{}",
+            object.replace("'phong'", "'pbr'\nspecular_color = [1, 0.5, 0.25]\nglossiness_map = 'a.png'\nspecular_color_map = { pattern = 'noise', size = 8 }")
         ),
         format!(
             "{camera}[[object]]\nname = 'a'\nvertex_colors = [[0, 0, 0, 0], [1, 1, 1, 1]]\nmesh = {{ shape = 'lathe', triangles = 60, offset = 0.1, profile = [[0, -1], [1, 0], [0, 1]] }}\n[[timeline]]\ntime = 0\n[[timeline]]\ntime = 1\nlabel = 'b'\n[[timeline.object]]\nname = 'a'\nmaterial = {{ alpha = 0.5 }}\n"
@@ -237,12 +256,81 @@ fn obj(bytes: &[u8]) {
 
 fn obj_seeds() -> Vec<Vec<u8>> {
     let mesh = "mtllib m.mtl\no part\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvn 0 0 1\ng side\nusemtl red\ns 1\nf 1/1/1 2/2/1 3//1\nf -4 -2 -1\nf 1 2 3 4\n";
-    let materials = "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\nmap_d -clamp on a.png\nmap_Bump -bm 0.5 a.png\nmap_Ke a.png\n";
+    let materials = "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\nmap_d -clamp on a.png\nmap_Bump -bm 0.5 a.png\nmap_Ke a.png\ndisp -mm 0 0.5 a.png\n";
     vec![
         format!("{mesh}\0{materials}").into_bytes(),
         b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end \xe9".to_vec(),
         mesh.replace('\n', "\r\n").into_bytes(),
     ]
+}
+
+/// A PLY file, as a scene.
+fn ply(bytes: &[u8]) {
+    if let Ok(scene) = Scene::load(put("f.ply", bytes)) {
+        is_sound(&scene);
+    }
+}
+
+/// Text, and both orders of bytes: polygons, colours, normals, texture coordinates, a strip, and elements of other kinds.
+fn ply_seeds() -> Vec<Vec<u8>> {
+    let vertex = "property float x\nproperty float y\nproperty float z\n";
+    let color =
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float alpha\n";
+    let face = "property list uchar int vertex_indices\n";
+    let text = format!(
+        "ply\r\nformat ascii 1.0\ncomment by hand\nelement vertex 4\n{vertex}{color}property float s\nproperty float t\n\
+         element face 2\n{face}property list uchar float texcoord\nelement edge 1\nproperty int v\nend_header\n\
+         0 0 0 255 0 0 1 0 0\n1 0 0 9 9 9 .5 1 0\n1 1 0 0 0 0 1 1 1\n0 1 0 0 0 0 1 0 1\n4 0 1 2 3 0\n3 0 1 2 6 0 0 1 0 1 1\n7\n"
+    );
+    let binary = |is_big: bool| {
+        let order = if is_big { "big" } else { "little" };
+        let number = |bytes: [u8; 4]| {
+            let mut bytes = bytes;
+            if is_big {
+                bytes.reverse();
+            }
+            bytes
+        };
+        let head = format!(
+            "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\n{vertex}property float nx\nelement face 1\n{face}\
+             element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        );
+        let mut bytes = head.into_bytes();
+        for k in 0..16u8 {
+            let x = f32::from(k * 7 % 5);
+            bytes.extend(number(x.to_le_bytes()));
+        }
+        bytes.push(3);
+        for i in [0i32, 1, 2, 6, 0, 1, 2, -1, 1, 3] {
+            bytes.extend(number(i.to_le_bytes()));
+        }
+        bytes
+    };
+    vec![text.into_bytes(), binary(false), binary(true)]
+}
+
+/// An STL file, as a scene.
+fn stl(bytes: &[u8]) {
+    if let Ok(scene) = Scene::load(put("f.stl", bytes)) {
+        is_sound(&scene);
+    }
+}
+
+fn stl_seeds() -> Vec<Vec<u8>> {
+    let facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+    let text = format!(
+        "solid a part\n{facet}{}endsolid a part\n",
+        facet.replace('0', "2")
+    );
+    let mut binary = b"solid by a program".to_vec();
+    binary.resize(80, 0);
+    binary.extend(2u32.to_le_bytes());
+    for k in 0..2u8 {
+        let numbers = (0..12u8).map(|i| f32::from((i * i + k) % 7));
+        binary.extend(numbers.flat_map(f32::to_le_bytes));
+        binary.extend([0, 0]);
+    }
+    vec![text.into_bytes(), binary]
 }
 
 /// A dataset of two parts: the first byte says which of its files the others replace, and in which format.

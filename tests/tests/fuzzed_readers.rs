@@ -116,6 +116,16 @@ fn meshes() {
 }
 
 #[test]
+fn scans() {
+    search("ply");
+}
+
+#[test]
+fn parts_of_machines() {
+    search("stl");
+}
+
+#[test]
 fn datasets() {
     search("dataset");
 }

@@ -187,7 +187,7 @@ fn again(variable: &str, value: &str, package: &str, test: &str) -> Result<(), S
 }
 
 /// One for each reader of files that users hand over.
-const FUZZ_TARGETS: [&str; 5] = ["scene", "obj", "gltf", "dataset", "model"];
+const FUZZ_TARGETS: [&str; 7] = ["scene", "obj", "gltf", "ply", "stl", "dataset", "model"];
 
 /// Commands as a whole and every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
 pub fn fuzz(seconds: &str) -> Result<(), String> {

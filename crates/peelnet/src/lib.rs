@@ -6,7 +6,7 @@
 //! | here | crate | for |
 //! |---|---|---|
 //! | [`Gpu`], [`gpu`] | `peelnet_gpu` | an adapter and a device, opened here or handed in |
-//! | [`Scene`], [`scene`] | `peelnet_scene` | TOML, glTF and OBJ files, generated meshes, cameras, shipped scenes |
+//! | [`Scene`], [`scene`] | `peelnet_scene` | TOML, glTF, OBJ, PLY and STL files, generated meshes, cameras, shipped scenes |
 //! | [`Renderer`], [`render`] | `peelnet_render` | drawing a scene with any method |
 //! | [`extract`] | `peelnet_peel` | every fragment of a scene as a row |
 //! | [`dataset`] | `peelnet_dataset` | reading those rows: Parquet, CSV and NPY |

@@ -2,7 +2,7 @@
 
 use crate::mesh::Mesh;
 
-/// Most triangles of the meshes that are generated, copied or instanced.
+/// Most triangles of the meshes that are generated, copied, instanced, or read from files whose headers count them.
 pub(crate) const MAX_TRIANGLES: u64 = 50_000_000;
 
 /// Most vertices of these meshes.

@@ -1,17 +1,20 @@
-//! The scene file: TOML, strict. A glTF or GLB file is a scene too, see [`Scene::load`].
+//! The scene file: TOML, strict. A mesh file is a scene too, see [`Scene::load`].
 
+mod displaced;
 mod edited;
-mod gltf_scene;
 mod loader;
 pub(crate) mod materials;
+mod mesh_scene;
 mod objects;
 mod raw;
 pub(crate) mod references;
+mod specular;
 #[cfg(test)]
 mod tests;
 mod timeline;
 mod views;
 
+pub use edited::Edited;
 pub use references::{MapRef, MeshRef};
 
 use crate::{
@@ -19,6 +22,7 @@ use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::Lighting,
+    mesh_file::Format,
     scene::{Scene, State},
 };
 use loader::Loader;
@@ -27,8 +31,9 @@ use std::{io, path::Path};
 use timeline::{NO_TIMELINE, Snapshot};
 
 impl Scene {
-    /// Reads a scene file and everything it names from the file system, a scene with a timeline in its first state. A glTF or GLB file is a
-    /// scene too: with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it.
+    /// Reads a scene file and everything it names from the file system, a scene with a timeline in its first state. A mesh file (glTF, GLB,
+    /// OBJ, PLY, STL) is a scene too: with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from
+    /// three sides. Its materials are as the file says: opaque ones stay opaque.
     ///
     /// # Errors
     /// The first thing that is wrong, with file, line or key, and a hint.
@@ -90,15 +95,14 @@ impl Scene {
     }
 }
 
-/// Reads a scene file, or a glTF file as a scene.
+/// Endings of the names of files that are scenes, in lower case.
+pub const ENDINGS: [&str; 6] = ["toml", "gltf", "glb", "obj", "ply", "stl"];
+
+/// Reads a scene file, or a mesh file as a scene.
 fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, SceneError> {
-    let ending = path.extension().and_then(|e| e.to_str());
-    if matches!(
-        ending.map(str::to_lowercase).as_deref(),
-        Some("gltf" | "glb")
-    ) {
+    if let Some(format) = Format::of(path) {
         return match time {
-            None => gltf_scene::load(path, files),
+            None => mesh_scene::load(path, format, files),
             Some(_) => Err(SceneError::Value {
                 path: path.to_owned(),
                 field: "timeline".into(),

@@ -14,7 +14,7 @@ use std::{
 pub(crate) enum FileKind {
     /// A scene file (TOML).
     Scene,
-    /// OBJ, glTF, GLB, or a buffer of a glTF file.
+    /// OBJ, PLY, STL, glTF, GLB, or a buffer of a glTF file.
     Mesh,
     /// MTL.
     Materials,

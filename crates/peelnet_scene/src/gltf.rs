@@ -57,11 +57,12 @@ pub struct GltfCamera {
 const MAX_JSON_BYTES: usize = 256 << 20;
 
 /// Extensions that are drawn.
-const KNOWN: [&str; 5] = [
+const KNOWN: [&str; 6] = [
     "KHR_lights_punctual",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_materials_transmission",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_texture_transform",
 ];
 

@@ -93,7 +93,7 @@ impl Mesh {
             self.uvs.resize(first, [Vec2::ZERO; 3]);
             self.uvs
                 .extend(triangles.iter().map(|t| t.map(|i| uvs[i as usize])));
-        } else if part.material.maps.all().iter().any(Option::is_some) {
+        } else if part.material.maps.has_any() {
             part.material.maps = Maps::NONE;
             lost = true;
         }
@@ -279,6 +279,28 @@ pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
         }
     }
     sums.into_iter().map(|n| n.normalize_or(Vec3::Z)).collect()
+}
+
+/// A position as a key; −0 and 0 are one.
+pub(crate) fn key_of(p: Vec3) -> [u32; 3] {
+    p.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+/// Smooth normals of a surface whose vertices may be split: those at one position have one normal.
+pub(crate) fn smooth_normals_by_position(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut sums: HashMap<[u32; 3], Vec3> = HashMap::new();
+    for t in triangles {
+        let [a, b, c] = t.map(|i| positions[i as usize]);
+        let area = (b - a).cross(c - a);
+        for p in [a, b, c] {
+            *sums.entry(key_of(p)).or_default() += area;
+        }
+    }
+    let normal = |p: &Vec3| sums.get(&key_of(*p)).copied().unwrap_or_default();
+    positions
+        .iter()
+        .map(|p| normal(p).normalize_or(Vec3::Z))
+        .collect()
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
-    mesh::{Mesh, NO_UVS, Part, PartGeometry},
+    mesh::{Mesh, NO_UVS, Part, PartGeometry, key_of},
     polygons::Triangulator,
     warnings::Warnings,
 };
@@ -325,11 +325,6 @@ fn triangles(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Vec<[u32; 3]
     triangles
 }
 
-/// A position as a key; −0 and 0 are one.
-fn key(p: Vec3) -> [u32; 3] {
-    p.to_array().map(|x| (x + 0.0).to_bits())
-}
-
 /// The sum of the adjacent triangles' area vectors at every position of the file: groups and UV seams split vertices, but not the
 /// surface.
 fn area_sums(models: &[tobj::Model], triangles: &[Vec<[u32; 3]>]) -> HashMap<[u32; 3], Vec3> {
@@ -340,7 +335,7 @@ fn area_sums(models: &[tobj::Model], triangles: &[Vec<[u32; 3]>]) -> HashMap<[u3
             let [a, b, c] = t.map(position);
             let area = (b - a).cross(c - a);
             for p in [a, b, c] {
-                *sums.entry(key(p)).or_default() += area;
+                *sums.entry(key_of(p)).or_default() += area;
             }
         }
     }
@@ -364,7 +359,7 @@ fn part_geometry(
     lost.triangles += all - triangles.len();
     let smooth = |p: &Vec3| {
         areas
-            .get(&key(*p))
+            .get(&key_of(*p))
             .map_or(Vec3::Z, |n| n.normalize_or(Vec3::Z))
     };
     let given = vectors(&mesh.normals);

@@ -227,6 +227,17 @@ impl Pattern {
         })
     }
 
+    /// As the field itself, linear: heights of a displacement, or glossiness.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn grey(&self) -> Result<Texture, String> {
+        self.texture("a pattern of grey", |t| {
+            let grey = byte(t);
+            [grey, grey, grey, 255]
+        })
+    }
+
     /// As the share of ambient light that arrives.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 #[cfg(feature = "images")]
 mod decode;
 
-use crate::budget::Budget;
+use crate::{budget::Budget, displacement::Displacement};
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::{borrow::Cow, sync::Arc};
@@ -54,6 +54,8 @@ pub struct Maps {
     pub occlusion: Option<Arc<Texture>>,
     /// Emission in sRGB.
     pub emissive: Option<Arc<Texture>>,
+    /// Moves the surface, at load: it is `None` in the objects of a scene, whose meshes have been moved.
+    pub displacement: Option<Displacement>,
     /// Scale of the normal map's slopes.
     pub normal_scale: f32,
     /// Strength of the occlusion map, 0 … 1.
@@ -72,13 +74,19 @@ impl Maps {
         metallic_roughness: None,
         occlusion: None,
         emissive: None,
+        displacement: None,
         normal_scale: 1.0,
         occlusion_strength: 1.0,
         wrap: [Wrap::Repeat; 2],
         nearest: false,
     };
 
-    /// All five, in the order of their bindings.
+    /// Whether there is any, or a displacement.
+    pub(crate) fn has_any(&self) -> bool {
+        self.displacement.is_some() || self.all().iter().any(Option::is_some)
+    }
+
+    /// The five that are drawn, in the order of their bindings.
     pub fn all(&self) -> [Option<&Arc<Texture>>; 5] {
         [
             self.color.as_ref(),

@@ -473,6 +473,11 @@ fn instances_are_counted_before_they_are_made() {
     for word in ["4000000 primitives", "1000000"] {
         assert!(e.contains(word), "{e}");
     }
+    // Counts whose sum overflows. Found by fuzzing.
+    let mut d = document();
+    d["accessors"][0]["count"] = u64::MAX.into();
+    let e = load(&glb(&d, &square())).expect_err("too many");
+    assert!(e.contains("vertices") || e.contains("triangles"), "{e}");
     // A strip of 70 million indices without data, which are zeros.
     let mut d = document();
     let accessors = d["accessors"].as_array_mut().unwrap();

@@ -2,6 +2,7 @@
 
 use crate::{app::App, compare::Mode, eye, stage::Source};
 use egui::{Context, Key};
+use peelnet_scene::file::ENDINGS;
 use std::path::{Path, PathBuf};
 
 /// How far the eye flies in a second, in radii of the scene.
@@ -40,8 +41,6 @@ const DIGITS: [Key; 9] = [
     Key::Num9,
 ];
 
-/// Endings of files that are scenes, best first: of several files dropped at once, the scene is the one of the first ending.
-const SCENES: [&str; 6] = ["toml", "glb", "gltf", "obj", "ply", "stl"];
 const MODEL: &str = "safetensors";
 
 fn ending(path: &Path) -> String {
@@ -49,9 +48,9 @@ fn ending(path: &Path) -> String {
     ending.unwrap_or_default().to_lowercase()
 }
 
-/// The scene among files, where there is one.
+/// The scene among files, where there is one: of several, the one whose ending comes first.
 pub(crate) fn scene_among<'a>(paths: impl Iterator<Item = &'a Path> + Clone) -> Option<&'a Path> {
-    let mut endings = SCENES.iter();
+    let mut endings = ENDINGS.iter();
     endings.find_map(|wanted| paths.clone().find(|p| ending(p) == **wanted))
 }
 
@@ -71,7 +70,7 @@ impl App {
             let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
             self.messages.error(format!(
                 "{name}: not a scene or a network; drop a {} or .{MODEL} file",
-                SCENES.map(|e| format!(".{e}")).join(", ")
+                ENDINGS.map(|e| format!(".{e}")).join(", ")
             ));
         }
     }

@@ -10,7 +10,7 @@ use peelnet_eval::effects::{self, Cost, Settings};
 use peelnet_files::{counted, one_line as escaped, printable, thousands};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
-use peelnet_scene::{Census, Effect, Scene, suite};
+use peelnet_scene::{Census, Effect, Scene, file::ENDINGS, suite};
 use serde_json::json;
 use std::path::Path;
 use std::{collections::HashMap, fmt::Write as _};
@@ -40,17 +40,15 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
             "{}: there is no such file or folder",
             shown(path)
         )))
-    } else if ["toml", "gltf", "glb"]
-        .iter()
-        .any(|e| ending.eq_ignore_ascii_case(e))
-    {
+    } else if ENDINGS.iter().any(|e| ending.eq_ignore_ascii_case(e)) {
         scene(context, path, args.time)
     } else if ending.eq_ignore_ascii_case("safetensors") {
         model(context, path)
     } else {
         Err(Failure::Usage(format!(
-            "{}: neither a scene (.toml, .gltf, .glb), a dataset (a folder) nor a model (.safetensors)",
-            shown(path)
+            "{}: neither a scene (.{}), a dataset (a folder) nor a model (.safetensors)",
+            shown(path),
+            ENDINGS.join(", .")
         )))
     }
 }

@@ -7,9 +7,13 @@ use crate::{
     gltf,
     material::{Lighting, Material},
     mesh::Mesh,
+    mesh_file::Format,
     obj,
     pattern::Pattern,
+    ply,
     shapes::Shape,
+    specular_glossiness::Converter,
+    stl,
     texture::Texture,
 };
 use std::{
@@ -32,6 +36,8 @@ pub(super) struct Loader<'a> {
     /// Generated textures, by pattern and key.
     patterns: HashMap<(String, &'static str), Arc<Texture>>,
     textures: HashMap<PathBuf, Arc<Texture>>,
+    /// For materials of the specular–glossiness workflow.
+    pub converter: Converter,
 }
 
 impl<'a> Loader<'a> {
@@ -45,6 +51,7 @@ impl<'a> Loader<'a> {
             shapes: HashMap::new(),
             patterns: HashMap::new(),
             textures: HashMap::new(),
+            converter: Converter::default(),
         }
     }
 
@@ -119,22 +126,29 @@ impl<'a> Loader<'a> {
     }
 
     fn mesh_file(&mut self, file: &Path, field: &str) -> Result<Mesh, SceneError> {
-        let ending = file.extension().and_then(|e| e.to_str());
-        let (mesh, warnings) = match ending.unwrap_or_default().to_lowercase().as_str() {
-            "obj" => {
+        let (mesh, warnings) = match Format::of(file) {
+            Some(Format::Obj) => {
                 let loaded = obj::load(file, self.lighting, &mut self.files)?;
                 (loaded.mesh, loaded.warnings)
             }
-            "gltf" | "glb" => {
+            Some(Format::Gltf) => {
                 // The scene file's lights and cameras replace those of the mesh.
                 let loaded = gltf::load(file, &mut self.files)?;
                 (loaded.mesh, loaded.warnings)
             }
-            _ => {
+            Some(Format::Ply) => {
+                let loaded = ply::load(file, self.lighting, &mut self.files)?;
+                (loaded.mesh, loaded.warnings)
+            }
+            Some(Format::Stl) => {
+                let loaded = stl::load(file, self.lighting, &mut self.files)?;
+                (loaded.mesh, loaded.warnings)
+            }
+            None => {
                 return Err(self.value(
                     field,
                     format!(
-                        "{} is neither .obj, .gltf nor .glb; export the mesh as one of them",
+                        "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
                         shown(file)
                     ),
                 ));

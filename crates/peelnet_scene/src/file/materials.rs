@@ -1,9 +1,11 @@
 //! Materials: a mesh's own, with the values and textures that the scene file sets.
 
 use super::{
+    displaced,
     loader::Loader,
     raw::{AlphaMode, RawMaterial},
     references::MapRef,
+    specular::Finish,
 };
 use crate::{
     error::SceneError,
@@ -76,6 +78,10 @@ impl Loader<'_> {
         if let Some(x) = strength {
             return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
         }
+        let displacement = match &raw.displacement_map {
+            Some(_) => self.displacement(raw, read, field)?,
+            None => base.displacement.clone(),
+        };
         let mut map = |map: &Option<MapRef>, of_pattern, key, base: &Option<Arc<Texture>>| {
             let own = map.as_ref().filter(|_| read);
             let own = self.map(own, of_pattern, key, &format!("{field}.material"))?;
@@ -108,6 +114,7 @@ impl Loader<'_> {
                 "emissive_map",
                 &base.emissive,
             )?,
+            displacement,
             normal_scale: raw.normal_scale.unwrap_or(base.normal_scale),
             occlusion_strength: raw.occlusion_strength.unwrap_or(base.occlusion_strength),
             wrap: raw.wrap.map_or(base.wrap, |wrap| [wrap; 2]),
@@ -123,7 +130,7 @@ impl Loader<'_> {
         read: bool,
         field: &str,
     ) -> Result<Material, SceneError> {
-        let maps = self.maps(&base.maps, raw, read, field)?;
+        let mut maps = self.maps(&base.maps, raw, read, field)?;
         let fail = |(key, message): (&str, String)| {
             self.value(&format!("{field}.material.{key}"), message)
         };
@@ -139,18 +146,28 @@ impl Loader<'_> {
             let message = "belongs to lighting = \"pbr\": add that, or leave it out";
             return Err(fail(("metallic_roughness_map", message.into())));
         }
+        let converted = self.specular_glossiness(base, raw, &mut maps, (lighting, read), field)?;
         // A map multiplies the material's value, which is 1 where the file gives a map and no value.
         let by_map = |map: &Option<MapRef>, base: f32| if map.is_some() { 1.0 } else { base };
         let metal = &raw.metallic_roughness_map;
+        let Finish {
+            color,
+            metallic,
+            roughness,
+        } = converted.unwrap_or(Finish {
+            color: raw.color.unwrap_or(base.color),
+            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
+            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
+        });
         Ok(Material {
             name: base.name.clone(),
-            color: raw.color.unwrap_or(base.color),
+            color,
             alpha: raw.alpha.unwrap_or(base.alpha),
             lighting,
             specular: raw.specular.unwrap_or(base.specular),
             shininess: raw.shininess.unwrap_or(base.shininess),
-            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
-            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
+            metallic,
+            roughness,
             emission: raw
                 .emission
                 .unwrap_or(base.emission.map(|c| by_map(&raw.emissive_map, c))),
@@ -164,7 +181,7 @@ impl Loader<'_> {
 }
 
 /// A key of a material, and what is wrong with its value.
-type Fault = (&'static str, String);
+pub(super) type Fault = (&'static str, String);
 
 fn in_unit(key: &'static str, x: f32) -> Result<f32, Fault> {
     if (0.0..=1.0).contains(&x) {
@@ -189,10 +206,14 @@ fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
     for x in raw.transmission_color.into_iter().flatten() {
         in_unit("transmission_color", x)?;
     }
+    for x in raw.specular_color.into_iter().flatten() {
+        in_unit("specular_color", x)?;
+    }
     for (key, x) in [
         ("alpha", raw.alpha),
         ("metallic", raw.metallic),
         ("roughness", raw.roughness),
+        ("glossiness", raw.glossiness),
     ] {
         x.map_or(Ok(0.0), |x| in_unit(key, x))?;
     }
@@ -207,6 +228,7 @@ fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
             return Err((key, format!("{x} must be finite and not negative")));
         }
     }
+    displaced::check(raw)?;
     // pow(0, 0) is not defined in shaders.
     let is_sharp = |x: &f32| x.is_finite() && *x >= 1.0;
     match raw.shininess.filter(|x| !is_sharp(x)) {

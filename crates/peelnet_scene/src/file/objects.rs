@@ -1,6 +1,6 @@
 //! `[[object]]` and `[[scatter]]`.
 
-use super::{loader::Loader, raw::RawObject, timeline::Snapshot};
+use super::{displaced, loader::Loader, raw::RawObject, timeline::Snapshot};
 use crate::{
     error::SceneError,
     material::Material,
@@ -52,15 +52,19 @@ pub(super) fn place(
     let taken = loader.files.budget.take_parts(1, mesh.parts.len());
     taken.map_err(|e| loader.value(&format!("{field}.mesh"), e))?;
     let mut materials = Vec::with_capacity(mesh.parts.len());
+    let later = next.material.after(&raw.material);
     for part in &mesh.parts {
         let mut shown = loader.material(&part.material, &material, true, &field)?;
         if snapshot.share > 0.0 {
-            let next = next.material.after(&raw.material);
-            let next = loader.material(&part.material, &next, false, &field)?;
+            let next = loader.material(&part.material, &later, false, &field)?;
             shown = shown.towards(&next, snapshot.share);
         }
         materials.push(shown);
     }
+    let states = [&material, &later];
+    displaced::in_object_space(&mut materials, states, snapshot.share, &world_from_object);
+    let place = format!("{field}.material.displacement_map");
+    let mesh = loader.displaced(mesh, &mut materials, &place)?;
     Ok(Object {
         name: raw.name.clone().unwrap_or(field),
         mesh,
@@ -119,7 +123,9 @@ pub(super) fn scatter(
         if map.is_some() && mesh.uvs.is_empty() {
             return Err(loader.value(&format!("{field}.mesh"), NO_UVS));
         }
-        meshes.push(mesh);
+        let own = mesh.parts.iter().map(|p| p.material.clone());
+        let mut own: Vec<Material> = own.collect();
+        meshes.push(loader.displaced(mesh, &mut own, &format!("{field}.mesh"))?);
     }
     let parts = meshes.iter().map(|m| m.parts.len()).max().unwrap_or(0);
     let taken = loader.files.budget.take_parts(scatter.count, parts);

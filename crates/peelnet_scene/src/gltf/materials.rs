@@ -7,6 +7,7 @@ use super::{
 use crate::{
     files::FileKind,
     material::{Lighting, Material},
+    specular_glossiness::Values,
     texture::{Maps, Texture, Wrap},
 };
 use glam::{Mat2, Vec2};
@@ -48,14 +49,22 @@ impl Placement {
     }
 }
 
-/// A material's textures in the order of [`Maps::all`], and their placements.
+/// The specular–glossiness workflow of a material that has it. An unlit one has neither workflow.
+fn specular_glossiness<'a>(
+    m: &gltf::Material<'a>,
+) -> Option<gltf::material::PbrSpecularGlossiness<'a>> {
+    m.pbr_specular_glossiness().filter(|_| !m.unlit())
+}
+
+/// A material's textures in the order of [`Maps::all`], and their placements. A texture of specular colours and glossiness is in the place of
+/// metallic and roughness.
 fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Placement)>; 5] {
     let pbr = m.pbr_metallic_roughness();
-    let infos = [
-        pbr.base_color_texture(),
-        pbr.metallic_roughness_texture(),
-        m.emissive_texture(),
-    ];
+    let [color, finish] = match specular_glossiness(m) {
+        Some(pbr) => [pbr.diffuse_texture(), pbr.specular_glossiness_texture()],
+        None => [pbr.base_color_texture(), pbr.metallic_roughness_texture()],
+    };
+    let infos = [color, finish, m.emissive_texture()];
     // The crate does not return the transforms of normal and occlusion maps: they are taken to be the first of the others'.
     let shared = infos.iter().flatten().map(Placement::of).next();
     let transform = shared.unwrap_or(Placement::PLAIN).transform;
@@ -167,6 +176,7 @@ impl Reader<'_, '_> {
             metallic_roughness,
             occlusion,
             emissive,
+            displacement: None,
             normal_scale: finite(normal_scale, -100.0, 100.0),
             occlusion_strength: finite(occlusion_strength, 0.0, 1.0),
             wrap: [wrap(wrap_s), wrap(wrap_t)],
@@ -175,11 +185,49 @@ impl Reader<'_, '_> {
         (maps, placement)
     }
 
+    /// Base colour with opacity, metallic and roughness of a material of the specular–glossiness workflow, whose maps become those of the other.
+    fn converted(
+        &mut self,
+        pbr: &gltf::material::PbrSpecularGlossiness<'_>,
+        maps: &mut Maps,
+    ) -> ([f32; 4], f32, f32) {
+        let unit = |x: f32| finite(x, 0.0, 1.0);
+        let [r, g, b, a] = pbr.diffuse_factor();
+        let values = Values {
+            diffuse: [r, g, b].map(unit),
+            specular: pbr.specular_factor().map(unit),
+            glossiness: unit(pbr.glossiness_factor()),
+        };
+        let (diffuse, specular) = (maps.color.take(), maps.metallic_roughness.take());
+        let budget = &mut self.files.budget;
+        let converter = &mut self.converter;
+        let textured = converter.convert(values, diffuse.as_ref(), specular.as_ref(), budget);
+        let converted = textured.or_else(|why| {
+            let what = format!("maps of the specular–glossiness workflow, which take {why}");
+            self.missing.add(what);
+            converter.convert(values, None, None, budget)
+        });
+        let Ok(converted) = converted else {
+            return ([r, g, b, a], 0.0, 1.0);
+        };
+        maps.color = converted.color_map;
+        maps.metallic_roughness = converted.metallic_roughness_map;
+        let [r, g, b] = converted.color;
+        ([r, g, b, a], converted.metallic, converted.roughness)
+    }
+
     /// A material, and the placement of its maps.
     pub fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placement) {
-        let (maps, placement) = self.maps(m);
+        let (mut maps, placement) = self.maps(m);
         let pbr = m.pbr_metallic_roughness();
-        let [r, g, b, a] = pbr.base_color_factor();
+        let ([r, g, b, a], metallic, roughness) = match specular_glossiness(m) {
+            Some(pbr) => self.converted(&pbr, &mut maps),
+            None => (
+                pbr.base_color_factor(),
+                pbr.metallic_factor(),
+                pbr.roughness_factor(),
+            ),
+        };
         let base = [r, g, b].map(|c| finite(c, 0.0, 1.0));
         let lighting = if m.unlit() {
             Lighting::Unlit
@@ -205,8 +253,8 @@ impl Reader<'_, '_> {
             color: base.map(|c| c * (1.0 - passing)),
             transmission: base.map(|c| c * passing),
             alpha: finite(alpha, 0.0, 1.0),
-            metallic: finite(pbr.metallic_factor(), 0.0, 1.0),
-            roughness: finite(pbr.roughness_factor(), 0.0, 1.0),
+            metallic: finite(metallic, 0.0, 1.0),
+            roughness: finite(roughness, 0.0, 1.0),
             emission: m.emissive_factor().map(|c| finite(c * strength, 0.0, 1e6)),
             maps,
             alpha_cutoff: alpha_cutoff.map(|c| finite(c, 0.0, 1.0)),

@@ -7,6 +7,7 @@ use crate::{
     files::Files,
     mesh::Mesh,
     scene::{Light, Source},
+    specular_glossiness::Converter,
     texture::Texture,
     warnings::Warnings,
 };
@@ -19,6 +20,8 @@ pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
     pub buffers: Vec<Vec<u8>>,
+    /// For materials of the specular–glossiness workflow.
+    pub converter: Converter,
     /// By number, and whether their opacity is dropped; `None` for those that cannot be drawn.
     pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What the file uses and is not drawn.
@@ -35,6 +38,11 @@ pub(super) fn finite(x: f32, low: f32, high: f32) -> f32 {
     }
 }
 
+/// Counts of a file may be anything.
+fn sum(a: [u64; 3], b: [u64; 3]) -> [u64; 3] {
+    [0, 1, 2].map(|k| a[k].saturating_add(b[k]))
+}
+
 /// How many primitives, triangles and vertices a mesh has.
 fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
     mesh.primitives().fold([0; 3], |all, primitive| {
@@ -47,7 +55,7 @@ fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
             _ => return all,
         };
         let own = [1, triangles, vertices];
-        [0, 1, 2].map(|k| all[k] + own[k])
+        sum(all, own)
     })
 }
 
@@ -57,6 +65,7 @@ impl<'a, 'f> Reader<'a, 'f> {
             path,
             files,
             buffers,
+            converter: Converter::default(),
             images: HashMap::new(),
             missing: Warnings::default(),
             loaded: LoadedGltf {
@@ -101,7 +110,7 @@ impl<'a, 'f> Reader<'a, 'f> {
         while let Some(node) = open.pop() {
             if let Some(mesh) = node.mesh() {
                 let of = meshes.entry(mesh.index()).or_insert_with(|| size(&mesh));
-                all = [0, 1, 2].map(|k| all[k] + of[k]);
+                all = sum(all, *of);
             }
             open.extend(node.children());
         }

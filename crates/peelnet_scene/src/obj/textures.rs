@@ -1,6 +1,7 @@
 //! Textures that MTL files name.
 
 use crate::{
+    displacement::Displacement,
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
@@ -25,6 +26,7 @@ pub(super) enum Use {
     Roughness,
     Metallic,
     Emission,
+    Displacement,
 }
 
 pub(super) fn drawn_as(key: &str) -> Option<Use> {
@@ -36,6 +38,7 @@ pub(super) fn drawn_as(key: &str) -> Option<Use> {
         "map_Pr" => Use::Roughness,
         "map_Pm" => Use::Metallic,
         "map_Ke" => Use::Emission,
+        "disp" | "map_disp" | "map_Disp" => Use::Displacement,
         _ => return None,
     })
 }
@@ -63,6 +66,8 @@ struct Statement {
     file: PathBuf,
     /// Multiplies heights.
     strength: f32,
+    /// Of heights: what is added to them, and what they are multiplied by.
+    range: [f32; 2],
     clamp: bool,
 }
 
@@ -113,6 +118,7 @@ impl<'a> Textures<'a> {
         let mut statement = Statement {
             file: PathBuf::new(),
             strength: 1.0,
+            range: [0.0, 1.0],
             clamp: false,
         };
         while let Some((option, after)) = rest.split_first()
@@ -126,6 +132,11 @@ impl<'a> Textures<'a> {
             };
             match (*option, after.first()) {
                 ("-bm", Some(value)) => statement.strength = value.parse().unwrap_or(1.0),
+                ("-mm", Some(base)) if drawn_as(key) == Some(Use::Displacement) => {
+                    let number = |w: Option<&&str>| w.and_then(|w| w.parse::<f32>().ok());
+                    let gain = number(after.get(1)).unwrap_or(1.0);
+                    statement.range = [number(Some(base)).unwrap_or(0.0), gain];
+                }
                 ("-clamp", Some(value)) => statement.clamp = *value == "on",
                 _ => self.warnings.about(
                     format!("{}: not drawn: ", shown(library)),
@@ -233,6 +244,19 @@ impl<'a> Textures<'a> {
                 material.metallic = 1.0;
             }
         }
+        maps.displacement = found.get(&Use::Displacement).and_then(|map| {
+            let statement = &uses[&Use::Displacement];
+            let [base, gain] = statement.range;
+            // Heights are base + gain × luminance, in the file's own lengths.
+            let scale = gain * statement.strength;
+            let middle = -base / gain;
+            (scale.is_finite() && middle.is_finite()).then(|| Displacement {
+                map: Arc::clone(map),
+                scale,
+                middle,
+                level: None,
+            })
+        });
         maps.emissive = found.get(&Use::Emission).cloned();
         if maps.emissive.is_some() && m.emissive.is_none() {
             material.emission = [1.0; 3];

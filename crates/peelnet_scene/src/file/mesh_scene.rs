@@ -1,0 +1,224 @@
+//! A mesh file as a whole scene.
+
+use crate::{
+    camera::Camera,
+    displacement::displaced,
+    error::{SceneError, shown},
+    files::Files,
+    gltf::{self, GltfCamera},
+    material::{Lighting, Material},
+    mesh::Mesh,
+    mesh_file::Format,
+    obj, ply,
+    scene::{Light, Object, Scene, Source},
+    stl,
+};
+use glam::{Mat4, Vec3};
+use std::{path::Path, sync::Arc};
+
+/// Views of a file without a camera.
+const VIEWS: u32 = 3;
+
+/// What a mesh file holds.
+struct Loaded {
+    mesh: Mesh,
+    lights: Vec<Light>,
+    cameras: Vec<GltfCamera>,
+    warnings: Vec<String>,
+}
+
+/// Reads a file of any format.
+fn read(path: &Path, format: Format, files: &mut Files<'_>) -> Result<Loaded, SceneError> {
+    let (mesh, warnings) = match format {
+        Format::Gltf => {
+            let loaded = gltf::load(path, files)?;
+            return Ok(Loaded {
+                mesh: loaded.mesh,
+                lights: loaded.lights,
+                cameras: loaded.cameras,
+                warnings: loaded.warnings,
+            });
+        }
+        Format::Obj => {
+            let loaded = obj::load(path, Lighting::Phong, files)?;
+            (loaded.mesh, loaded.warnings)
+        }
+        Format::Ply => {
+            let loaded = ply::load(path, Lighting::Phong, files)?;
+            (loaded.mesh, loaded.warnings)
+        }
+        Format::Stl => {
+            let loaded = stl::load(path, Lighting::Phong, files)?;
+            (loaded.mesh, loaded.warnings)
+        }
+    };
+    Ok(Loaded {
+        mesh,
+        lights: Vec::new(),
+        cameras: Vec::new(),
+        warnings,
+    })
+}
+
+/// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
+pub(super) fn load(path: &Path, format: Format, mut files: Files<'_>) -> Result<Scene, SceneError> {
+    let Loaded {
+        mut mesh,
+        mut lights,
+        cameras,
+        mut warnings,
+    } = read(path, format, &mut files)?;
+    let fail = |message: String| SceneError::Mesh {
+        path: path.to_owned(),
+        line: None,
+        message,
+    };
+    let materials = mesh.parts.iter().map(|p| p.material.clone());
+    let mut materials: Vec<Material> = materials.collect();
+    if materials.iter().any(|m| m.maps.displacement.is_some()) {
+        mesh = displaced(&mesh, &materials, &mut files.budget).map_err(&fail)?;
+        for material in &mut materials {
+            material.maps.displacement = None;
+        }
+    }
+    let bounds = Bounds::of(&mesh).map_err(&fail)?;
+    let cameras = cameras.iter();
+    let mut views: Vec<Camera> = cameras.filter_map(|c| camera(c, bounds)).collect();
+    if views.is_empty() {
+        let first = fitting_camera(bounds);
+        views.extend((0..VIEWS).map(|i| first.orbited(360.0 * i as f32 / VIEWS as f32)));
+    }
+    if lights.is_empty()
+        && let Some(lighting) = one_lighting(&mut materials)
+    {
+        // Other formats have no lights: that is no news.
+        if format == Format::Gltf {
+            warnings.push(format!(
+                "{}: has no point light: two are added; put it into a scene file with lights of your own, or none",
+                shown(path)
+            ));
+        }
+        lights.extend(default_lights(bounds, lighting));
+    }
+    if format != Format::Gltf && materials.iter().all(Material::is_opaque) {
+        warnings.push(format!(
+            "{}: is opaque; to look through it, name it in a scene file, with material = {{ alpha = 0.5 }}",
+            shown(path)
+        ));
+    }
+    let name = super::name_of(path);
+    let object = Object {
+        name: name.clone(),
+        materials,
+        mesh: Arc::new(mesh),
+        world_from_object: Mat4::IDENTITY,
+        layer: None,
+    };
+    Ok(Scene {
+        name,
+        source: path.to_owned(),
+        files: files.used().to_vec(),
+        hash: files.hash(),
+        background: [1.0; 3],
+        transparency_scale: 1.0,
+        views,
+        lights,
+        objects: vec![object],
+        held_out: false,
+        warnings,
+        timeline: Vec::new(),
+        time: 0.0,
+    })
+}
+
+/// Lights all surfaces that are lit in one way, as one pair of lights suits one: physically based if any is. `None` if none is lit.
+fn one_lighting(materials: &mut [Material]) -> Option<Lighting> {
+    let has = |materials: &[Material], l: Lighting| materials.iter().any(|m| m.lighting == l);
+    if !has(materials, Lighting::Pbr) {
+        return has(materials, Lighting::Phong).then_some(Lighting::Phong);
+    }
+    let lit = materials.iter_mut();
+    for material in lit.filter(|m| m.lighting != Lighting::Unlit) {
+        material.lighting = Lighting::Pbr;
+    }
+    Some(Lighting::Pbr)
+}
+
+/// A sphere around all of a file.
+#[derive(Clone, Copy)]
+struct Bounds {
+    middle: Vec3,
+    radius: f32,
+}
+
+impl Bounds {
+    /// Lengths beyond this overflow when they are squared.
+    const LARGEST: f32 = 1e16;
+
+    fn of(mesh: &Mesh) -> Result<Self, String> {
+        let (low, high) = mesh.bounds().unwrap_or_default();
+        let farthest = low.abs().max(high.abs()).max_element();
+        if farthest > Self::LARGEST {
+            return Err(format!(
+                "reaches {farthest:e} from the origin, and a scene at most {:e}; scale it down",
+                Self::LARGEST
+            ));
+        }
+        let middle = (low + high) / 2.0;
+        Ok(Self {
+            middle,
+            // Far from the origin a camera that is closer would be at the same place as its target.
+            radius: ((high - low).length() / 2.0).max(1e-6).max(1e-5 * farthest),
+        })
+    }
+}
+
+/// A camera of the file; `None` where its numbers make no sense.
+fn camera(c: &GltfCamera, bounds: Bounds) -> Option<Camera> {
+    let position = c.file_from_camera.transform_point3(Vec3::ZERO);
+    let direction = |v: Vec3| c.file_from_camera.transform_vector3(v).try_normalize();
+    let distance = (position - bounds.middle).length();
+    let far = c.far.unwrap_or(distance + 4.0 * bounds.radius);
+    let camera = Camera {
+        position,
+        target: position + direction(Vec3::NEG_Z)?,
+        up: direction(Vec3::Y)?,
+        fov_y_degrees: c.fov_y.to_degrees(),
+        near: c.near,
+        far,
+    };
+    let is_sound = c.near > 0.0
+        && c.near < far
+        && far.is_finite()
+        && (0.01..179.0).contains(&camera.fov_y_degrees);
+    (is_sound && camera.view_from_world().is_finite()).then_some(camera)
+}
+
+/// A camera that sees all of a file.
+fn fitting_camera(bounds: Bounds) -> Camera {
+    let towards = Vec3::new(0.5, 0.35, 1.0).normalize();
+    Camera {
+        position: bounds.middle + towards * bounds.radius * 2.8,
+        target: bounds.middle,
+        up: Vec3::Y,
+        fov_y_degrees: 45.0,
+        near: bounds.radius * 0.5,
+        far: bounds.radius * 8.0,
+    }
+}
+
+/// Lights so bright that a white surface facing them is nearly white.
+fn default_lights(bounds: Bounds, lighting: Lighting) -> [Light; 2] {
+    [([0.6, 0.9, 1.0], 0.8), ([-1.0, 0.1, 0.7], 0.4)].map(|(towards, share)| {
+        let distance = 4.0 * bounds.radius;
+        Light {
+            source: Source::Point(bounds.middle + Vec3::from(towards).normalize() * distance),
+            color: [1.0; 3],
+            intensity: if lighting == Lighting::Pbr {
+                share * std::f32::consts::PI * distance * distance
+            } else {
+                share
+            },
+        }
+    })
+}

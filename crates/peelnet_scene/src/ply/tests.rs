@@ -1,0 +1,279 @@
+//! PLY files as scanners' programs write them, and as they should not.
+
+use super::*;
+
+fn load(bytes: &[u8]) -> Result<LoadedPly, String> {
+    let read = |_: &Path| Ok(bytes.to_vec());
+    load_ply_from(Path::new("a.ply"), Lighting::Phong, read).map_err(|e| e.to_string())
+}
+
+/// A header of these lines, in this format.
+fn header(format: &str, lines: &str) -> String {
+    format!("ply\nformat {format} 1.0\ncomment by hand\n{lines}end_header\n")
+}
+
+const SQUARE: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n\
+element face 1\nproperty list uchar int vertex_indices\n";
+
+const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+
+fn square_text() -> String {
+    let vertices: String = CORNERS
+        .iter()
+        .map(|[x, y, z]| format!("{x} {y} {z} 255 188 0 255\n"))
+        .collect();
+    format!("{}{vertices}4 0 1 2 3\n", header("ascii", SQUARE))
+}
+
+/// The same square in binary: bytes of four numbers in either order.
+fn square_binary(is_big: bool) -> Vec<u8> {
+    let four = |bytes: [u8; 4]| {
+        let mut bytes = bytes;
+        if is_big {
+            bytes.reverse();
+        }
+        bytes
+    };
+    let format = if is_big { "big" } else { "little" };
+    let mut bytes = header(&format!("binary_{format}_endian"), SQUARE).into_bytes();
+    for corner in CORNERS {
+        bytes.extend(corner.iter().flat_map(|x| four(x.to_le_bytes())));
+        bytes.extend([255, 188, 0, 255]);
+    }
+    bytes.push(4);
+    bytes.extend((0i32..4).flat_map(|i| four(i.to_le_bytes())));
+    bytes
+}
+
+/// The same of all three formats, and of the line ends of other systems.
+#[test]
+fn text_and_both_orders_of_bytes() {
+    let text = square_text();
+    for bytes in [
+        text.clone().into_bytes(),
+        text.replace('\n', "\r\n").into_bytes(),
+        text.replace('\n', "\r").into_bytes(),
+        text.replace("4 0 1 2 3\n", "\n4 0 1 2 3").into_bytes(),
+        text.replace("1 1 0 255", "1. +1 .0 255").into_bytes(),
+        square_binary(false),
+        square_binary(true),
+    ] {
+        let loaded = load(&bytes).expect("loads");
+        let m = &loaded.mesh;
+        assert_eq!(m.positions, CORNERS.map(Vec3::from));
+        assert_eq!(m.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert!(m.normals.iter().all(|n| *n == Vec3::Z));
+        // Bytes are sRGB: 188 is half of the light.
+        let [r, g, b, a] = m.colors[3];
+        assert_eq!((r, b, a), (1.0, 0.0, 1.0));
+        assert!((g - 0.503).abs() < 1e-3, "{g}");
+        let material = &m.parts[0].material;
+        assert_eq!((material.color, material.is_opaque()), ([1.0; 3], true));
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    }
+}
+
+/// Floating-point colours are linear; an opacity makes the surface blend, unless it is 0 all over.
+#[test]
+fn colours_and_opacity_of_vertices() {
+    let lines = "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+        property float red\nproperty float green\nproperty float blue\nproperty float alpha\n\
+        element face 1\nproperty list uchar uint vertex_index\n";
+    let with = |alpha: &str| {
+        let vertex = |p: &str| format!("{p} 0.5 2 -1 {alpha}\n");
+        let vertices: String = ["0 0 0", "1 0 0", "0 1 0"].map(vertex).concat();
+        load(format!("{}{vertices}3 0 1 2\n", header("ascii", lines)).as_bytes()).expect("loads")
+    };
+    let loaded = with("0.25");
+    assert_eq!(loaded.mesh.colors, [[0.5, 1.0, 0.0, 0.25]; 3]);
+    assert!(!loaded.mesh.parts[0].material.is_opaque());
+    let loaded = with("0");
+    assert_eq!(loaded.mesh.colors[0][3], 1.0);
+    assert!(loaded.mesh.parts[0].material.is_opaque());
+    assert!(loaded.warnings[0].contains("opacity of 0"));
+}
+
+/// Normals of the file, of which one is zero; texture coordinates of vertices and of faces; a concave polygon; other elements between.
+#[test]
+fn normals_texture_coordinates_and_polygons() {
+    let lines = "comment TextureFile a.png\nelement camera 2\nproperty list uchar float view\n\
+        element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n\
+        property float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n";
+    let body = "2 1 2\n0\n0 0 0 0 0 2 0 0\n2 1 0 0 0 0 0 0\n0 2 0 0 0 1 0.5 1\n1 1 0 0 0 1 0 0\n";
+    let text = |face: &str| format!("{}{body}{face}\n", header("ascii", lines));
+    let loaded = load(text("4 0 1 2 3 0").as_bytes()).expect("loads");
+    let m = &loaded.mesh;
+    assert!(m.normals.iter().all(|n| *n == Vec3::Z));
+    let area: f32 = m
+        .triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|i| m.positions[i as usize]);
+            (b - a).cross(c - a).z / 2.0
+        })
+        .sum();
+    assert_eq!((m.triangles.len(), area), (2, 1.0));
+    let uv_of = |m: &Mesh, vertex: u32| {
+        let corners = m.triangles.iter().flatten().zip(m.uvs.iter().flatten());
+        corners
+            .clone()
+            .find(|(i, _)| **i == vertex)
+            .map(|(_, uv)| *uv)
+    };
+    assert_eq!(uv_of(m, 2), Some(Vec2::new(0.5, 0.0)));
+    let warnings = loaded.warnings.join("\n");
+    assert!(warnings.contains("color_map") && warnings.contains("1 normal"));
+    let own = load(text("4 0 1 2 3 8 0 0 0.25 0 0 0.75 0 0").as_bytes()).expect("loads");
+    assert_eq!(uv_of(&own.mesh, 1), Some(Vec2::new(0.25, 1.0)));
+    assert_eq!(uv_of(&own.mesh, 2), Some(Vec2::new(0.0, 0.25)));
+}
+
+/// Two strips, of which the second begins behind −1: all triangles face the same way.
+#[test]
+fn triangle_strips() {
+    let lines = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element tristrips 1\nproperty list int int vertex_indices\n";
+    let body = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 3\n";
+    let loaded = load(format!("{}{body}", header("ascii", lines)).as_bytes()).expect("loads");
+    let m = &loaded.mesh;
+    assert_eq!(m.triangles.len(), 3);
+    for t in &m.triangles {
+        let [a, b, c] = t.map(|i| m.positions[i as usize]);
+        assert!((b - a).cross(c - a).z > 0.0);
+    }
+}
+
+/// Split vertices keep one normal; triangles without area and faces of two vertices are left out, and counted.
+#[test]
+fn seams_and_degenerate_faces() {
+    let lines = "element vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 4\nproperty list uchar int vertex_indices\n";
+    let body = "0 0 0\n1 0 0\n1 1 0\n0 0 0\n1 0 0\n0 0 1\n3 0 1 2\n3 3 5 4\n3 0 3 1\n2 0 1\n";
+    let loaded = load(format!("{}{body}", header("ascii", lines)).as_bytes()).expect("loads");
+    let m = &loaded.mesh;
+    assert_eq!(m.triangles.len(), 2);
+    assert_eq!((m.normals[0], m.normals[1]), (m.normals[3], m.normals[4]));
+    let warnings = loaded.warnings.join("\n");
+    assert!(warnings.contains("1 triangle without area"), "{warnings}");
+    assert!(warnings.contains("1 face of fewer than 3"), "{warnings}");
+}
+
+/// Every bad file is one error that names the file, the place and a fix, and takes no memory first.
+#[test]
+fn bad_files() {
+    let square = square_text();
+    let huge = (1u64 << 60).to_string();
+    let counted = |name: &str, count: &str| {
+        let line = format!("element {name} ");
+        let old = SQUARE
+            .lines()
+            .find(|l| l.starts_with(&line))
+            .expect("is there");
+        square.replace(old, &format!("{line}{count}"))
+    };
+    let no_faces = square.replace("element face 1", "element face 0");
+    for (text, words) in [
+        (String::new(), &["a.ply:1", "begin with 'ply'"][..]),
+        ("solid x".into(), &["a.ply:1", "begin with 'ply'"]),
+        ("ply\nformat ascii 1.0\n".into(), &["end_header", "cut off"]),
+        (
+            square.replace("ascii", "utf"),
+            &["a.ply:2", "'format utf 1.0'"],
+        ),
+        (square.replace("format", "comment"), &["format"]),
+        (square.replace("uchar green", "uchar red"), &["twice"]),
+        (square.replace("float y", "float w"), &["no 'y'"]),
+        (
+            square.replace("vertex_indices", "indices"),
+            &["face", "no vertex_indices"],
+        ),
+        (
+            square.replace("int vertex", "float vertex"),
+            &["a.ply:19", "4 0 1 2 3"],
+        ),
+        (
+            counted("vertex", &huge),
+            &[huge.as_str(), "'vertex'", "cut off"],
+        ),
+        (
+            counted("face", &huge),
+            &[huge.as_str(), "'face'", "cut off"],
+        ),
+        (counted("vertex", "18446744073709551616"), &["a.ply:4"]),
+        (counted("face", "2"), &["'face'", "cut off"]),
+        (no_faces, &["4 points", "point cloud", "reconstruct"]),
+        (
+            square.replace("1 1 0", "1 nan 0"),
+            &["a.ply:17", "1 nan 0", "7 finite"],
+        ),
+        (
+            square.replace("1 1 0", "1 1e99 0"),
+            &["a.ply:17", "vertex 2", "finite"],
+        ),
+        (
+            square.replace("1 1 0", "1 2e15 0"),
+            &["a.ply:17", "farther than"],
+        ),
+        (
+            square.replace("4 0 1 2 3", "4 0 1 2 4"),
+            &["a.ply:19", "face 0", "index 4", "4 vertices"],
+        ),
+        (
+            square.replace("4 0 1 2 3", "4 0 1 2 -1"),
+            &["a.ply:19", "index -1"],
+        ),
+        (
+            square.replace("4 0 1 2 3", "9 0 1 2 3"),
+            &["a.ply:19", "9 0 1 2 3"],
+        ),
+        (
+            square.replace("4 0 1 2 3", "3 0 1 1"),
+            &["no triangle with an area"],
+        ),
+    ] {
+        let e = load(text.as_bytes()).expect_err(&text);
+        assert!(e.starts_with("a.ply"), "{e}");
+        for word in words {
+            assert!(e.contains(word), "no '{word}' in: {e}");
+        }
+        assert!(!e.contains(char::is_control), "{e:?}");
+    }
+}
+
+/// Wherever a file is cut off, it is an error that says so.
+#[test]
+fn truncated_files() {
+    for whole in [square_binary(false), square_binary(true)] {
+        for length in 0..whole.len() {
+            let e = load(&whole[..length]).expect_err("is cut off");
+            assert!(e.starts_with("a.ply"), "{e}");
+        }
+    }
+    // A list as long as 32 bits can say.
+    let lines = SQUARE.replace("list uchar int", "list uint int");
+    let mut bytes = header("binary_little_endian", &lines).into_bytes();
+    bytes.extend([0; 4 * 16]);
+    bytes.extend([255; 16]);
+    let e = load(&bytes).expect_err("a list of 2^32 − 1");
+    assert!(e.contains("0 of 1") && e.contains("cut off"), "{e}");
+    // Elements without properties take no bytes, however many there are.
+    let none = format!("element nothing {}\n", u64::MAX);
+    let text = square_text().replace("element vertex", &format!("{none}element vertex"));
+    assert!(load(text.as_bytes()).is_ok());
+}
+
+/// What a file would take is compared with the limit before it is taken.
+#[test]
+fn large_files_are_refused() {
+    let count = crate::budget::MAX_TRIANGLES + 1;
+    let lines = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+    let face = format!("element face {count}\nproperty list uchar int vertex_indices\n");
+    let mut bytes = header("binary_little_endian", &format!("{lines}{face}")).into_bytes();
+    bytes.resize(bytes.len() + 12 + count as usize, 0);
+    let e = load(&bytes).expect_err("too many");
+    assert!(
+        e.contains("50000001 triangles") && e.contains("50000000"),
+        "{e}"
+    );
+}

@@ -1,0 +1,293 @@
+//! The specular–glossiness workflow, converted to metallic and roughness at load, so that shaders know one workflow.
+//!
+//! A surface of diffuse colour d and specular colour s reflects as one of base colour b and metallic m does where
+//! d (1 − max s) = b (1 − 0.04) (1 − m) and s = 0.04 (1 − m) + b m. With brightnesses in place of colours this is a quadratic equation for m. Then
+//! b follows from either equation; the second is trusted by m², as the first divides by 1 − m, and the second by m.
+//! From Khronos' example of the conversion: KhronosGroup/glTF, `extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness/examples`.
+
+use crate::{budget::Budget, texture::Texture};
+use peelnet_core::srgb;
+use std::{collections::HashMap, sync::Arc};
+
+/// Reflectance of a dielectric seen head-on, as in glTF 2.0.
+pub(crate) const DIELECTRIC: f32 = 0.04;
+
+/// Divisors are at least this.
+const LEAST: f32 = 1e-6;
+
+/// A material's values, linear; each multiplies a texture's where there is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Values {
+    pub diffuse: [f32; 3],
+    pub specular: [f32; 3],
+    pub glossiness: f32,
+}
+
+/// The same in metallic and roughness.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Converted {
+    pub color: [f32; 3],
+    pub metallic: f32,
+    pub roughness: f32,
+    /// Base colour, with the diffuse texture's opacity. Its values are whole: the colour beside it is white.
+    pub color_map: Option<Arc<Texture>>,
+    pub metallic_roughness_map: Option<Arc<Texture>>,
+}
+
+/// Weights as the example has them.
+fn brightness([r, g, b]: [f32; 3]) -> f32 {
+    (0.299 * r * r + 0.587 * g * g + 0.114 * b * b).sqrt()
+}
+
+fn metallic(diffuse: f32, specular: f32, one_minus_strength: f32) -> f32 {
+    if specular < DIELECTRIC {
+        return 0.0;
+    }
+    let a = DIELECTRIC;
+    let b = diffuse * one_minus_strength / (1.0 - DIELECTRIC) + specular - 2.0 * DIELECTRIC;
+    let c = DIELECTRIC - specular;
+    let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+    ((root - b) / (2.0 * a)).clamp(0.0, 1.0)
+}
+
+/// Base colour, metallic and roughness.
+fn converted(values: Values) -> ([f32; 3], f32, f32) {
+    let Values {
+        diffuse, specular, ..
+    } = values;
+    let one_minus_strength = 1.0 - specular.into_iter().fold(0.0, f32::max);
+    let m = metallic(
+        brightness(diffuse),
+        brightness(specular),
+        one_minus_strength,
+    );
+    let color = [0, 1, 2].map(|k| {
+        let by_diffuse =
+            diffuse[k] * one_minus_strength / (1.0 - DIELECTRIC) / (1.0 - m).max(LEAST);
+        let by_specular = (specular[k] - DIELECTRIC * (1.0 - m)) / m.max(LEAST);
+        let color = by_diffuse + m * m * (by_specular - by_diffuse);
+        color.clamp(0.0, 1.0)
+    });
+    (color, m, 1.0 - values.glossiness)
+}
+
+/// What a conversion depends on: the textures' addresses, and the bits of all values.
+type Key = ([usize; 2], [u32; 7]);
+
+/// Two textures' addresses.
+fn addresses(textures: [Option<&Arc<Texture>>; 2]) -> [usize; 2] {
+    textures.map(|t| t.map_or(0, |t| Arc::as_ptr(t) as usize))
+}
+
+/// Textures that are held so that their addresses stay theirs.
+type Held = [Option<Arc<Texture>>; 2];
+
+fn white() -> Texture {
+    Texture::of("white", [1, 1], |_, _| [255; 4])
+}
+
+/// The size of two textures joined.
+fn larger([a, b]: [&Texture; 2]) -> [u32; 2] {
+    [0, 1].map(|k| a.size[k].max(b.size[k]))
+}
+
+/// Converts materials, textures once for all materials that have the same.
+#[derive(Default)]
+pub(crate) struct Converter {
+    packed: HashMap<[usize; 2], (Held, Arc<Texture>)>,
+    made: HashMap<Key, (Held, Converted)>,
+}
+
+impl Converter {
+    /// Specular colours, and glossiness in red, as one texture; `None` without either.
+    pub fn packed(
+        &mut self,
+        specular: Option<&Arc<Texture>>,
+        glossiness: Option<&Arc<Texture>>,
+        budget: &mut Budget,
+    ) -> Result<Option<Arc<Texture>>, String> {
+        let both = [specular, glossiness];
+        if both == [None, None] {
+            return Ok(None);
+        }
+        let key = addresses(both);
+        if let Some((_, known)) = self.packed.get(&key) {
+            return Ok(Some(Arc::clone(known)));
+        }
+        let white = white();
+        let maps = both.map(|t| t.map_or(&white, |t| t.as_ref()));
+        budget.take_texels(larger(maps))?;
+        let joined = Texture::joined(maps[0], maps[1], |s, g| [s[0], s[1], s[2], g[0]]);
+        let joined = Arc::new(joined);
+        let held = both.map(Option::<&Arc<Texture>>::cloned);
+        self.packed.insert(key, (held, Arc::clone(&joined)));
+        Ok(Some(joined))
+    }
+
+    /// Converts a material: per texel where there are textures. `diffuse` is sRGB and has an opacity; `specular` is sRGB, with the glossiness in
+    /// its alpha.
+    pub fn convert(
+        &mut self,
+        values: Values,
+        diffuse: Option<&Arc<Texture>>,
+        specular: Option<&Arc<Texture>>,
+        budget: &mut Budget,
+    ) -> Result<Converted, String> {
+        if diffuse.is_none() && specular.is_none() {
+            let (color, metallic, roughness) = converted(values);
+            return Ok(Converted {
+                color,
+                metallic,
+                roughness,
+                color_map: None,
+                metallic_roughness_map: None,
+            });
+        }
+        let Values {
+            diffuse: [a, b, c],
+            specular: [d, e, f],
+            glossiness,
+        } = values;
+        let bits = [a, b, c, d, e, f, glossiness].map(f32::to_bits);
+        let both = [diffuse, specular];
+        let key = (addresses(both), bits);
+        if let Some((_, known)) = self.made.get(&key) {
+            return Ok(known.clone());
+        }
+        let white = white();
+        let maps = both.map(|t| t.map_or(&white, |t| t.as_ref()));
+        budget.take_texels(larger(maps))?;
+        budget.take_texels(larger(maps))?;
+        let made = textures(values, maps);
+        let held = both.map(Option::<&Arc<Texture>>::cloned);
+        self.made.insert(key, (held, made.clone()));
+        Ok(made)
+    }
+}
+
+fn textures(values: Values, [diffuse, specular]: [&Texture; 2]) -> Converted {
+    let linear: Vec<f32> = (0..=255u8)
+        .map(|byte| srgb::decode(f32::from(byte) / 255.0))
+        .collect();
+    let at = |d: [u8; 4], s: [u8; 4]| {
+        let product = |factor: [f32; 3], texel: [u8; 4]| {
+            [0, 1, 2].map(|k| factor[k] * linear[usize::from(texel[k])])
+        };
+        converted(Values {
+            diffuse: product(values.diffuse, d),
+            specular: product(values.specular, s),
+            glossiness: values.glossiness * f32::from(s[3]) / 255.0,
+        })
+    };
+    let byte = |x: f32| (x * 255.0).round() as u8;
+    let color = Texture::joined(diffuse, specular, |d, s| {
+        let [r, g, b] = at(d, s).0.map(srgb::encode8);
+        [r, g, b, d[3]]
+    });
+    let metallic_roughness = Texture::joined(diffuse, specular, |d, s| {
+        let (_, metallic, roughness) = at(d, s);
+        [255, byte(roughness), byte(metallic), 255]
+    });
+    Converted {
+        color: [1.0; 3],
+        metallic: 1.0,
+        roughness: 1.0,
+        color_map: Some(Arc::new(color)),
+        metallic_roughness_map: Some(Arc::new(metallic_roughness)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(diffuse: [f32; 3], specular: [f32; 3], glossiness: f32) -> ([f32; 3], f32, f32) {
+        converted(Values {
+            diffuse,
+            specular,
+            glossiness,
+        })
+    }
+
+    fn assert_near(a: [f32; 3], b: [f32; 3]) {
+        let apart = [0, 1, 2].map(|k| (a[k] - b[k]).abs());
+        assert!(apart.iter().all(|x| *x < 2e-3), "{a:?} is not {b:?}");
+    }
+
+    /// At the specular colour of a dielectric nothing is metallic, and the base colour is d (1 − 0.04) / (1 − 0.04) = d. Below it, the diffuse
+    /// colour takes what is reflected less.
+    #[test]
+    fn dielectrics() {
+        let d = [0.5, 0.25, 0.75];
+        let (color, metallic, roughness) = of(d, [0.04; 3], 0.75);
+        assert_near(color, d);
+        assert!(metallic < 1e-5);
+        assert_eq!(roughness, 0.25);
+        let (color, metallic, _) = of(d, [0.0; 3], 0.0);
+        assert_near(color, d.map(|x| x / 0.96));
+        assert_eq!(metallic, 0.0);
+    }
+
+    /// Without diffuse light, a surface is metal, and its base colour the specular one: gold, iron, and white.
+    #[test]
+    fn metals() {
+        for specular in [[1.0, 0.766, 0.336], [0.56, 0.57, 0.58], [1.0; 3]] {
+            let (color, metallic, roughness) = of([0.0; 3], specular, 1.0);
+            assert_near(color, specular);
+            assert!((metallic - 1.0).abs() < 1e-5, "{metallic}");
+            assert_eq!(roughness, 0.0);
+        }
+    }
+
+    /// Grey between both: what the two workflows reflect is the same.
+    #[test]
+    fn what_is_reflected_stays() {
+        for d in [0.1, 0.4, 0.9] {
+            for s in [0.05, 0.1, 0.3, 0.6] {
+                let ([b, ..], m, _) = of([d; 3], [s; 3], 0.5);
+                let (diffuse, specular) = (b * 0.96 * (1.0 - m), 0.04 * (1.0 - m) + b * m);
+                assert!((diffuse - d * (1.0 - s)).abs() < 2e-3, "{d} {s}: {diffuse}");
+                assert!((specular - s).abs() < 2e-3, "{d} {s}: {specular}");
+            }
+        }
+    }
+
+    /// Texels are converted one by one, with the material's values in them; a texture twice is converted once.
+    #[test]
+    fn textures_are_converted_by_texel() {
+        let texture =
+            |texels: [[u8; 4]; 2]| Arc::new(Texture::of("t", [2, 1], |x, _| texels[x as usize]));
+        // A black and a white texel; white and 0.04 as specular colours.
+        let diffuse = texture([[0, 0, 0, 255], [255, 255, 255, 128]]);
+        let specular = texture([[255, 255, 255, 255], [56, 56, 56, 102]]);
+        let values = Values {
+            diffuse: [0.5, 1.0, 1.0],
+            specular: [1.0; 3],
+            glossiness: 0.5,
+        };
+        let (mut converter, mut budget) = (Converter::default(), Budget::default());
+        let mut convert = || {
+            let converted = converter.convert(values, Some(&diffuse), Some(&specular), &mut budget);
+            converted.expect("fits")
+        };
+        let made = convert();
+        assert_eq!(
+            (made.color, made.metallic, made.roughness),
+            ([1.0; 3], 1.0, 1.0)
+        );
+        let color = made.color_map.clone().expect("is made");
+        let metal = made.metallic_roughness_map.clone().expect("is made");
+        assert_eq!(color.texels[0], [255, 255, 255, 255]);
+        assert_eq!(metal.texels[0], [255, 128, 255, 255]);
+        let [r, g, b, a] = color.texels[1];
+        assert_eq!((g, b, a), (255, 255, 128));
+        assert!(r.abs_diff(srgb::encode8(0.5)) <= 1, "{r}");
+        assert!(
+            metal.texels[1][2] <= 3 && metal.texels[1][1] == 204,
+            "{:?}",
+            metal.texels[1]
+        );
+        let again = convert().color_map.expect("is made");
+        assert!(Arc::ptr_eq(&color, &again));
+    }
+}

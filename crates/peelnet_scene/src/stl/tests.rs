@@ -1,0 +1,200 @@
+//! STL files as CAD programs write them, and as they should not.
+
+use super::*;
+
+fn load(bytes: &[u8]) -> Result<LoadedStl, String> {
+    let read = |_: &Path| Ok(bytes.to_vec());
+    load_stl_from(Path::new("a.stl"), Lighting::Phong, read).map_err(|e| e.to_string())
+}
+
+/// The twelve triangles of a unit cube.
+fn cube() -> Vec<[Vec3; 3]> {
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let vertex = |i: i32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
+    let halves = quads.map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+    halves.iter().flatten().map(|t| t.map(vertex)).collect()
+}
+
+fn binary(triangles: &[[Vec3; 3]], header: &[u8]) -> Vec<u8> {
+    let mut bytes = header.to_vec();
+    bytes.resize(HEADER, 0);
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for t in triangles {
+        let vertices = t.iter().flat_map(|v| v.to_array());
+        let all = [0.0; 3].into_iter().chain(vertices);
+        bytes.extend(all.flat_map(f32::to_le_bytes));
+        bytes.extend([7, 0]);
+    }
+    bytes
+}
+
+fn text(triangles: &[[Vec3; 3]]) -> String {
+    let facets = triangles.iter().map(|t| {
+        let vertices = t
+            .map(|v| format!("vertex {} {} {}\n", v.x, v.y, v.z))
+            .concat();
+        format!("facet normal 0 0 0\n outer loop\n{vertices} endloop\nendfacet\n")
+    });
+    format!(
+        "solid a cube\n{}endsolid a cube\n",
+        facets.collect::<String>()
+    )
+}
+
+/// A cube keeps its edges: three normals at each of its eight positions.
+#[test]
+fn binary_and_text() {
+    let plain = text(&cube());
+    for bytes in [
+        binary(&cube(), b""),
+        // Many programs begin a binary file as if it were text.
+        binary(&cube(), b"solid made by a program"),
+        plain.clone().into_bytes(),
+        plain.to_uppercase().into_bytes(),
+        plain.replace('\n', " \r\n\r\n").into_bytes(),
+        plain.replace("\n outer", " outer").into_bytes(),
+        plain.replace("a cube", "").into_bytes(),
+        [&plain.as_bytes()[..8], b"\xe9", &plain.as_bytes()[8..]].concat(),
+        // Two solids.
+        plain
+            .replacen("endfacet\n", "endfacet\nendsolid\nsolid b\n", 1)
+            .into_bytes(),
+    ] {
+        let loaded = load(&bytes).expect("loads");
+        let m = &loaded.mesh;
+        assert_eq!((m.triangles.len(), m.positions.len()), (12, 24));
+        for (i, t) in m.triangles.iter().enumerate() {
+            assert_eq!(t.map(|v| m.positions[v as usize]), cube()[i]);
+            let [a, b, c] = cube()[i];
+            let flat = (b - a).cross(c - a).normalize();
+            assert!(t.iter().all(|&v| m.normals[v as usize] == flat));
+        }
+        assert!(m.parts[0].material.is_opaque() && m.colors.is_empty());
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    }
+}
+
+/// A round surface has one vertex at each position, with a normal along its radius.
+#[test]
+fn round_surfaces_are_smooth() {
+    let material = crate::Material::unlit([1.0; 3], 1.0);
+    let sphere = crate::shapes::Shape::Sphere {
+        radius: 1.0,
+        triangles: 2000,
+    };
+    let sphere = sphere.build(&material, false).expect("builds");
+    let soup = sphere.triangles.iter();
+    let soup: Vec<_> = soup
+        .map(|t| t.map(|i| sphere.positions[i as usize]))
+        .collect();
+    let loaded = load(&binary(&soup, b"")).expect("loads");
+    let m = &loaded.mesh;
+    let distinct: std::collections::HashSet<_> = m.positions.iter().map(|p| key_of(*p)).collect();
+    assert_eq!(m.positions.len(), distinct.len());
+    for (p, n) in m.positions.iter().zip(&m.normals) {
+        assert!(p.normalize().dot(*n) > 0.99, "{p} {n}");
+    }
+}
+
+/// Thousands of triangles around one vertex take no longer than elsewhere.
+#[test]
+fn dense_fans_are_smooth() {
+    let n = 50_000;
+    let rim = |i: u32| {
+        let (sin, cos) = (std::f32::consts::TAU * i as f32 / n as f32).sin_cos();
+        Vec3::new(cos, sin, 0.0)
+    };
+    let fan: Vec<_> = (0..n)
+        .map(|i| [Vec3::Z, rim(i), rim((i + 1) % n)])
+        .collect();
+    let loaded = load(&binary(&fan, b"")).expect("loads");
+    let top = loaded.mesh.positions.iter().position(|p| *p == Vec3::Z);
+    assert!(loaded.mesh.normals[top.expect("is there")].z > 0.99);
+}
+
+#[test]
+fn bad_files() {
+    let good = text(&cube());
+    let line = |k: usize| good.lines().nth(k - 1).expect("a line").to_owned();
+    assert_eq!(line(4), "vertex 0 0 0");
+    let with = |old: &str, new: &str| good.replacen(old, new, 1);
+    for (text, words) in [
+        (String::new(), &["0 bytes", "84", "cut off"][..]),
+        ("solid a\nendsolid a\n".into(), &["no facets"]),
+        (
+            with("vertex 0 0 0", "vertex 0 x 0"),
+            &["a.stl:4", "'x'", "not a number"],
+        ),
+        (
+            with("vertex 0 0 0", "vertex 0 nan 0"),
+            &["a.stl:4", "not finite"],
+        ),
+        (
+            with("vertex 0 0 0", "vertex 0 1e16 0"),
+            &["a.stl:4", "farther"],
+        ),
+        (
+            with("vertex 0 0 0", "vertex 0 0"),
+            &["a.stl:5", "'vertex'", "not a number"],
+        ),
+        (
+            with(" endloop", " vertex 0 0 0\n endloop"),
+            &["a.stl:7", "'endloop'"],
+        ),
+        (
+            with("facet normal", "face normal"),
+            &["a.stl:2", "'face'", "'facet'"],
+        ),
+        (good[..good.len() - 60].into(), &["cut off"]),
+    ] {
+        let e = load(text.as_bytes()).expect_err(&text);
+        assert!(e.starts_with("a.stl"), "{e}");
+        for word in words {
+            assert!(e.contains(word), "no '{word}' in: {e}");
+        }
+    }
+}
+
+/// Counts that the file cannot hold, numbers that are none, and files cut off anywhere.
+#[test]
+fn bad_binary_files() {
+    let good = binary(&cube(), b"");
+    for length in 0..good.len() {
+        let e = load(&good[..length]).expect_err("is cut off");
+        assert!(e.starts_with("a.stl") && e.contains("cut off"), "{e}");
+    }
+    let mut many = good.clone();
+    many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    let e = load(&many).expect_err("too many");
+    assert!(e.contains("4,294,967,295 triangles"), "{e}");
+    let mut nan = good.clone();
+    nan[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let e = load(&nan).expect_err("not a number");
+    assert!(e.contains("triangle 1") && e.contains("not finite"), "{e}");
+    let mut more = good;
+    more.extend([0; 7]);
+    let warnings = load(&more).expect("loads").warnings;
+    assert!(warnings[0].contains("7 bytes"), "{warnings:?}");
+    let e = load(&binary(&[], b"")).expect_err("nothing");
+    assert!(e.contains("no facets"), "{e}");
+}
+
+#[test]
+fn large_files_are_refused() {
+    let count = crate::budget::MAX_TRIANGLES as usize / 4 + 1;
+    let mut budget = Budget::default();
+    let taken = budget.take_mesh(crate::budget::MAX_TRIANGLES - count as u64 + 1, 0);
+    taken.expect("fits");
+    let mut bytes = vec![0; HEADER + COUNT + TRIANGLE * count];
+    bytes[HEADER..HEADER + COUNT].copy_from_slice(&(count as u32).to_le_bytes());
+    let e = surface(&bytes, &mut budget, &mut Warnings::default());
+    let Err(e) = e else { panic!("loads") };
+    assert!(e.message.contains("50000000"), "{e:?}");
+}
