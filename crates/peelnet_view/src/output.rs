@@ -197,6 +197,22 @@ pub(crate) fn free_name(stage: &Stage, slot: &Slot, ending: &str) -> PathBuf {
     free.unwrap_or_else(|| of(10_000))
 }
 
+/// Saves the scene with its changes beside the file it came from, and says what such a file cannot hold.
+pub(crate) fn scene(stage: &Stage, slot: &Slot, camera: &Camera) -> Result<String, String> {
+    let edited = stage.edited(camera)?;
+    let name = free_name(stage, slot, ".toml");
+    let path = stage.source.folder().join(&name);
+    if path.exists() {
+        return Err(format!("{}: is there already; move it away", shown(&path)));
+    }
+    peelnet_files::write_whole(&path, edited.text.as_bytes()).map_err(|e| one_line(&e))?;
+    let mut said = format!("{} is written", shown(&path));
+    if !edited.left_out.is_empty() {
+        said = format!("{said}, without {}", edited.left_out.join("; without "));
+    }
+    Ok(said)
+}
+
 /// The command that opens this view again.
 pub(crate) fn command(stage: &Stage, slot: &Slot, camera: &Camera, view: Option<usize>) -> String {
     let (Source::Named(path) | Source::Dropped(path, _)) = &stage.source;

@@ -4,7 +4,7 @@ use crate::eye::Sphere;
 use peelnet_files::printable;
 use peelnet_gpu::Gpu;
 use peelnet_render::{LayerView, RenderError, Renderer};
-use peelnet_scene::{Effect, Light, Material, Scene, SceneError, suite};
+use peelnet_scene::{Camera, Effect, Light, Material, Scene, SceneError, file::Edited, suite};
 use std::{
     collections::HashMap,
     error::Error,
@@ -35,6 +35,34 @@ impl Source {
     pub fn name(&self) -> String {
         let (Self::Named(path) | Self::Dropped(path, _)) = self;
         printable(&path.to_string_lossy()).to_string()
+    }
+
+    /// The text of the scene file; none of a mesh file.
+    fn text(&self) -> Option<String> {
+        let is_scene = |path: &Path| {
+            path.extension()
+                .is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+        };
+        match self {
+            Self::Named(path) => match path.to_str().and_then(suite::find) {
+                Some(shipped) if !path.is_file() => Some(shipped.text.to_owned()),
+                _ if is_scene(path) => std::fs::read_to_string(path).ok(),
+                _ => None,
+            },
+            Self::Dropped(path, files) => {
+                let bytes = files.get(path).filter(|_| is_scene(path));
+                bytes.and_then(|b| String::from_utf8(b.clone()).ok())
+            }
+        }
+    }
+
+    /// The folder that names in the scene's files are relative to.
+    pub fn folder(&self) -> PathBuf {
+        let (Self::Named(path) | Self::Dropped(path, _)) = self;
+        path.parent()
+            .filter(|_| path.is_file())
+            .map(PathBuf::from)
+            .unwrap_or_default()
     }
 
     fn load(&self, time: Option<f32>) -> Result<Scene, SceneError> {
@@ -189,6 +217,18 @@ impl Stage {
     /// A layer that the scene does not have.
     pub fn set_shown(&mut self, shown: Shown) -> Result<(), String> {
         self.show(self.scene.clone(), shown)
+    }
+
+    /// The text of a scene file with all changes and this camera, and what it cannot say.
+    ///
+    /// # Errors
+    /// A scene file that cannot be read any more.
+    pub fn edited(&self, camera: &Camera) -> Result<Edited, String> {
+        let text = self.source.text();
+        let edited = self
+            .scene
+            .edited(&self.loaded, text.as_deref(), Some(camera));
+        edited.map_err(|e| one_line(&e))
     }
 
     /// Takes all changes back.

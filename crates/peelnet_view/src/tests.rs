@@ -361,6 +361,61 @@ fn bad_files_leave_the_view() {
     assert_eq!(w.state().first.failure, None);
 }
 
+/// A file that is dropped onto a window.
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}
+
+/// A scene that is dropped is shown, with its changes saved as a file that shows the same; what is none is a message.
+#[test]
+fn dropped_and_saved_scenes() {
+    let mut w = window("boxes", "wboit-eq9");
+    let folder = tempfile::tempdir().unwrap();
+    let drop = |w: &mut Window, path: &std::path::Path| {
+        let file = std::sync::Arc::new(Dropped(path.to_owned()));
+        w.input_mut().dropped_files.push(file);
+        steps(w);
+    };
+    let scene = folder.path().join("mine.toml");
+    std::fs::write(&scene, suite::find("cups").unwrap().text).unwrap();
+    drop(&mut w, &scene);
+    assert_eq!(w.state().stage.as_ref().unwrap().scene().objects.len(), 6);
+    assert_eq!(w.state().recent[0], scene);
+    let note = folder.path().join("note.txt");
+    std::fs::write(&note, "no scene").unwrap();
+    drop(&mut w, &note);
+    assert!(
+        w.query_by_label_contains("not a scene or a network")
+            .is_some()
+    );
+    assert_eq!(w.state().stage.as_ref().unwrap().scene().objects.len(), 6);
+    let mut clear = w.state().stage.as_ref().unwrap().scene().objects[0].materials[0].clone();
+    clear.alpha = 0.25;
+    w.state_mut().edit(|stage| stage.set_material(0, 0, clear));
+    w.state_mut()
+        .move_eye(|camera, _| crate::eye::orbit(camera, 0.5, 0.1));
+    let app = w.state();
+    let said = crate::output::scene(app.stage.as_ref().unwrap(), &app.first, &app.camera).unwrap();
+    assert!(!said.contains("without"), "{said}");
+    let saved = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    let saved = saved.filter(|p| *p != scene && p.extension().is_some_and(|e| e == "toml"));
+    let saved: Vec<_> = saved.collect();
+    let again = peelnet_scene::Scene::load(&saved[0]).unwrap();
+    assert_eq!(again.views, [app.camera]);
+    assert_eq!(again.objects[0].materials[0].alpha, 0.25);
+}
+
 /// A network that is written anew is read again.
 #[test]
 fn a_network_is_read_again_when_its_file_changes() {

@@ -31,7 +31,10 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             }
         });
     } else {
-        ui.horizontal_wrapped(|ui| pictures(app, ui));
+        ui.horizontal_wrapped(|ui| {
+            pictures(app, ui);
+            scene(app, ui);
+        });
         ui.horizontal_wrapped(|ui| films(app, ui));
     }
     if app.first.spec().needs_model() {
@@ -67,6 +70,23 @@ fn pictures(app: &mut App, ui: &mut Ui) {
             app.output
                 .picture(stage, &app.first, app.camera, app.size, path);
         }
+    }
+}
+
+/// The scene as a file.
+fn scene(app: &mut App, ui: &mut Ui) {
+    let Some(stage) = &app.stage else {
+        return;
+    };
+    if ui
+        .button("Save scene")
+        .on_hover_text(
+            "A new scene file with this camera and all changes, beside the one that is open",
+        )
+        .clicked()
+    {
+        let saved = output::scene(stage, &app.first, &app.camera);
+        app.output.say(saved);
     }
 }
 
