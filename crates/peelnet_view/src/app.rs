@@ -8,7 +8,7 @@ use crate::{
     inspect::Inspector,
     messages::Messages,
     motion::Motion,
-    numbers::{Judge, Key, LayerCounter},
+    numbers::{EXACT, Judge, Key, LayerCounter},
     output::Output,
     panels,
     script::Script,
@@ -18,7 +18,6 @@ use crate::{
 };
 use eframe::egui_wgpu::RenderState;
 use egui::Context;
-use peelnet_eval::compare::EXACT;
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_render::MethodSpec;
 use peelnet_scene::Camera;
