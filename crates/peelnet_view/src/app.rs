@@ -376,19 +376,16 @@ impl App {
     }
 }
 
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+impl App {
+    /// One frame of the window.
+    pub(crate) fn frame(&mut self, ui: &mut egui::Ui, egui: &RenderState) {
         let begin = web_time::Instant::now();
         let ctx = ui.ctx().clone();
         self.poll(&ctx);
         self.take_dropped(&ctx);
         self.take_keys(&ctx);
         self.advance(&ctx);
-        let Some(egui) = frame.wgpu_render_state().cloned() else {
-            ui.label("This needs WebGPU, or Vulkan, Metal or Direct3D 12, and found none of them.");
-            return;
-        };
-        panels::show(self, ui, &egui);
+        panels::show(self, ui, egui);
         self.measure(&ctx);
         // A slow average, so that the number can be read.
         let now = begin.elapsed().as_secs_f64() * 1e3;
@@ -396,6 +393,25 @@ impl eframe::App for App {
         if let Some(mut script) = self.script.take() {
             script.advance(&ctx, &self.first);
             self.script = Some(script);
+        }
+    }
+
+    /// What the window shows as the picture.
+    #[cfg(test)]
+    pub(crate) const fn displayed(&self) -> &Display {
+        &self.display
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        match frame.wgpu_render_state().cloned() {
+            Some(egui) => self.frame(ui, &egui),
+            None => {
+                ui.label(
+                    "This needs WebGPU, or Vulkan, Metal or Direct3D 12, and found none of them.",
+                );
+            }
         }
     }
 

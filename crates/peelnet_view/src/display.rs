@@ -108,6 +108,13 @@ impl Display {
         self.target.as_ref().map(|(_, id)| *id)
     }
 
+    /// The texture's texels, four bytes each.
+    #[cfg(test)]
+    pub fn texels(&self, gpu: &Gpu) -> Vec<[u8; 4]> {
+        let (view, _) = self.target.as_ref().expect("something was drawn");
+        gpu.read_texture(view).expect("reads back")
+    }
+
     /// Records the pass. A second picture that is not read may be the first.
     ///
     /// # Errors

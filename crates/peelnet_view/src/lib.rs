@@ -27,6 +27,8 @@ mod script;
 mod slot;
 mod stage;
 mod task;
+#[cfg(test)]
+mod tests;
 mod viewport;
 mod watch;
 #[cfg(not(target_arch = "wasm32"))]

@@ -36,7 +36,7 @@ impl Messages {
         let mut gone = None;
         for (i, (is_error, text)) in self.0.iter().enumerate() {
             ui.horizontal(|ui| {
-                let away = ui.small_button("✖").on_hover_text("Put this message away");
+                let away = ui.small_button("×").on_hover_text("Put this message away");
                 away.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::Button, true, "Put message away")
                 });

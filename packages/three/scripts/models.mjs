@@ -14,7 +14,7 @@ const PACKAGE = dirname( dirname( fileURLToPath( import.meta.url ) ) );
 const EXPORTS = join( PACKAGE, '../../models' );
 const MOST_BYTES = 10_000;
 
-const NAMES = [ 'small', 'medium', 'large', 'anchored-small' ];
+const NAMES = [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ];
 
 // Comments cost bytes in every page; the licence's line stays.
 const withoutComments = ( text ) => text.split( '\n' ).filter( ( line ) => /^\s*(\/\/|$)/.test( line ) === false ).map( ( line ) => line.replace( /^ +/, '' ) ).join( '\n' );

@@ -53,7 +53,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		test( 'two cards are within one step of the exact image, with every model', async () => {
 
-			const models = [ 'small', 'medium', 'large', 'anchored-small' ];
+			const models = [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ];
 			const result = await run( 'compared', backend, { scene: 'twoCards', models, ranges: [ 'pixel', 'frame' ] } );
 
 			assert.equal( result.layers, 2 );
@@ -97,7 +97,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		test( 'the four fragments of the exports have the colour that the exports name', async () => {
 
-			for ( const name of [ 'small', 'medium', 'large', 'anchored-small' ] ) {
+			for ( const name of [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ] ) {
 
 				const { self_test: { pixel } } = JSON.parse( readFileSync( join( PACKAGE, '../../models', name, 'model.json' ), 'utf8' ) );
 				const color = await run( 'fourFragments', backend, { name, pixel } );

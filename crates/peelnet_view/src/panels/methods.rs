@@ -18,7 +18,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         ui.label("Layers are shown: methods draw the scene again once no layer is highlighted.");
     }
     let mut spec = app.first.spec().clone();
-    choose(ui, "Method", &mut spec);
+    choose(ui, "Draw with", &mut spec);
     parameters(ui, "first", &mut spec);
     network(app, ui, &spec);
     app.first.set_spec(spec);
@@ -56,7 +56,7 @@ pub(super) fn compare(app: &mut App, ui: &mut Ui) {
 fn choose(ui: &mut Ui, label: &str, spec: &mut MethodSpec) {
     ComboBox::from_label(label)
         .selected_text(spec.name())
-        .width(170.0)
+        .width(150.0)
         .height(420.0)
         .show_ui(ui, |ui| {
             for method in METHODS {
@@ -246,7 +246,7 @@ fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
     let name = own.map(|n| peelnet_files::printable(&n.path.to_string_lossy()).to_string());
     match name {
         Some(name) => {
-            ui.horizontal(|ui| {
+            ui.horizontal_wrapped(|ui| {
                 ui.label(format!("Network: {name}")).on_hover_text(
                     "Read again whenever the file changes, as while peelnet train writes it",
                 );
@@ -263,7 +263,7 @@ fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
     }
     let label = ui.weak("Drop a .safetensors file, or open one:");
     ui.horizontal(|ui| {
-        let edit = egui::TextEdit::singleline(&mut app.panels.model).desired_width(150.0);
+        let edit = egui::TextEdit::singleline(&mut app.panels.model).desired_width(120.0);
         ui.add(edit).labelled_by(label.id);
         if ui.button("Open network").clicked() && !app.panels.model.is_empty() {
             app.open_network(app.panels.model.clone().into());

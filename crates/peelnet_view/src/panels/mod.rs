@@ -95,13 +95,13 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui, egui: &RenderState) {
         if app.panels.left {
             Panel::left("controls")
                 .resizable(true)
-                .default_size(270.0)
+                .default_size(300.0)
                 .show(ui, |ui| scrolled(ui, |ui| controls(app, ui)));
         }
         if app.panels.right {
             Panel::right("results")
                 .resizable(true)
-                .default_size(330.0)
+                .default_size(340.0)
                 .show(ui, |ui| scrolled(ui, |ui| results(app, ui)));
         }
     }

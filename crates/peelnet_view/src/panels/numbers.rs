@@ -49,7 +49,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             .map_or_else(|| "exact".into(), |p| format!("{p:.1} dB"));
         row("PSNR", psnr, "Peak signal-to-noise ratio");
         row(
-            "ꟻLIP",
+            "FLIP",
             numbers.flip.map_or_else(|| "not in a page".into(), digits),
             "Mean difference as people see it (Andersson et al. 2020), 0 … 1",
         );
@@ -108,6 +108,8 @@ pub(super) fn passes(app: &mut App, ui: &mut Ui) {
             }
         }
         for (name, micros, n) in times {
+            // Some are named after their shader: methods::slabs::resolve.
+            let name = name.rsplit("::").next().unwrap_or(name);
             let name = if n > 1 {
                 format!("{name} ×{n}")
             } else {

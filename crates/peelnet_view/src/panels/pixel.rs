@@ -41,9 +41,9 @@ fn table(ui: &mut Ui, layers: &[Layer]) {
             for (head, about) in [
                 ("", "Colour"),
                 ("depth", "Linear depth, scene units"),
-                ("α", "Opacity"),
-                ("T", "Exact transmittance in front of it"),
-                ("T̂", "What the method takes it to be; – where its weights stand for no transmittance"),
+                ("alpha", "Opacity"),
+                ("T", "Exact transmittance in front of it, the share of it that is seen"),
+                ("T method", "What the method takes it to be; – where its weights stand for no transmittance"),
                 ("object", "Whose surface it is"),
             ] {
                 ui.strong(head).on_hover_text(about);

@@ -1,0 +1,459 @@
+//! The window's controls, pressed one by one, without a window.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use crate::{
+    app::{App, Start},
+    compare::Mode,
+};
+use eframe::egui_wgpu::{
+    RenderState, RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupExisting,
+};
+use egui_kittest::{Harness, kittest::Queryable as _};
+use peelnet_gpu::{AdapterRequest, Gpu};
+use peelnet_render::{MethodOptions, MethodSpec, Renderer};
+use peelnet_scene::suite;
+use std::time::{Duration, Instant};
+
+/// How long something may take that a frame does not wait for: a hundred times what it takes on two idle cores.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A window's content, points and pixels.
+const SIZE: [f32; 2] = [900.0, 500.0];
+
+type Window = Harness<'static, App>;
+
+fn window(scene: &str, method: &str) -> Window {
+    sized(scene, method, SIZE)
+}
+
+fn sized(scene: &str, method: &str, size: [f32; 2]) -> Window {
+    let gpu = Gpu::open(&AdapterRequest::Auto).unwrap();
+    let config = WgpuConfiguration {
+        wgpu_setup: WgpuSetup::Existing(WgpuSetupExisting {
+            instance: gpu.instance.clone(),
+            adapter: gpu.adapter.clone(),
+            device: gpu.device.clone(),
+            queue: gpu.queue.clone(),
+        }),
+        ..Default::default()
+    };
+    let made = RenderState::create(&config, &gpu.instance, None, RendererOptions::PREDICTABLE);
+    let egui = pollster::block_on(made).unwrap();
+    let app = App::new(&gpu, Start::new(scene, method.parse().unwrap()), Vec::new());
+    let mut window = Harness::builder()
+        .with_size(size)
+        .with_max_steps(1000)
+        .build_ui_state(move |ui, app: &mut App| app.frame(ui, &egui), app);
+    window.state_mut().panels.measures = false;
+    steps(&mut window);
+    window
+}
+
+/// A few frames: what one frame asks for, the next ones show.
+fn steps(window: &mut Window) {
+    window.run_steps(4);
+}
+
+/// Frames until something holds.
+fn until(window: &mut Window, what: &str, holds: impl Fn(&App) -> bool) {
+    let begin = Instant::now();
+    while !holds(window.state()) {
+        assert!(begin.elapsed() < PATIENCE, "{what}");
+        window.step();
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn press(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    steps(window);
+}
+
+fn method(window: &Window) -> String {
+    window.state().first.spec().to_string()
+}
+
+#[test]
+fn a_method_is_chosen_from_the_list() {
+    let mut w = window("boxes", "wboit-eq9");
+    press(&mut w, "Draw with");
+    press(&mut w, "mboit4");
+    assert_eq!(method(&w), "mboit4");
+    assert_eq!(w.state().first.failure, None);
+    // Its own parameters are there now.
+    w.get_by_label("own");
+}
+
+/// Every parameter of every method has a control with a name, which the harness checks of all widgets, and the picture is drawn.
+#[test]
+fn every_method_has_its_controls() {
+    let mut w = sized("boxes", "wboit-eq9", [900.0, 900.0]);
+    for m in crate::panels::methods::offered() {
+        let spec = MethodSpec::points(m).next().unwrap();
+        w.state_mut().first.set_spec(spec);
+        steps(&mut w);
+        for parameter in m.all_parameters() {
+            assert!(
+                w.query_all_by_label(parameter.name()).next().is_some(),
+                "{}: {}",
+                m.name,
+                parameter.name()
+            );
+        }
+        assert_eq!(w.state().first.failure, None, "{}", m.name);
+        w.check_accessibility();
+    }
+}
+
+/// The picture is that of `peelnet render`, but for the precision of its target.
+#[test]
+fn the_picture_is_the_renderers() {
+    /// Blending rounds to 11 bits in the viewer's 16-bit target, far less than one of 255 levels; a value at the border of two levels may
+    /// then fall to the other side.
+    const LEVELS: u8 = 1;
+    for name in ["deep-medium", "mboit4", "abuffer", "kbuffer-4"] {
+        let mut w = window("cups", name);
+        until(&mut w, "whole", |app| {
+            app.first.status() == peelnet_render::FrameStatus::Whole
+        });
+        steps(&mut w);
+        let app = w.state();
+        let shown = app.displayed().texels(&app.gpu);
+        let scene = suite::load("cups").unwrap();
+        let renderer = Renderer::new(&app.gpu, &scene).unwrap();
+        let options = MethodOptions::sized(app.size);
+        let mut prepared = renderer.method(&name.parse().unwrap(), options).unwrap();
+        let image = renderer.image(&mut prepared, &scene.views[0]).unwrap();
+        let want = image.image.to_srgb8();
+        let worst = shown.iter().zip(want.chunks_exact(3)).map(|(a, b)| {
+            let channels = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+            channels.max().unwrap()
+        });
+        assert!(worst.max().unwrap() <= LEVELS, "{name}");
+        assert_eq!(shown.len() * 3, want.len());
+    }
+}
+
+/// Each comparison shows what it says of two pictures that differ.
+#[test]
+fn comparisons_show_both_pictures() {
+    let mut w = window("cups", "wboit-eq9");
+    // Panels differ in width.
+    w.state_mut().panels.bare = true;
+    let picture = |w: &mut Window, mode: Mode| {
+        w.state_mut().compare.mode = mode;
+        steps(w);
+        until(w, "whole", |app| {
+            app.second.status() == peelnet_render::FrameStatus::Whole || mode == Mode::One
+        });
+        steps(w);
+        let app = w.state();
+        app.displayed().texels(&app.gpu)
+    };
+    let first = picture(&mut w, Mode::One);
+    let split = picture(&mut w, Mode::Split);
+    let second = picture(&mut w, Mode::Second);
+    let error = picture(&mut w, Mode::Error);
+    let [width, _] = w.state().size;
+    let divider = (width as f32 * 0.5).round() as usize;
+    assert_ne!(first, second);
+    for (i, shown) in split.iter().enumerate() {
+        let from = if i % (width as usize) < divider {
+            &first
+        } else {
+            &second
+        };
+        assert_eq!(shown, &from[i], "{i}");
+    }
+    // Black exactly where the pictures are equal, as far as 8 bits tell.
+    let black = error[0];
+    assert_eq!(first[0], second[0]);
+    for (i, heat) in error.iter().enumerate() {
+        let difference = (0..3).map(|k| first[i][k].abs_diff(second[i][k]));
+        if difference.max().unwrap() > 1 {
+            assert_ne!(*heat, black, "{i}");
+        }
+    }
+}
+
+#[test]
+fn comparisons_are_chosen_by_their_names() {
+    let mut w = window("boxes", "wboit-eq9");
+    for (mode, name, _) in Mode::ALL {
+        press(&mut w, name);
+        assert_eq!(w.state().compare.mode, mode);
+        if mode.needs_second() {
+            w.get_by_label("Against");
+        }
+    }
+    until(&mut w, "layers", |app| {
+        app.counter.map.as_ref().is_some_and(Result::is_ok)
+    });
+}
+
+#[test]
+fn keys_do_what_the_list_says() {
+    let mut w = window("cups", "wboit-eq9");
+    let key = |w: &mut Window, key: egui::Key| {
+        w.key_press(key);
+        steps(w);
+    };
+    key(&mut w, egui::Key::Num2);
+    assert_eq!(w.state().view, Some(1));
+    assert_eq!(w.state().camera, suite::load("cups").unwrap().views[1]);
+    key(&mut w, egui::Key::F);
+    assert_eq!(w.state().view, None);
+    key(&mut w, egui::Key::C);
+    assert_eq!(w.state().compare.mode, Mode::Split);
+    let before = method(&w);
+    key(&mut w, egui::Key::M);
+    assert_ne!(method(&w), before);
+    w.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::M);
+    steps(&mut w);
+    assert_eq!(method(&w), before);
+    key(&mut w, egui::Key::H);
+    assert!(w.state().panels.help);
+    let position = w.state().camera.position;
+    key(&mut w, egui::Key::ArrowLeft);
+    assert_ne!(w.state().camera.position, position);
+    key(&mut w, egui::Key::Tab);
+    assert!(w.state().panels.bare);
+    // The harness leaves a margin, a window does not.
+    let [width, height] = SIZE.map(|x| x as u32);
+    assert!(w.state().size[0] > width - 20 && w.state().size[1] > height - 20);
+}
+
+/// A drag over the picture turns the eye; the distance to its target stays.
+#[test]
+fn a_drag_orbits() {
+    let mut w = window("cups", "wboit-eq9");
+    let before = w.state().camera;
+    let middle = w.get_by_label("Picture of the scene").rect().center();
+    w.drag_at(middle);
+    w.step();
+    w.hover_at(middle + egui::vec2(40.0, 10.0));
+    w.step();
+    w.drop_at(middle + egui::vec2(40.0, 10.0));
+    steps(&mut w);
+    let after = w.state().camera;
+    let distance = |c: &peelnet_scene::Camera| (c.position - c.target).length();
+    assert_ne!(before.position, after.position);
+    assert_eq!(before.target, after.target);
+    assert!((distance(&before) / distance(&after) - 1.0).abs() < 1e-5);
+}
+
+/// The divider follows the pointer and the eye stays.
+#[test]
+fn the_divider_is_dragged() {
+    let mut w = window("boxes", "wboit-eq9");
+    w.state_mut().compare.mode = Mode::Split;
+    steps(&mut w);
+    let eye = w.state().camera;
+    let picture = w.get_by_label("Picture of the scene").rect();
+    w.drag_at(picture.center());
+    w.step();
+    let to = egui::pos2(picture.left() + 0.25 * picture.width(), picture.center().y);
+    w.hover_at(to);
+    w.step();
+    w.drop_at(to);
+    steps(&mut w);
+    assert!((w.state().compare.divider - 0.25).abs() < 0.01);
+    assert_eq!(w.state().camera, eye);
+}
+
+/// Fragments come front to back; T is the product of what is in front, by the formula; the exact method believes just that.
+#[test]
+fn a_pixel_lists_its_fragments() {
+    let mut w = window("cups", "abuffer");
+    let middle = w.get_by_label("Picture of the scene").rect().center();
+    w.hover_at(middle);
+    w.step();
+    w.drag_at(middle);
+    w.drop_at(middle);
+    steps(&mut w);
+    assert!(w.state().inspector.pixel.is_some());
+    until(&mut w, "fragments", |app| app.inspector.layers().is_some());
+    let layers = w.state().inspector.layers().unwrap().as_ref().unwrap();
+    assert!(layers.len() > 2);
+    let mut front = 1.0;
+    for pair in layers.windows(2) {
+        assert!(pair[0].fragment.depth <= pair[1].fragment.depth);
+    }
+    for layer in layers {
+        assert!((layer.exact - front).abs() < 1e-12);
+        assert!(!layer.object.is_empty());
+        front *= 1.0 - f64::from(layer.fragment.alpha);
+    }
+}
+
+/// The exact method has no error; another one has.
+#[test]
+fn errors_are_measured_while_the_view_rests() {
+    let mut w = window("boxes", "abuffer");
+    w.state_mut().panels.measures = true;
+    let measured = |app: &App| {
+        let key = app.key().unwrap();
+        app.judge.of(&key).is_some()
+    };
+    until(&mut w, "measured", measured);
+    let numbers = |w: &Window| {
+        let key = w.state().key().unwrap();
+        w.state().judge.of(&key).unwrap().clone().unwrap()
+    };
+    assert_eq!(numbers(&w).mse255, 0.0);
+    assert!(numbers(&w).stats.fragments.is_some_and(|n| n > 0));
+    w.state_mut().first.set_spec("wboit-eq9".parse().unwrap());
+    steps(&mut w);
+    until(&mut w, "measured again", measured);
+    assert!(numbers(&w).mse255 > 0.0);
+    assert!(numbers(&w).flip.is_some_and(|x| x > 0.0));
+}
+
+/// Every method gets a point, exact ones an error of 0, and a click on the list switches.
+#[test]
+fn all_methods_are_measured_on_the_view() {
+    let mut w = sized("boxes", "wboit-eq9", [640.0, 420.0]);
+    w.state_mut().panels.bare = false;
+    // A small picture: it is the number of methods that takes time.
+    w.state_mut().size = [48, 32];
+    let app = w.state_mut();
+    let key = app.key().unwrap();
+    let stage = app.stage.as_ref().unwrap();
+    app.front.measure(stage, key, [48, 32]);
+    until(&mut w, "front", |app| !app.front.is_busy());
+    let front = &w.state().front;
+    assert_eq!(front.failure, None);
+    let measured = front.measured.borrow();
+    assert_eq!(measured.done, measured.all);
+    assert_eq!(
+        measured.points.len() + measured.left_out.len(),
+        measured.all
+    );
+    assert_eq!(measured.left_out, []);
+    let exact = measured.points.iter().find(|p| p.method == "abuffer");
+    assert_eq!(exact.unwrap().mse255, 0.0);
+    assert!(measured.points.iter().any(|p| p.on_front));
+}
+
+/// What does not open is one message, and the last scene stays.
+#[test]
+fn bad_files_leave_the_view() {
+    let mut w = window("boxes", "wboit-eq9");
+    let folder = tempfile::tempdir().unwrap();
+    let bad = folder.path().join("bad.glb");
+    std::fs::write(&bad, "no mesh").unwrap();
+    for (path, says) in [
+        (bad.clone(), "bad.glb"),
+        (folder.path().join("none.toml"), "none.toml"),
+        ("nowhere".into(), "nowhere"),
+    ] {
+        let source = crate::stage::Source::Named(path);
+        w.state_mut().open(source, None);
+        steps(&mut w);
+        assert!(w.query_by_label_contains(says).is_some(), "{says}");
+        let stage = w.state().stage.as_ref().unwrap();
+        assert_eq!(stage.scene().name, "boxes");
+    }
+    w.state_mut().open_network(bad);
+    steps(&mut w);
+    assert!(w.state().first.network().is_none());
+    assert_eq!(w.state().first.failure, None);
+}
+
+/// A network that is written anew is read again.
+#[test]
+fn a_network_is_read_again_when_its_file_changes() {
+    let mut w = window("boxes", "wboit-eq9");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.safetensors");
+    let recipe = peelnet_model::Recipe::of_method("deep-small").unwrap();
+    let model = peelnet_model::Model::shipped(recipe).unwrap();
+    model.save(&path).unwrap();
+    w.state_mut().open_network(path.clone());
+    steps(&mut w);
+    assert_eq!(method(&w), "deep-small");
+    assert_eq!(w.state().first.failure, None);
+    let loaded = |app: &App| app.first.network().map(|n| n.model.meta.recipe.method);
+    assert_eq!(loaded(w.state()), Some("deep-small"));
+    // Files keep times to a fraction of a second at best.
+    std::thread::sleep(Duration::from_millis(50));
+    let other = peelnet_model::Recipe::of_method("deep-large").unwrap();
+    peelnet_model::Model::shipped(other)
+        .unwrap()
+        .save(&path)
+        .unwrap();
+    until(&mut w, "read again", |app| {
+        loaded(app) == Some("deep-large")
+    });
+    assert_eq!(method(&w), "deep-large");
+}
+
+/// Changes of an object, a material, a light and an effect show, and are taken back.
+#[test]
+fn changes_show_and_are_taken_back() {
+    let mut w = window("cups", "wboit-eq9");
+    let shown = |w: &mut Window| {
+        steps(w);
+        let app = w.state();
+        app.displayed().texels(&app.gpu)
+    };
+    let before = shown(&mut w);
+    let scene = w.state().stage.as_ref().unwrap().scene().clone();
+    let moved = glam::Mat4::from_translation(glam::Vec3::X) * scene.objects[0].world_from_object;
+    w.state_mut().edit(|stage| stage.set_transform(0, moved));
+    assert_ne!(shown(&mut w), before);
+    w.state_mut().edit(crate::stage::Stage::reset);
+    assert!(shown(&mut w) == before);
+    let mut clear = scene.objects[0].materials[0].clone();
+    clear.alpha = 0.01;
+    w.state_mut().edit(|stage| stage.set_material(0, 0, clear));
+    assert_ne!(shown(&mut w), before);
+    w.state_mut().edit(crate::stage::Stage::reset);
+    w.state_mut().edit(|stage| stage.set_lights(Vec::new()));
+    assert_ne!(shown(&mut w), before);
+    w.state_mut().edit(crate::stage::Stage::reset);
+    assert!(shown(&mut w) == before);
+}
+
+/// The timeline moves by its labels; layers are highlighted and shaded as the check boxes say.
+#[test]
+fn time_and_layers() {
+    let mut w = sized("vase", "wboit-eq9", [1000.0, 900.0]);
+    let last = {
+        let scene = w.state().stage.as_ref().unwrap().scene();
+        scene.timeline.last().unwrap().clone()
+    };
+    press(&mut w, &last.label);
+    let time = |w: &Window| w.state().stage.as_ref().unwrap().scene().time;
+    assert_eq!(time(&w), last.time);
+    press(&mut w, "Play");
+    assert!(w.state().motion.plays);
+    press(&mut w, "Pause");
+    assert_ne!(time(&w), last.time);
+    press(&mut w, "Layers");
+    press(&mut w, "Layer 1");
+    let layers = |w: &Window| w.state().stage.as_ref().unwrap().shown().clone();
+    assert_eq!(layers(&w).layers.unwrap().highlight, 1);
+    press(&mut w, "Increasing layers only");
+    assert!(layers(&w).layers.unwrap().increasing);
+    press(&mut w, "Shade the highlighted layer alone");
+    assert!(layers(&w).shade_all);
+    assert_eq!(w.state().first.failure, None);
+    press(&mut w, "None");
+    assert_eq!(layers(&w).layers, None);
+}
+
+/// A phone's width has one column, and everything is still there.
+#[test]
+fn a_narrow_window_has_one_column() {
+    let mut w = sized("boxes", "wboit-eq9", [360.0, 740.0]);
+    let picture = w.get_by_label("Picture of the scene").rect();
+    assert!(picture.width() >= 340.0, "{picture:?}");
+    assert!(picture.height() > 200.0, "{picture:?}");
+    w.get_by_label("Method");
+    press(&mut w, "Controls");
+    press(&mut w, "Results");
+    let picture = w.get_by_label("Picture of the scene").rect();
+    assert!(picture.height() > 600.0, "{picture:?}");
+}
