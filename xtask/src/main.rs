@@ -7,6 +7,8 @@ mod measure;
 mod meshes;
 mod product;
 mod setup;
+mod view;
+mod web;
 
 use std::{
     env,
@@ -32,6 +34,9 @@ cargo xtask <command>
                   elsewhere neither a compiler nor a network is needed
   results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
   wasm            check the crates that run in a browser for wasm32
+  web             build the viewer's page into out/web (needs the Rust target wasm32-unknown-unknown)
+  view-test [STEP…]
+                  tests of the viewer as people see it: the page in Chromium (minutes; needs Node.js 20 and npm); steps: page
   docs            build the book in docs/ with mdBook, into target/book
   search          a million random fragment lists for every property (minutes)
   faults          extract, train and bench killed fifty times each (minutes)
@@ -60,6 +65,8 @@ fn main() -> ExitCode {
         }
         (Some("results"), ["--check"]) => checks::results(),
         (Some("wasm"), []) => checks::wasm(),
+        (Some("web"), []) => web::web(),
+        (Some("view-test"), steps) => view::test(steps),
         (Some("docs"), []) => checks::docs(),
         (Some("search"), []) => checks::search(),
         (Some("faults"), []) => checks::faults(),

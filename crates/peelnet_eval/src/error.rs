@@ -25,6 +25,7 @@ pub enum EvalError {
         source: Box<RenderError>,
     },
     /// Peeling failed.
+    #[cfg(not(target_arch = "wasm32"))]
     #[error("scene '{scene}': {source}")]
     Peel {
         /// The scene's name.
