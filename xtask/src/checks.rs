@@ -111,7 +111,7 @@ pub fn deny() -> Result<(), String> {
 }
 
 /// What a page in a browser needs.
-const WEB_CRATES: [&str; 8] = [
+const WEB_CRATES: [&str; 10] = [
     "peelnet_core",
     "peelnet_scene",
     "peelnet_shaders",
@@ -120,6 +120,8 @@ const WEB_CRATES: [&str; 8] = [
     "peelnet_export",
     "peelnet_render",
     "peelnet_peel",
+    "peelnet_eval",
+    "peelnet_view",
 ];
 
 /// Compiles the crates of a page without linking them.

@@ -7,6 +7,8 @@ mod measure;
 mod meshes;
 mod product;
 mod setup;
+mod view;
+mod web;
 
 use std::{
     env,
@@ -34,6 +36,9 @@ cargo xtask <command>
   bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
                   minutes to compile)
   wasm            check the crates that run in a browser for wasm32
+  web             build the viewer's page into out/web (needs the Rust target wasm32-unknown-unknown)
+  view-test [STEP…]
+                  tests of the viewer as people see it: the page in Chromium (minutes; needs Node.js 20 and npm); steps: page
   docs            build the book in docs/ with mdBook, into target/book
   search          a million random fragment lists for every property (minutes)
   faults          extract, train and bench killed fifty times each (minutes)
@@ -63,6 +68,8 @@ fn main() -> ExitCode {
         (Some("results"), ["--check"]) => checks::results(),
         (Some("bevy"), []) => checks::bevy(),
         (Some("wasm"), []) => checks::wasm(),
+        (Some("web"), []) => web::web(),
+        (Some("view-test"), steps) => view::test(steps),
         (Some("docs"), []) => checks::docs(),
         (Some("search"), []) => checks::search(),
         (Some("faults"), []) => checks::faults(),

@@ -363,6 +363,7 @@ pub enum LayersChoice {
   peelnet view boxes-held --method deep-thesis --model m.safetensors     reads the file again while it is trained
   peelnet view cups --method mboit4 --size 1280x800 --frames 10 --screenshot window.png
   peelnet view cups --method mboit4 --size 640x480 --bare --screenshot picture.png
+  peelnet view foliage-held --method wboit-eq9 --compare error --against deep-medium
 
 The program has a viewer where it was built with it: cargo build --release --package peelnet --features view")]
 pub struct ViewArgs {
@@ -384,6 +385,12 @@ pub struct ViewArgs {
     /// Time in the scene's timeline
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub time: Option<f32>,
+    /// How two methods are compared at first: one, split, beside, flicker, error or layers
+    #[arg(long, value_name = "MODE", default_value = "one", value_parser = ["one", "split", "beside", "flicker", "error", "layers"])]
+    pub compare: String,
+    /// What the method is compared with
+    #[arg(long, value_name = "METHOD", default_value = "abuffer")]
+    pub against: MethodSpec,
     /// Size of the window's content in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x800")]
     pub size: Size,

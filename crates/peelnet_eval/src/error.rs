@@ -25,6 +25,7 @@ pub enum EvalError {
         source: Box<RenderError>,
     },
     /// Peeling failed.
+    #[cfg(not(target_arch = "wasm32"))]
     #[error("scene '{scene}': {source}")]
     Peel {
         /// The scene's name.
@@ -69,6 +70,7 @@ pub enum EvalError {
         most: u64,
     },
     /// The video metric refused what it was given.
+    #[cfg(not(target_arch = "wasm32"))]
     #[error("the video metric: {0}")]
     Video(#[from] colorvideovdp::Error),
     /// An interrupted run cannot be resumed.
@@ -104,6 +106,7 @@ pub enum EvalError {
     Interrupted,
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 impl EvalError {
     /// For `map_err` on file operations.
     pub(crate) fn io(

@@ -14,35 +14,63 @@
 //!
 //! A row is never left out because its result looks bad: components that are not finite are counted and enter the
 //! error as black.
+//!
+//! In a browser, where nothing may wait and no C++ is compiled, there are only [`metrics`] and [`perceptual`] without ꟻLIP.
 
+#[cfg(not(target_arch = "wasm32"))]
 pub mod bench;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod by_scene;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod compare;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod contours;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod designs;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod effects;
 mod error;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod family;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod front;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod learning;
+#[cfg(not(target_arch = "wasm32"))]
 mod machine;
+#[cfg(not(target_arch = "wasm32"))]
 mod mean;
 pub mod metrics;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod numerics;
+#[cfg(not(target_arch = "wasm32"))]
 mod partial;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod path;
 pub mod perceptual;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod ratios;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod recommend;
+#[cfg(not(target_arch = "wasm32"))]
 mod row;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod scaling;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod stress;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod thesis;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod transmittance;
 
+#[cfg(not(target_arch = "wasm32"))]
 pub use bench::bench;
 pub use error::EvalError;
+#[cfg(not(target_arch = "wasm32"))]
 pub use machine::{Machine, load};
+#[cfg(not(target_arch = "wasm32"))]
 pub use mean::geometric_mean;
+#[cfg(not(target_arch = "wasm32"))]
 pub use partial::{Partial, settings_hash};
+#[cfg(not(target_arch = "wasm32"))]
 pub use row::{Row, methods_of, scenes_of};

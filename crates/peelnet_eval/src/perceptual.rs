@@ -43,7 +43,8 @@ impl Displayed {
     }
 
     /// Mean ꟻLIP (Andersson et al. 2020): NVIDIA's own code in `nv-flip`, for a display seen at 67 pixels a degree; 0 for
-    /// equal images, at most 1.
+    /// equal images, at most 1. Its code is C++, which is not compiled for a page.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn flip(&self, exact: &Self) -> f64 {
         let of = |image: &Self| {
             let (width, height) = image.luma.dimensions();

@@ -9,6 +9,7 @@ use std::{
         Arc, Mutex,
         atomic::{AtomicBool, Ordering},
     },
+    task::Waker,
 };
 
 /// An open device with its queue. A handle: clones share the device, the errors it reported and the pipelines compiled so far.
@@ -36,8 +37,10 @@ pub struct Gpu {
 pub(crate) struct Shared {
     /// Whether an allocation did not fit the GPU's memory.
     memory_was_full: AtomicBool,
-    first_error: Mutex<Option<String>>,
+    first_error: Mutex<Option<GpuError>>,
     lost: Mutex<Option<String>>,
+    /// Who draws again when the device is lost.
+    waker: Mutex<Option<Waker>>,
     pub(crate) pipelines: PipelineCache,
 }
 
@@ -69,14 +72,21 @@ impl Gpu {
             })?;
         let gpu = Self::from_parts(instance, adapter, device, queue);
         // wgpu's default is to panic. The first error is kept instead and becomes the error of the next read-back.
-        let shared = Arc::clone(&gpu.shared);
+        let (shared, name) = (Arc::clone(&gpu.shared), gpu.info.name.clone());
         gpu.device
             .on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-                locked(&shared.first_error).get_or_insert(error.to_string());
+                let error = match error {
+                    wgpu::Error::OutOfMemory { .. } => GpuError::MemoryFull(name.clone()),
+                    error => GpuError::Validation(error.to_string()),
+                };
+                locked(&shared.first_error).get_or_insert(error);
             }));
         let shared = Arc::clone(&gpu.shared);
         gpu.device.set_device_lost_callback(move |reason, text| {
             locked(&shared.lost).get_or_insert(format!("{reason:?}: {text}"));
+            if let Some(waker) = locked(&shared.waker).take() {
+                waker.wake();
+            }
         });
         Ok(gpu)
     }
@@ -168,13 +178,19 @@ impl Gpu {
     /// The error that wgpu reported since the last call, if any.
     ///
     /// # Errors
-    /// [`GpuError::Lost`] once the device is lost, else [`GpuError::Validation`] with wgpu's text.
+    /// [`GpuError::Lost`] once the device is lost, else [`GpuError::Validation`] with wgpu's text, or [`GpuError::MemoryFull`].
     pub fn check(&self) -> Result<(), GpuError> {
         if let Some(reason) = locked(&self.shared.lost).as_ref() {
             return Err(GpuError::Lost(reason.clone()));
         }
         let error = locked(&self.shared.first_error).take();
-        error.map_or(Ok(()), |text| Err(GpuError::Validation(text)))
+        error.map_or(Ok(()), Err)
+    }
+
+    /// Wakes this once the device is lost, for an application that draws only where something changed. An application's own device
+    /// ([`Gpu::from_parts`]) reports to the application instead.
+    pub fn wake_when_lost(&self, waker: Waker) {
+        *locked(&self.shared.waker) = Some(waker);
     }
 
     /// Allocates; an allocation that does not fit the GPU's memory is an error at once, and the device goes on.

@@ -60,6 +60,11 @@ pub enum GpuError {
         /// Adapter name.
         adapter: String,
     },
+    /// The GPU's memory is full, and the driver does not say what did not fit.
+    #[error(
+        "adapter '{0}' has no memory left for what was to be drawn; close other programs, or draw a smaller scene or frame"
+    )]
+    MemoryFull(String),
     /// The device stopped answering.
     #[error("the GPU device was lost or did not answer: {0}; run again, or use a software adapter")]
     Lost(String),

@@ -121,28 +121,37 @@ impl Image {
         Ok(bytes)
     }
 
+    /// The bytes of a file of a format.
+    ///
+    /// # Errors
+    /// If the encoder fails.
+    pub fn encoded(&self, format: ImageFormat) -> Result<Vec<u8>, RenderError> {
+        let failed = |e: &dyn std::fmt::Display| failed(Path::new("in memory"), e);
+        let flat = || -> Vec<f32> { self.pixels.iter().flatten().copied().collect() };
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        match format {
+            ImageFormat::Png => return self.to_png(),
+            ImageFormat::Exr => image::Rgba32FImage::from_raw(self.width, self.height, flat())
+                .ok_or_else(|| failed(&"pixels do not fill the frame"))?
+                .write_to(&mut bytes, image::ImageFormat::OpenExr)
+                .map_err(|e| failed(&e))?,
+            ImageFormat::Npy => {
+                let shape = (self.height as usize, self.width as usize, 4);
+                let array =
+                    ndarray::Array3::from_shape_vec(shape, flat()).map_err(|e| failed(&e))?;
+                ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).map_err(|e| failed(&e))?;
+            }
+        }
+        Ok(bytes.into_inner())
+    }
+
     /// Writes the image in the format that [`ImageFormat::of`] finds. The file appears whole or not at all.
     ///
     /// # Errors
     /// An unknown ending, or a file that cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), RenderError> {
-        let flat = || -> Vec<f32> { self.pixels.iter().flatten().copied().collect() };
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        match ImageFormat::of(path)? {
-            ImageFormat::Png => bytes = std::io::Cursor::new(self.to_png()?),
-            ImageFormat::Exr => image::Rgba32FImage::from_raw(self.width, self.height, flat())
-                .ok_or_else(|| failed(path, &"pixels do not fill the frame"))?
-                .write_to(&mut bytes, image::ImageFormat::OpenExr)
-                .map_err(|e| failed(path, &e))?,
-            ImageFormat::Npy => {
-                let shape = (self.height as usize, self.width as usize, 4);
-                let array =
-                    ndarray::Array3::from_shape_vec(shape, flat()).map_err(|e| failed(path, &e))?;
-                ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes)
-                    .map_err(|e| failed(path, &e))?;
-            }
-        }
-        peelnet_files::write_whole(path, &bytes.into_inner()).map_err(|e| failed(path, &e))
+        let bytes = self.encoded(ImageFormat::of(path)?)?;
+        peelnet_files::write_whole(path, &bytes).map_err(|e| failed(path, &e))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{
     inspect::Inspector,
     messages::Messages,
     motion::Motion,
-    numbers::{Judge, Key, LayerCounter},
+    numbers::{EXACT, Judge, Key, LayerCounter},
     output::Output,
     panels,
     script::Script,
@@ -18,7 +18,6 @@ use crate::{
 };
 use eframe::egui_wgpu::RenderState;
 use egui::Context;
-use peelnet_eval::compare::EXACT;
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_render::MethodSpec;
 use peelnet_scene::Camera;
@@ -44,6 +43,10 @@ pub struct Start {
     pub camera: Option<Vec<f32>>,
     /// The time of the scene's timeline.
     pub time: Option<f32>,
+    /// How pictures are compared at first.
+    pub compare: Mode,
+    /// What the method is compared with; by default the exact one.
+    pub against: Option<MethodSpec>,
     /// Whether the picture alone is shown, without panels.
     pub bare: bool,
     /// What a script asks for.
@@ -60,6 +63,8 @@ impl Start {
             view: 0,
             camera: None,
             time: None,
+            compare: Mode::One,
+            against: None,
             bare: false,
             script: None,
         }
@@ -96,44 +101,15 @@ pub struct App {
     rest: Option<(Key, f64)>,
     /// Clock time of the last frames' work on the CPU, milliseconds.
     pub(crate) cpu_ms: f64,
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) page: crate::web::InPage,
 }
 
 impl App {
     /// Opens a scene; what does not open is a message in the window.
     pub fn new(gpu: &Gpu, start: Start, recent: Vec<PathBuf>) -> Self {
-        let exact: Option<MethodSpec> = EXACT.parse().ok();
-        let mut app = Self {
-            gpu: gpu.clone(),
-            stage: None,
-            camera: Camera {
-                position: glam::Vec3::Z,
-                target: glam::Vec3::ZERO,
-                up: glam::Vec3::Y,
-                fov_y_degrees: 45.0,
-                near: 0.1,
-                far: 10.0,
-            },
-            view: None,
-            second: Slot::new(exact.unwrap_or_else(|| start.method.clone())),
-            first: Slot::new(start.method),
-            compare: Compare::default(),
-            judge: Judge::default(),
-            counter: LayerCounter::default(),
-            inspector: Inspector::default(),
-            front: Front::default(),
-            output: Output::default(),
-            messages: Messages::default(),
-            motion: Motion::default(),
-            watch: Watch::default(),
-            recent,
-            panels: panels::State::new(start.bare),
-            size: [0; 2],
-            script: start.script,
-            display: Display::new(gpu),
-            displayed: None,
-            rest: None,
-            cpu_ms: 0.0,
-        };
+        let mut app = Self::empty(gpu, &start, recent);
+        app.compare.mode = start.compare;
         app.open(Source::Named(start.scene), start.time);
         app.show_view(start.view);
         if let Some([px, py, pz, tx, ty, tz, angle @ ..]) = start.camera.as_deref() {
@@ -148,6 +124,48 @@ impl App {
             app.open_network(path);
         }
         app
+    }
+
+    /// Without a scene.
+    pub(crate) fn empty(gpu: &Gpu, start: &Start, recent: Vec<PathBuf>) -> Self {
+        let exact: Option<MethodSpec> = EXACT.parse().ok();
+        Self {
+            gpu: gpu.clone(),
+            stage: None,
+            camera: Camera {
+                position: glam::Vec3::Z,
+                target: glam::Vec3::ZERO,
+                up: glam::Vec3::Y,
+                fov_y_degrees: 45.0,
+                near: 0.1,
+                far: 10.0,
+            },
+            view: None,
+            second: {
+                let against = start.against.clone().or(exact);
+                Slot::new(against.unwrap_or_else(|| start.method.clone()))
+            },
+            first: Slot::new(start.method.clone()),
+            compare: Compare::default(),
+            judge: Judge::default(),
+            counter: LayerCounter::default(),
+            inspector: Inspector::default(),
+            front: Front::default(),
+            output: Output::default(),
+            messages: Messages::default(),
+            motion: Motion::default(),
+            watch: Watch::default(),
+            recent,
+            panels: panels::State::new(start.bare),
+            size: [0; 2],
+            script: start.script.clone(),
+            display: Display::new(gpu),
+            displayed: None,
+            rest: None,
+            cpu_ms: 0.0,
+            #[cfg(target_arch = "wasm32")]
+            page: crate::web::InPage::default(),
+        }
     }
 
     /// Replaces the scene; the one that is shown stays where the new one does not open.
@@ -259,6 +277,10 @@ impl App {
         // Callbacks of finished GPU work run here, on systems where nothing else calls them.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         if let Err(e) = self.gpu.check() {
+            #[cfg(target_arch = "wasm32")]
+            if self.begin_again(&e) {
+                return;
+            }
             self.messages.error(crate::stage::one_line(&e));
         }
         self.first.poll(ui);
@@ -388,6 +410,8 @@ impl App {
         self.advance(&ctx);
         panels::show(self, ui, egui);
         self.measure(&ctx);
+        #[cfg(target_arch = "wasm32")]
+        self.show_address(&ctx);
         // A slow average, so that the number can be read.
         let now = begin.elapsed().as_secs_f64() * 1e3;
         self.cpu_ms += 0.1 * (now - self.cpu_ms);

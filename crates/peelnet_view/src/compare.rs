@@ -7,21 +7,41 @@ const FLICKER: f64 = 0.5;
 
 /// What the viewport shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Mode {
+pub enum Mode {
+    /// The method alone.
     #[default]
     One,
+    /// Both methods, divided by a line.
     Split,
+    /// Both methods side by side.
     Beside,
+    /// Both methods in turn.
     Flicker,
     /// In place of [`Mode::Flicker`] while the second picture's turn lasts.
     Second,
+    /// A map of their differences.
     Error,
+    /// A map of the number of transparent surfaces.
     Layers,
+}
+
+/// Names for command lines, in the order of [`Mode::ALL`].
+const WORDS: [&str; 6] = ["one", "split", "beside", "flicker", "error", "layers"];
+
+impl std::str::FromStr for Mode {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let place = WORDS.iter().position(|word| *word == text);
+        place
+            .map(|k| Self::ALL[k].0)
+            .ok_or_else(|| format!("'{text}' is not one of {}", WORDS.join(", ")))
+    }
 }
 
 impl Mode {
     /// All that people choose from, with a name and what it does.
-    pub const ALL: [(Self, &'static str, &'static str); 6] = [
+    pub(crate) const ALL: [(Self, &'static str, &'static str); 6] = [
         (Self::One, "One", "The method alone"),
         (
             Self::Split,
@@ -50,11 +70,11 @@ impl Mode {
         ),
     ];
 
-    pub const fn needs_second(self) -> bool {
+    pub(crate) const fn needs_second(self) -> bool {
         !matches!(self, Self::One | Self::Layers)
     }
 
-    pub const fn show(self) -> Show {
+    pub(crate) const fn show(self) -> Show {
         match self {
             Self::One | Self::Flicker | Self::Layers => Show::First,
             Self::Second => Show::Second,

@@ -1,11 +1,11 @@
 //! Error against time of all methods on the present view.
 
 use crate::{
-    numbers::Key,
+    numbers::{EXACT, Key},
     stage::{Stage, one_line},
     task::{Task, computed},
 };
-use peelnet_eval::{compare::EXACT, metrics};
+use peelnet_eval::metrics;
 use peelnet_gpu::record::PassTime;
 use peelnet_render::{MethodOptions, MethodSpec, RenderError, Renderer, of_method};
 use std::{cell::RefCell, rc::Rc, sync::Arc};

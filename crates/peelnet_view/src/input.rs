@@ -1,9 +1,13 @@
 //! Keys and dropped files.
 
-use crate::{app::App, compare::Mode, eye, stage::Source};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::stage::Source;
+use crate::{app::App, compare::Mode, eye};
 use egui::{Context, Key};
 use peelnet_scene::file::ENDINGS;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::PathBuf;
 
 /// How far the eye flies in a second, in radii of the scene.
 const SPEED: f32 = 0.7;
@@ -54,24 +58,46 @@ pub(crate) fn scene_among<'a>(paths: impl Iterator<Item = &'a Path> + Clone) -> 
     endings.find_map(|wanted| paths.clone().find(|p| ending(p) == **wanted))
 }
 
+/// What dropped files are.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Opens<'a> {
+    /// A network, whatever lies beside it.
+    Network(&'a Path),
+    /// A scene.
+    Scene(&'a Path),
+}
+
+/// What there is to open among files; a message where there is nothing.
+pub(crate) fn opens<'a>(
+    mut paths: impl Iterator<Item = &'a Path> + Clone,
+) -> Result<Opens<'a>, String> {
+    if let Some(model) = paths.clone().find(|p| ending(p) == MODEL) {
+        return Ok(Opens::Network(model));
+    }
+    if let Some(scene) = scene_among(paths.clone()) {
+        return Ok(Opens::Scene(scene));
+    }
+    let first = paths.next().unwrap_or(Path::new("nothing"));
+    let name = peelnet_files::printable(&first.to_string_lossy()).to_string();
+    Err(format!(
+        "{name}: not a scene or a network; drop a {} or .{MODEL} file",
+        ENDINGS.map(|e| format!(".{e}")).join(", ")
+    ))
+}
+
 impl App {
     /// Opens what was dropped onto the window.
+    #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn take_dropped(&mut self, ui: &Context) {
         let files = ui.input(|i| i.raw.dropped_files.clone());
         if files.is_empty() {
             return;
         }
         let paths: Vec<PathBuf> = files.iter().map(|f| f.path().to_owned()).collect();
-        if let Some(model) = paths.iter().find(|p| ending(p) == MODEL) {
-            self.open_network(model.clone());
-        } else if let Some(scene) = scene_among(paths.iter().map(PathBuf::as_path)) {
-            self.open(Source::Named(scene.to_owned()), None);
-        } else if let Some(path) = paths.first() {
-            let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
-            self.messages.error(format!(
-                "{name}: not a scene or a network; drop a {} or .{MODEL} file",
-                ENDINGS.map(|e| format!(".{e}")).join(", ")
-            ));
+        match opens(paths.iter().map(PathBuf::as_path)) {
+            Ok(Opens::Network(path)) => self.open_network(path.to_owned()),
+            Ok(Opens::Scene(path)) => self.open(Source::Named(path.to_owned()), None),
+            Err(e) => self.messages.error(e),
         }
     }
 
@@ -175,5 +201,9 @@ mod tests {
         assert_eq!(of(&["a.png", "b.obj", "b.mtl"]), Some("b.obj".into()));
         assert_eq!(of(&["b.obj", "room.TOML"]), Some("room.TOML".into()));
         assert_eq!(of(&["a.png", "glb"]), None);
+        let all = ["b.obj", "a.safetensors"].map(Path::new);
+        assert_eq!(opens(all.into_iter()), Ok(Opens::Network(all[1])));
+        let none = opens(["notes.txt"].map(Path::new).into_iter());
+        assert!(none.is_err_and(|e| e.starts_with("notes.txt: not a scene")));
     }
 }

@@ -10,6 +10,8 @@
 //!
 //! Controls of methods are made from the methods' declarations ([`peelnet_render::METHODS`]): a new method or parameter appears by itself.
 
+#[cfg(any(test, target_arch = "wasm32"))]
+mod address;
 mod app;
 mod compare;
 mod display;
@@ -31,11 +33,16 @@ mod task;
 mod tests;
 mod viewport;
 mod watch;
+#[cfg(target_arch = "wasm32")]
+mod web;
 #[cfg(not(target_arch = "wasm32"))]
 mod window;
 
 pub use app::{App, Start};
+pub use compare::Mode;
 pub use output::camera_numbers;
 pub use script::{Outcome, Script};
+#[cfg(target_arch = "wasm32")]
+pub use web::Page;
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::open;

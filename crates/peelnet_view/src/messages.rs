@@ -27,6 +27,12 @@ impl Messages {
         self.0.push((is_error, text));
     }
 
+    /// All lines, the newest last.
+    #[cfg(target_arch = "wasm32")]
+    pub fn lines(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|(_, text)| text.as_str())
+    }
+
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

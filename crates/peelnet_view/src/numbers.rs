@@ -5,13 +5,19 @@ use crate::{
     stage::{Stage, one_line},
     task::{Task, computed},
 };
-use peelnet_eval::{compare::EXACT, metrics, perceptual::Displayed};
+use peelnet_eval::metrics;
+#[cfg(not(target_arch = "wasm32"))]
+use peelnet_eval::perceptual::Displayed;
 use peelnet_gpu::wgpu;
 use peelnet_render::{
     FrameStats, Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
+    Role,
 };
 use peelnet_scene::Camera;
 use std::{rc::Rc, sync::Arc};
+
+/// The method that others are judged by.
+pub(crate) const EXACT: &str = Role::Reference.method();
 
 /// What an error was measured of.
 #[derive(Clone, Debug, PartialEq)]
@@ -167,7 +173,7 @@ async fn measured(
             mse255: differences.mse255,
             psnr: differences.psnr,
             max_error: differences.max_error,
-            flip: Some(Displayed::new(&image).flip(&Displayed::new(&judge))),
+            flip: flip(&judge, &image),
             non_finite: differences.non_finite_pixels,
             stats,
         })
@@ -176,6 +182,17 @@ async fn measured(
         Some(numbers) => Ok((exact, numbers.map_err(|e| one_line(&e))?)),
         None => Err("the comparison failed".into()),
     }
+}
+
+/// Mean ꟻLIP.
+#[cfg(not(target_arch = "wasm32"))]
+fn flip(exact: &Image, image: &Image) -> Option<f64> {
+    Some(Displayed::new(image).flip(&Displayed::new(exact)))
+}
+
+#[cfg(target_arch = "wasm32")]
+const fn flip(_: &Image, _: &Image) -> Option<f64> {
+    None
 }
 
 /// How many fragments each pixel has, as a texture; and the most.

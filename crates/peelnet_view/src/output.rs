@@ -7,6 +7,7 @@ use crate::{
     task::Task,
 };
 use peelnet_export::{Language, Options};
+#[cfg(not(target_arch = "wasm32"))]
 use peelnet_files::Standing;
 use peelnet_render::{
     Image, ImageFormat, LearnedWeight, MethodOptions, MethodSpec, RenderError, Renderer,
@@ -159,7 +160,8 @@ fn shown(path: &Path) -> String {
     peelnet_files::printable(&path.to_string_lossy()).to_string()
 }
 
-/// Writes a file, or hands it to the browser. Nothing but an older picture of ours is replaced.
+/// Writes a file. Nothing but an older picture of ours is replaced.
+#[cfg(not(target_arch = "wasm32"))]
 fn save(image: &Image, path: &Path) -> Result<String, String> {
     let format = ImageFormat::of(path).map_err(|e| one_line(&e))?;
     let standing = format.kind().standing(path);
@@ -171,6 +173,15 @@ fn save(image: &Image, path: &Path) -> Result<String, String> {
     }
     image.save(path).map_err(|e| one_line(&e))?;
     Ok(format!("{} is written", shown(path)))
+}
+
+/// Hands a file to the browser.
+#[cfg(target_arch = "wasm32")]
+fn save(image: &Image, path: &Path) -> Result<String, String> {
+    let format = ImageFormat::of(path).map_err(|e| one_line(&e))?;
+    let bytes = image.encoded(format).map_err(|e| one_line(&e))?;
+    crate::web::download(path, &bytes)?;
+    Ok(format!("{} is among your downloads", shown(path)))
 }
 
 /// Letters that every file system takes.

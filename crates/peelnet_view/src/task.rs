@@ -24,7 +24,7 @@ impl<T> Task<T> {
 
     /// Goes on; the result once there is one. The window is drawn again when there is more to do.
     pub fn poll(&mut self, ui: &egui::Context) -> Option<T> {
-        let waker = Waker::from(Arc::new(Repaint(ui.clone())));
+        let waker = repaints(ui);
         match self.0.as_mut().poll(&mut Context::from_waker(&waker)) {
             Poll::Ready(result) => Some(result),
             Poll::Pending => {
@@ -34,6 +34,11 @@ impl<T> Task<T> {
             }
         }
     }
+}
+
+/// Has the window drawn again when it is woken.
+pub(crate) fn repaints(ui: &egui::Context) -> Waker {
+    Waker::from(Arc::new(Repaint(ui.clone())))
 }
 
 struct Repaint(egui::Context);

@@ -56,6 +56,8 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
         model: args.model.clone(),
         view: args.view as usize,
         camera,
+        compare: args.compare.parse().map_err(Failure::Usage)?,
+        against: Some(args.against.clone()),
         time: args.time,
         bare: args.bare,
         script: is_script.then(|| Script::new(args.frames.unwrap_or(1), args.screenshot.clone())),

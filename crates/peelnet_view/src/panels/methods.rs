@@ -261,6 +261,10 @@ fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
             ui.label("Network: the shipped one");
         }
     }
+    if cfg!(target_arch = "wasm32") {
+        ui.weak("Drop a .safetensors file onto the page to draw with it.");
+        return;
+    }
     let label = ui.weak("Drop a .safetensors file, or open one:");
     ui.horizontal(|ui| {
         let edit = egui::TextEdit::singleline(&mut app.panels.model).desired_width(120.0);

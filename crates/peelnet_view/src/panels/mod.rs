@@ -26,6 +26,10 @@ pub(crate) struct State {
     pub measures: bool,
     pub help: bool,
     /// What is typed as a file to open.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "a page has no paths")
+    )]
     pub path: String,
     /// What is typed as a network's file.
     pub model: String,

@@ -25,26 +25,11 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
 
 fn open(app: &mut App, ui: &mut Ui) {
     let mut chosen: Option<PathBuf> = None;
-    let path = ui.label("File, or drop it onto the window");
-    ui.horizontal(|ui| {
-        let hint = "scene.toml, mesh.glb, mesh.obj";
-        let edit = egui::TextEdit::singleline(&mut app.panels.path).hint_text(hint);
-        let edit = ui.add(edit).labelled_by(path.id);
-        let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if (ui.button("Open file").clicked() || entered) && !app.panels.path.is_empty() {
-            chosen = Some(app.panels.path.clone().into());
-        }
-    });
-    if !app.recent.is_empty() {
-        ui.menu_button("Recent", |ui| {
-            for path in &app.recent {
-                let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
-                if ui.button(name).clicked() {
-                    chosen = Some(path.clone());
-                }
-            }
-        });
-    }
+    #[cfg(target_arch = "wasm32")]
+    crate::web::choose_files(ui);
+    #[cfg(not(target_arch = "wasm32"))]
+    path(app, ui, &mut chosen);
+    recent(app, ui, &mut chosen);
     ui.separator();
     ui.label("Scenes that ship");
     egui::ScrollArea::vertical()
@@ -64,6 +49,34 @@ fn open(app: &mut App, ui: &mut Ui) {
     if let Some(path) = chosen {
         app.open(Source::Named(path), None);
         ui.close();
+    }
+}
+
+/// Where a path is typed.
+#[cfg(not(target_arch = "wasm32"))]
+fn path(app: &mut App, ui: &mut Ui, chosen: &mut Option<PathBuf>) {
+    let path = ui.label("File, or drop it onto the window");
+    ui.horizontal(|ui| {
+        let hint = "scene.toml, mesh.glb, mesh.obj";
+        let edit = egui::TextEdit::singleline(&mut app.panels.path).hint_text(hint);
+        let edit = ui.add(edit).labelled_by(path.id);
+        let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        if (ui.button("Open file").clicked() || entered) && !app.panels.path.is_empty() {
+            *chosen = Some(app.panels.path.clone().into());
+        }
+    });
+}
+
+fn recent(app: &App, ui: &mut Ui, chosen: &mut Option<PathBuf>) {
+    if !app.recent.is_empty() {
+        ui.menu_button("Recent", |ui| {
+            for path in &app.recent {
+                let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
+                if ui.button(name).clicked() {
+                    *chosen = Some(path.clone());
+                }
+            }
+        });
     }
 }
 

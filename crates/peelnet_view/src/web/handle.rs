@@ -1,0 +1,140 @@
+//! What the page's own script, and tests, do with the viewer.
+
+use super::{Begin, say};
+use crate::{app::App, eye, stage::Source};
+use peelnet_render::{FrameStatus, MethodSpec};
+use std::{cell::Cell, path::PathBuf, rc::Rc};
+use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
+
+/// The viewer on a canvas.
+#[wasm_bindgen]
+#[derive(Clone)]
+pub struct Page {
+    pub(super) runner: eframe::WebRunner,
+    pub(super) canvas: web_sys::HtmlCanvasElement,
+    /// Devices that were lost.
+    pub(super) lost: Rc<Cell<u32>>,
+}
+
+impl std::fmt::Debug for Page {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Page")
+    }
+}
+
+impl Page {
+    /// Reads or changes the application, and has it drawn again.
+    fn with<T>(&self, of: impl FnOnce(&mut App) -> T) -> Option<T> {
+        let mut app = self.runner.app_mut::<App>()?;
+        let result = of(&mut app);
+        app.page.context.request_repaint();
+        Some(result)
+    }
+
+    /// Reads, without drawing anything for it.
+    fn read<T>(&self, of: impl FnOnce(&App) -> T) -> Option<T> {
+        self.runner.app_mut::<App>().map(|app| of(&app))
+    }
+}
+
+#[wasm_bindgen]
+impl Page {
+    /// Opens a device and draws what the query of an address says on a canvas.
+    ///
+    /// # Errors
+    /// One sentence for people.
+    pub async fn open(canvas: web_sys::HtmlCanvasElement, query: String) -> Result<Page, JsValue> {
+        let page = Self {
+            runner: eframe::WebRunner::new(),
+            canvas,
+            lost: Rc::default(),
+        };
+        page.begin(Begin::Address(query)).await?;
+        say("");
+        Ok(page)
+    }
+
+    /// Opens files, as if they were dropped.
+    pub fn give(&self, names: Vec<String>, files: Vec<js_sys::Uint8Array>) {
+        let files = names.into_iter().zip(files);
+        let files = files.map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec()));
+        let files = files.collect();
+        self.with(|app| app.take_files(files));
+    }
+
+    /// Whether the viewer panicked: then it draws no more.
+    pub fn panicked(&self) -> bool {
+        self.runner.has_panicked()
+    }
+
+    /// Draws with another method from the next frame on.
+    ///
+    /// # Errors
+    /// A text that names no method.
+    pub fn set_method(&self, method: &str) -> Result<(), String> {
+        let method: MethodSpec = method.parse().map_err(|e| crate::stage::one_line(&e))?;
+        self.with(|app| app.first.set_spec(method));
+        Ok(())
+    }
+
+    /// The method.
+    pub fn method(&self) -> Option<String> {
+        self.read(|app| app.first.spec().to_string())
+    }
+
+    /// Opens a shipped scene.
+    pub fn open_scene(&self, name: &str) {
+        self.with(|app| app.open(Source::Named(name.into()), None));
+    }
+
+    /// The scene's name.
+    pub fn scene(&self) -> Option<String> {
+        self.read(|app| app.stage.as_ref().map(|s| s.source.name()))?
+    }
+
+    /// Turns about the target, radians.
+    pub fn orbit(&self, yaw: f32, pitch: f32) {
+        self.with(|app| app.move_eye(|camera, _| eye::orbit(camera, yaw, pitch)));
+    }
+
+    /// Looks through one of the scene's cameras.
+    pub fn set_view(&self, number: usize) {
+        self.with(|app| app.show_view(number));
+    }
+
+    /// Frames that the method has drawn since the page was opened or its device lost.
+    pub fn frames(&self) -> f64 {
+        self.read(|app| app.first.frames as f64).unwrap_or_default()
+    }
+
+    /// Whether the picture is whole: methods that count fragments first need more than a frame.
+    pub fn is_whole(&self) -> bool {
+        let whole = |app: &App| {
+            let slot = &app.first;
+            slot.picture().is_some()
+                && slot.failure.is_none()
+                && slot.status() == FrameStatus::Whole
+                && app.page.reading.is_none()
+        };
+        self.read(whole).unwrap_or_default()
+    }
+
+    /// Mean squared error of the picture, of 255², once it is measured.
+    pub fn error(&self) -> Option<f64> {
+        self.read(|app| {
+            let numbers = app.judge.of(&app.key()?)?.as_ref();
+            numbers.ok().map(|n| n.mse255)
+        })?
+    }
+
+    /// Messages, one a line.
+    pub fn messages(&self) -> String {
+        let all = self.read(|app| app.messages.lines().collect::<Vec<_>>().join("\n"));
+        all.unwrap_or_default()
+    }
+
+    /// Has the device destroyed, as a browser may do at any time.
+    pub fn lose_device(&self) {
+        self.read(|app| app.gpu.device.destroy());
+    }
+}
