@@ -84,6 +84,8 @@ pub(crate) struct Slot {
     pub failure: Option<String>,
     /// Frames drawn.
     pub frames: u64,
+    /// Clock time that making the method ready took, pipelines included: the pause when it is chosen, milliseconds.
+    pub ready_ms: f64,
 }
 
 impl Slot {
@@ -100,6 +102,7 @@ impl Slot {
             times: Vec::new(),
             failure: None,
             frames: 0,
+            ready_ms: 0.0,
         }
     }
 
@@ -212,6 +215,7 @@ impl Slot {
         let prepared = match self.prepared.take().filter(|(of, _)| *of == id) {
             Some(prepared) => prepared,
             None => {
+                let begin = web_time::Instant::now();
                 let made = match self.layers {
                     Some(view) => renderer.layers(view, size),
                     None => {
@@ -220,6 +224,7 @@ impl Slot {
                         renderer.method(&self.spec, options)
                     }
                 };
+                self.ready_ms = begin.elapsed().as_secs_f64() * 1e3;
                 (id, made.map_err(|e| one_line(&e))?)
             }
         };

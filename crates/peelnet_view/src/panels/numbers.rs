@@ -122,6 +122,7 @@ pub(super) fn passes(app: &mut App, ui: &mut Ui) {
             None => row("frame on the GPU", "no timestamps".into()),
         }
         row("frame on the CPU", format!("{:.2} ms", app.cpu_ms));
+        row("made ready in", format!("{:.0} ms", slot.ready_ms));
         let stats = slot.stats();
         row(
             "passes",
