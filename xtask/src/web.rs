@@ -64,7 +64,13 @@ fn glue(wasm: &Path, into: &Path, target: &Path) -> Result<(), String> {
     });
     if same {
         let mut command = Command::new("wasm-bindgen");
-        command.args(["--target", "web", "--no-typescript", "--out-dir"]);
+        command.args([
+            "--target",
+            "web",
+            "--no-typescript",
+            "--remove-name-section",
+        ]);
+        command.args(["--remove-producers-section", "--out-dir"]);
         return run(command.arg(into).arg(wasm), "wasm-bindgen");
     }
     let mut command = cargo();

@@ -303,6 +303,10 @@ impl App {
         size: [u32; 2],
     ) -> Option<egui::TextureId> {
         self.size = size;
+        #[cfg(target_arch = "wasm32")]
+        if self.page.is_drawing(ui) {
+            return self.display.texture();
+        }
         let always = self.script.as_ref().is_some_and(Script::draws_always);
         let stage = self.stage.as_ref()?;
         let mode = self.compare.mode_at(ui);
@@ -362,6 +366,8 @@ impl App {
             self.messages.error(crate::stage::one_line(&e));
         }
         self.gpu.queue.submit([encoder.finish()]);
+        #[cfg(target_arch = "wasm32")]
+        self.page.drew(&self.gpu, ui);
         self.displayed = Some(state);
         let unfinished = |slot: &Slot| {
             slot.failure.is_none() && slot.status() != peelnet_render::FrameStatus::Whole

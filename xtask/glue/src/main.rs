@@ -12,7 +12,13 @@ fn main() -> ExitCode {
     let made = bindgen
         .input_path(wasm)
         .web(true)
-        .and_then(|bindgen| bindgen.typescript(false).generate(folder));
+        .and_then(|bindgen| {
+            bindgen
+                .typescript(false)
+                .remove_name_section(true)
+                .remove_producers_section(true)
+                .generate(folder)
+        });
     match made {
         Ok(()) => ExitCode::SUCCESS,
         Err(e) => {

@@ -133,6 +133,11 @@ impl Page {
         all.unwrap_or_default()
     }
 
+    /// Devices that were lost since the page was opened.
+    pub fn devices_lost(&self) -> u32 {
+        self.lost.get()
+    }
+
     /// Has the device destroyed, as a browser may do at any time.
     pub fn lose_device(&self) {
         self.read(|app| app.gpu.device.destroy());

@@ -41,6 +41,29 @@ pub(crate) struct InPage {
     address: (String, f64),
     /// Begins again with another device.
     again: Option<Rc<dyn Fn()>>,
+    /// The frame that the GPU is drawing.
+    drawing: Option<Task<()>>,
+}
+
+impl InPage {
+    /// Whether the GPU is still drawing the last frame. A browser takes frames faster than a slow GPU draws them: what methods read back
+    /// of a frame, and what is dragged, would wait behind all of them.
+    pub fn is_drawing(&mut self, ui: &egui::Context) -> bool {
+        if let Some(drawing) = &mut self.drawing
+            && drawing.poll(ui).is_some()
+        {
+            self.drawing = None;
+        }
+        self.drawing.is_some()
+    }
+
+    /// A frame was submitted.
+    pub fn drew(&mut self, gpu: &Gpu, ui: &egui::Context) {
+        let gpu = gpu.clone();
+        self.drawing = Some(Task::new(async move { gpu.submitted_async().await }));
+        // Its end is asked for now, not at the next frame.
+        self.is_drawing(ui);
+    }
 }
 
 impl std::fmt::Debug for InPage {
@@ -174,6 +197,7 @@ impl App {
             let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&query));
         }
         self.page.address = (query, now);
+        memory::save_in_page(&self.recent);
     }
 }
 
