@@ -138,6 +138,7 @@ impl Slot {
     pub fn forget(&mut self) {
         self.prepared = None;
         self.shown = None;
+        self.status = FrameStatus::Unknown;
         self.failure = None;
         self.timing = None;
         self.times.clear();

@@ -14,6 +14,7 @@ use crate::{
     task::{Task, repaints},
 };
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
+use egui::{FontData, FontDefinitions, FontFamily};
 use files::Files;
 pub(crate) use files::{choose_files, download};
 pub use handle::Page;
@@ -232,6 +233,23 @@ fn options(gpu: &Gpu) -> eframe::WebOptions {
     }
 }
 
+/// One font for words and for numbers, and egui's own signs; what they lack the browser draws.
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::empty();
+    let all = [
+        ("text", epaint_default_fonts::UBUNTU_LIGHT),
+        ("icons", epaint_default_fonts::EGUI_ICONS),
+    ];
+    for (name, bytes) in all {
+        let data = FontData::from_static(bytes);
+        fonts.font_data.insert(name.into(), data.into());
+        for family in [FontFamily::Proportional, FontFamily::Monospace] {
+            fonts.families.entry(family).or_default().push(name.into());
+        }
+    }
+    fonts
+}
+
 /// What the application begins with.
 enum Begin {
     /// What the address says.
@@ -247,6 +265,7 @@ impl Page {
         let options = options(&gpu);
         let page = self.clone();
         let make: eframe::AppCreator<'static> = Box::new(move |cc| {
+            cc.egui_ctx.set_fonts(fonts());
             let recent = memory::load(cc.storage);
             let mut app = match begin {
                 Begin::Address(query) => App::of_address(&gpu, &query, recent)?,

@@ -222,11 +222,11 @@ test('a browser without WebGPU is told what is missing', async () => {
 
 test('looks', async () => {
   for (const [name, options] of [
-    ['light', { width: 1280, height: 800 }],
-    ['dark', { width: 1280, height: 800, dark: true }],
+    ['light', { width: 1000, height: 640 }],
+    ['dark', { width: 1000, height: 640, dark: true }],
     ['phone', { width: 390, height: 844, dark: true }],
   ]) {
-    const page = await browser.page('?scene=cups&method=deep-medium&view=1', options);
+    const page = await browser.page('?scene=cups&method=mboit4&view=1', options);
     await page.tab.waitForFunction('window.peelnet.page.error() !== undefined', { timeout: PATIENCE });
     await page.frames(3);
     await page.save(`look-${name}.png`);
