@@ -18,6 +18,9 @@ const BESIDE_EDGES = 0.005;
 // Mean difference, steps: far below the rounding to whole ones.
 const MEAN = 0.1;
 
+// What an allocator's free lists may still grow by, MiB: 4 KiB a frame left behind in 1000 frames would be more.
+const FRAGMENTS = 2;
+
 let browser;
 
 before(async () => browser = await open());
@@ -166,7 +169,8 @@ test('a lost device is replaced', async () => {
 });
 
 test('memory does not grow', async () => {
-  const page = await browser.page(VIEW + 'deep-medium');
+  // Small: what a frame leaves behind does not depend on its size.
+  const page = await browser.page('?scene=panes&bare=1&method=deep-medium', { width: 96, height: 64 });
   const session = await page.tab.createCDPSession();
   const system = await browser.browser.target().createCDPSession();
   const weigh = async () => {
@@ -185,9 +189,11 @@ test('memory does not grow', async () => {
     return { wasm: wasm / 2 ** 20, js: js / 2 ** 20, gpu: gpu / 2 ** 20 };
   };
   const orbits = count => page.tab.evaluate(async n => {
+    const { page } = window.peelnet;
     for (let i = 0; i < n; i++) {
-      window.peelnet.page.orbit(0.01, 0);
-      await new Promise(requestAnimationFrame);
+      const drawn = page.frames();
+      page.orbit(0.01, 0);
+      while (page.frames() === drawn) await new Promise(requestAnimationFrame);
     }
   }, count);
   const changes = async count => {
@@ -195,8 +201,8 @@ test('memory does not grow', async () => {
     for (let i = 0; i < count; i++) await page.method(all[i % all.length]);
   };
   const text = w => `wasm ${w.wasm.toFixed(1)}, JavaScript ${w.js.toFixed(1)}, GPU process ${w.gpu.toFixed(0)} MiB`;
-  await changes(10);
-  await orbits(100);
+  await changes(15);
+  await orbits(200);
   const begin = await weigh();
   await orbits(1000);
   const orbited = await weigh();
@@ -204,7 +210,7 @@ test('memory does not grow', async () => {
   const end = await weigh();
   console.log(`    at first: ${text(begin)}; after 1000 frames: ${text(orbited)}; after 50 methods: ${text(end)}`);
   for (const now of [orbited, end]) {
-    assert.ok(now.wasm - begin.wasm <= 1, 'wasm memory grows');
+    assert.ok(now.wasm - begin.wasm <= FRAGMENTS, 'wasm memory grows');
     assert.ok(now.js - begin.js <= 4, 'the heap of JavaScript grows');
     assert.ok(now.gpu <= 1.2 * begin.gpu + 32, 'memory of the GPU process grows');
   }
