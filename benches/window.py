@@ -111,7 +111,7 @@ class Window:
         raise SystemExit(f"{name}: the window never rests")
 
     def key(self, *keys):
-        self.display.run("xdotool", "key", "--window", self.window, *keys)
+        self.display.run("xdotool", "key", *keys)
 
     def drag(self, start, end, button=1):
         steps = [f"{start[0] + (end[0] - start[0]) * k // 8} {start[1] + (end[1] - start[1]) * k // 8}" for k in range(9)]
@@ -227,11 +227,10 @@ def interactions(checks, display, binary, out, home):
 
 
 def divider_of(shot):
-    """The column of the white line: the one whose lower rows are the same and brightest."""
+    """The column of the white line: the brightest of the lower rows, where the scene's background is not white."""
     width, _, rgb = shot
-    column = lambda x: [rgb[3 * (y * width + x) : 3 * (y * width + x) + 3] for y in range(640, 780)]
-    bright = [x for x in range(300, 940) if all(p == b"\xff\xff\xff" for p in column(x))]
-    return bright[0] if bright else -1
+    brightness = lambda x: sum(min(rgb[3 * (y * width + x) : 3 * (y * width + x) + 3]) for y in range(700, 780))
+    return max(range(310, 930), key=brightness)
 
 
 def main():
@@ -244,7 +243,8 @@ def main():
             raise SystemExit(f"{tool} is missing; install xvfb, xdotool and imagemagick")
     shutil.rmtree(options.out, ignore_errors=True)
     options.out.mkdir(parents=True)
-    home = options.out / "home"
+    # Of its own: what people's windows remember stays as it is. The name must be absolute.
+    home = (options.out / "home").resolve()
     display, checks = Display(), Checks()
     try:
         pictures(checks, display, options.binary, options.out, home)

@@ -1,7 +1,7 @@
 //! Tests, lints and the longer searches.
 
 use crate::setup::{apt_install, ensure_browser, ensure_driver, ensure_program, ensure_subcommand};
-use crate::{cargo, root, run};
+use crate::{cargo, run};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -139,9 +139,8 @@ pub fn three() -> Result<(), String> {
     ensure_browser()?;
     let npm = |args: &[&str]| {
         let mut command = Command::new("npm");
-        command
-            .args(args)
-            .current_dir(root().join("packages/three"));
+        // Commands run in the root.
+        command.args(["--prefix", "packages/three"]).args(args);
         run(&mut command, "npm")
     };
     npm(&["ci", "--no-audit", "--no-fund"])?;

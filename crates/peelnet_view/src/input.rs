@@ -85,6 +85,12 @@ pub(crate) fn opens<'a>(
     ))
 }
 
+/// Whether a key was pressed with Shift. When a frame takes long, Shift may be released before it is drawn: the event knows.
+fn is_shifted(ui: &Context, wanted: Key) -> bool {
+    let shifted = |event: &egui::Event| matches!(event, egui::Event::Key { key, pressed: true, modifiers, .. } if *key == wanted && modifiers.shift);
+    ui.input(|i| i.events.iter().any(shifted))
+}
+
 impl App {
     /// Opens what was dropped onto the window.
     #[cfg(not(target_arch = "wasm32"))]
@@ -113,8 +119,7 @@ impl App {
             }
         }
         if pressed(Key::M) {
-            let back = ui.input(|i| i.modifiers.shift);
-            self.next_method(back);
+            self.next_method(is_shifted(ui, Key::M));
         }
         if pressed(Key::C) {
             let all = Mode::ALL.map(|(mode, _, _)| mode);

@@ -19,6 +19,9 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<(), String> {
         queue: gpu.queue.clone(),
     };
     let outcome = start.script.as_ref().map(|s| s.outcome());
+    // A script neither sees nor changes what is remembered, such as the size of text.
+    let name = format!("peelnet-view-{}.ron", std::process::id());
+    let scratch = outcome.is_some().then(|| std::env::temp_dir().join(name));
     let [width, height] = size.map(|n| n as f32);
     let viewport = egui::ViewportBuilder::default()
         .with_title("peelnet")
@@ -27,8 +30,9 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<(), String> {
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions {
         viewport,
-        // Scripts ask for a size: what is remembered must not change it.
-        persist_window: outcome.is_none(),
+        // The size is what was asked for.
+        persist_window: false,
+        persistence_path: scratch.clone(),
         wgpu_options: WgpuConfiguration {
             wgpu_setup: WgpuSetup::Existing(setup),
             ..Default::default()
@@ -48,6 +52,10 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<(), String> {
             Ok(Box::new(App::new(&gpu, start, recent)))
         }),
     );
+    if let Some(scratch) = scratch {
+        // There is none where nothing was to be remembered.
+        let _ = std::fs::remove_file(scratch);
+    }
     run.map_err(|e| {
         format!(
             "no window can be opened ({e}); where there is no display, peelnet render draws images, and xvfb-run lends a display"
