@@ -161,7 +161,10 @@ def pictures(checks, display, binary, out, home):
         size = ["--size", "640x480", "--method", method]
         environment = {**display.environment, "XDG_DATA_HOME": str(home)}
         command = [binary, "view", scene, *size, "--bare", "--frames", "2", "--screenshot", str(shot)]
-        subprocess.run(command, env=environment, check=True, timeout=PATIENCE, capture_output=True)
+        done = subprocess.run(command, env=environment, timeout=PATIENCE, capture_output=True, text=True)
+        if done.returncode != 0:
+            checks.say(False, f"{scene} with {method}: {done.stderr.strip()}")
+            continue
         subprocess.run([binary, "render", scene, *size, "--out", str(file)], check=True, capture_output=True)
         (w, h, a), (_, _, b) = pixels(shot), pixels(file)
         worst = max(abs(x - y) for x, y in zip(a, b, strict=True))
