@@ -2,6 +2,8 @@
 
 mod flags;
 
+/// An error and its sources in one line.
+pub use peelnet_files::error_line as one_line;
 use std::error::Error;
 use std::fmt;
 
@@ -48,26 +50,6 @@ impl<E: Error + 'static> From<E> for Failure {
             Self::Failed(text)
         }
     }
-}
-
-/// An error and its sources in one line. A source whose text its parent already contains is left out.
-pub fn one_line(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut next = error.source();
-    while let Some(source) = next {
-        let more = source.to_string();
-        if !text.contains(&more) {
-            text.push_str(": ");
-            text.push_str(&more);
-        }
-        next = source.source();
-    }
-    let lines: Vec<&str> = text
-        .lines()
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-        .collect();
-    lines.join(" ")
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Values of flags that have a syntax of their own.
 
-use peelnet_files::one_line;
+pub use peelnet_files::shown;
 use peelnet_render::MethodSpec;
 use std::fmt;
 use std::path::Path;
@@ -101,11 +101,6 @@ pub fn positive(text: &str) -> Result<f64, String> {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
         _ => Err(format!("'{text}' is not a number above 0")),
     }
-}
-
-/// A path for a message: one line, whatever it holds.
-pub fn shown(path: &Path) -> String {
-    one_line(&path.to_string_lossy()).into_owned()
 }
 
 /// A path for JSON, which has no place for bytes that are no UTF-8.

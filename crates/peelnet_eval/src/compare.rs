@@ -6,7 +6,7 @@ use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
     Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, Profile, RenderError,
-    Renderer, Role, of_method,
+    Renderer, Role, milliseconds, of_method,
 };
 use peelnet_scene::Scene;
 use std::path::Path;
@@ -382,12 +382,6 @@ fn put_times(row: &mut Row, frames: &[Profile]) {
 /// GPU time of a method's passes; without timestamps the clock time of the frame.
 pub(crate) fn method_ms(frame: &Profile) -> f64 {
     milliseconds(&of_method(&frame.times)).unwrap_or(frame.wall_micros / 1e3)
-}
-
-/// GPU time of passes; none without timestamps.
-pub(crate) fn milliseconds(times: &[PassTime]) -> Option<f64> {
-    let micros: f64 = times.iter().map(|t| t.micros).sum();
-    (micros > 0.0).then_some(micros / 1e3)
 }
 
 /// Median over frames of each pass's time: `name=ms`, by first appearance, passes of one name summed in each frame.

@@ -220,7 +220,9 @@ fn in_turn<const N: usize>(
             let frame = renderer.profile(prepared, camera)?;
             if i > 0 {
                 // The opaque surfaces have effects too.
-                times.push(compare::milliseconds(&frame.times).unwrap_or(frame.wall_micros / 1e3));
+                times.push(
+                    peelnet_render::milliseconds(&frame.times).unwrap_or(frame.wall_micros / 1e3),
+                );
             }
         }
     }

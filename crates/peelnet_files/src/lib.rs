@@ -12,6 +12,7 @@ pub use input::{check_size, open, read, read_head};
 pub use kind::{Kind, Standing};
 pub use output::{Destination, STDOUT, check_folder, destination, folder_of, write_whole};
 pub use text::{
-    MAX_SHOWN, counted, hex, one_line, printable, printable_json, printable_lines, thousands,
+    MAX_SHOWN, counted, error_line, hex, one_line, printable, printable_json, printable_lines,
+    shown, thousands,
 };
 pub use unfinished::{Moving, Unfinished, remove_unfinished};

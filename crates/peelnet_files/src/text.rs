@@ -1,6 +1,6 @@
 //! Text from strangers: names in files, paths, arguments.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, error::Error, path::Path};
 
 /// Characters of a foreign name that are shown.
 pub const MAX_SHOWN: usize = 200;
@@ -31,6 +31,31 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
     let mut shown = String::new();
     text.chars().for_each(|c| push(&mut shown, c));
     Cow::Owned(shown)
+}
+
+/// An error and its sources in one line. A source whose text its parent already contains is left out.
+pub fn error_line(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut next = error.source();
+    while let Some(source) = next {
+        let more = source.to_string();
+        if !text.contains(&more) {
+            text.push_str(": ");
+            text.push_str(&more);
+        }
+        next = source.source();
+    }
+    let lines: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect();
+    lines.join(" ")
+}
+
+/// A path for a message: one line, whatever it holds.
+pub fn shown(path: &Path) -> String {
+    one_line(&path.to_string_lossy()).into_owned()
 }
 
 /// A count with commas between the thousands, and its noun: `1 view`, `1,024 views`.

@@ -38,6 +38,12 @@ pub fn of_method(times: &[PassTime]) -> Vec<PassTime> {
     times
 }
 
+/// GPU time of passes; none without timestamps.
+pub fn milliseconds(times: &[PassTime]) -> Option<f64> {
+    let micros: f64 = times.iter().map(|t| t.micros).sum();
+    (micros > 0.0).then_some(micros / 1e3)
+}
+
 /// Format of the target of a [`crate::Renderer::profile`], as engines draw transparency onto before they map tones.
 pub(crate) const PROFILED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 

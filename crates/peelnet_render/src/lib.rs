@@ -38,7 +38,7 @@ mod whole;
 
 pub use error::RenderError;
 pub use flaw::{Flaw, Property};
-pub use frame::{Frame, Profile, of_method};
+pub use frame::{Frame, Profile, milliseconds, of_method};
 pub use image::{Image, ImageFormat};
 pub use methods::{
     FrameStats, METHODS, Method, MethodSpec, Role,

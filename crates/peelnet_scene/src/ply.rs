@@ -11,12 +11,11 @@ mod tests;
 
 use crate::{
     budget::Budget,
-    error::{SceneError, shown},
-    files::{FileKind, Files},
+    error::SceneError,
+    files::Files,
     material::Lighting,
-    mesh::Mesh,
     polygons::Triangulator,
-    scan::{Fault, Surface, fault_of},
+    scan::{self, Fault, Surface, fault_of},
     warnings::Warnings,
 };
 use elements::{Face, Payload, Skipped, Vertex};
@@ -24,21 +23,9 @@ use glam::{DVec3, Vec2, Vec3};
 use head::Head;
 use peelnet_files::{counted, printable};
 use ply_rs_bw::{parser::Parser, ply::ElementDef};
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::{io, path::Path};
 
-/// A mesh file's contents.
-#[derive(Clone, Debug)]
-pub struct LoadedPly {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// What is missing or was repaired.
-    pub warnings: Vec<String>,
-    /// Every file that was read.
-    pub files: Vec<PathBuf>,
-}
+pub use crate::scan::LoadedScan;
 
 /// Reads a PLY file: positions, normals, colours with opacity, texture coordinates (of vertices or of the vertices of faces), polygons and
 /// triangle strips.
@@ -47,7 +34,7 @@ pub struct LoadedPly {
 ///
 /// # Errors
 /// A file that cannot be read, is cut off, holds numbers or indices that make no sense, or has no faces: with its line or element.
-pub fn load_ply(path: &Path, lighting: Lighting) -> Result<LoadedPly, SceneError> {
+pub fn load_ply(path: &Path, lighting: Lighting) -> Result<LoadedScan, SceneError> {
     load(path, lighting, &mut Files::new(&peelnet_files::read))
 }
 
@@ -59,7 +46,7 @@ pub fn load_ply_from(
     path: &Path,
     lighting: Lighting,
     read: impl Fn(&Path) -> io::Result<Vec<u8>>,
-) -> Result<LoadedPly, SceneError> {
+) -> Result<LoadedScan, SceneError> {
     load(path, lighting, &mut Files::new(&|path, _| read(path)))
 }
 
@@ -68,28 +55,8 @@ pub(crate) fn load(
     path: &Path,
     lighting: Lighting,
     files: &mut Files<'_>,
-) -> Result<LoadedPly, SceneError> {
-    let first = files.used().len();
-    let bytes = files.read(path, FileKind::Mesh)?;
-    files.record(path, &bytes);
-    let mut warnings = Warnings::default();
-    let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|surface| {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        surface.into_mesh(&name, lighting, &mut warnings)
-    });
-    let mesh = mesh.map_err(|Fault { line, message }| SceneError::Mesh {
-        path: path.to_owned(),
-        line,
-        message,
-    })?;
-    let texts = warnings.texts().into_iter();
-    Ok(LoadedPly {
-        mesh,
-        warnings: texts
-            .map(|text| format!("{}: {text}", shown(path)))
-            .collect(),
-        files: files.used()[first..].to_vec(),
-    })
+) -> Result<LoadedScan, SceneError> {
+    scan::load(path, lighting, files, surface)
 }
 
 /// The triangles of a file.

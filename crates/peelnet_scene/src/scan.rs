@@ -1,15 +1,60 @@
 //! Surfaces of PLY and STL files, as meshes.
 
 use crate::{
+    budget::Budget,
+    error::{SceneError, shown},
+    files::{FileKind, Files},
     material::{Lighting, Material},
     mesh::{Mesh, Part, smooth_normals_by_position},
     warnings::Warnings,
 };
 use glam::{Vec2, Vec3};
 use peelnet_files::counted;
+use std::path::{Path, PathBuf};
 
 /// Positions beyond this overflow when they are squared.
 const FARTHEST: f32 = 1e15;
+
+/// A mesh file's contents.
+#[derive(Clone, Debug)]
+pub struct LoadedScan {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// What is missing or was repaired.
+    pub warnings: Vec<String>,
+    /// Every file that was read.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads a file, whose triangles `surface` finds.
+pub(crate) fn load(
+    path: &Path,
+    lighting: Lighting,
+    files: &mut Files<'_>,
+    surface: impl FnOnce(&[u8], &mut Budget, &mut Warnings) -> Result<Surface, Fault>,
+) -> Result<LoadedScan, SceneError> {
+    let first = files.used().len();
+    let bytes = files.read(path, FileKind::Mesh)?;
+    files.record(path, &bytes);
+    let mut warnings = Warnings::default();
+    let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|surface| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        surface.into_mesh(&name, lighting, &mut warnings)
+    });
+    let mesh = mesh.map_err(|Fault { line, message }| SceneError::Mesh {
+        path: path.to_owned(),
+        line,
+        message,
+    })?;
+    let texts = warnings.texts().into_iter();
+    Ok(LoadedScan {
+        mesh,
+        warnings: texts
+            .map(|text| format!("{}: {text}", shown(path)))
+            .collect(),
+        files: files.used()[first..].to_vec(),
+    })
+}
 
 /// What is wrong in a file, and where.
 #[derive(Debug, PartialEq)]

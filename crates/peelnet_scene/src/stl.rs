@@ -9,38 +9,25 @@ mod text;
 
 use crate::{
     budget::Budget,
-    error::{SceneError, shown},
-    files::{FileKind, Files},
+    error::SceneError,
+    files::Files,
     material::Lighting,
-    mesh::{Mesh, key_of},
-    scan::{Fault, Surface, fault_of},
+    mesh::key_of,
+    scan::{self, Fault, Surface, fault_of},
     warnings::Warnings,
 };
 use glam::Vec3;
 use peelnet_files::counted;
-use std::{
-    collections::HashMap,
-    io,
-    path::{Path, PathBuf},
-};
+use std::{collections::HashMap, io, path::Path};
 
-/// A mesh file's contents.
-#[derive(Clone, Debug)]
-pub struct LoadedStl {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// What is missing or was repaired.
-    pub warnings: Vec<String>,
-    /// Every file that was read.
-    pub files: Vec<PathBuf>,
-}
+pub use crate::scan::LoadedScan;
 
 /// Reads an STL file. Vertices at equal positions are one; normals are computed: smooth, but for edges of more than 30 degrees. All solids of a file
 /// are one part. Colours, which each program writes in another way, are not read.
 ///
 /// # Errors
 /// A file that cannot be read, is cut off, has no facets, or holds numbers that make no sense: with its line or triangle.
-pub fn load_stl(path: &Path, lighting: Lighting) -> Result<LoadedStl, SceneError> {
+pub fn load_stl(path: &Path, lighting: Lighting) -> Result<LoadedScan, SceneError> {
     load(path, lighting, &mut Files::new(&peelnet_files::read))
 }
 
@@ -52,7 +39,7 @@ pub fn load_stl_from(
     path: &Path,
     lighting: Lighting,
     read: impl Fn(&Path) -> io::Result<Vec<u8>>,
-) -> Result<LoadedStl, SceneError> {
+) -> Result<LoadedScan, SceneError> {
     load(path, lighting, &mut Files::new(&|path, _| read(path)))
 }
 
@@ -61,28 +48,8 @@ pub(crate) fn load(
     path: &Path,
     lighting: Lighting,
     files: &mut Files<'_>,
-) -> Result<LoadedStl, SceneError> {
-    let first = files.used().len();
-    let bytes = files.read(path, FileKind::Mesh)?;
-    files.record(path, &bytes);
-    let mut warnings = Warnings::default();
-    let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|surface| {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        surface.into_mesh(&name, lighting, &mut warnings)
-    });
-    let mesh = mesh.map_err(|Fault { line, message }| SceneError::Mesh {
-        path: path.to_owned(),
-        line,
-        message,
-    })?;
-    let texts = warnings.texts().into_iter();
-    Ok(LoadedStl {
-        mesh,
-        warnings: texts
-            .map(|text| format!("{}: {text}", shown(path)))
-            .collect(),
-        files: files.used()[first..].to_vec(),
-    })
+) -> Result<LoadedScan, SceneError> {
+    scan::load(path, lighting, files, surface)
 }
 
 /// Bytes of a binary file's header, and of its count.

@@ -90,24 +90,8 @@ fn encoded(text: &str) -> String {
 }
 
 fn decoded(text: &str) -> String {
-    let text = text.as_bytes();
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut at = 0;
-    while at < text.len() {
-        let hex = text.get(at + 1..at + 3).filter(|_| text[at] == b'%');
-        let hex = hex.and_then(|h| std::str::from_utf8(h).ok());
-        match hex.and_then(|h| u8::from_str_radix(h, 16).ok()) {
-            Some(byte) => {
-                bytes.push(byte);
-                at += 3;
-            }
-            None => {
-                bytes.push(if text[at] == b'+' { b' ' } else { text[at] });
-                at += 1;
-            }
-        }
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
+    let spaced = text.replace('+', " ");
+    String::from_utf8_lossy(&urlencoding::decode_binary(spaced.as_bytes())).into_owned()
 }
 
 #[cfg(test)]

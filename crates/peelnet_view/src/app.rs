@@ -224,10 +224,8 @@ impl App {
 
     /// Draws with a network from a file, by its method, and reads the file again when it changes.
     pub(crate) fn open_network(&mut self, path: PathBuf) {
-        let read = std::fs::read(&path).map_err(|e| {
-            let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
-            format!("{name}: cannot be read: {e}")
-        });
+        let read = std::fs::read(&path)
+            .map_err(|e| format!("{}: cannot be read: {e}", peelnet_files::shown(&path)));
         match read.and_then(|bytes| Network::from_bytes(path.clone(), &bytes)) {
             Ok(network) => {
                 self.take_network(network);

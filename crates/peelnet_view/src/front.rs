@@ -6,8 +6,7 @@ use crate::{
     task::{Task, computed},
 };
 use peelnet_eval::metrics;
-use peelnet_gpu::record::PassTime;
-use peelnet_render::{MethodOptions, MethodSpec, RenderError, Renderer, of_method};
+use peelnet_render::{MethodOptions, MethodSpec, RenderError, Renderer, milliseconds, of_method};
 use std::{cell::RefCell, rc::Rc, sync::Arc};
 
 /// Frames that are timed of each method; the median counts, the first is a warm-up.
@@ -148,7 +147,9 @@ async fn point(
         let profile = profile.map_err(readable)?;
         bytes_per_pixel = profile.stats.bytes_per_pixel;
         if number > 0 {
-            times.push(milliseconds(&profile.times).unwrap_or(profile.wall_micros / 1e3));
+            times.push(
+                milliseconds(&of_method(&profile.times)).unwrap_or(profile.wall_micros / 1e3),
+            );
         }
     }
     times.sort_by(f64::total_cmp);
@@ -159,11 +160,6 @@ async fn point(
         bytes_per_pixel,
         on_front: false,
     })
-}
-
-fn milliseconds(times: &[PassTime]) -> Option<f64> {
-    let micros: f64 = of_method(times).iter().map(|t| t.micros).sum();
-    (micros > 0.0).then_some(micros / 1e3)
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ pub(crate) fn opens<'a>(
         return Ok(Opens::Scene(scene));
     }
     let first = paths.next().unwrap_or(Path::new("nothing"));
-    let name = peelnet_files::printable(&first.to_string_lossy()).to_string();
+    let name = peelnet_files::shown(first);
     Err(format!(
         "{name}: not a scene or a network; drop a {} or .{MODEL} file",
         ENDINGS.map(|e| format!(".{e}")).join(", ")

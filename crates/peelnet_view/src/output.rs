@@ -8,7 +8,7 @@ use crate::{
 };
 use peelnet_export::{Language, Options};
 #[cfg(not(target_arch = "wasm32"))]
-use peelnet_files::Standing;
+use peelnet_files::{Standing, shown};
 use peelnet_render::{
     Image, ImageFormat, LearnedWeight, MethodOptions, MethodSpec, RenderError, Renderer,
 };
@@ -156,10 +156,6 @@ impl Drawn {
     }
 }
 
-fn shown(path: &Path) -> String {
-    peelnet_files::printable(&path.to_string_lossy()).to_string()
-}
-
 /// Writes a file. Nothing but an older picture of ours is replaced.
 #[cfg(not(target_arch = "wasm32"))]
 fn save(image: &Image, path: &Path) -> Result<String, String> {
@@ -248,14 +244,10 @@ pub(crate) fn command(stage: &Stage, slot: &Slot, camera: &Camera, view: Option<
     words.join(" ")
 }
 
-/// For a shell: single quotes around what is not plain.
+/// For a shell, on one line.
 fn quoted(text: &str) -> String {
-    let text = peelnet_files::printable(text).to_string();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,".contains(c);
-    if !text.is_empty() && text.chars().all(is_plain) {
-        return text;
-    }
-    format!("'{}'", text.replace('\'', r"'\''"))
+    let text = peelnet_files::one_line(text);
+    shell_words::quote(&text).into_owned()
 }
 
 /// Eye, target and field of view, as `--camera` reads them.

@@ -12,6 +12,7 @@ use peelnet_gpu::{
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{
     FrameStats, FrameStatus, LayerView, LearnedWeight, MethodOptions, MethodSpec, Prepared, Target,
+    milliseconds,
 };
 use peelnet_scene::Camera;
 use std::path::PathBuf;
@@ -161,8 +162,7 @@ impl Slot {
 
     /// GPU time of the last frame that is known of, milliseconds.
     pub fn gpu_ms(&self) -> Option<f64> {
-        let micros: f64 = self.times.iter().map(|t| t.micros).sum();
-        (micros > 0.0).then_some(micros / 1e3)
+        milliseconds(&self.times)
     }
 
     /// Records a frame, unless the picture shows it already; whether it did. A failure is kept until something changes.

@@ -1,7 +1,7 @@
 //! The scene that is open, on the GPU, and the changes that people make to it.
 
 use crate::eye::Sphere;
-use peelnet_files::printable;
+use peelnet_files::shown;
 use peelnet_gpu::Gpu;
 use peelnet_render::{LayerView, RenderError, Renderer};
 use peelnet_scene::{Camera, Effect, Light, Material, Scene, SceneError, file::Edited, suite};
@@ -34,7 +34,7 @@ impl Source {
     /// Its name, for titles and messages.
     pub fn name(&self) -> String {
         let (Self::Named(path) | Self::Dropped(path, _)) = self;
-        printable(&path.to_string_lossy()).to_string()
+        shown(path)
     }
 
     /// The text of the scene file; none of a mesh file.
@@ -86,19 +86,9 @@ impl Source {
     }
 }
 
-/// An error with its causes, as one line that is safe to show.
+/// An error with its causes, as one line that is safe to show, however long it is.
 pub(crate) fn one_line(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let next = error.to_string();
-        // Some errors repeat their cause.
-        if !text.contains(&next) {
-            text = format!("{text}: {next}");
-        }
-        cause = error.source();
-    }
-    printable(&text).to_string()
+    peelnet_files::one_line(&peelnet_files::error_line(error)).into_owned()
 }
 
 /// What of a scene is drawn.

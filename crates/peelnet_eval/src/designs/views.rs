@@ -334,7 +334,7 @@ fn peel_one(
             let fragments = run.map(|i| {
                 let [r, g, b, a] = tile.colors[i];
                 Fragment {
-                    // Whole surfaces are told apart instead of triangles.
+                    // Whole surfaces are distinguished instead of triangles.
                     triangle: surfaces[tile.triangles[i] as usize],
                     ..Fragment::new(tile.depths[i], a, [r, g, b])
                 }

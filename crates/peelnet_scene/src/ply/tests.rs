@@ -1,8 +1,9 @@
 //! PLY files as scanners' programs write them, and as they should not.
 
 use super::*;
+use crate::mesh::Mesh;
 
-fn load(bytes: &[u8]) -> Result<LoadedPly, String> {
+fn load(bytes: &[u8]) -> Result<LoadedScan, String> {
     let read = |_: &Path| Ok(bytes.to_vec());
     load_ply_from(Path::new("a.ply"), Lighting::Phong, read).map_err(|e| e.to_string())
 }

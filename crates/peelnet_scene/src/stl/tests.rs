@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn load(bytes: &[u8]) -> Result<LoadedStl, String> {
+fn load(bytes: &[u8]) -> Result<LoadedScan, String> {
     let read = |_: &Path| Ok(bytes.to_vec());
     load_stl_from(Path::new("a.stl"), Lighting::Phong, read).map_err(|e| e.to_string())
 }

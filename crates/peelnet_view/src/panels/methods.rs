@@ -243,7 +243,7 @@ fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
         return;
     }
     let own = app.first.network().filter(|n| n.is_of(spec));
-    let name = own.map(|n| peelnet_files::printable(&n.path.to_string_lossy()).to_string());
+    let name = own.map(|n| peelnet_files::shown(&n.path));
     match name {
         Some(name) => {
             ui.horizontal_wrapped(|ui| {

@@ -71,7 +71,7 @@ fn recent(app: &App, ui: &mut Ui, chosen: &mut Option<PathBuf>) {
     if !app.recent.is_empty() {
         ui.menu_button("Recent", |ui| {
             for path in &app.recent {
-                let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
+                let name = peelnet_files::shown(path);
                 if ui.button(name).clicked() {
                     *chosen = Some(path.clone());
                 }

@@ -135,7 +135,7 @@ impl App {
             app.messages.error(text);
         }
         if let Some(path) = missing {
-            let name = peelnet_files::printable(&path.to_string_lossy()).to_string();
+            let name = peelnet_files::shown(&path);
             app.messages.warn(format!(
                 "{name}: no scene of this name ships with the viewer, and a page keeps no files: drop it again"
             ));
