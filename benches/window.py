@@ -19,6 +19,8 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE = (1280, 800)
+# The display is higher than the window: below it files lie, to be dragged.
+SHELF = 100
 # Pictures are blended in 16-bit targets and files in 32 bits: a value at the border of two levels may fall to either side.
 LEVELS = 1
 # How long anything may take, seconds: a software rasteriser on a busy machine.
@@ -48,7 +50,7 @@ class Display:
         number = next(n for n in range(90, 200) if not pathlib.Path(f"/tmp/.X11-unix/X{n}").exists())
         self.name = f":{number}"
         self.process = subprocess.Popen(
-            ["Xvfb", self.name, "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"], stderr=subprocess.DEVNULL
+            ["Xvfb", self.name, "-screen", "0", f"{SIZE[0]}x{SIZE[1] + SHELF}x24"], stderr=subprocess.DEVNULL
         )
         for _ in range(100):
             if pathlib.Path(f"/tmp/.X11-unix/X{number}").exists():
@@ -92,7 +94,7 @@ class Window:
 
     def shot(self, name):
         path = self.out / f"{self.shots:02}-{name}.png"
-        self.display.run("import", "-window", "root", str(path), check=True)
+        self.display.run("import", "-window", "root", "-crop", "%dx%d+0+0" % SIZE, "+repage", str(path), check=True)
         return path
 
     def rest(self, name):
@@ -132,6 +134,45 @@ class Window:
     def close(self):
         self.process.terminate()
         self.process.wait()
+
+
+# A window that offers a file to whoever it is dragged to, as file managers do.
+SOURCE = """
+import pathlib, sys
+import gi
+gi.require_version("Gtk", "3.0")
+from gi.repository import Gdk, Gtk
+window = Gtk.Window(title="source")
+window.set_default_size(200, 60)
+label = Gtk.EventBox()
+label.add(Gtk.Label(label="drag me"))
+label.drag_source_set(Gdk.ModifierType.BUTTON1_MASK, [], Gdk.DragAction.COPY)
+label.drag_source_add_uri_targets()
+uri = pathlib.Path(sys.argv[1]).resolve().as_uri()
+label.connect("drag-data-get", lambda _w, _c, data, _i, _t: data.set_uris([uri]))
+window.add(label)
+window.show_all()
+Gtk.main()
+"""
+
+
+def drop(window, path):
+    """Drags a file onto the window with the pointer."""
+    display = window.display
+    # Debian's own Python: it has GTK's bindings.
+    source = subprocess.Popen(["/usr/bin/python3", "-c", SOURCE, str(path)], env=display.environment, stderr=subprocess.PIPE)
+    found, begin = [], time.monotonic()
+    while not found:
+        found = display.run("xdotool", "search", "--onlyvisible", "--name", "^source$").stdout.split()
+        if source.poll() is not None or time.monotonic() - begin > PATIENCE:
+            raise SystemExit(f"nothing to drag (python3-gi and gir1.2-gtk-3.0 are needed): {source.stderr.read().decode()}")
+        time.sleep(0.1)
+    display.run("xdotool", "windowmove", found[0], "20", str(SIZE[1] + 20))
+    time.sleep(0.5)
+    window.drag((80, SIZE[1] + 50), (640, 400))
+    time.sleep(0.5)
+    source.terminate()
+    source.wait()
 
 
 class Checks:
@@ -226,6 +267,14 @@ def interactions(checks, display, binary, out, home):
     bad.write_text("no mesh")
     w = Window(display, binary, out, home, str(bad))
     checks.say(w.process.poll() is None, "a file that is none is a message in the window")
+    before = w.last
+    drop(w, ROOT / "data/scenes/cups.toml")
+    opened = w.rest("dropped")
+    checks.say(differs(before, opened, inner) > 1000, "a dropped scene opens")
+    drop(w, bad)
+    after = w.rest("dropped-bad")
+    checks.say(differs(opened, after, inner) == 0, "a dropped file that is none leaves the view")
+    checks.say(differs(opened, after, (0, 0, *SIZE)) > 100, "and is a message")
     w.close()
 
 

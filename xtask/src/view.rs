@@ -57,6 +57,10 @@ fn window() -> Result<(), String> {
         println!("Xvfb, xdotool or ImageMagick is not installed: installing them with apt-get.");
         apt_install(&["xvfb", "xdotool", "imagemagick"])?;
     }
+    // What files are dragged from. Where it cannot be had, the script names it.
+    if !std::path::Path::new("/usr/lib/python3/dist-packages/gi").exists() {
+        apt_install(&["python3-gi", "gir1.2-gtk-3.0"])?;
+    }
     let mut python = Command::new("python3");
     python
         .arg("benches/window.py")

@@ -20,7 +20,7 @@ use eframe::egui_wgpu::RenderState;
 use egui::Context;
 use peelnet_gpu::{Gpu, wgpu};
 use peelnet_render::MethodSpec;
-use peelnet_scene::Camera;
+use peelnet_scene::{Camera, Scene};
 use std::path::PathBuf;
 
 /// How long the view rests before errors are measured, seconds.
@@ -33,6 +33,8 @@ const MOST_RECENT: usize = 10;
 pub struct Start {
     /// A scene file, a mesh file, or the name of a shipped scene.
     pub scene: PathBuf,
+    /// The same scene where it is loaded already, at `time`.
+    pub loaded: Option<Scene>,
     /// The method.
     pub method: MethodSpec,
     /// A network for it, read again whenever its file changes.
@@ -58,6 +60,7 @@ impl Start {
     pub fn new(scene: impl Into<PathBuf>, method: MethodSpec) -> Self {
         Self {
             scene: scene.into(),
+            loaded: None,
             method,
             model: None,
             view: 0,
@@ -107,10 +110,19 @@ pub struct App {
 
 impl App {
     /// Opens a scene; what does not open is a message in the window.
-    pub fn new(gpu: &Gpu, start: Start, recent: Vec<PathBuf>) -> Self {
+    pub fn new(gpu: &Gpu, mut start: Start, recent: Vec<PathBuf>) -> Self {
+        let source = Source::Named(std::mem::take(&mut start.scene));
+        Self::of_source(gpu, start, source, recent)
+    }
+
+    /// The same with the scene of a source, whatever `start` names.
+    pub(crate) fn of_source(gpu: &Gpu, start: Start, source: Source, recent: Vec<PathBuf>) -> Self {
         let mut app = Self::empty(gpu, &start, recent);
         app.compare.mode = start.compare;
-        app.open(Source::Named(start.scene), start.time);
+        match start.loaded {
+            Some(scene) => app.take(Stage::of_scene(gpu, source, scene)),
+            None => app.open(source, start.time),
+        }
         app.show_view(start.view);
         if let Some([px, py, pz, tx, ty, tz, angle @ ..]) = start.camera.as_deref() {
             let (position, target) = ([*px, *py, *pz].into(), [*tx, *ty, *tz].into());
@@ -170,7 +182,10 @@ impl App {
 
     /// Replaces the scene; the one that is shown stays where the new one does not open.
     pub(crate) fn open(&mut self, source: Source, time: Option<f32>) {
-        let opened = Stage::open(&self.gpu, source.clone(), time);
+        self.take(Stage::open(&self.gpu, source, time));
+    }
+
+    fn take(&mut self, opened: Result<Stage, String>) {
         match opened {
             Ok(stage) => self.replace(stage),
             Err(e) => self.messages.error(e),
@@ -182,11 +197,12 @@ impl App {
         for warning in &stage.scene().warnings {
             self.messages.warn(warning.clone());
         }
-        if let Source::Named(path) = &stage.source {
-            self.recent.retain(|p| p != path);
-            self.recent.insert(0, path.clone());
-            self.recent.truncate(MOST_RECENT);
-        }
+        let (Source::Named(path) | Source::Dropped(path, _)) = &stage.source;
+        self.recent.retain(|p| p != path);
+        self.recent.insert(0, path.clone());
+        self.recent.truncate(MOST_RECENT);
+        #[cfg(target_arch = "wasm32")]
+        self.keep_dropped(&stage.source);
         self.first.forget();
         self.second.forget();
         self.inspector.pixel = None;
@@ -420,7 +436,7 @@ impl App {
         let now = begin.elapsed().as_secs_f64() * 1e3;
         self.cpu_ms += 0.1 * (now - self.cpu_ms);
         if let Some(mut script) = self.script.take() {
-            script.advance(&ctx, &self.first);
+            script.advance(&ctx, &self.first, now);
             self.script = Some(script);
         }
     }

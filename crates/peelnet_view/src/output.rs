@@ -8,7 +8,8 @@ use crate::{
 };
 use peelnet_export::{Language, Options};
 #[cfg(not(target_arch = "wasm32"))]
-use peelnet_files::{Standing, shown};
+use peelnet_files::Standing;
+use peelnet_files::shown;
 use peelnet_render::{
     Image, ImageFormat, LearnedWeight, MethodOptions, MethodSpec, RenderError, Renderer,
 };
@@ -176,7 +177,23 @@ fn save(image: &Image, path: &Path) -> Result<String, String> {
 fn save(image: &Image, path: &Path) -> Result<String, String> {
     let format = ImageFormat::of(path).map_err(|e| one_line(&e))?;
     let bytes = image.encoded(format).map_err(|e| one_line(&e))?;
-    crate::web::download(path, &bytes)?;
+    keep(path, &bytes)
+}
+
+/// Writes a new file; what was written.
+#[cfg(not(target_arch = "wasm32"))]
+fn keep(path: &Path, bytes: &[u8]) -> Result<String, String> {
+    if path.exists() {
+        return Err(format!("{}: is there already; move it away", shown(path)));
+    }
+    peelnet_files::write_whole(path, bytes).map_err(|e| one_line(&e))?;
+    Ok(format!("{} is written", shown(path)))
+}
+
+/// Hands a new file to the browser.
+#[cfg(target_arch = "wasm32")]
+fn keep(path: &Path, bytes: &[u8]) -> Result<String, String> {
+    crate::web::download(path, bytes)?;
     Ok(format!("{} is among your downloads", shown(path)))
 }
 
@@ -208,12 +225,7 @@ pub(crate) fn free_name(stage: &Stage, slot: &Slot, ending: &str) -> PathBuf {
 pub(crate) fn scene(stage: &Stage, slot: &Slot, camera: &Camera) -> Result<String, String> {
     let edited = stage.edited(camera)?;
     let name = free_name(stage, slot, ".toml");
-    let path = stage.source.folder().join(&name);
-    if path.exists() {
-        return Err(format!("{}: is there already; move it away", shown(&path)));
-    }
-    peelnet_files::write_whole(&path, edited.text.as_bytes()).map_err(|e| one_line(&e))?;
-    let mut said = format!("{} is written", shown(&path));
+    let mut said = keep(&stage.source.folder().join(&name), edited.text.as_bytes())?;
     if !edited.left_out.is_empty() {
         said = format!("{said}, without {}", edited.left_out.join("; without "));
     }

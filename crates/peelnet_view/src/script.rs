@@ -6,6 +6,7 @@ use std::{
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
 };
+use web_time::Instant;
 
 /// Draws so many frames, saves what the window shows, and closes it.
 #[derive(Debug)]
@@ -13,11 +14,52 @@ pub struct Script {
     frames: u64,
     screenshot: Option<PathBuf>,
     asked: bool,
+    costs: Costs,
     result: Outcome,
 }
 
-/// What became of a script, shared with the program that opened the window.
-pub type Outcome = Arc<Mutex<Option<Result<(), String>>>>;
+/// What became of a script, shared with the program that opened the window: what its frames cost, or what went wrong.
+pub type Outcome = Arc<Mutex<Option<Result<String, String>>>>;
+
+/// What frames cost, milliseconds.
+#[derive(Clone, Debug, Default)]
+struct Costs {
+    last: Option<Instant>,
+    /// From frame to frame.
+    frames: Vec<f64>,
+    /// Work of the window's frame on the CPU.
+    cpu: Vec<f64>,
+    /// The method's passes, of frames whose times came back.
+    method: Vec<f64>,
+}
+
+impl Costs {
+    fn frame(&mut self, cpu_ms: f64, slot: &Slot) {
+        let now = Instant::now();
+        if let Some(last) = self.last.replace(now) {
+            self.frames.push((now - last).as_secs_f64() * 1e3);
+        }
+        self.cpu.push(cpu_ms);
+        self.method.extend(slot.gpu_ms());
+    }
+
+    /// Medians.
+    fn text(mut self, slot: &Slot) -> String {
+        let median = |name: &str, values: &mut Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            let middle = values.get(values.len() / 2);
+            middle.map(|ms| format!("{name} {ms:.2} ms"))
+        };
+        let parts = [
+            median("from frame to frame", &mut self.frames),
+            median("the method's passes on the GPU", &mut self.method),
+            median("the frame on the CPU", &mut self.cpu),
+            Some(format!("made ready in {:.0} ms", slot.ready_ms)),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        format!("{} frames: {}", slot.frames, parts.join(", "))
+    }
+}
 
 impl Clone for Script {
     fn clone(&self) -> Self {
@@ -25,6 +67,7 @@ impl Clone for Script {
             frames: self.frames,
             screenshot: self.screenshot.clone(),
             asked: self.asked,
+            costs: self.costs.clone(),
             result: Arc::clone(&self.result),
         }
     }
@@ -37,6 +80,7 @@ impl Script {
             frames: frames.max(1),
             screenshot,
             asked: false,
+            costs: Costs::default(),
             result: Arc::default(),
         }
     }
@@ -51,8 +95,9 @@ impl Script {
         !self.asked
     }
 
-    pub(crate) fn advance(&mut self, ui: &Context, slot: &Slot) {
-        let finished = |result: &Outcome, with: Result<(), String>| {
+    /// After each frame; `cpu_ms` is what its work on the CPU took.
+    pub(crate) fn advance(&mut self, ui: &Context, slot: &Slot, cpu_ms: f64) {
+        let finished = |result: &Outcome, with: Result<String, String>| {
             *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(with);
         };
         if let Some(failure) = slot.failure.as_ref().filter(|_| !self.asked) {
@@ -61,20 +106,24 @@ impl Script {
             return;
         }
         ui.request_repaint();
+        if !self.asked {
+            self.costs.frame(cpu_ms, slot);
+        }
         // A method that needs counts has its whole picture only after they came back.
         let is_whole = slot.status() == peelnet_render::FrameStatus::Whole;
         if self.asked || slot.frames < self.frames || !is_whole {
             return;
         }
         self.asked = true;
+        let costs = std::mem::take(&mut self.costs).text(slot);
         let Some(path) = self.screenshot.clone() else {
-            finished(&self.result, Ok(()));
+            finished(&self.result, Ok(costs));
             ui.send_viewport_cmd(egui::ViewportCommand::Close);
             return;
         };
         let (result, context) = (Arc::clone(&self.result), ui.clone());
         ui.request_screenshot(move |image: Arc<ColorImage>| {
-            finished(&result, save(&image, &path));
+            finished(&result, save(&image, &path).map(|()| costs.clone()));
             context.send_viewport_cmd(egui::ViewportCommand::Close);
             context.request_repaint();
         });

@@ -145,6 +145,14 @@ impl Stage {
     /// What is wrong with the file, or why the GPU does not take it; one line.
     pub fn open(gpu: &Gpu, source: Source, time: Option<f32>) -> Result<Self, String> {
         let scene = source.load(time).map_err(|e| one_line(&e))?;
+        Self::of_scene(gpu, source, scene)
+    }
+
+    /// Puts a scene that is loaded on the GPU.
+    ///
+    /// # Errors
+    /// Why the GPU does not take it; one line.
+    pub fn of_scene(gpu: &Gpu, source: Source, scene: Scene) -> Result<Self, String> {
         let renderer = Renderer::new(gpu, &scene).map_err(|e| one_line(&e))?;
         gpu.check().map_err(|e| one_line(&e))?;
         Ok(Self {

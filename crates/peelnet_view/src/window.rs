@@ -7,11 +7,12 @@ use crate::{
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use peelnet_gpu::Gpu;
 
-/// Opens the window and runs it until it is closed. `size` is that of its content, in pixels.
+/// Opens the window and runs it until it is closed. `size` is that of its content, in pixels. Returns what the frames of a script cost, as a
+/// sentence.
 ///
 /// # Errors
 /// No display to open a window on, or what a script of `start` came to; one line.
-pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<(), String> {
+pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, String> {
     let setup = WgpuSetupExisting {
         instance: gpu.instance.clone(),
         adapter: gpu.adapter.clone(),
@@ -62,11 +63,13 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<(), String> {
         )
     })?;
     let Some(outcome) = outcome else {
-        return Ok(());
+        return Ok(None);
     };
     let outcome = outcome
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner)
         .take();
-    outcome.unwrap_or_else(|| Err("the window was closed before the script ended".into()))
+    let outcome =
+        outcome.unwrap_or_else(|| Err("the window was closed before the script ended".into()));
+    outcome.map(Some)
 }

@@ -37,6 +37,7 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
     }
     let is_script = args.frames.is_some() || args.screenshot.is_some();
     // A script has nobody who reads messages in the window: what does not load ends it here.
+    let mut loaded = None;
     if is_script {
         let scene = context.scene_at(&args.scene, args.time)?;
         if args.view as usize >= scene.views.len() {
@@ -47,12 +48,14 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
                 peelnet_files::counted(scene.views.len() as u64, "view")
             )));
         }
+        loaded = Some(scene);
     }
     let gpu = context.gpu()?;
     if is_script {
         crate::learned::weight_of(context.console, &gpu, &args.method, args.model.as_deref())?;
     }
     let start = Start {
+        loaded,
         model: args.model.clone(),
         view: args.view as usize,
         camera,
@@ -63,7 +66,10 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
         script: is_script.then(|| Script::new(args.frames.unwrap_or(1), args.screenshot.clone())),
         ..Start::new(&args.scene, args.method.clone())
     };
-    peelnet_view::open(&gpu, start, args.size.0).map_err(Failure::Failed)?;
+    let costs = peelnet_view::open(&gpu, start, args.size.0).map_err(Failure::Failed)?;
+    if let Some(costs) = costs.filter(|_| args.frames.is_some()) {
+        context.console.message(costs);
+    }
     if let Some(path) = &args.screenshot {
         context
             .console

@@ -47,7 +47,11 @@ fn open(app: &mut App, ui: &mut Ui) {
             }
         });
     if let Some(path) = chosen {
-        app.open(Source::Named(path), None);
+        #[cfg(target_arch = "wasm32")]
+        let source = app.kept_or_named(path);
+        #[cfg(not(target_arch = "wasm32"))]
+        let source = Source::Named(path);
+        app.open(source, None);
         ui.close();
     }
 }

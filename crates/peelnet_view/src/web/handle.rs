@@ -1,6 +1,6 @@
 //! What the page's own script, and tests, do with the viewer.
 
-use super::{Begin, say};
+use super::{Begin, Shelf, files::Files, say};
 use crate::{app::App, eye, stage::Source};
 use peelnet_render::{FrameStatus, MethodSpec};
 use std::{cell::Cell, path::PathBuf, rc::Rc};
@@ -14,6 +14,8 @@ pub struct Page {
     pub(super) canvas: web_sys::HtmlCanvasElement,
     /// Devices that were lost.
     pub(super) lost: Rc<Cell<u32>>,
+    /// The scene that the browser keeps.
+    pub(super) shelf: Rc<Shelf>,
 }
 
 impl std::fmt::Debug for Page {
@@ -37,17 +39,35 @@ impl Page {
     }
 }
 
+fn named(names: Vec<String>, files: Vec<js_sys::Uint8Array>) -> Files {
+    let files = names.into_iter().zip(files);
+    let files = files.map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec()));
+    files.collect()
+}
+
 #[wasm_bindgen]
 impl Page {
     /// Opens a device and draws what the query of an address says on a canvas.
     ///
+    /// `scene` is the name of the dropped scene that the browser keeps, empty if there is none, and `names` and `files` are its files.
+    /// `keep` is called with the same three where another scene was dropped.
+    ///
     /// # Errors
     /// One sentence for people.
-    pub async fn open(canvas: web_sys::HtmlCanvasElement, query: String) -> Result<Page, JsValue> {
+    pub async fn open(
+        canvas: web_sys::HtmlCanvasElement,
+        query: String,
+        scene: String,
+        names: Vec<String>,
+        files: Vec<js_sys::Uint8Array>,
+        keep: js_sys::Function,
+    ) -> Result<Page, JsValue> {
+        let shelf = Shelf::new(scene, named(names, files), keep);
         let page = Self {
             runner: eframe::WebRunner::new(),
             canvas,
             lost: Rc::default(),
+            shelf: Rc::new(shelf),
         };
         page.begin(Begin::Address(query)).await?;
         say("");
@@ -56,10 +76,14 @@ impl Page {
 
     /// Opens files, as if they were dropped.
     pub fn give(&self, names: Vec<String>, files: Vec<js_sys::Uint8Array>) {
-        let files = names.into_iter().zip(files);
-        let files = files.map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec()));
-        let files = files.collect();
+        let files = named(names, files);
         self.with(|app| app.take_files(files));
+    }
+
+    /// Shows a message.
+    pub fn warn(&self, text: &str) {
+        let text = peelnet_files::one_line(text).into_owned();
+        self.with(|app| app.messages.warn(text));
     }
 
     /// Whether the viewer panicked: then it draws no more.

@@ -2,6 +2,7 @@
 
 mod files;
 mod handle;
+mod shelf;
 
 use crate::{
     address::Address,
@@ -20,7 +21,8 @@ pub(crate) use files::{choose_files, download};
 pub use handle::Page;
 use peelnet_gpu::{AdapterRequest, Gpu, GpuError};
 use peelnet_render::{MethodSpec, RenderError};
-use peelnet_scene::{Camera, suite};
+use peelnet_scene::Camera;
+use shelf::Shelf;
 use std::{path::PathBuf, rc::Rc};
 use wasm_bindgen::JsValue;
 
@@ -44,6 +46,8 @@ pub(crate) struct InPage {
     again: Option<Rc<dyn Fn()>>,
     /// The frame that the GPU is drawing.
     drawing: Option<Task<()>>,
+    /// The scene that the browser keeps.
+    shelf: Option<Rc<Shelf>>,
 }
 
 impl InPage {
@@ -110,13 +114,18 @@ impl App {
     }
 
     /// The application of an address.
-    fn of_address(gpu: &Gpu, query: &str, recent: Vec<PathBuf>) -> Result<Self, RenderError> {
+    fn of_address(
+        gpu: &Gpu,
+        query: &str,
+        mut recent: Vec<PathBuf>,
+        shelf: &Shelf,
+    ) -> Result<Self, RenderError> {
         let (address, wrong) = Address::read(query);
-        let is_shipped = |path: &PathBuf| path.to_str().and_then(suite::find).is_some();
-        let last = recent.iter().find(|path| is_shipped(path)).cloned();
+        recent.retain(|path| shelf.has(path));
+        let last = recent.first().cloned();
         let last = last.unwrap_or_else(|| FIRST.0.into());
         let wanted = address.scene.clone().map(PathBuf::from);
-        let missing = wanted.clone().filter(|path| !is_shipped(path));
+        let missing = wanted.clone().filter(|path| !shelf.has(path));
         let is_missing = missing.is_some();
         let method = address.method.map_or_else(|| FIRST.1.parse(), Ok)?;
         let start = Start {
@@ -124,9 +133,10 @@ impl App {
             camera: address.camera.filter(|_| !is_missing),
             time: address.time.filter(|_| !is_missing),
             bare: address.bare,
-            ..Start::new(wanted.filter(|_| !is_missing).unwrap_or(last), method)
+            ..Start::new(FIRST.0, method)
         };
-        let mut app = Self::new(gpu, start, recent);
+        let source = shelf.source(wanted.filter(|_| !is_missing).unwrap_or(last));
+        let mut app = Self::of_source(gpu, start, source, recent);
         if app.stage.is_none() {
             // A time that the scene does not have, or a scene that this GPU does not take.
             app.open(Source::Named(FIRST.0.into()), None);
@@ -137,7 +147,7 @@ impl App {
         if let Some(path) = missing {
             let name = peelnet_files::shown(&path);
             app.messages.warn(format!(
-                "{name}: no scene of this name ships with the viewer, and a page keeps no files: drop it again"
+                "{name}: no scene of this name ships with the viewer, and a page keeps only the one that was dropped last: drop it again"
             ));
         }
         Ok(app)
@@ -158,6 +168,23 @@ impl App {
         app.messages
             .warn("the graphics device was lost: this view is drawn by a new one".into());
         app
+    }
+
+    /// Has the browser keep a dropped scene, in place of the one before.
+    pub(crate) fn keep_dropped(&mut self, source: &Source) {
+        if let Some(shelf) = &self.page.shelf
+            && shelf.put(source)
+        {
+            self.recent.retain(|path| shelf.has(path));
+        }
+    }
+
+    /// The scene of a name: the one that the browser keeps, or one that ships.
+    pub(crate) fn kept_or_named(&self, path: PathBuf) -> Source {
+        match &self.page.shelf {
+            Some(shelf) => shelf.source(path),
+            None => Source::Named(path),
+        }
     }
 
     /// Begins again where the device was lost; whether it does.
@@ -268,11 +295,12 @@ impl Page {
             cc.egui_ctx.set_fonts(fonts());
             let recent = memory::load(cc.storage);
             let mut app = match begin {
-                Begin::Address(query) => App::of_address(&gpu, &query, recent)?,
+                Begin::Address(query) => App::of_address(&gpu, &query, recent, &page.shelf)?,
                 Begin::Again(kept) => App::of_kept(&gpu, *kept, recent),
             };
             gpu.wake_when_lost(repaints(&cc.egui_ctx));
             app.page.context = cc.egui_ctx.clone();
+            app.page.shelf = Some(Rc::clone(&page.shelf));
             app.page.again = Some(Rc::new(move || {
                 let page = page.clone();
                 wasm_bindgen_futures::spawn_local(async move { page.begin_again().await });

@@ -148,6 +148,42 @@ test('dropped files open; what is none leaves the view as it is', async () => {
   await page.close();
 });
 
+test('the scene that was dropped last is kept', async () => {
+  const page = await browser.page('?bare=1&method=abuffer');
+  const dropped = async name => {
+    await page.drop({ [name]: square() });
+    await page.tab.waitForFunction(n => window.peelnet.page.scene() === n && window.peelnet.page.is_whole(), { timeout: PATIENCE }, name);
+    // The browser has it.
+    await page.tab.waitForFunction(n => new Promise(done => {
+      const opening = indexedDB.open('peelnet', 1);
+      opening.onsuccess = () => {
+        const get = opening.result.transaction('dropped').objectStore('dropped').get('last');
+        get.onsuccess = () => { opening.result.close(); done(get.result?.scene === n) };
+      };
+    }), { timeout: PATIENCE }, name);
+  };
+  await dropped('first.glb');
+  await dropped('second.glb');
+  await page.frames(3);
+  const shown = await page.shown();
+  await page.tab.waitForFunction(() => location.search.includes('second.glb') && localStorage.getItem('recent')?.startsWith('second.glb'), { timeout: PATIENCE });
+  await page.tab.reload();
+  await page.whole();
+  await page.frames(3);
+  assert.equal(await page.call('scene'), 'second.glb');
+  assert.equal((await page.differences(shown)).most, 0);
+  // A page without a name in its address shows it as well; the one before is gone, and that is said.
+  const again = await browser.page('?bare=1');
+  assert.equal(await again.call('scene'), 'second.glb');
+  const gone = await browser.page('?scene=first.glb&bare=1');
+  assert.match(await gone.call('messages'), /first\.glb: no scene of this name ships/);
+  for (const tab of [page, again, gone]) {
+    await tab.tab.evaluate(() => localStorage.clear());
+    assert.deepEqual(tab.errors(), []);
+    await tab.close();
+  }
+});
+
 test('a lost device is replaced', async () => {
   const page = await browser.page(VIEW + 'mboit4');
   const frames = await page.call('frames');
