@@ -15,6 +15,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -25,6 +26,8 @@ SHELF = 100
 LEVELS = 1
 # How long anything may take, seconds: a software rasteriser on a busy machine.
 PATIENCE = 120
+# Buttons: kinds of comparison, and the one that measures all methods, where errors of the view are listed above it.
+ONE, ERROR_MAP, MEASURE = (43, 170), (62, 193), (1036, 576)
 PICTURES = [
     ("cups", "abuffer"),
     ("cups", "mboit4"),
@@ -278,6 +281,55 @@ def interactions(checks, display, binary, out, home):
     w.close()
 
 
+class Film:
+    """Numbered screenshots while something else goes on."""
+
+    def __init__(self, display, folder):
+        self.display, self.folder, self.ended = display, folder, threading.Event()
+        folder.mkdir(parents=True)
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def run(self):
+        number = 0
+        while not self.ended.wait(0.4):
+            path = str(self.folder / f"{number:05}.png")
+            self.display.run("import", "-window", "root", "-crop", "%dx%d+0+0" % SIZE, "+repage", path)
+            number += 1
+
+    def close(self):
+        self.ended.set()
+        self.thread.join()
+
+
+def film(display, binary, out, home):
+    """One use from a dropped scene to a chosen method, as numbered frames."""
+    w = Window(display, binary, out, home, "cups", "--method", "wboit-eq9")
+    recorder = Film(display, out / "film")
+    try:
+        drop(w, ROOT / "data/effects/vase.toml")
+        w.rest("film-dropped")
+        w.drag((640, 400), (760, 430))
+        w.rest("film-orbited")
+        w.key("c")
+        split = w.rest("film-split")
+        w.drag((divider_of(split), 600), (divider_of(split) - 150, 600))
+        w.rest("film-divider")
+        w.click(ERROR_MAP)
+        w.rest("film-error-map")
+        w.click(ONE)
+        w.rest("film-one")
+        w.key("space")
+        time.sleep(6)
+        w.key("space")
+        w.rest("film-timeline")
+        w.click(MEASURE)
+        w.rest("film-front")
+    finally:
+        recorder.close()
+        w.close()
+
+
 def divider_of(shot):
     """The column of the white line: the brightest of the lower rows, where the scene's background is not white."""
     width, _, rgb = shot
@@ -289,6 +341,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--binary", default=str(ROOT / "target/release/peelnet"))
     parser.add_argument("--out", default=str(ROOT / "out/window"), type=pathlib.Path)
+    parser.add_argument("--film", action="store_true", help="record one use as numbered frames in OUT/film, and check nothing")
     options = parser.parse_args()
     for tool in ["Xvfb", "xdotool", "import", "convert"]:
         if shutil.which(tool) is None:
@@ -299,6 +352,9 @@ def main():
     home = (options.out / "home").resolve()
     display, checks = Display(), Checks()
     try:
+        if options.film:
+            film(display, options.binary, options.out, home)
+            return 0
         pictures(checks, display, options.binary, options.out, home)
         interactions(checks, display, options.binary, options.out, home)
     finally:

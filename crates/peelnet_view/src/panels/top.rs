@@ -1,6 +1,6 @@
 //! The bar on top: what is open, and how the window looks.
 
-use crate::{app::App, input::KEYS, stage::Source};
+use crate::{app::App, input::KEYS};
 use egui::{Ui, Window};
 use peelnet_scene::suite;
 use std::path::PathBuf;
@@ -50,7 +50,7 @@ fn open(app: &mut App, ui: &mut Ui) {
         #[cfg(target_arch = "wasm32")]
         let source = app.kept_or_named(path);
         #[cfg(not(target_arch = "wasm32"))]
-        let source = Source::Named(path);
+        let source = crate::stage::Source::Named(path);
         app.open(source, None);
         ui.close();
     }

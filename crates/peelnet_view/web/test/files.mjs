@@ -35,6 +35,5 @@ export function square() {
   return Buffer.concat([head, body]);
 }
 
-/** A square as OBJ, with the materials of a file beside it. */
+/** A square as OBJ, with the materials of a file that is not there. */
 export const OBJ = 'mtllib square.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3 4/4\n';
-export const MTL = 'newmtl red\nKd 1 0 0\nd 0.5\nmap_Kd wide.png\n';
