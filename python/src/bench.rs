@@ -20,7 +20,10 @@ use peelnet::{
     model::ModelError,
     report::Results,
 };
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyList, PyTuple},
+};
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 enum Said {
@@ -274,6 +277,14 @@ impl Recommendation {
     }
 }
 
+/// Pandas keeps counts as floats where one of them is missing.
+fn integer(value: serde_json::Value) -> serde_json::Value {
+    let whole = value
+        .as_f64()
+        .filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
+    whole.map_or(value, |x| (x as i64).into())
+}
+
 /// Rows of earlier results: what `bench` returned, or a folder or results.json that the command wrote.
 fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
     let py = results.py();
@@ -286,33 +297,48 @@ fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
         let read = Results::<Bench>::read(&file).map_err(raised)?;
         return Ok(read.measured.rows);
     }
-    let records = if results.hasattr("to_json")? {
+    let unlike = |e: serde_json::Error| failed(format!("results: not what bench returns: {e}"));
+    let text: String = if results.hasattr("to_json")? {
         // A DataFrame: its NaN becomes null again.
         let options = PyDict::new(py);
         options.set_item("orient", "records")?;
         options.set_item("double_precision", 15)?;
-        let text: String = results
+        results
             .call_method("to_json", (), Some(&options))?
-            .extract()?;
-        return serde_json::from_str(&text)
-            .map_err(|e| failed(format!("results: not what bench returns: {e}")));
-    } else if let Ok(columns) = results.cast::<PyDict>() {
-        let names: Vec<Bound<'_, PyAny>> = columns.keys().iter().collect();
-        let zip = py.import("builtins")?.getattr("zip")?;
-        let tuples = zip.call1(pyo3::types::PyTuple::new(py, columns.values().iter())?)?;
-        let records = pyo3::types::PyList::empty(py);
-        for tuple in tuples.try_iter()? {
-            let record = PyDict::new(py);
-            for (name, value) in names.iter().zip(tuple?.try_iter()?) {
-                record.set_item(name, value?)?;
-            }
-            records.append(record)?;
-        }
-        records.into_any()
+            .extract()?
     } else {
-        results.clone()
+        let records = match results.cast::<PyDict>() {
+            Ok(columns) => records(columns)?,
+            Err(_) => results.clone(),
+        };
+        py.import("json")?
+            .call_method1("dumps", (records,))?
+            .extract()?
     };
-    json::from_python(&records)
+    let records: Vec<serde_json::Map<String, serde_json::Value>> =
+        serde_json::from_str(&text).map_err(unlike)?;
+    let whole = records.into_iter().map(|record| {
+        let fields = record.into_iter();
+        serde_json::Value::Object(fields.map(|(name, v)| (name, integer(v))).collect())
+    });
+    serde_json::from_value(serde_json::Value::Array(whole.collect())).map_err(unlike)
+}
+
+/// Columns as a list of records.
+fn records<'py>(columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    let py = columns.py();
+    let names: Vec<Bound<'py, PyAny>> = columns.keys().iter().collect();
+    let zip = py.import("builtins")?.getattr("zip")?;
+    let tuples = zip.call1(PyTuple::new(py, columns.values().iter())?)?;
+    let records = PyList::empty(py);
+    for tuple in tuples.try_iter()? {
+        let record = PyDict::new(py);
+        for (name, value) in names.iter().zip(tuple?.try_iter()?) {
+            record.set_item(name, value?)?;
+        }
+        records.append(record)?;
+    }
+    Ok(records.into_any())
 }
 
 /// Recommends the method for a budget of time, error or memory.

@@ -224,8 +224,9 @@ fn array<'py>(
     Ok(array.into_pyarray(py).into_any())
 }
 
-/// The names of all methods, which `render` and `bench` take.
+/// The names of all methods, which `render` and `bench` take; of those with a number in their name (`kbuffer-8`) one setting.
 #[pyfunction]
-pub fn methods() -> Vec<&'static str> {
-    METHODS.iter().map(|m| m.name).collect()
+pub fn methods() -> Vec<String> {
+    let one = |method| MethodSpec::representative(method).to_string();
+    METHODS.iter().map(one).collect()
 }

@@ -83,7 +83,7 @@ def expected(rows):
 def test_duckdb_reads_the_folder(glob, rows):
     duckdb = pytest.importorskip("duckdb")
     query = f"select count(*), sum(transmittance::double), count(distinct view) from read_parquet('{glob}')"
-    count, total, views = duckdb.sql(query).fetchone()
+    count, total, views = duckdb.sql(query).fetchall()[0]
     assert (count, pytest.approx(total), views) == expected(rows)
 
 

@@ -78,11 +78,10 @@ def test_samples_load_and_time_moves_a_timeline():
     np.testing.assert_array_equal(peelnet.render(vase.at(last), size=SIZE), b)
 
 
-def test_every_method_is_listed_and_the_gil_is_free_while_drawing():
+def test_the_gil_is_free_while_drawing():
     import threading
     import time
 
-    assert {"abuffer", "mboit4", "deep-medium"} <= set(peelnet.methods())
     beats, done = [], threading.Event()
 
     def beat():
@@ -99,3 +98,12 @@ def test_every_method_is_listed_and_the_gil_is_free_while_drawing():
     other.join()
     longest = max(b - a for a, b in zip(beats, beats[1:]))
     assert longest < max(0.5 * seconds, 0.05), f"another thread waited {longest:.3f} s of {seconds:.3f} s"
+
+
+def test_every_method_that_is_listed_has_a_name_that_parses():
+    names = peelnet.methods()
+    assert {"abuffer", "mboit4", "deep-medium"} <= set(names)
+    for name in names:
+        # A scene that is not there is found after the method's name.
+        with pytest.raises(peelnet.PeelnetError, match="no-such-scene"):
+            peelnet.render("no-such-scene", name)
