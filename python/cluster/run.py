@@ -35,7 +35,7 @@ from ray.cluster_utils import Cluster
 
 
 def scenes(count: int, folder: Path) -> list[str]:
-    """Scenes of their own: shipped ones under other names and with other seeds would be the same rows, so panes are made."""
+    """Writes scenes of panes, each with more of them than the one before, and two views."""
     paths = []
     for k in range(count):
         text = f"""
@@ -52,7 +52,7 @@ views = 2
             text += f"""
 [[object]]
 mesh = "pane.obj"
-position = [{0.1 * (layer % 3)}, {0.05 * k}, {z:.4f}]
+translate = [{0.1 * (layer % 3)}, {0.05 * k}, {z:.4f}]
 material = {{ color = [{0.1 + 0.05 * k:.3f}, 0.5, {1 - 0.05 * layer:.3f}], alpha = {0.15 + 0.02 * (k % 10):.3f} }}
 """
         path = folder / f"panes-{k:02}.toml"
