@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import logging
 import os
 import signal
 import sys
 import tempfile
-import threading
 import time
 from pathlib import Path
 
@@ -79,8 +79,8 @@ def workers_of(node) -> list[psutil.Process]:
 class Bar:
     """Kills a worker after a third of the shards, and a node after two thirds."""
 
-    def __init__(self, cluster: Cluster, victim, kill: bool):
-        self.cluster, self.victim, self.kill = cluster, victim, kill
+    def __init__(self, cluster: Cluster, victim, alone: bool, kill: bool):
+        self.cluster, self.victim, self.alone, self.kill = cluster, victim, alone, kill
         self.total, self.done, self.events = 0, 0, []
 
     def update(self, n: int) -> None:
@@ -99,6 +99,9 @@ class Bar:
             self.events.append("node")
             # As a machine that loses its power.
             self.cluster.remove_node(self.victim, allow_graceful=False)
+            if self.alone:
+                # Nobody is left to work: a machine takes its place, as schedulers do it.
+                self.cluster.add_node(num_cpus=1)
             self.events.append(f"killed a node after {self.done} of {self.total} shards")
 
     def close(self) -> None:
@@ -107,12 +110,11 @@ class Bar:
 
 def one_run(workers: int, names: list[str], out: Path, size: tuple[int, int], kill: bool) -> dict:
     """Extracts with so many workers on two nodes."""
-    on_head = (workers + 1) // 2
+    on_head = workers // 2
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": on_head, "include_dashboard": False})
-    # A single worker may be on either node; the one that is killed is the second.
-    victim = cluster.add_node(num_cpus=max(1, workers - on_head))
-    ray.init(address=cluster.address, log_to_driver=False)
-    bar = Bar(cluster, victim, kill)
+    victim = cluster.add_node(num_cpus=workers - on_head)
+    ray.init(address=cluster.address, log_to_driver=False, logging_level=logging.ERROR)
+    bar = Bar(cluster, victim, on_head == 0, kill)
     start = time.perf_counter()
     try:
         data = peelnet.ray.extract(names, out, shards=len(names), size=size, progress=bar, retries=5)
@@ -120,7 +122,9 @@ def one_run(workers: int, names: list[str], out: Path, size: tuple[int, int], ki
     finally:
         ray.shutdown()
         cluster.shutdown()
-    return {"workers": workers, "hash": data.hash, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
+    # What was killed in the middle of a part leaves a hidden folder, and the part was begun again.
+    again = len([p for p in out.glob("shard-*/.*") if p.is_dir()])
+    return {"workers": workers, "again": again, "hash": data.hash, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
 
 
 def orphans() -> list[str]:
@@ -166,6 +170,7 @@ def main() -> int:
             runs.append(run)
             print(f"{workers} workers: {run['rows']:,} rows, {run['seconds']} s, {run['hash'][:16]}, "
                   f"{'the same' if run['same'] else 'ANOTHER hash'}; {'; '.join(run['events']) or 'nothing killed'}; "
+                  f"parts begun again: {run['again']}; "
                   f"orphans: {', '.join(run['orphans']) or 'none'}", flush=True)
     if options.out:
         options.out.write_text(json.dumps({"local": {"hash": local.hash, "seconds": seconds}, "runs": runs}, indent=1))
