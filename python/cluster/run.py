@@ -8,13 +8,16 @@ namespace, so that addresses are this machine's alone.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import logging
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
@@ -108,7 +111,7 @@ class Bar:
         pass
 
 
-def one_run(workers: int, names: list[str], out: Path, size: tuple[int, int], kill: bool) -> dict:
+def one_run(workers: int, names: list[str], out: Path | str, size: tuple[int, int], kill: bool) -> dict:
     """Extracts with so many workers on two nodes."""
     on_head = workers // 2
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": on_head, "include_dashboard": False})
@@ -123,8 +126,37 @@ def one_run(workers: int, names: list[str], out: Path, size: tuple[int, int], ki
         ray.shutdown()
         cluster.shutdown()
     # What was killed in the middle of a part leaves a hidden folder, and the part was begun again.
-    again = len([p for p in out.glob("shard-*/.*") if p.is_dir()])
+    again = len([p for p in out.glob("shard-*/.*") if p.is_dir()]) if isinstance(out, Path) else None
     return {"workers": workers, "again": again, "hash": data.hash, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
+
+
+@contextlib.contextmanager
+def bucket() -> Iterator[str]:
+    """An S3 server of this run, in its network namespace, with a bucket."""
+    import boto3
+    from botocore.exceptions import BotoCoreError
+
+    port = "5555"
+    unmarked = {name: value for name, value in os.environ.items() if name != MARK}
+    command = [sys.executable, "-m", "moto.server", "-H", "127.0.0.1", "-p", port]
+    server = subprocess.Popen(command, env=unmarked, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.environ.update(
+        AWS_ENDPOINT_URL=f"http://127.0.0.1:{port}", AWS_ALLOW_HTTP="true", AWS_REGION="us-east-1", AWS_DEFAULT_REGION="us-east-1",
+        AWS_ACCESS_KEY_ID="cluster", AWS_SECRET_ACCESS_KEY="cluster",
+    )
+    try:
+        for attempt in range(60):
+            try:
+                boto3.client("s3").create_bucket(Bucket="cluster")
+                break
+            except (OSError, BotoCoreError):
+                if attempt == 59:
+                    raise
+                time.sleep(0.5)
+        yield "s3://cluster"
+    finally:
+        server.terminate()
+        server.wait()
 
 
 def orphans() -> list[str]:
@@ -146,12 +178,18 @@ def main() -> int:
     arguments.add_argument("--scenes", type=int, default=16)
     arguments.add_argument("--size", default="512x384")
     arguments.add_argument("--no-kill", action="store_true", help="kill nothing: for times")
+    arguments.add_argument("--s3", action="store_true", help="write to an S3 server (moto) instead of folders")
     arguments.add_argument("--out", type=Path, help="also write the results here, JSON")
     options = arguments.parse_args()
+    if options.s3 and not hasattr(peelnet, "seal"):
+        print("error: this peelnet writes no object storage: leave out --s3", file=sys.stderr)
+        return 1
     size = tuple(int(n) for n in options.size.split("x"))
     # Processes that are started from here on are counted, also those that lose their parent.
     os.environ[MARK] = str(os.getpid())
-    with tempfile.TemporaryDirectory(prefix="peelnet-cluster-") as folder:
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="peelnet-cluster-"))
+        place = stack.enter_context(bucket()) if options.s3 else Path(folder)
         names = scenes(options.scenes, Path(folder))
         start = time.perf_counter()
         local = peelnet.extract(names, size=size, out=Path(folder) / "local", adapter="software")
@@ -159,7 +197,8 @@ def main() -> int:
         print(f"one process: {len(local):,} rows, {seconds:.1f} s, {local.hash[:16]}", flush=True)
         runs, right = [], True
         for workers in (int(n) for n in options.workers.split(",")):
-            run = one_run(workers, names, Path(folder) / f"of-{workers}", size, not options.no_kill)
+            out = f"{place}/of-{workers}" if options.s3 else place / f"of-{workers}"
+            run = one_run(workers, names, out, size, not options.no_kill)
             run["same"] = run["hash"] == local.hash
             # Processes that were killed are gone once their parent has waited for them.
             deadline = time.monotonic() + 10

@@ -62,13 +62,13 @@ def extract(
     """
     listed = [scenes] if isinstance(scenes, (str, os.PathLike)) else list(scenes)
     names = [_anywhere(scene) for scene in listed]
-    folder = Path(out).absolute()
+    folder = _anywhere(out, exists=True)
     with _connected():
         if shards is None:
             shards = max(1, min(len(names), 4 * _slots(num_cpus, num_gpus)))
         if adapter is None:
             adapter = "software" if num_gpus == 0 else "auto"
-        options = {**options, "adapter": adapter, "out": str(folder)}
+        options = {**options, "adapter": adapter, "out": folder}
         task = ray.remote(num_cpus=num_cpus, num_gpus=num_gpus, max_retries=retries)(_shard)
         pending = {task.remote(names, f"{i}/{shards}", int(num_cpus), options): i for i in range(1, shards + 1)}
         with _bar(progress, shards) as bar:
@@ -81,10 +81,12 @@ def extract(
     return _seal(folder)
 
 
-def _anywhere(scene: _Path) -> str:
-    """A scene's name, or a path that holds in any working directory."""
-    path = Path(scene)
-    return str(path.absolute()) if path.exists() else os.fspath(scene)
+def _anywhere(place: _Path, *, exists: bool = False) -> str:
+    """A path that holds in any working directory; a scene's name and a URL as they are."""
+    text = os.fspath(place)
+    if "://" in text or not (exists or Path(text).exists()):
+        return text
+    return str(Path(text).absolute())
 
 
 def _shard(scenes: list[str], shard: str, threads: int, options: dict[str, Any]) -> str | None:
@@ -115,9 +117,9 @@ def _gather(pending: dict[Any, int], shards: int, bar: Any) -> None:
                 bar.update(1)
 
 
-def _seal(folder: Path) -> peelnet.Dataset:
+def _seal(folder: str) -> peelnet.Dataset:
     """Makes one dataset of all shards: sealed where this version can, otherwise as the folder of shards that readers merge."""
-    seal: Callable[[Path], object] | None = getattr(peelnet, "seal", None)
+    seal: Callable[[str], object] | None = getattr(peelnet, "seal", None)
     if seal is not None:
         seal(folder)
     return peelnet.Dataset(folder)
@@ -179,7 +181,7 @@ def tune(
     from ray import tune as ray_tune
 
     folders = [data] if isinstance(data, (str, os.PathLike)) else list(data)
-    names = [str(Path(folder).absolute()) for folder in folders]
+    names = [_anywhere(folder, exists=True) for folder in folders]
     space = {
         name: ray_tune.grid_search(value) if isinstance(value, list) else value for name, value in search_space.items()
     }
