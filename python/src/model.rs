@@ -278,7 +278,7 @@ fn layer(state: &Bound<'_, PyAny>, index: usize) -> PyResult<Layer> {
 
 /// A model, or its file.
 pub enum ModelArg {
-    Loaded(peelnet::Model),
+    Loaded(Box<peelnet::Model>),
     Path(PathBuf),
 }
 
@@ -287,7 +287,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for ModelArg {
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(model) = object.cast::<Model>() {
-            return Ok(Self::Loaded(model.get().0.clone()));
+            return Ok(Self::Loaded(Box::new(model.get().0.clone())));
         }
         let path = object.extract::<PathBuf>();
         path.map(Self::Path)
@@ -302,7 +302,7 @@ impl ModelArg {
     /// A file that does not load.
     pub fn load(self) -> PyResult<peelnet::Model> {
         match self {
-            Self::Loaded(model) => Ok(model),
+            Self::Loaded(model) => Ok(*model),
             Self::Path(path) => peelnet::Model::load(path).map_err(raised),
         }
     }

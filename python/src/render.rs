@@ -123,11 +123,7 @@ fn draw(
 ///     coverage · 255.
 #[pyfunction]
 #[pyo3(signature = (scene, method="abuffer", *, size=(1024, 768), view=None, camera=None, time=None, samples=1, model=None, dtype="float32", adapter="auto"))]
-#[allow(
-    clippy::too_many_arguments,
-    clippy::fn_params_excessive_bools,
-    reason = "keyword arguments of Python"
-)]
+#[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn render<'py>(
     py: Python<'py>,
     scene: SceneArg,

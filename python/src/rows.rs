@@ -443,7 +443,7 @@ pub fn extract_rows<'py>(
 
 /// A dataset, or its folder.
 pub enum DatasetArg {
-    Open(dataset::Dataset),
+    Open(Box<dataset::Dataset>),
     Path(PathBuf),
 }
 
@@ -452,7 +452,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for DatasetArg {
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(dataset) = object.cast::<Dataset>() {
-            return Ok(Self::Open(dataset.get().inner().clone()));
+            return Ok(Self::Open(Box::new(dataset.get().inner().clone())));
         }
         object.extract::<PathBuf>().map(Self::Path).map_err(|_| {
             pyo3::exceptions::PyTypeError::new_err(
@@ -469,7 +469,7 @@ impl DatasetArg {
     /// A folder that holds none.
     pub fn open(self) -> PyResult<dataset::Dataset> {
         match self {
-            Self::Open(dataset) => Ok(dataset),
+            Self::Open(dataset) => Ok(*dataset),
             Self::Path(path) => dataset::Dataset::open(path).map_err(raised),
         }
     }

@@ -134,8 +134,7 @@ fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<
     options.threads = run.threads;
     options.lock = Some(&lock);
     let ask = |e: &EpochReport| reporter.ask(e.into());
-    let mut outcome =
-        peelnet::train::train(run.config, &data, &options, |e| ask(&e)).map_err(raised)?;
+    let mut outcome = peelnet::train::train(run.config, &data, &options, ask).map_err(raised)?;
     if outcome.end != End::Interrupted && !stop.load(Ordering::Relaxed) {
         let held_out = held_out_errors(&outcome.model, &datasets).map_err(raised)?;
         if !held_out.is_empty() {

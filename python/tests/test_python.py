@@ -83,9 +83,10 @@ def test_wrong_kinds_are_type_errors(call, text):
 
 
 def test_nothing_of_a_name_reaches_a_terminal():
-    with pytest.raises(peelnet.PeelnetError) as raised:
-        peelnet.Scene("a\x1b[31m\nb.toml")
-    assert str(raised.value).isprintable(), repr(str(raised.value))
+    for call in (lambda: peelnet.Scene("a\x1b[31m\nb.toml"), lambda: peelnet.render("cups", dtype="a\x1b[31m")):
+        with pytest.raises((peelnet.PeelnetError, ValueError)) as raised:
+            call()
+        assert str(raised.value).isprintable(), repr(str(raised.value))
 
 
 def interrupted(tmp_path, code, after="begun", seconds=1.0) -> tuple[str, float]:
