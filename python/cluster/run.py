@@ -125,9 +125,7 @@ def one_run(workers: int, names: list[str], out: Path | str, size: tuple[int, in
     finally:
         ray.shutdown()
         cluster.shutdown()
-    # What was killed in the middle of a part leaves a hidden folder, and the part was begun again.
-    again = len([p for p in out.glob("shard-*/.*") if p.is_dir()]) if isinstance(out, Path) else None
-    return {"workers": workers, "again": again, "hash": data.hash, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
+    return {"workers": workers, "hash": data.hash, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
 
 
 @contextlib.contextmanager
@@ -209,7 +207,6 @@ def main() -> int:
             runs.append(run)
             print(f"{workers} workers: {run['rows']:,} rows, {run['seconds']} s, {run['hash'][:16]}, "
                   f"{'the same' if run['same'] else 'ANOTHER hash'}; {'; '.join(run['events']) or 'nothing killed'}; "
-                  f"parts begun again: {run['again']}; "
                   f"orphans: {', '.join(run['orphans']) or 'none'}", flush=True)
     if options.out:
         options.out.write_text(json.dumps({"local": {"hash": local.hash, "seconds": seconds}, "runs": runs}, indent=1))
