@@ -6,6 +6,7 @@ mod checks;
 mod measure;
 mod meshes;
 mod product;
+mod python;
 mod setup;
 mod view;
 mod web;
@@ -44,6 +45,9 @@ cargo xtask <command>
   faults          extract, train and bench killed fifty times each (minutes)
   fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust
   three           the package for three.js: types, tests in Chromium on WebGPU and WebGL 2 (minutes; needs Node.js 20 and npm)
+  python [--ray]  the Python package: lints, pip install ./python, its tests; with Ray in it (700 MB from PyPI) also those of peelnet.ray
+  cluster [--workers N,…] [--scenes N]
+                  Ray with two nodes in a network namespace: scenes extracted while a worker and a node are killed, compared with one process
   languages       compile the exported texts with glslangValidator and DXC (installed from Debian and PyPI)
   peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
 
@@ -78,6 +82,9 @@ fn main() -> ExitCode {
         (Some("peers"), []) => product::peers(),
         (Some("languages"), []) => checks::languages(),
         (Some("three"), []) => checks::three(),
+        (Some("python"), []) => python::python(false),
+        (Some("python"), ["--ray"]) => python::python(true),
+        (Some("cluster"), rest) => python::cluster(rest),
         (None | Some("help" | "--help" | "-h"), _) => {
             print!("{HELP}");
             Ok(())

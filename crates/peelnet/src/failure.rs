@@ -44,7 +44,7 @@ impl<E: Error + 'static> From<E> for Failure {
         if let Some(hint) = flags::hint(&error) {
             text.push_str(&format!(" ({hint})"));
         }
-        if flags::are_wrong(&error) {
+        if peelnet::cause::is_wrong_value(&error) {
             Self::Usage(text)
         } else {
             Self::Failed(text)

@@ -69,6 +69,8 @@
 //! - `cli` (default): the program `peelnet` and what only it needs. Libraries turn default features off.
 //! - `train`: [`train`], and with it burn, which takes the longest to compile. Part of `cli`.
 
+pub mod cause;
+
 #[doc(inline)]
 pub use peelnet_gpu::{AdapterRequest, Gpu};
 #[doc(inline)]

@@ -1,5 +1,6 @@
 //! Which flag a library's error depends on.
 
+use peelnet::cause::find;
 use peelnet_dataset::DatasetError;
 use peelnet_eval::EvalError;
 use peelnet_export::ExportError;
@@ -27,44 +28,6 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<&'static str> {
         next = error.source();
     }
     None
-}
-
-/// Whether the cause is a wrong value on the command line.
-pub(super) fn are_wrong(error: &(dyn Error + 'static)) -> bool {
-    let setting = |error: &TrainError| match error {
-        TrainError::Config { .. } | TrainError::CurveFormat(_) => Some(()),
-        _ => None,
-    };
-    let names = |error: &EvalError| matches!(error, EvalError::SameName { .. }).then_some(());
-    let method = |error: &RenderError| match error {
-        RenderError::Parameter { .. } | RenderError::UnknownMethod { .. } => Some(()),
-        _ => None,
-    };
-    let wrong = |error: &PeelError| match error {
-        PeelError::NoScene
-        | PeelError::SameName { .. }
-        | PeelError::TooFewViews { .. }
-        | PeelError::Fraction(_)
-        | PeelError::TooManyLists(_)
-        | PeelError::Dataset(DatasetError::TooManyItems { .. }) => Some(()),
-        _ => None,
-    };
-    let adapter = |error: &GpuError| matches!(error, GpuError::NoSuchAdapter { .. }).then_some(());
-    find(error, wrong)
-        .or_else(|| find(error, adapter))
-        .or_else(|| find(error, setting))
-        .or_else(|| find(error, names))
-        .or_else(|| find(error, method))
-        .is_some()
-}
-
-/// What `of` finds in an error of its type. Sources in a box are seen as the box.
-fn find<E: Error + 'static, T>(
-    error: &(dyn Error + 'static),
-    of: impl Fn(&E) -> Option<T>,
-) -> Option<T> {
-    let boxed = || error.downcast_ref::<Box<E>>().map(|b| &**b);
-    error.downcast_ref::<E>().or_else(boxed).and_then(of)
 }
 
 fn gpu(error: &GpuError) -> Option<&'static str> {

@@ -1,0 +1,16 @@
+//! What serialises to JSON, as Python's objects.
+
+use crate::failure::failed;
+use pyo3::prelude::*;
+
+/// Lists, dicts and numbers.
+///
+/// # Errors
+/// A value that JSON cannot hold.
+pub fn to_python<'py>(
+    py: Python<'py>,
+    value: &impl serde::Serialize,
+) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).map_err(|e| failed(e.to_string()))?;
+    py.import("json")?.call_method1("loads", (text,))
+}

@@ -1,0 +1,476 @@
+//! Fragments as rows: in memory as Arrow, or a dataset's folder.
+
+use crate::{
+    failure::{failed, raised, warn, wrong},
+    gpu,
+    render::sized,
+    scene::SceneArgs,
+    watch::{Bar, Reporter, watch},
+};
+use arrow_array::{
+    Array as _, ArrayRef, Float32Array, RecordBatch, RecordBatchIterator, UInt32Array,
+    ffi_stream::FFI_ArrowArrayStream,
+};
+use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
+use numpy::{Element, IntoPyArray as _};
+use peelnet::{
+    Gpu, Scene,
+    dataset::{self, Column, ColumnKind, FragmentBatch},
+    extract::{self, ExtractOptions, PeelError, Views, items},
+};
+use peelnet_files::{counted, thousands};
+use pyo3::{
+    prelude::*,
+    types::{PyCapsule, PyDict},
+};
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
+
+/// Rows of fragments in memory: fourteen columns, whole pixels from the nearest fragment to the farthest.
+///
+/// Anything that reads Arrow streams takes it without a copy: `pyarrow.table(rows)`, `polars.DataFrame(rows)`,
+/// `duckdb.sql("from rows")` of such a table. Columns and units:
+///
+/// - one_minus_alpha, alpha_sum, transmittance, r, g, b: float32, 1 (linear radiance, un-premultiplied)
+/// - linear_depth, near, far: float32, scene units
+/// - fragment_count, view, x, y, layer: uint32; `view` indexes `views`, `layer` counts from the front
+#[pyclass(frozen, module = "peelnet")]
+pub struct Rows {
+    schema: SchemaRef,
+    batches: Vec<RecordBatch>,
+    rows: usize,
+}
+
+fn schema() -> SchemaRef {
+    let field = |column: Column| {
+        let kind = match column.kind() {
+            ColumnKind::F32 => DataType::Float32,
+            ColumnKind::U32 => DataType::UInt32,
+        };
+        Field::new(column.name(), kind, false)
+    };
+    Arc::new(Schema::new(Column::ALL.map(field).to_vec()))
+}
+
+/// A batch whose columns become Arrow's without a copy.
+fn record_batch(schema: &SchemaRef, batch: FragmentBatch) -> Result<RecordBatch, ArrowError> {
+    let f = |values: Vec<f32>| Arc::new(Float32Array::new(values.into(), None)) as ArrayRef;
+    let u = |values: Vec<u32>| Arc::new(UInt32Array::new(values.into(), None)) as ArrayRef;
+    let b = batch;
+    let columns = vec![
+        f(b.one_minus_alpha),
+        f(b.linear_depth),
+        f(b.alpha_sum),
+        u(b.fragment_count),
+        f(b.transmittance),
+        u(b.view),
+        u(b.x),
+        u(b.y),
+        u(b.layer),
+        f(b.r),
+        f(b.g),
+        f(b.b),
+        f(b.near),
+        f(b.far),
+    ];
+    RecordBatch::try_new(Arc::clone(schema), columns)
+}
+
+impl Rows {
+    fn new(schema: SchemaRef, batches: Vec<RecordBatch>) -> Self {
+        Self {
+            rows: batches.iter().map(RecordBatch::num_rows).sum(),
+            schema,
+            batches,
+        }
+    }
+
+    /// One array of a column: the batches' memory, one after the other.
+    fn gathered<T: Copy>(&self, of: impl Fn(&RecordBatch) -> Option<&[T]>) -> Vec<T> {
+        let mut all = Vec::with_capacity(self.rows);
+        for batch in &self.batches {
+            all.extend_from_slice(of(batch).unwrap_or_default());
+        }
+        all
+    }
+
+    fn column<'py, T: Element + Copy>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&RecordBatch) -> Option<&[T]> + Send + Sync,
+    ) -> Bound<'py, PyAny> {
+        let values = py.detach(|| self.gathered(of));
+        values.into_pyarray(py).into_any()
+    }
+}
+
+#[pymethods]
+impl Rows {
+    fn __len__(&self) -> usize {
+        self.rows
+    }
+
+    /// Names of the columns, in order.
+    #[getter]
+    fn columns(&self) -> Vec<&'static str> {
+        Column::ALL.map(Column::name).to_vec()
+    }
+
+    /// The rows as a stream of the Arrow C data interface, without a copy; may be called again.
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        // The protocol lets a producer that cannot cast ignore it.
+        let _ = requested_schema;
+        let batches = self.batches.clone().into_iter().map(Ok);
+        let reader = RecordBatchIterator::new(batches, Arc::clone(&self.schema));
+        let stream = FFI_ArrowArrayStream::new(Box::new(reader));
+        PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+    }
+
+    /// Columns as numpy arrays of shape (rows,), float32 or uint32.
+    ///
+    /// Args:
+    ///     columns: Names of columns; all by default.
+    #[pyo3(signature = (columns=None))]
+    fn to_numpy<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let chosen: Vec<Column> = match columns {
+            None => Column::ALL.to_vec(),
+            Some(names) => names
+                .iter()
+                .map(|name| {
+                    Column::from_name(name).ok_or_else(|| {
+                        let all = Column::ALL.map(Column::name).join(", ");
+                        wrong(format!("no column '{name}'; there are {all}"))
+                    })
+                })
+                .collect::<PyResult<_>>()?,
+        };
+        let arrays = PyDict::new(py);
+        for column in chosen {
+            let name = column.name();
+            let array = match column.kind() {
+                ColumnKind::F32 => self.column(py, |b| {
+                    let array = b.column_by_name(name)?.as_any();
+                    Some(array.downcast_ref::<Float32Array>()?.values().as_ref())
+                }),
+                ColumnKind::U32 => self.column(py, |b| {
+                    let array = b.column_by_name(name)?.as_any();
+                    Some(array.downcast_ref::<UInt32Array>()?.values().as_ref())
+                }),
+            };
+            arrays.set_item(name, array)?;
+        }
+        Ok(arrays)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Rows({} rows, {} columns)",
+            thousands(self.rows as u64),
+            Column::ALL.len()
+        )
+    }
+}
+
+/// A dataset's folder: a whole one, or one that holds all shards of a run.
+#[pyclass(frozen, module = "peelnet")]
+pub struct Dataset {
+    path: PathBuf,
+    dataset: dataset::Dataset,
+}
+
+impl Dataset {
+    pub fn inner(&self) -> &dataset::Dataset {
+        &self.dataset
+    }
+
+    fn open(path: PathBuf) -> PyResult<Self> {
+        let dataset = dataset::Dataset::open(&path).map_err(raised)?;
+        Ok(Self { path, dataset })
+    }
+}
+
+#[pymethods]
+impl Dataset {
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        py.detach(|| Self::open(path))
+    }
+
+    /// The folder.
+    #[getter]
+    fn path(&self) -> &PathBuf {
+        &self.path
+    }
+
+    /// Hash over all parts: the same for the same rows in the same format, however they were sharded.
+    #[getter]
+    fn hash(&self) -> &str {
+        &self.dataset.manifest().hash
+    }
+
+    /// Number of pixels that hold at least one row.
+    #[getter]
+    fn pixels(&self) -> u64 {
+        self.dataset.manifest().pixels
+    }
+
+    /// The manifest, as its JSON says it.
+    #[getter]
+    fn manifest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        crate::json::to_python(py, self.dataset.manifest())
+    }
+
+    fn __len__(&self) -> usize {
+        self.dataset.rows() as usize
+    }
+
+    /// Compares the SHA-256 of every file with the manifest's.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.dataset.verify()).map_err(raised)
+    }
+
+    /// All rows in memory, whatever the format of the files.
+    fn read(&self, py: Python<'_>) -> PyResult<Rows> {
+        watch(
+            py,
+            |stop, _: &Reporter<()>| {
+                let schema = schema();
+                let mut batches = Vec::new();
+                for batch in self.dataset.batches(BATCH_ROWS) {
+                    if stop.load(Ordering::Relaxed) {
+                        break;
+                    }
+                    let batch = record_batch(&schema, batch.map_err(raised)?);
+                    batches.push(batch.map_err(|e| failed(e.to_string()))?);
+                }
+                Ok(Rows::new(schema, batches))
+            },
+            |_, ()| Ok(()),
+        )?
+    }
+
+    fn __repr__(&self) -> String {
+        let rows = thousands(self.dataset.rows());
+        format!("Dataset({}: {rows} rows)", peelnet_files::shown(&self.path))
+    }
+}
+
+/// Rows of a batch that is read from a folder.
+const BATCH_ROWS: usize = 1 << 18;
+
+struct Told {
+    done: u64,
+    total: u64,
+    rows: u64,
+    seconds: f64,
+}
+
+impl Told {
+    fn show(&self, bar: &mut Bar<'_>) -> PyResult<()> {
+        let rate = self.rows as f64 / self.seconds.max(1e-3);
+        let (rows, rate) = (thousands(self.rows), thousands(rate as u64));
+        bar.set(
+            self.done,
+            self.total,
+            &format!("{rows} rows, {rate} rows/s"),
+        )
+    }
+}
+
+fn in_memory(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+    stop: &AtomicBool,
+    reporter: &Reporter<Told>,
+) -> PyResult<Rows> {
+    let start = Instant::now();
+    let all = items::items(scenes, options.views, options.augment).map_err(raised)?;
+    let mine: Vec<u32> = all
+        .iter()
+        .map(|item| item.index)
+        .filter(|&i| options.shard.is_none_or(|s| s.contains(i)))
+        .collect();
+    let schema = schema();
+    let (mut batches, mut rows) = (Vec::new(), 0);
+    let say = |done: usize, rows: u64| {
+        reporter.say(Told {
+            done: done as u64,
+            total: mine.len() as u64,
+            rows,
+            seconds: start.elapsed().as_secs_f64(),
+        });
+    };
+    for batch in extract::batches(gpu, scenes, options).map_err(raised)? {
+        if stop.load(Ordering::Relaxed) {
+            return Err(raised(PeelError::Interrupted));
+        }
+        let batch = batch.map_err(raised)?;
+        rows += batch.len() as u64;
+        let view = batch.view.first().copied().unwrap_or(0);
+        say(mine.partition_point(|&i| i < view), rows);
+        let batch = record_batch(&schema, batch).map_err(|e| failed(e.to_string()))?;
+        batches.push(batch);
+    }
+    say(mine.len(), rows);
+    Ok(Rows::new(schema, batches))
+}
+
+enum Done {
+    Rows(Rows),
+    Folder(PathBuf, u64),
+}
+
+/// Peels scenes: every transparent fragment of every pixel becomes a row.
+///
+/// Args:
+///     scenes: A scene or a list of scenes (Scene, path, or name of a shipped scene).
+///     out: Folder of the dataset. Without it the rows stay in memory (56 bytes a row).
+///     size: (width, height), pixels.
+///     views: The first N views of each scene; all by default.
+///     pixels: Fraction of the pixels to keep, above 0 and at most 1.
+///     augment: Varied copies of each scene, in addition to the scene itself.
+///     seed: Seed of sampling and variation.
+///     peel: "sbuffer", "dual" or "single".
+///     max_passes: Stop peeling after N passes.
+///     format: "parquet", "csv" or "npy", of the folder's files.
+///     shard: "I/N": only part I of N, into `out/shard-I-of-N`.
+///     adapter: "auto", "software", or a part of an adapter's name.
+///     progress: A progress bar of the tqdm protocol, or True for tqdm's own; it counts views.
+///
+/// Returns:
+///     Rows without `out`, otherwise the Dataset in it. Ctrl-C leaves no dataset behind.
+#[pyfunction]
+#[pyo3(name = "extract", signature = (scenes, *, out=None, size=(1024, 768), views=None, pixels=1.0, augment=0, seed=1, peel="sbuffer", max_passes=None, format="parquet", shard=None, adapter="auto", progress=None))]
+#[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
+pub fn extract_rows<'py>(
+    py: Python<'py>,
+    scenes: SceneArgs,
+    out: Option<PathBuf>,
+    size: (u32, u32),
+    views: Option<u32>,
+    pixels: f64,
+    augment: u32,
+    seed: u64,
+    peel: &str,
+    max_passes: Option<u32>,
+    format: &str,
+    shard: Option<&str>,
+    adapter: &str,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let shard = shard.map(str::parse::<dataset::Shard>).transpose();
+    let views = match views {
+        Some(0) => return Err(wrong("'0' is not a number of views; write 1, 2, … or None")),
+        Some(n) => Views::First(n),
+        None => Views::All,
+    };
+    if max_passes == Some(0) {
+        return Err(wrong("max_passes must be at least 1"));
+    }
+    let options = ExtractOptions {
+        size: sized(size)?,
+        views,
+        format: format
+            .parse()
+            .map_err(|e: dataset::DatasetError| wrong(e.to_string()))?,
+        peel: peel.parse().map_err(|e: String| wrong(e))?,
+        max_passes,
+        pixels,
+        augment,
+        seed,
+        shard: shard.map_err(|e| wrong(e.to_string()))?,
+        command: "peelnet.extract of the Python package".to_owned(),
+        ..ExtractOptions::new(out.clone().unwrap_or_default())
+    };
+    let scenes = scenes.load(py)?;
+    let gpu = gpu::open(py, adapter)?;
+    let mut bar = Bar::new(progress)?;
+    let result = watch(
+        py,
+        |stop, reporter| {
+            if out.is_none() {
+                return in_memory(&gpu, &scenes, &options, stop, reporter).map(Done::Rows);
+            }
+            let report = extract::extract(&gpu, &scenes, &options, stop, &mut |p| {
+                reporter.say(Told {
+                    done: p.items_done.into(),
+                    total: p.items.into(),
+                    rows: p.rows,
+                    seconds: p.seconds,
+                });
+            });
+            let folder = options
+                .shard
+                .map_or_else(|| options.out.clone(), |s| options.out.join(s.folder()));
+            Ok(Done::Folder(folder, report.map_err(raised)?.lost))
+        },
+        |_, told: Told| told.show(&mut bar),
+    )
+    .and_then(|result| result);
+    match bar.close(result)? {
+        Done::Rows(rows) => Ok(Bound::new(py, rows)?.into_any()),
+        Done::Folder(folder, lost) => {
+            if lost > 0 {
+                let lost = counted(lost, "fragment");
+                warn(
+                    py,
+                    &format!(
+                        "left out by {peel} peeling: {lost}; sbuffer peeling without max_passes keeps all"
+                    ),
+                )?;
+            }
+            let dataset = py.detach(|| Dataset::open(folder))?;
+            Ok(Bound::new(py, dataset)?.into_any())
+        }
+    }
+}
+
+/// A dataset, or its folder.
+pub enum DatasetArg {
+    Open(Box<dataset::Dataset>),
+    Path(PathBuf),
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for DatasetArg {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(dataset) = object.cast::<Dataset>() {
+            return Ok(Self::Open(Box::new(dataset.get().inner().clone())));
+        }
+        object.extract::<PathBuf>().map(Self::Path).map_err(|_| {
+            pyo3::exceptions::PyTypeError::new_err(
+                "data is a Dataset or a dataset's folder: extract(…, out=folder) makes one",
+            )
+        })
+    }
+}
+
+impl DatasetArg {
+    /// The dataset.
+    ///
+    /// # Errors
+    /// A folder that holds none.
+    pub fn open(self) -> PyResult<dataset::Dataset> {
+        match self {
+            Self::Open(dataset) => Ok(*dataset),
+            Self::Path(path) => dataset::Dataset::open(path).map_err(raised),
+        }
+    }
+}
