@@ -43,12 +43,19 @@ mod folder;
 mod format;
 mod formats;
 mod hashed_file;
+mod layout;
 mod manifest;
+mod old_shards;
+mod plan;
 mod reader;
+mod record;
+mod seal;
 mod shard;
 pub mod split;
+mod store;
 pub mod summary;
 mod validate;
+mod worker;
 mod writer;
 
 pub use batch::FragmentBatch;
@@ -59,8 +66,12 @@ pub use format::{Format, ROW_GROUP_ROWS};
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
+pub use plan::Plan;
 pub use reader::{Batches, Dataset};
+pub use seal::seal;
 pub use shard::Shard;
 pub use split::{Split, SplitBy, Subset};
+pub use store::is_remote;
 pub use summary::Summary;
+pub use worker::worker_name;
 pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter};
