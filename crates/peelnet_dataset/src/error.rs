@@ -315,6 +315,29 @@ impl DatasetError {
         }
     }
 
+    /// Whether the error is of this file.
+    pub(crate) fn is_at(&self, file: &Path) -> bool {
+        match self {
+            Self::Io { path, .. }
+            | Self::Changed { path, .. }
+            | Self::Format { path, .. }
+            | Self::Value { path, .. } => path == file,
+            _ => false,
+        }
+    }
+
+    /// The same error of a file of another name: that of which the first is a copy.
+    pub(crate) fn moved_to(mut self, file: &Path) -> Self {
+        if let Self::Io { path, .. }
+        | Self::Changed { path, .. }
+        | Self::Format { path, .. }
+        | Self::Value { path, .. } = &mut self
+        {
+            file.clone_into(path);
+        }
+        self
+    }
+
     pub(crate) fn format(path: &Path, reason: impl Into<String>) -> Self {
         Self::Format {
             path: path.to_owned(),

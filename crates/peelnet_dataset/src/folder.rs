@@ -19,7 +19,7 @@ use crate::manifest::Manifest;
 use crate::plan::Plan;
 use crate::record::PartRecord;
 use crate::shard::Shard;
-use crate::store::{Folder, Store as _};
+use crate::store::{Folder, Place, Store as _};
 use crate::worker::host;
 
 /// Prefix of the hidden folder of a writer, and of what it creates in passing.
@@ -280,9 +280,10 @@ fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetErr
 /// # Errors
 /// Those of [`DatasetWriter::create`](crate::DatasetWriter::create) for the folder.
 pub fn replaces(folder: &Path, join: bool) -> Result<bool, DatasetError> {
-    if crate::store::is_remote(folder) {
+    // An object store's dataset is never replaced.
+    let Place::Folder(_) = Place::of(folder)? else {
         return Ok(false);
-    }
+    };
     check_not_mixed(folder, join)?;
     if !folder.is_dir() || join {
         return Ok(false);

@@ -18,7 +18,7 @@ use crate::old_shards;
 use crate::plan::Plan;
 use crate::record::PartRecord;
 use crate::seal::{self, unsealed};
-use crate::store::{Place, Store};
+use crate::store::{Fetched, Place, Store};
 use crate::validate::check_column;
 
 /// Rows that are read and checked at once.
@@ -159,9 +159,28 @@ impl Dataset {
 
     /// Compares the hash of a part's file with the manifest's.
     fn verify_file(&self, part: usize, file: usize) -> Result<(), DatasetError> {
+        let fetched = self.fetch(part, file)?;
+        self.verify_fetched(part, file, &fetched)
+    }
+
+    /// A part's file on this machine.
+    fn fetch(&self, part: usize, file: usize) -> Result<Fetched, DatasetError> {
+        let name = &self.manifest.parts[part].files[file].name;
+        match &self.store {
+            Some(store) => store.fetch(name),
+            None => Ok(Fetched::in_place(self.folders[part].join(name))),
+        }
+    }
+
+    fn verify_fetched(
+        &self,
+        part: usize,
+        file: usize,
+        fetched: &Fetched,
+    ) -> Result<(), DatasetError> {
         let entry = &self.manifest.parts[part].files[file];
         let path = self.folders[part].join(&entry.name);
-        let (_, found) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
+        let (_, found) = hash_file(&fetched.path).map_err(DatasetError::io(&path, "read"))?;
         if found != entry.sha256 {
             let reason = format!(
                 "sha256 {found} where the manifest says {}",
@@ -173,15 +192,33 @@ impl Dataset {
         Ok(())
     }
 
+    /// The files of a part that its columns lie in, on this machine; the others have their names alone.
+    fn fetch_columns(&self, part: usize, columns: &[Column]) -> Result<Vec<Fetched>, DatasetError> {
+        let files = self.manifest.parts[part].files.iter().enumerate();
+        files
+            .map(|(file, entry)| match self.manifest.format {
+                Format::Npy if columns.iter().all(|c| c.index() != file) => {
+                    Ok(Fetched::in_place(self.folders[part].join(&entry.name)))
+                }
+                _ => self.fetch(part, file),
+            })
+            .collect()
+    }
+
     /// Compares the hashes of what a part's columns lie in, once for all readers.
-    fn verify_columns(&self, part: usize, columns: &[Column]) -> Result<(), DatasetError> {
+    fn verify_columns(
+        &self,
+        part: usize,
+        columns: &[Column],
+        fetched: &[Fetched],
+    ) -> Result<(), DatasetError> {
         for (file, verified) in self.verified[part].iter().enumerate() {
             let is_read = match self.manifest.format {
                 Format::Npy => columns.iter().any(|c| c.index() == file),
                 Format::Csv | Format::Parquet => true,
             };
             if is_read && !verified.load(Ordering::Relaxed) {
-                self.verify_file(part, file)?;
+                self.verify_fetched(part, file, &fetched[file])?;
             }
         }
         Ok(())
@@ -321,21 +358,31 @@ struct OpenPart {
     files: Vec<PathBuf>,
     columns: Vec<Column>,
     source: Box<dyn PartSource>,
+    /// Where the files lie on this machine; copies live as long as this.
+    fetched: Vec<Fetched>,
     rows: u64,
 }
 
 impl OpenPart {
     fn open(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
-        dataset
-            .verify_columns(k, columns)
+        let fetched = dataset.fetch_columns(k, columns)?;
+        match dataset.verify_columns(k, columns, &fetched) {
+            Ok(()) => Self::unverified(dataset, k, columns, fetched),
             // The place of what is wrong says more than a hash.
-            .map_err(|changed| Self::damage(dataset, k, columns).err().unwrap_or(changed))?;
-        Self::unverified(dataset, k, columns)
+            Err(changed) => Err(Self::damage(dataset, k, columns, fetched)
+                .err()
+                .unwrap_or(changed)),
+        }
     }
 
     /// The first place in a part where something is wrong.
-    fn damage(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<(), DatasetError> {
-        let mut part = Self::unverified(dataset, k, columns)?;
+    fn damage(
+        dataset: &Dataset,
+        k: usize,
+        columns: &[Column],
+        fetched: Vec<Fetched>,
+    ) -> Result<(), DatasetError> {
+        let mut part = Self::unverified(dataset, k, columns, fetched)?;
         let mut table = FragmentBatch::default();
         while part.read(CHUNK_ROWS, &mut table)? > 0 {
             table.clear();
@@ -343,23 +390,33 @@ impl OpenPart {
         Ok(())
     }
 
-    fn unverified(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
+    fn unverified(
+        dataset: &Dataset,
+        k: usize,
+        columns: &[Column],
+        fetched: Vec<Fetched>,
+    ) -> Result<Self, DatasetError> {
         let part = &dataset.manifest.parts[k];
-        let files: Vec<PathBuf> = part
-            .files
-            .iter()
-            .map(|f| dataset.folders[k].join(&f.name))
-            .collect();
+        let names = part.files.iter().map(|f| dataset.folders[k].join(&f.name));
+        let names: Vec<PathBuf> = names.collect();
+        let files: Vec<PathBuf> = fetched.iter().map(|f| f.path.clone()).collect();
+        let source = dataset.manifest.format.source(&files, columns);
+        let relocate =
+            |e: DatasetError| match fetched.iter().zip(&names).find(|(f, _)| e.is_at(&f.path)) {
+                Some((_, name)) => e.moved_to(name),
+                None => e,
+            };
         Ok(Self {
             index: part.index,
             expected: part.rows,
-            path: files[0].clone(),
-            source: dataset.manifest.format.source(&files, columns)?,
+            path: names[0].clone(),
+            source: source.map_err(relocate)?,
             files: match dataset.manifest.format {
-                Format::Npy => files,
-                Format::Csv | Format::Parquet => vec![files[0].clone(); Column::ALL.len()],
+                Format::Npy => names,
+                Format::Csv | Format::Parquet => vec![names[0].clone(); Column::ALL.len()],
             },
             columns: columns.to_vec(),
+            fetched,
             rows: 0,
         })
     }
@@ -367,7 +424,13 @@ impl OpenPart {
     /// Appends up to `max` rows and says how many; 0 at the end.
     fn read(&mut self, max: usize, table: &mut FragmentBatch) -> Result<usize, DatasetError> {
         let before = self.columns.first().map_or(0, |&c| table.column(c).len());
-        let count = self.source.read(max, table)?;
+        let count = self.source.read(max, table).map_err(|e| {
+            let all = self.fetched.iter().enumerate();
+            match all.filter(|(_, f)| e.is_at(&f.path)).map(|(k, _)| k).next() {
+                Some(k) => e.moved_to(&self.files[k]),
+                None => e,
+            }
+        })?;
         for &column in &self.columns {
             let values = table.column(column);
             check_column(

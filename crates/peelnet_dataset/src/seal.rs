@@ -59,6 +59,22 @@ pub(crate) fn unsealed(path: &Path, plan: &Plan, missing: &[u32]) -> DatasetErro
     }
 }
 
+/// How many parts of a dataset that is not sealed are finished, and how many it will have; `None` if it is sealed, or none.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, DatasetError> {
+    let store = Place::of(path.as_ref())?.store();
+    let Some(plan) = Plan::read(&*store)? else {
+        return Ok(None);
+    };
+    if Manifest::read_sealed(&*store)?.is_some() {
+        return Ok(None);
+    }
+    let missing = missing(&*store, &plan)?.len() as u32;
+    Ok(Some((plan.work_items - missing, plan.work_items)))
+}
+
 /// The work items that have a record.
 pub(crate) fn recorded(store: &dyn Store) -> Result<BTreeSet<u32>, DatasetError> {
     let records = store.list(layout::PARTS)?;

@@ -2,6 +2,9 @@
 //!
 //! Nothing here needs a lock or a clock: whoever creates a name first has it, and everyone else learns that it is taken.
 
+#[cfg(feature = "object-store")]
+mod remote;
+
 use std::fmt;
 use std::fs;
 use std::io::{ErrorKind, Write as _};
@@ -24,7 +27,21 @@ pub(crate) struct Entry {
 #[derive(Debug)]
 pub(crate) struct Fetched {
     pub path: PathBuf,
-    _copy: Option<tempfile::TempPath>,
+    #[allow(dead_code, reason = "removes the copy")]
+    copy: Option<tempfile::TempPath>,
+    #[allow(dead_code, reason = "has the copy removed when the process must end")]
+    unfinished: Option<peelnet_files::Unfinished>,
+}
+
+impl Fetched {
+    /// A file that is no copy.
+    pub(crate) fn in_place(path: PathBuf) -> Self {
+        Self {
+            path,
+            copy: None,
+            unfinished: None,
+        }
+    }
 }
 
 /// A folder, or a prefix of a bucket. Names are relative, with `/`.
@@ -101,7 +118,8 @@ impl Store for Folder {
         let mut all = Vec::new();
         for entry in entries {
             let entry = entry.map_err(io())?;
-            match entry.metadata() {
+            // Links are followed: parts may lie on another disk.
+            match fs::metadata(entry.path()) {
                 Ok(metadata) if metadata.is_dir() => {}
                 Ok(metadata) => all.push(Entry {
                     name: entry.file_name().to_string_lossy().into_owned(),
@@ -158,10 +176,7 @@ impl Store for Folder {
     }
 
     fn fetch(&self, name: &str) -> Result<Fetched, DatasetError> {
-        Ok(Fetched {
-            path: self.path.join(name),
-            _copy: None,
-        })
+        Ok(Fetched::in_place(self.path.join(name)))
     }
 
     fn remove(&self, name: &str) -> Result<(), DatasetError> {
@@ -183,11 +198,18 @@ pub(crate) enum Place {
 }
 
 impl Place {
-    /// What a path stands for: `scheme://…` is an object store.
+    /// What a path stands for: `scheme://…` is an object store, `file:///…` a folder.
     pub(crate) fn of(path: &Path) -> Result<Self, DatasetError> {
         match path.to_str().filter(|_| is_remote(path)) {
             None => Ok(Self::Folder(path.to_owned())),
-            Some(url) => remote(url),
+            Some(url) => match url.strip_prefix("file://") {
+                Some(folder) if folder.starts_with('/') => Ok(Self::Folder(PathBuf::from(folder))),
+                Some(_) => Err(DatasetError::Usage {
+                    path: path.to_owned(),
+                    reason: "an address of a folder is file:///path".to_owned(),
+                }),
+                None => remote(url).map(Self::Remote),
+            },
         }
     }
 
@@ -213,9 +235,18 @@ pub fn is_remote(path: &Path) -> bool {
 }
 
 /// A store of another machine.
-fn remote(url: &str) -> Result<Place, DatasetError> {
+#[cfg(feature = "object-store")]
+fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
+    remote::Remote::open(url)
+}
+
+/// A store of another machine.
+#[cfg(not(feature = "object-store"))]
+fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
+    let scheme = url.split_once("://").map_or("", |(scheme, _)| scheme);
     Err(DatasetError::Usage {
-        path: PathBuf::from(url),
+        // An address may have a password in it.
+        path: PathBuf::from(format!("{scheme}://…")),
         reason:
             "this build reads and writes folders only; build peelnet with `--features object-store`"
                 .to_owned(),

@@ -202,13 +202,6 @@ pub fn make_old(folder: &Path, shards: Option<u32>) {
     }
 }
 
-/// Hexadecimal sha256.
-pub fn sha256(bytes: &[u8]) -> String {
-    use sha2::{Digest as _, Sha256};
-    let digest = Sha256::digest(bytes);
-    digest.iter().map(|b| format!("{b:02x}")).collect()
-}
-
 /// Bit patterns, so that −0 and 0 differ.
 pub fn bits(rows: &FragmentBatch) -> Vec<Vec<u32>> {
     Column::ALL
