@@ -116,13 +116,12 @@ impl Plan {
     /// The first field in which two plans differ, with both values.
     fn difference(&self, other: &Self) -> Option<(String, String, String)> {
         let (mine, others) = (self.fields(), other.fields());
-        for (k, (name, value)) in mine.iter().enumerate() {
+        for (name, value) in &mine {
             match others.iter().find(|(n, _)| n == name) {
                 Some((_, theirs)) if theirs == value => {}
                 Some((_, theirs)) => return Some((name.clone(), value.clone(), theirs.clone())),
                 None => return Some((name.clone(), value.clone(), "nothing".to_owned())),
             }
-            debug_assert!(k < mine.len());
         }
         let more = others
             .iter()

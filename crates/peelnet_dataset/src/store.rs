@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use crate::error::DatasetError;
 use crate::hashed_file::hash_file;
+use crate::layout::META;
 
 /// A name directly under a prefix, and its length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -216,7 +217,7 @@ impl Place {
     /// The store, to read.
     pub(crate) fn store(&self) -> Arc<dyn Store> {
         match self {
-            Self::Folder(path) => Arc::new(Folder::new(path, path)),
+            Self::Folder(path) => Arc::new(Folder::new(path, &path.join(META))),
             Self::Remote(store) => Arc::clone(store),
         }
     }

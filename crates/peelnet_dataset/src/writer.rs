@@ -194,13 +194,13 @@ impl DatasetWriter {
     }
 
     fn in_store(store: Arc<dyn Store>, header: Header) -> Result<Self, DatasetError> {
-        if !header.joins()
-            && store
-                .list("")?
-                .iter()
-                .any(|e| e.name.starts_with(FRAGMENTS))
-            || !header.joins() && store.get(layout::PLAN, u64::MAX)?.is_some()
-        {
+        let is_there =
+            || -> Result<bool, DatasetError> {
+                let rows = store.list("")?;
+                Ok(rows.iter().any(|e| e.name.starts_with(FRAGMENTS))
+                    || Plan::read(&*store)?.is_some())
+            };
+        if !header.joins() && is_there()? {
             return Err(DatasetError::Usage {
                 path: store.path().to_owned(),
                 reason: "a dataset is there already, and one in an object store is not replaced; complete it with `--resume`, or choose another prefix"

@@ -261,45 +261,6 @@ fn manifests() {
     }
 }
 
-/// Shards in folders of their own, as versions before wrote them, are read and never continued.
-#[test]
-fn old_shards_that_do_not_fit() {
-    let folder = tempfile::tempdir().unwrap();
-    let shard = |i, n| Some(Shard::new(i, n).unwrap());
-    write(folder.path(), Format::Csv, None, 1, 1000).unwrap();
-    make_old(folder.path(), Some(2));
-    Dataset::open(folder.path()).unwrap();
-    let path = folder.path().join("shard-2-of-2/manifest.json");
-    let good = fs::read_to_string(&path).unwrap();
-    fs::write(&path, good.replace("\"seed\": 7", "\"seed\": 8")).unwrap();
-    let message = Dataset::open(folder.path()).unwrap_err().to_string();
-    has(&message, &["shard-2-of-2", "shard-1-of-2", "seed"]);
-    fs::remove_file(&path).unwrap();
-    let message = Dataset::open(folder.path()).unwrap_err().to_string();
-    has(&message, &["1 of 2 shards are missing", "2/2"]);
-    let before = contents(folder.path());
-    for shard in [shard(1, 3), None] {
-        let message = write(folder.path(), Format::Csv, shard, 1, 1000).unwrap_err();
-        has(
-            &message.to_string(),
-            &["shards of a dataset", "earlier version"],
-        );
-    }
-    assert_eq!(contents(folder.path()), before);
-
-    let whole = tempfile::tempdir().unwrap();
-    write(whole.path(), Format::Csv, None, 1, 1000).unwrap();
-    make_old(whole.path(), None);
-    Dataset::open(whole.path()).unwrap();
-    let message = write(whole.path(), Format::Csv, shard(1, 2), 1, 1000).unwrap_err();
-    has(&message.to_string(), &["whole dataset", "earlier version"]);
-    has(&seal(whole.path()).unwrap_err().to_string(), &["schema 1"]);
-    // Whole on whole replaces it, and leaves nothing of schema 1.
-    write(whole.path(), Format::Csv, None, 1, 1000).unwrap();
-    assert!(!whole.path().join("manifest.json").exists());
-    Dataset::open(whole.path()).unwrap().verify().unwrap();
-}
-
 #[test]
 fn the_writer_refuses_bad_rows() {
     let folder = tempfile::tempdir().unwrap();

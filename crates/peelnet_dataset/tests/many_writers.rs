@@ -422,3 +422,42 @@ fn replacing_is_all_or_nothing() {
     write(fresh.path(), Format::Npy, None, 1, 1000).unwrap();
     assert_eq!(contents(path), contents(fresh.path()));
 }
+
+#[test]
+fn a_folder_by_its_address() {
+    let folder = tempfile::tempdir().unwrap();
+    let address = format!("file://{}/d", folder.path().display());
+    let address = Path::new(&address);
+    assert!(is_remote(address) && !is_remote(folder.path()));
+    killed(address, by("a", Format::Npy, None), &[0, 1]);
+    assert_eq!(unsealed_parts(address).unwrap(), Some((2, 4)));
+    write_by(address, resuming("b", Format::Npy), 1, 1000).unwrap();
+    assert_eq!(unsealed_parts(address).unwrap(), None);
+    assert!(is_sealed(&folder.path().join("d")));
+    let dataset = Dataset::open(address).unwrap();
+    dataset.verify().unwrap();
+    let rows: Vec<_> = dataset.batches(usize::MAX).map(Result::unwrap).collect();
+    assert_eq!(bits(&rows[0]), bits(&all_rows()));
+    // Nothing was written beside it.
+    assert!(!Path::new("file:").exists());
+    let message = Dataset::open("file://d").unwrap_err().to_string();
+    has(&message, &["file:///path"]);
+}
+
+/// Without the feature for object stores, and without what could be a password in the message.
+#[cfg(not(feature = "object-store"))]
+#[test]
+fn a_build_without_object_stores_says_so() {
+    for url in ["s3://hunter2/d", "gs://user:hunter2@b/d", "az://hunter2"] {
+        for message in [
+            Dataset::open(url).unwrap_err(),
+            seal(url).unwrap_err(),
+            replaces(Path::new(url), false).unwrap_err(),
+            DatasetWriter::create(url, header(Format::Csv, None)).unwrap_err(),
+        ] {
+            let message = message.to_string();
+            has(&message, &["object-store", &url[..2]]);
+            assert!(!message.contains("hunter2"), "{message}");
+        }
+    }
+}

@@ -110,27 +110,6 @@ fn large_parts_are_the_same_with_any_threads() {
     }
 }
 
-/// Shards of schema 1, in folders of their own.
-#[test]
-fn old_shards_merge_to_the_whole() {
-    for format in Format::ALL {
-        let folder = tempfile::tempdir().unwrap();
-        write(folder.path(), format, None, 1, 1000).unwrap();
-        let hash = Dataset::open(folder.path()).unwrap().hash().to_owned();
-        for shards in [None, Some(3)] {
-            let folder = tempfile::tempdir().unwrap();
-            write(folder.path(), format, None, 2, 500).unwrap();
-            make_old(folder.path(), shards);
-            let merged = Dataset::open(folder.path()).unwrap();
-            merged.verify().unwrap();
-            assert_eq!(merged.hash(), hash);
-            assert_eq!(merged.manifest().schema, 1);
-            let rows: Vec<_> = merged.batches(usize::MAX).map(Result::unwrap).collect();
-            assert_eq!(bits(&rows[0]), bits(&all_rows()));
-        }
-    }
-}
-
 #[test]
 fn csv_is_the_shortest_text() {
     let folder = tempfile::tempdir().unwrap();

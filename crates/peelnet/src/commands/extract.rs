@@ -26,7 +26,8 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
             .console
             .message(format!("replacing {} (a dataset)", shown(&args.out)));
     }
-    let report = report(context, args).inspect_err(|_| hint(context, &args.out))?;
+    let before = finished(&args.out);
+    let report = report(context, args).inspect_err(|_| hint(context, &args.out, before))?;
     let folder = &args.out;
     context.console.result(
         || text(folder, &report),
@@ -54,11 +55,16 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     )
 }
 
-/// Says what stays of a run that failed.
-fn hint(context: &Context<'_>, folder: &Path) {
-    if let Ok(Some((done, of))) = peelnet_dataset::unsealed_parts(folder)
-        && done > 0
-    {
+/// How many parts of a dataset that is not sealed are finished, and how many it will have.
+fn finished(folder: &Path) -> (u32, u32) {
+    let parts = peelnet_dataset::unsealed_parts(folder);
+    parts.ok().flatten().unwrap_or_default()
+}
+
+/// Says what stays of a run that failed, if it finished anything.
+fn hint(context: &Context<'_>, folder: &Path, before: (u32, u32)) {
+    let (done, of) = finished(folder);
+    if done > before.0 {
         context.console.message(format!(
             "{}: {done} of {} stay; the same command with --resume writes the others",
             shown(folder),
