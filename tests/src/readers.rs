@@ -333,6 +333,9 @@ fn stl_seeds() -> Vec<Vec<u8>> {
     vec![text.into_bytes(), binary]
 }
 
+/// Where a dataset's manifest lies.
+const MANIFEST: &str = "_peelnet/manifest.json";
+
 /// A dataset of two parts: the first byte says which of its files the others replace, and in which format.
 fn dataset(bytes: &[u8]) {
     let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
@@ -341,7 +344,7 @@ fn dataset(bytes: &[u8]) {
     let files = &template.files;
     let file = usize::from(which / 3) % files.len();
     let folder = folder().join(format!("read-{format}"));
-    let _ = fs::create_dir_all(&folder);
+    let _ = fs::create_dir_all(folder.join("_peelnet"));
     let mut manifest = template.manifest.clone();
     for (i, (name, sound)) in files.iter().enumerate() {
         if i == file {
@@ -353,8 +356,8 @@ fn dataset(bytes: &[u8]) {
             fs::write(folder.join(name), sound).expect("writes");
         }
     }
-    if files[file].0 != "manifest.json" {
-        fs::write(folder.join("manifest.json"), manifest).expect("writes");
+    if files[file].0 != MANIFEST {
+        fs::write(folder.join(MANIFEST), manifest).expect("writes");
     }
     if let Ok(dataset) = Dataset::open(&folder) {
         // Either all rows are read, or an error ends them.
@@ -399,15 +402,17 @@ fn template(format: Format) -> &'static Template {
             lists: 12,
             format,
             seed: 3,
+            resume: false,
             command: "test".into(),
         };
         synthetic(&options, &AtomicBool::new(false), &mut |_| {}).expect("a small dataset");
         let names = fs::read_dir(&out).expect("lists").flatten();
         let mut names: Vec<String> = names
             .map(|e| e.file_name().to_string_lossy().into_owned())
-            .filter(|name| !name.starts_with('.'))
+            .filter(|name| !name.starts_with(['.', '_']))
             .collect();
-        names.sort_by_key(|name| (name != "manifest.json", name.clone()));
+        names.push(MANIFEST.to_owned());
+        names.sort_by_key(|name| (name != MANIFEST, name.clone()));
         let read = |name: &String| fs::read(out.join(name)).expect("reads");
         Template {
             manifest: String::from_utf8_lossy(&read(&names[0])).into_owned(),

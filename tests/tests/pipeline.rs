@@ -29,6 +29,7 @@ fn options(out: &Path) -> ExtractOptions {
         augment: 0,
         seed: 5,
         shard: None,
+        resume: false,
         command: "test".into(),
         budget: None,
     }

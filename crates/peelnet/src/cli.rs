@@ -1,7 +1,9 @@
 //! The commands and their flags. The names are fixed: scripts call them.
 
+mod seal;
 mod view;
 
+pub use seal::SealArgs;
 pub use view::ViewArgs;
 
 use crate::parse::{MethodList, Size, ViewCount, fraction, positive, samples};
@@ -74,6 +76,8 @@ pub enum Command {
     Run(RunArgs),
     /// Peel scenes on the GPU and write per-fragment features
     Extract(ExtractArgs),
+    /// Seal a dataset that several writers finished
+    Seal(SealArgs),
     /// Train a network on a dataset
     Train(TrainArgs),
     /// Export a network as shader code
@@ -133,10 +137,11 @@ pub struct RunArgs {
   peelnet extract sixteen-050 --out d
   peelnet extract data/scenes/*.toml --out d --views all --pixels 0.1 --augment 4 --seed 7
   peelnet extract scene.toml --out d --format csv --size 640x480
-  peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler
+  peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler; all write into d
+  peelnet extract scene.toml --out d --resume           what a run that was stopped left to do
   peelnet extract --synthetic 300000 --out d            no scene: synthetic fragment lists, from the seed
 
-DATASET is a folder: manifest.json and the fragment files. The same seed gives the same bytes.")]
+DATASET is a folder: the fragment files, and _peelnet/ with manifest.json. The same seed gives the same rows and the same manifest.")]
 pub struct ExtractArgs {
     /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required_unless_present = "synthetic")]
@@ -176,9 +181,12 @@ pub struct ExtractArgs {
     /// Seed of sampling and variation
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Write only part I of N
+    /// Write only part I of N, beside the other parts, and only what is missing of it
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
+    /// Write only what is missing of the dataset that is there
+    #[arg(long)]
+    pub resume: bool,
 }
 
 /// `peelnet train`.
@@ -562,7 +570,9 @@ mod tests {
             "run --out o",
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
-            "extract --synthetic 1000 --out d --seed 3",
+            "extract --synthetic 1000 --out d --seed 3 --resume",
+            "extract a.toml --out d --resume",
+            "seal d --quiet --json",
             "train d e --out m --recipe thesis --hidden 4,3 --loss image --epochs 3 --batch 64 --lr 1e-3 --seed 2 --max-rows 1000 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",

@@ -188,9 +188,11 @@ fn broken_datasets(folder: &Path) {
     assert!(made.status.success(), "{}", stderr(&made));
     // One of its files changed; lengths are those of the manifest again.
     let spoil = |name: &str, change: &dyn Fn(String) -> String| {
-        std::fs::create_dir(folder.join(name)).unwrap();
-        for entry in std::fs::read_dir(folder.join("sound")).unwrap() {
-            let file = entry.unwrap().file_name().to_string_lossy().into_owned();
+        std::fs::create_dir_all(folder.join(name).join("_peelnet")).unwrap();
+        let meta = ["_peelnet/manifest.json", "_peelnet/plan.json"].map(str::to_owned);
+        let rows = std::fs::read_dir(folder.join("sound")).unwrap();
+        let rows = rows.map(|e| e.unwrap().file_name().to_string_lossy().into_owned());
+        for file in rows.filter(|n| n.ends_with(".csv")).chain(meta) {
             let text = std::fs::read_to_string(folder.join("sound").join(&file)).unwrap();
             let changed = if file.ends_with(".csv") {
                 change(text.clone())
@@ -199,8 +201,8 @@ fn broken_datasets(folder: &Path) {
             };
             std::fs::write(folder.join(name).join(&file), &changed).unwrap();
             if changed.len() != text.len() {
-                let manifest = folder.join(name).join("manifest.json");
-                let sound = folder.join("sound/manifest.json");
+                let manifest = folder.join(name).join("_peelnet/manifest.json");
+                let sound = folder.join("sound/_peelnet/manifest.json");
                 let length = |n: usize| format!("\"bytes\": {n}");
                 let text = std::fs::read_to_string(sound)
                     .unwrap()

@@ -42,6 +42,8 @@ fn quiet(command: &mut Command) -> &mut Command {
 fn command(line: &str, folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_peelnet"));
     command.args(line.split_whitespace()).current_dir(folder);
+    // Records and plans have the name.
+    command.env("PEELNET_WORKER", "test");
     quiet(&mut command);
     command
 }
@@ -114,26 +116,49 @@ fn kill_again_and_again(line: &str, folder: &Path, out: &str, mut check: impl Fn
 }
 
 #[test]
-fn an_extraction_that_is_killed_leaves_a_whole_dataset_or_none() {
+fn an_extraction_that_is_killed_leaves_whole_parts_and_can_be_resumed() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
     std::fs::write(folder.join("s.toml"), SCENE).unwrap();
     let line = "extract s.toml --out o --size 320x240 --seed 5";
     must(line, folder);
     let whole = contents(&folder.join("o"));
+    let is_rows = |name: &Path| name.to_string_lossy().starts_with("fragments-");
+    let mut resume = false;
     kill_again_and_again(line, folder, "o", || {
         let left = contents(&folder.join("o"));
-        if left.contains_key(Path::new("manifest.json")) {
+        if left.contains_key(Path::new("_peelnet/manifest.json")) {
             assert_eq!(left, whole, "a dataset with a manifest is whole");
         }
-        must(line, folder);
-        assert_eq!(contents(&folder.join("o")), whole, "again");
-        let hidden = std::fs::read_dir(folder.join("o")).unwrap();
-        let hidden = hidden.filter(|e| {
-            let name = e.as_ref().unwrap().file_name();
-            name.to_string_lossy().starts_with('.')
-        });
-        assert_eq!(hidden.count(), 0, "what was abandoned is removed");
+        // Finished parts are whole, and stay.
+        let stay = left.iter().filter(|(name, _)| is_rows(name));
+        assert!(
+            stay.clone()
+                .all(|(name, bytes)| whole.get(name) == Some(bytes))
+        );
+        // Once by what is missing, once as a new dataset.
+        resume = !resume;
+        must(
+            &format!("{line}{}", if resume { " --resume" } else { "" }),
+            folder,
+        );
+        let mut again = contents(&folder.join("o"));
+        let mut whole = whole.clone();
+        if resume {
+            // The plan has the command line of whoever made it.
+            again.retain(|name, _| is_rows(name));
+            whole.retain(|name, _| is_rows(name));
+            must("inspect o", folder);
+        }
+        assert_eq!(again, whole, "again");
+        for hidden in [folder.join("o"), folder.join("o/_peelnet")] {
+            let hidden = std::fs::read_dir(hidden).unwrap();
+            let hidden = hidden.filter(|e| {
+                let name = e.as_ref().unwrap().file_name();
+                name.to_string_lossy().starts_with(".partial")
+            });
+            assert_eq!(hidden.count(), 0, "what was abandoned is removed");
+        }
     });
 }
 

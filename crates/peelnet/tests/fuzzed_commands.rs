@@ -50,7 +50,7 @@ const NAMES: [&str; 36] = [
     "g",
     "f/keep.txt",
     "d",
-    "d/manifest.json",
+    "d/_peelnet/manifest.json",
     "m.safetensors",
     "n",
     "n.checkpoint",
@@ -160,7 +160,7 @@ fn folder(ours: &Ours, random: &mut Random) -> tempfile::TempDir {
             "s.toml",
             "a.obj",
             "m.safetensors",
-            "d/manifest.json",
+            "d/_peelnet/manifest.json",
             "b/results.json",
             "n.checkpoint/state.safetensors",
         ];
@@ -184,7 +184,7 @@ fn train_flags(random: &mut Random, line: &mut Vec<String>, outputs: &mut Vec<St
         "curve.svg",
         "table.csv",
         "new.svg",
-        "d/manifest.json",
+        "d/_peelnet/manifest.json",
         "m.safetensors",
         "-",
     ];
@@ -201,7 +201,7 @@ fn train_flags(random: &mut Random, line: &mut Vec<String>, outputs: &mut Vec<St
 
 /// A command line, and what it names as outputs.
 fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
-    const COMMANDS: [(&str, &[&str], &[&str]); 10] = [
+    const COMMANDS: [(&str, &[&str], &[&str]); 11] = [
         (
             "render",
             &["s.toml", "link.toml", "cups"],
@@ -240,6 +240,7 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
         ("bench", &["s.toml"], &["--views", "--models"]),
         ("run", &["s.toml"], &["--seed"]),
         ("inspect", &["s.toml", "d", "m.safetensors", "cups"], &[]),
+        ("seal", &["d", "g"], &[]),
         ("stress --cases deep", &[], &["--models"]),
         ("doctor", &[], &["--adapter"]),
     ];
@@ -256,7 +257,7 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
         line.push(pick(random, from));
     }
     let mut outputs = Vec::new();
-    if !matches!(command, "inspect" | "doctor") {
+    if !matches!(command, "inspect" | "doctor" | "seal") {
         // Who writes to a pipe waits for its reader.
         let names = NAMES.map(|name| if name == "pipe" { "new2" } else { name });
         let out = pick(random, &names);
@@ -264,7 +265,13 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
         outputs.push(out);
     }
     match command {
-        "render" | "extract" => line.extend(["--size".to_owned(), "8x8".to_owned()]),
+        "render" | "extract" => {
+            line.extend(["--size".to_owned(), "8x8".to_owned()]);
+            if command == "extract" && random.below(3) == 0 {
+                line.push("--resume".to_owned());
+            }
+        }
+        "extract --synthetic 30" if random.below(3) == 0 => line.push("--resume".to_owned()),
         "train" => train_flags(random, &mut line, &mut outputs),
         "bench" => {
             let size = ["--methods", "wboit-eq9", "--frames", "0", "--size", "8x8"];

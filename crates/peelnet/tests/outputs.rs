@@ -98,7 +98,7 @@ fn inputs_and_foreign_files_are_refused_and_forced() {
         ("export m.safetensors --out two.toml", 1),
         ("render two.toml --size 8x8 --out notes.png", 1),
         ("render two.toml --size 8x8 --out hard.png", 2),
-        ("train d --epochs 1 --out d/manifest.json", 2),
+        ("train d --epochs 1 --out d/_peelnet/manifest.json", 2),
         (
             &*format!("train d --epochs 1 --out n --loss-curve d/{part}"),
             2,

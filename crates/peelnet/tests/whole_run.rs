@@ -69,7 +69,7 @@ fn a_run_writes_everything_it_promises() {
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let out = dir.path().join("o");
     for name in [
-        "dataset/manifest.json",
+        "dataset/_peelnet/manifest.json",
         "dataset-summary.json",
         "dataset-summary.txt",
         "loss.csv",

@@ -18,9 +18,9 @@ pub enum DatasetError {
         /// Why it failed.
         source: io::Error,
     },
-    /// The folder holds no manifest.
+    /// The folder holds no dataset.
     #[error(
-        "{}: no manifest.json here: this is not a dataset, or its extraction was interrupted; run `peelnet extract` again",
+        "{}: no _peelnet/manifest.json and no manifest.json here: this is not a dataset, or its extraction was interrupted; run `peelnet extract` again",
         path.display()
     )]
     NoManifest {
@@ -37,7 +37,7 @@ pub enum DatasetError {
     },
     /// Another schema version.
     #[error(
-        "{}: schema version {found}, but this program reads version {}; write the dataset again with this version's `peelnet extract`",
+        "{}: schema version {found}, but this program reads versions 1 to {}; write the dataset again with this version's `peelnet extract`",
         path.display(),
         crate::SCHEMA_VERSION
     )]
@@ -62,6 +62,99 @@ pub enum DatasetError {
         path: PathBuf,
         /// What is wrong and what was expected.
         reason: String,
+    },
+    /// Parts are missing, or the seal alone.
+    #[error("{}: {}", path.display(), unsealed(*missing, *of, *first))]
+    Unsealed {
+        /// The dataset.
+        path: PathBuf,
+        /// How many parts are missing.
+        missing: usize,
+        /// How many there should be.
+        of: u32,
+        /// The first missing one.
+        first: Option<u32>,
+    },
+    /// A writer whose rows would not be the dataset's.
+    #[error(
+        "{}: the dataset there has another plan: its {field} is {theirs} (worker {other}), and here (worker {worker}) it is {mine}; use the same command, version and adapter, or another folder",
+        path.display()
+    )]
+    PlanDiffers {
+        /// The dataset.
+        path: PathBuf,
+        /// The first thing that differs.
+        field: String,
+        /// Its value here.
+        mine: String,
+        /// Its value in the dataset's plan.
+        theirs: String,
+        /// This writer.
+        worker: String,
+        /// The writer that made the plan.
+        other: String,
+    },
+    /// Two writers of one part with different bytes.
+    #[error(
+        "{}: part {index}: worker {worker} and worker {other} wrote different bytes for it, so one of the machines computes differently, or a file was changed; the part of {other} stays; extract all parts on machines of one kind",
+        path.display()
+    )]
+    PartConflict {
+        /// The dataset.
+        path: PathBuf,
+        /// The part.
+        index: u32,
+        /// The writer that came second.
+        worker: String,
+        /// The writer whose part stays.
+        other: String,
+    },
+    /// A file of a part lies there with other contents, and no record says whose it is.
+    #[error(
+        "{}: part {index}: worker {worker} computed other bytes than this file has, and no record says whose it is; if no other extraction is running, remove the file and resume",
+        path.display()
+    )]
+    PartInTheWay {
+        /// The file.
+        path: PathBuf,
+        /// The part.
+        index: u32,
+        /// The writer.
+        worker: String,
+    },
+    /// A part's record is not one of this dataset.
+    #[error("{}: part {index}: {reason}; remove this record and finish the part with `peelnet extract --resume`", path.display())]
+    Record {
+        /// The record.
+        path: PathBuf,
+        /// The part.
+        index: u32,
+        /// What is wrong, with the worker where it is known.
+        reason: String,
+    },
+    /// A file of a part is gone or was changed.
+    #[error(
+        "{}: part {index} of worker {worker}: the file {reason}; remove it and write it again with `peelnet extract --resume` and the same command",
+        path.display()
+    )]
+    PartDamaged {
+        /// The file.
+        path: PathBuf,
+        /// The part.
+        index: u32,
+        /// Who wrote it.
+        worker: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A file of rows that is no part's.
+    #[error(
+        "{}: no part of the dataset has this file, and readers of the whole folder would read its rows as well; move it away",
+        path.display()
+    )]
+    Doubled {
+        /// The file.
+        path: PathBuf,
     },
     /// A value outside its column's range.
     #[error(
@@ -193,6 +286,17 @@ pub enum DatasetError {
     },
 }
 
+fn unsealed(missing: usize, of: u32, first: Option<u32>) -> String {
+    match first {
+        Some(first) => format!(
+            "{missing} of {of} parts are missing, the first is {first}; write them with `peelnet extract --resume` and the same command, or with the shards that did not run, then seal the dataset with `peelnet seal`"
+        ),
+        None => format!(
+            "all {of} parts are there, but the dataset is not sealed; run `peelnet seal` on it"
+        ),
+    }
+}
+
 /// The first few of some names.
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 10;
@@ -209,6 +313,29 @@ impl DatasetError {
             action,
             source,
         }
+    }
+
+    /// Whether the error is of this file.
+    pub(crate) fn is_at(&self, file: &Path) -> bool {
+        match self {
+            Self::Io { path, .. }
+            | Self::Changed { path, .. }
+            | Self::Format { path, .. }
+            | Self::Value { path, .. } => path == file,
+            _ => false,
+        }
+    }
+
+    /// The same error of a file of another name: that of which the first is a copy.
+    pub(crate) fn moved_to(mut self, file: &Path) -> Self {
+        if let Self::Io { path, .. }
+        | Self::Changed { path, .. }
+        | Self::Format { path, .. }
+        | Self::Value { path, .. } = &mut self
+        {
+            file.clone_into(path);
+        }
+        self
     }
 
     pub(crate) fn format(path: &Path, reason: impl Into<String>) -> Self {

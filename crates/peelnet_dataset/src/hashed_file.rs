@@ -42,6 +42,11 @@ impl Write for HashedFile {
     }
 }
 
+/// Hexadecimal sha256 of some bytes.
+pub fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
 /// Length and hexadecimal sha256 of an existing file.
 pub(crate) fn hash_file(path: &Path) -> io::Result<(u64, String)> {
     let mut file = peelnet_files::open(path)?;

@@ -1,25 +1,38 @@
 //! The fragment dataset: what peeling writes and training reads.
 //!
-//! A dataset is a folder. It holds one *part* for every work item (scene × augmentation copy × view), as files that
-//! lie flat in the folder, and a `manifest.json` that names them all. Parts are written independently and in any
-//! order; the manifest comes last, so a folder without one is a run that did not end.
+//! A dataset is a folder, or a prefix of a bucket. It holds one *part* for every work item (scene × augmentation copy × view), as files
+//! that lie flat in the folder. Everything else lies in `_peelnet/`, which readers of whole folders skip: DuckDB, Polars, pyarrow and Ray
+//! Data read a sealed folder as one table.
 //!
 //! ```text
 //! DATASET/
-//!   manifest.json                             schema, scenes, cameras, counts, sha256 of every file
 //!   fragments-00000-sixteen-050-v0.parquet    work item 0: every row has view = 0
 //!   fragments-00001-sixteen-050-v1.parquet    work item 1: every row has view = 1
+//!   _peelnet/plan.json                        what all writers agree on, and its hash
+//!   _peelnet/parts/00000.json                 work item 0 is finished: counts, sha256 of its files, its writer
+//!   _peelnet/parts/00001.json
+//!   _peelnet/manifest.json                    the seal: scenes, cameras, counts, sha256 of every file
 //! ```
 //!
 //! A row is one fragment, and its columns are the fourteen of [`Column`], always in that order. The rows of one
 //! pixel are adjacent and go from the nearest fragment to the farthest; (`view`, `x`, `y`) is unique in a dataset,
 //! because `view` is the index of the work item.
 //!
-//! **Writing** is streamed. [`DatasetWriter::create`] opens a hidden folder inside the dataset's, parts are written
-//! there through [`PartWriter`], and [`DatasetWriter::finish`] moves everything into place; a writer that is dropped
-//! before that leaves nothing behind. An older dataset is replaced, but never a file that its manifest does not list. Memory holds one row group (2²⁰ rows, about 60 MB) at most, whatever the
-//! number of fragments. The bytes depend on the rows alone: neither the number of threads nor the way the rows were
-//! cut into batches changes them.
+//! **Writing** is streamed. [`DatasetWriter::create`] opens a hidden folder inside the dataset's, parts are written there through
+//! [`PartWriter`], and [`PartWriter::finish`] moves a part's files into place and then creates its record. A part is the dataset's once its
+//! record is there; it stays, whatever happens to its writer. Memory holds one row group (2²⁰ rows, about 60 MB) at most, whatever the
+//! number of fragments. The bytes depend on the rows alone: neither the number of threads nor the way the rows were cut into batches changes
+//! them.
+//!
+//! **Many writers.** Writers need no coordinator, no lock and no clock: a record is created only where there is none, by one operation of
+//! the file system or the object store. A second writer of a part compares the hashes: equal ones are no error, and different ones name the
+//! part and both workers. [`Plan`] has a hash over everything that shapes the rows: scenes by their contents, the frame size, seed, flags,
+//! format, cameras, peelnet's version and the class of the adapter. A writer with another plan is refused before its first row.
+//! [`Header::shard`] takes every N-th work item, [`Header::resume`] whatever is missing. Whoever finishes the last part seals the dataset,
+//! and [`seal`](fn@seal) does it afterwards; the manifest's bytes do not depend on who does.
+//!
+//! **Replacing.** A writer of a whole dataset that finds an older one keeps all parts aside and moves them into place at the end. It
+//! replaces no file that neither a manifest nor a record lists. Datasets in object stores are never replaced.
 //!
 //! **Formats.** Each is one file in `formats/` behind the traits `PartSink` and `PartSource`: CSV with a header
 //! row, Parquet (PLAIN pages, snappy), and NPY as one one-dimensional array per column
@@ -27,11 +40,16 @@
 //!
 //! **Reading.** [`Dataset::open`] checks the manifest and the sizes of all files; the hash of a file is checked before its
 //! first row is read. [`Dataset::batches`] streams whole pixels, [`Dataset::read_columns`] loads chosen columns. Every value is
-//! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network.
+//! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network. Parquet files have statistics by
+//! row group and page: a query for one view reads one view.
 //!
-//! **Shards.** `--shard I/N` writes the work items k with k ≡ I (mod N) into `DIR/shard-I-of-N/`, a dataset of its
-//! own. Opening `DIR` merges them: same rows, same order and the same [`Dataset::hash`] as the whole dataset written
-//! in one run, because the hash covers (part index, sha256) pairs and nothing of the way they were made.
+//! **Object stores.** With the feature `object-store`, `s3://bucket/prefix`, `gs://…` and `az://…` stand wherever a folder does, as
+//! `file:///…` does always. Settings and credentials come from the environment (`AWS_…`, `GOOGLE_…`, `AZURE_…`). A part is written on this
+//! machine and sent by one conditional request for each file; a part that is read is fetched whole.
+//!
+//! **Schema 1**, with `manifest.json` at the top and shards in folders `shard-I-of-N/`, still reads; it is written no more. The
+//! [`Dataset::hash`] covers (part index, sha256) pairs and nothing of the way they were made: it is the same function in both, and the same
+//! value for a dataset written in one run, by shards, or with interruptions.
 //!
 //! [`summary`] recomputes what the rows claim about one another, and [`split`] says which pixels train and which
 //! judge.
@@ -43,12 +61,19 @@ mod folder;
 mod format;
 mod formats;
 mod hashed_file;
+mod layout;
 mod manifest;
+mod old_shards;
+mod plan;
 mod reader;
+mod record;
+mod seal;
 mod shard;
 pub mod split;
+mod store;
 pub mod summary;
 mod validate;
+mod worker;
 mod writer;
 
 pub use batch::FragmentBatch;
@@ -56,11 +81,16 @@ pub use column::{Column, ColumnData, ColumnKind, ColumnSlice};
 pub use error::DatasetError;
 pub use folder::replaces;
 pub use format::{Format, ROW_GROUP_ROWS};
+pub use hashed_file::sha256;
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
+pub use plan::Plan;
 pub use reader::{Batches, Dataset};
+pub use seal::{seal, unsealed_parts};
 pub use shard::Shard;
 pub use split::{Split, SplitBy, Subset};
+pub use store::is_remote;
 pub use summary::Summary;
+pub use worker::worker_name;
 pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter};

@@ -1,4 +1,4 @@
-//! `manifest.json`: what a dataset is made of and where it comes from.
+//! `_peelnet/manifest.json`: what a dataset is made of and where it comes from. In schema 1 it lies at the top.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -10,16 +10,12 @@ use sha2::{Digest, Sha256};
 use crate::column::{Column, ColumnKind};
 use crate::error::DatasetError;
 use crate::format::Format;
+use crate::layout::{self, FRAGMENTS, is_part_name};
 use crate::shard::Shard;
+use crate::store::Store;
 
-/// The version of the manifest's and the columns' layout that this crate writes and reads.
-pub const SCHEMA_VERSION: u32 = 1;
-
-/// The manifest's file name.
-pub(crate) const FILE_NAME: &str = "manifest.json";
-
-/// Prefix of all parts' file names.
-pub(crate) const FRAGMENTS: &str = "fragments-";
+/// The version of the layout that this crate writes. It reads this one and all before.
+pub const SCHEMA_VERSION: u32 = 2;
 
 /// Work items (scene × copy × view) of one dataset.
 pub const MAX_WORK_ITEMS: u32 = 1 << 16;
@@ -27,17 +23,14 @@ pub const MAX_WORK_ITEMS: u32 = 1 << 16;
 /// Bytes of a manifest that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
 const MAX_BYTES: u64 = 1 << 28;
 
-/// File names come from outside: they must not lead out of the folder on any system.
-fn is_part_name(name: &str) -> bool {
-    name.starts_with(FRAGMENTS)
-        && !name.contains(|c: char| c.is_control() || matches!(c, '/' | '\\' | ':'))
-}
-
 /// The whole manifest. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// [`SCHEMA_VERSION`] of the writer.
     pub schema: u32,
+    /// Hash of the plan that all writers followed; empty in schema 1.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub plan: String,
     /// Version of the program that wrote it.
     pub tool_version: String,
     /// The command line that wrote it.
@@ -56,11 +49,14 @@ pub struct Manifest {
     pub pixels_fraction: f64,
     /// Number of varied copies of each scene beside the scene itself.
     pub augment: u32,
+    /// Everything else that shapes the rows, by name; empty in schema 1.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub settings: BTreeMap<String, String>,
     /// The scenes of the whole dataset, also when this is a shard.
     pub scenes: Vec<SceneEntry>,
     /// Number of work items of the whole dataset.
     pub work_items: u32,
-    /// Which shard this is; absent in a whole dataset.
+    /// Which shard's parts these are; absent in a whole dataset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
     /// Total rows.
@@ -164,9 +160,9 @@ pub struct FileEntry {
 }
 
 impl Manifest {
-    /// Reads and checks the manifest of a folder.
-    pub(crate) fn read(folder: &Path) -> Result<Self, DatasetError> {
-        Self::read_file(&folder.join(FILE_NAME)).map_err(|error| match error {
+    /// Reads and checks the manifest of a folder of schema 1.
+    pub(crate) fn read_old(folder: &Path) -> Result<Self, DatasetError> {
+        Self::read_file(&folder.join(layout::OLD_MANIFEST)).map_err(|error| match error {
             DatasetError::Io { source, .. }
                 if source.kind() == std::io::ErrorKind::NotFound && folder.is_dir() =>
             {
@@ -178,41 +174,36 @@ impl Manifest {
         })
     }
 
+    /// Reads and checks the manifest of a sealed dataset; `None` where there is none.
+    pub(crate) fn read_sealed(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
+        let bytes = store.get(layout::MANIFEST, MAX_BYTES)?;
+        bytes
+            .map(|bytes| Self::parse(&store.shown(layout::MANIFEST), &bytes))
+            .transpose()
+    }
+
     /// Reads and checks a manifest.
     pub(crate) fn read_file(path: &Path) -> Result<Self, DatasetError> {
-        /// The version alone; everything else is skipped.
-        #[derive(Deserialize)]
-        struct Version {
-            #[serde(default)]
-            schema: serde_json::Value,
-        }
         let bytes = peelnet_files::read(path, MAX_BYTES).map_err(DatasetError::io(path, "read"))?;
+        Self::parse(path, &bytes)
+    }
+
+    /// Checks a manifest that was read.
+    fn parse(path: &Path, bytes: &[u8]) -> Result<Self, DatasetError> {
+        check_schema(path, bytes)?;
         let wrong = |reason: String| DatasetError::Manifest {
             path: path.to_owned(),
             reason,
         };
-        // The version first: another version's fields are bound to look wrong.
-        let version: Version =
-            serde_json::from_slice(&bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
-        match version.schema.as_u64() {
-            None => return Err(wrong("the field `schema` is missing".to_owned())),
-            Some(found) if found != u64::from(SCHEMA_VERSION) => {
-                return Err(DatasetError::Schema {
-                    path: path.to_owned(),
-                    found,
-                });
-            }
-            Some(_) => {}
-        }
         // From the text again, so that the message has the line.
         let manifest: Self =
-            serde_json::from_slice(&bytes).map_err(|e| wrong(format!("wrong manifest: {e}")))?;
+            serde_json::from_slice(bytes).map_err(|e| wrong(format!("wrong manifest: {e}")))?;
         manifest.check().map_err(wrong)?;
         Ok(manifest)
     }
 
     /// What the types cannot say.
-    fn check(&self) -> Result<(), String> {
+    pub(crate) fn check(&self) -> Result<(), String> {
         if self.columns != columns() {
             let names: Vec<_> = self.columns.iter().map(|c| c.name.as_str()).collect();
             return Err(format!(
@@ -299,6 +290,11 @@ impl Manifest {
         Ok(())
     }
 
+    /// Whether every work item of the whole dataset has a part here.
+    pub fn is_whole(&self) -> bool {
+        self.parts.len() == self.work_items as usize
+    }
+
     /// Work items that should have a part here but have none.
     pub(crate) fn missing_items(&self) -> Vec<u32> {
         let present: BTreeSet<u32> = self.parts.iter().map(|p| p.index).collect();
@@ -317,12 +313,6 @@ impl Manifest {
         self.lost_fragments = sum(|p| p.lost_fragments);
         self.coplanar_ties = sum(|p| p.coplanar_ties);
         self.hash = hash_of_parts(&self.parts);
-    }
-
-    /// Names of all files, by part.
-    pub(crate) fn file_names(&self) -> impl Iterator<Item = &str> {
-        let files = self.parts.iter().flat_map(|p| &p.files);
-        files.map(|f| f.name.as_str())
     }
 
     /// The length of each file, by name.
@@ -348,6 +338,32 @@ impl Manifest {
                 .or_default() += part.rows;
         }
         rows
+    }
+}
+
+/// The schema version first: another version's fields are bound to look wrong.
+pub(crate) fn check_schema(path: &Path, bytes: &[u8]) -> Result<(), DatasetError> {
+    /// The version alone; everything else is skipped.
+    #[derive(Deserialize)]
+    struct Version {
+        #[serde(default)]
+        schema: serde_json::Value,
+    }
+    let wrong = |reason: String| DatasetError::Manifest {
+        path: path.to_owned(),
+        reason,
+    };
+    let version: Version =
+        serde_json::from_slice(bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
+    match version.schema.as_u64() {
+        None => Err(wrong("the field `schema` is missing".to_owned())),
+        Some(found) if !(1..=u64::from(SCHEMA_VERSION)).contains(&found) => {
+            Err(DatasetError::Schema {
+                path: path.to_owned(),
+                found,
+            })
+        }
+        Some(_) => Ok(()),
     }
 }
 

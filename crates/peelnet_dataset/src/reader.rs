@@ -1,6 +1,6 @@
 //! Opening a dataset and reading its rows.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,8 +12,13 @@ use crate::error::DatasetError;
 use crate::format::Format;
 use crate::formats::PartSource;
 use crate::hashed_file::hash_file;
-use crate::manifest::{self, Manifest, Part};
-use crate::shard::Shard;
+use crate::layout::OLD_MANIFEST;
+use crate::manifest::{Manifest, Part};
+use crate::old_shards;
+use crate::plan::Plan;
+use crate::record::PartRecord;
+use crate::seal::{self, unsealed};
+use crate::store::{Fetched, Place, Store};
 use crate::validate::check_column;
 
 /// Rows that are read and checked at once.
@@ -29,141 +34,116 @@ pub struct Dataset {
     manifest: Manifest,
     /// Folder of each part, parallel to `manifest.parts`.
     folders: Vec<PathBuf>,
+    /// Where it lies; `None` in schema 1.
+    store: Option<Arc<dyn Store>>,
     /// For each part, by file: whether its hash was compared with the manifest's.
     verified: Arc<Vec<Vec<AtomicBool>>>,
 }
 
 impl Dataset {
-    /// Opens a dataset's folder, or a folder that holds all `shard-I-of-N` folders of one. Checks the manifest and
-    /// that every file is there with its right length. A file's contents are checked when its rows are read, or all at once
-    /// by [`Dataset::verify`].
+    /// Opens a sealed dataset, or one of schema 1: a folder with a `manifest.json`, or one that holds all `shard-I-of-N` folders of one.
+    /// Checks the manifest and that every file is there with its right length. A file's contents are checked when its rows are read, or all
+    /// at once by [`Dataset::verify`].
     ///
     /// # Errors
-    /// If the manifest is missing or wrong, a file is missing or has another length, shards are missing, or shards
-    /// come from different runs.
+    /// [`DatasetError::Unsealed`] if parts or the seal are missing; if the manifest is missing or wrong, a file is missing or has another
+    /// length, or, in schema 1, shards are missing or come from different runs.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, DatasetError> {
         let path = path.as_ref();
-        let dataset = if path.join(manifest::FILE_NAME).exists() {
-            let manifest = Manifest::read(path)?;
+        let place = Place::of(path)?;
+        let store = place.store();
+        if let Some(manifest) = Manifest::read_sealed(&*store)? {
             let folders = vec![path.to_owned(); manifest.parts.len()];
-            Self::new(path, manifest, folders)
+            let dataset = Self::new(path, manifest, folders, Some(store));
+            dataset.check_sizes()?;
+            return Ok(dataset);
+        }
+        if let Some(plan) = Plan::read(&*store)? {
+            return Err(unsealed(path, &plan, &seal::missing(&*store, &plan)?));
+        }
+        let Place::Folder(folder) = place else {
+            return Err(DatasetError::NoManifest {
+                path: path.to_owned(),
+            });
+        };
+        let dataset = if folder.join(OLD_MANIFEST).exists() {
+            let manifest = Manifest::read_old(&folder)?;
+            let folders = vec![folder.clone(); manifest.parts.len()];
+            Self::new(&folder, manifest, folders, None)
         } else {
-            Self::open_shards(path)?
+            let (manifest, folders) = old_shards::open(&folder)?;
+            Self::new(&folder, manifest, folders, None)
         };
         dataset.check_sizes()?;
         Ok(dataset)
     }
 
-    fn open_shards(path: &Path) -> Result<Self, DatasetError> {
-        let mut shards: Vec<Shard> = fs::read_dir(path)
-            .map_err(DatasetError::io(path, "open the dataset's folder"))?
-            .filter_map(|entry| Shard::from_folder(entry.ok()?.file_name().to_str()?))
-            .collect();
-        shards.sort();
-        let Some(&Shard { of, .. }) = shards.first() else {
-            return Err(DatasetError::NoManifest {
-                path: path.to_owned(),
-            });
-        };
-        if shards.iter().any(|s| s.of != of) {
-            return Err(DatasetError::Mixed {
-                path: path.to_owned(),
-                reason: "it holds shards of datasets with different numbers of shards",
-            });
-        }
-        let mut manifests: Vec<(PathBuf, Manifest)> = Vec::new();
-        let mut missing = Vec::new();
-        for index in 1..=of {
-            let shard = Shard { index, of };
-            let folder = path.join(shard.folder());
-            match Manifest::read(&folder) {
-                Ok(manifest) => manifests.push((folder, manifest)),
-                // Not written yet, or still being written: the same fix.
-                Err(DatasetError::NoManifest { .. }) => missing.push(shard.to_string()),
-                Err(_) if !folder.exists() => missing.push(shard.to_string()),
-                Err(other) => return Err(other),
-            }
-        }
-        if !missing.is_empty() {
-            return Err(DatasetError::MissingShards {
-                path: path.to_owned(),
-                missing,
-                of,
-            });
-        }
-        for (k, (folder, manifest)) in manifests.iter().enumerate() {
-            let expected = Shard {
-                index: k as u32 + 1,
-                of,
-            };
-            let (other, first) = &manifests[0];
-            let differs = [
-                ("number (it was renamed)", manifest.shard != Some(expected)),
-                ("tool version", manifest.tool_version != first.tool_version),
-                ("format", manifest.format != first.format),
-                ("seed", manifest.seed != first.seed),
-                ("peeling method", manifest.peel != first.peel),
-                (
-                    "fraction of pixels",
-                    manifest.pixels_fraction != first.pixels_fraction,
-                ),
-                ("number of copies", manifest.augment != first.augment),
-                ("list of scenes", manifest.scenes != first.scenes),
-                (
-                    "number of work items",
-                    manifest.work_items != first.work_items,
-                ),
-            ];
-            if let Some((field, _)) = differs.into_iter().find(|(_, differs)| *differs) {
-                return Err(DatasetError::ShardsDiffer {
-                    path: folder.clone(),
-                    other: other.clone(),
-                    field,
-                });
-            }
-        }
-        let mut parts: Vec<(Part, PathBuf)> = Vec::new();
-        let mut whole = manifests[0].1.clone();
-        for (folder, manifest) in manifests {
-            if !whole.adapter.split("; ").any(|a| a == manifest.adapter) {
-                whole.adapter = format!("{}; {}", whole.adapter, manifest.adapter);
-            }
-            parts.extend(manifest.parts.into_iter().map(|p| (p, folder.clone())));
-        }
-        parts.sort_by_key(|(part, _)| part.index);
-        let folders;
-        (whole.parts, folders) = parts.into_iter().unzip();
-        whole.shard = None;
-        whole.total();
-        Ok(Self::new(path, whole, folders))
-    }
-
-    fn new(path: &Path, manifest: Manifest, folders: Vec<PathBuf>) -> Self {
+    fn new(
+        path: &Path,
+        manifest: Manifest,
+        folders: Vec<PathBuf>,
+        store: Option<Arc<dyn Store>>,
+    ) -> Self {
         let files = |part: &Part| part.files.iter().map(|_| AtomicBool::new(false)).collect();
         Self {
             path: path.to_owned(),
             verified: Arc::new(manifest.parts.iter().map(files).collect()),
             manifest,
             folders,
+            store,
         }
     }
 
     fn check_sizes(&self) -> Result<(), DatasetError> {
-        for (part, folder) in self.manifest.parts.iter().zip(&self.folders) {
+        let listed: Option<BTreeMap<String, u64>> = match &self.store {
+            Some(store) => {
+                let entries = store.list("")?.into_iter();
+                Some(entries.map(|e| (e.name, e.bytes)).collect())
+            }
+            None => None,
+        };
+        for (k, part) in self.manifest.parts.iter().enumerate() {
             for file in &part.files {
-                let path = folder.join(&file.name);
-                let found = fs::metadata(&path)
-                    .map_err(DatasetError::io(&path, "find a file of the manifest"))?
-                    .len();
+                let path = self.folders[k].join(&file.name);
+                let found = match &listed {
+                    Some(listed) => listed
+                        .get(&file.name)
+                        .copied()
+                        .ok_or_else(|| self.damaged(k, &path, "is missing".to_owned()))?,
+                    None => fs::metadata(&path)
+                        .map_err(DatasetError::io(&path, "find a file of the manifest"))?
+                        .len(),
+                };
                 if found != file.bytes {
-                    return Err(DatasetError::changed(
-                        &path,
-                        format!("{found} bytes where the manifest says {}", file.bytes),
-                    ));
+                    let reason = format!("{found} bytes where the manifest says {}", file.bytes);
+                    return Err(self.changed(k, &path, reason));
                 }
             }
         }
         Ok(())
+    }
+
+    /// The error of a file that was changed.
+    fn changed(&self, part: usize, path: &Path, reason: String) -> DatasetError {
+        if self.store.is_none() {
+            return DatasetError::changed(path, reason);
+        }
+        self.damaged(part, path, format!("was cut or changed: {reason}"))
+    }
+
+    /// The error of a part's file, with the worker that wrote it.
+    fn damaged(&self, part: usize, path: &Path, reason: String) -> DatasetError {
+        let index = self.manifest.parts[part].index;
+        let record = self
+            .store
+            .as_ref()
+            .and_then(|store| PartRecord::read(&**store, index, None).ok().flatten());
+        DatasetError::PartDamaged {
+            path: path.to_owned(),
+            index,
+            worker: record.map_or_else(|| "unknown".to_owned(), |r| r.worker),
+            reason,
+        }
     }
 
     /// Recomputes the sha256 of every file.
@@ -179,31 +159,66 @@ impl Dataset {
 
     /// Compares the hash of a part's file with the manifest's.
     fn verify_file(&self, part: usize, file: usize) -> Result<(), DatasetError> {
+        let fetched = self.fetch(part, file)?;
+        self.verify_fetched(part, file, &fetched)
+    }
+
+    /// A part's file on this machine.
+    fn fetch(&self, part: usize, file: usize) -> Result<Fetched, DatasetError> {
+        let name = &self.manifest.parts[part].files[file].name;
+        match &self.store {
+            Some(store) => store.fetch(name),
+            None => Ok(Fetched::in_place(self.folders[part].join(name))),
+        }
+    }
+
+    fn verify_fetched(
+        &self,
+        part: usize,
+        file: usize,
+        fetched: &Fetched,
+    ) -> Result<(), DatasetError> {
         let entry = &self.manifest.parts[part].files[file];
         let path = self.folders[part].join(&entry.name);
-        let (_, found) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
+        let (_, found) = hash_file(&fetched.path).map_err(DatasetError::io(&path, "read"))?;
         if found != entry.sha256 {
-            return Err(DatasetError::changed(
-                &path,
-                format!(
-                    "sha256 {found} where the manifest says {}",
-                    peelnet_files::printable(&entry.sha256)
-                ),
-            ));
+            let reason = format!(
+                "sha256 {found} where the manifest says {}",
+                peelnet_files::printable(&entry.sha256)
+            );
+            return Err(self.changed(part, &path, reason));
         }
         self.verified[part][file].store(true, Ordering::Relaxed);
         Ok(())
     }
 
+    /// The files of a part that its columns lie in, on this machine; the others have their names alone.
+    fn fetch_columns(&self, part: usize, columns: &[Column]) -> Result<Vec<Fetched>, DatasetError> {
+        let files = self.manifest.parts[part].files.iter().enumerate();
+        files
+            .map(|(file, entry)| match self.manifest.format {
+                Format::Npy if columns.iter().all(|c| c.index() != file) => {
+                    Ok(Fetched::in_place(self.folders[part].join(&entry.name)))
+                }
+                _ => self.fetch(part, file),
+            })
+            .collect()
+    }
+
     /// Compares the hashes of what a part's columns lie in, once for all readers.
-    fn verify_columns(&self, part: usize, columns: &[Column]) -> Result<(), DatasetError> {
+    fn verify_columns(
+        &self,
+        part: usize,
+        columns: &[Column],
+        fetched: &[Fetched],
+    ) -> Result<(), DatasetError> {
         for (file, verified) in self.verified[part].iter().enumerate() {
             let is_read = match self.manifest.format {
                 Format::Npy => columns.iter().any(|c| c.index() == file),
                 Format::Csv | Format::Parquet => true,
             };
             if is_read && !verified.load(Ordering::Relaxed) {
-                self.verify_file(part, file)?;
+                self.verify_fetched(part, file, &fetched[file])?;
             }
         }
         Ok(())
@@ -343,21 +358,31 @@ struct OpenPart {
     files: Vec<PathBuf>,
     columns: Vec<Column>,
     source: Box<dyn PartSource>,
+    /// Where the files lie on this machine; copies live as long as this.
+    fetched: Vec<Fetched>,
     rows: u64,
 }
 
 impl OpenPart {
     fn open(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
-        dataset
-            .verify_columns(k, columns)
+        let fetched = dataset.fetch_columns(k, columns)?;
+        match dataset.verify_columns(k, columns, &fetched) {
+            Ok(()) => Self::unverified(dataset, k, columns, fetched),
             // The place of what is wrong says more than a hash.
-            .map_err(|changed| Self::damage(dataset, k, columns).err().unwrap_or(changed))?;
-        Self::unverified(dataset, k, columns)
+            Err(changed) => Err(Self::damage(dataset, k, columns, fetched)
+                .err()
+                .unwrap_or(changed)),
+        }
     }
 
     /// The first place in a part where something is wrong.
-    fn damage(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<(), DatasetError> {
-        let mut part = Self::unverified(dataset, k, columns)?;
+    fn damage(
+        dataset: &Dataset,
+        k: usize,
+        columns: &[Column],
+        fetched: Vec<Fetched>,
+    ) -> Result<(), DatasetError> {
+        let mut part = Self::unverified(dataset, k, columns, fetched)?;
         let mut table = FragmentBatch::default();
         while part.read(CHUNK_ROWS, &mut table)? > 0 {
             table.clear();
@@ -365,23 +390,33 @@ impl OpenPart {
         Ok(())
     }
 
-    fn unverified(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
+    fn unverified(
+        dataset: &Dataset,
+        k: usize,
+        columns: &[Column],
+        fetched: Vec<Fetched>,
+    ) -> Result<Self, DatasetError> {
         let part = &dataset.manifest.parts[k];
-        let files: Vec<PathBuf> = part
-            .files
-            .iter()
-            .map(|f| dataset.folders[k].join(&f.name))
-            .collect();
+        let names = part.files.iter().map(|f| dataset.folders[k].join(&f.name));
+        let names: Vec<PathBuf> = names.collect();
+        let files: Vec<PathBuf> = fetched.iter().map(|f| f.path.clone()).collect();
+        let source = dataset.manifest.format.source(&files, columns);
+        let relocate =
+            |e: DatasetError| match fetched.iter().zip(&names).find(|(f, _)| e.is_at(&f.path)) {
+                Some((_, name)) => e.moved_to(name),
+                None => e,
+            };
         Ok(Self {
             index: part.index,
             expected: part.rows,
-            path: files[0].clone(),
-            source: dataset.manifest.format.source(&files, columns)?,
+            path: names[0].clone(),
+            source: source.map_err(relocate)?,
             files: match dataset.manifest.format {
-                Format::Npy => files,
-                Format::Csv | Format::Parquet => vec![files[0].clone(); Column::ALL.len()],
+                Format::Npy => names,
+                Format::Csv | Format::Parquet => vec![names[0].clone(); Column::ALL.len()],
             },
             columns: columns.to_vec(),
+            fetched,
             rows: 0,
         })
     }
@@ -389,7 +424,13 @@ impl OpenPart {
     /// Appends up to `max` rows and says how many; 0 at the end.
     fn read(&mut self, max: usize, table: &mut FragmentBatch) -> Result<usize, DatasetError> {
         let before = self.columns.first().map_or(0, |&c| table.column(c).len());
-        let count = self.source.read(max, table)?;
+        let count = self.source.read(max, table).map_err(|e| {
+            let all = self.fetched.iter().enumerate();
+            match all.filter(|(_, f)| e.is_at(&f.path)).map(|(k, _)| k).next() {
+                Some(k) => e.moved_to(&self.files[k]),
+                None => e,
+            }
+        })?;
         for &column in &self.columns {
             let values = table.column(column);
             check_column(

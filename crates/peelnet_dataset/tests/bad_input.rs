@@ -19,7 +19,7 @@ fn changed(format: Format, file: &str, change: impl Fn(Vec<u8>) -> Vec<u8>) -> t
     let path = folder.path().join(file);
     let bytes = change(fs::read(&path).unwrap());
     fs::write(&path, &bytes).unwrap();
-    let manifest_path = folder.path().join("manifest.json");
+    let manifest_path = folder.path().join("_peelnet/manifest.json");
     let mut manifest: Manifest =
         serde_json::from_slice(&fs::read(&manifest_path).unwrap()).unwrap();
     let mut hasher = Sha256::new();
@@ -171,7 +171,10 @@ fn truncated_files() {
         let bytes = fs::read(&path).unwrap();
         fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
         let message = Dataset::open(folder.path()).unwrap_err().to_string();
-        has(&message, &[file, "bytes", "write the dataset again"]);
+        has(
+            &message,
+            &[file, "bytes", "write it again", "part 2 of worker test"],
+        );
         // Same length, other contents: found by the hash.
         let mut other = bytes.clone();
         other[200] ^= 1;
@@ -208,15 +211,15 @@ fn manifests() {
     has(&message, &["nowhere", "open"]);
 
     write(folder.path(), Format::Csv, None, 1, 1000).unwrap();
-    let path = folder.path().join("manifest.json");
+    let path = folder.path().join("_peelnet/manifest.json");
     let good = fs::read_to_string(&path).unwrap();
     for (from, to, words) in [
         (
-            "\"schema\": 1,",
+            "\"schema\": 2,",
             "\"schema\": 9,",
-            ["schema version 9", "reads version 1"],
+            ["schema version 9", "reads versions 1 to 2"],
         ),
-        ("\"schema\": 1,", "", ["`schema`", "missing"]),
+        ("\"schema\": 2,", "", ["`schema`", "missing"]),
         ("\"seed\": 7,", "", ["missing field `seed`", "line"]),
         (
             "\"format\": \"csv\"",
@@ -256,31 +259,6 @@ fn manifests() {
         has(&message, &words);
         has(&message, &["manifest.json"]);
     }
-}
-
-#[test]
-fn shards_that_do_not_fit() {
-    let folder = tempfile::tempdir().unwrap();
-    let shard = |i, n| Some(Shard::new(i, n).unwrap());
-    write(folder.path(), Format::Csv, shard(1, 2), 1, 1000).unwrap();
-    write(folder.path(), Format::Npy, shard(2, 2), 1, 1000).unwrap();
-    let message = Dataset::open(folder.path()).unwrap_err().to_string();
-    has(&message, &["shard-2-of-2", "shard-1-of-2", "format"]);
-    let message = write(folder.path(), Format::Csv, shard(1, 3), 1, 1000)
-        .unwrap_err()
-        .to_string();
-    has(&message, &["another number of shards"]);
-    let message = write(folder.path(), Format::Csv, None, 1, 1000)
-        .unwrap_err()
-        .to_string();
-    has(&message, &["shards of a dataset"]);
-
-    let whole = tempfile::tempdir().unwrap();
-    write(whole.path(), Format::Csv, None, 1, 1000).unwrap();
-    let message = write(whole.path(), Format::Csv, shard(1, 2), 1, 1000)
-        .unwrap_err()
-        .to_string();
-    has(&message, &["whole dataset"]);
 }
 
 #[test]
@@ -345,7 +323,10 @@ fn only_datasets_are_overwritten() {
     has(&message, &["notes.txt", "not empty"]);
     let shard = Some(Shard::new(1, 2).unwrap());
     assert!(write(folder.path(), Format::Csv, shard, 1, 1000).is_err());
-    assert_eq!(contents(folder.path()).len(), 1);
+    assert_eq!(
+        contents(folder.path()),
+        [("notes.txt".to_owned(), b"mine".to_vec())]
+    );
     fs::remove_file(&notes).unwrap();
 
     write(folder.path(), Format::Npy, None, 1, 1000).unwrap();
@@ -370,11 +351,18 @@ fn only_datasets_are_overwritten() {
     assert_eq!(
         names,
         [
+            "_peelnet/",
+            "_peelnet/manifest.json",
+            "_peelnet/parts/",
+            "_peelnet/parts/00000.json",
+            "_peelnet/parts/00001.json",
+            "_peelnet/parts/00002.json",
+            "_peelnet/parts/00003.json",
+            "_peelnet/plan.json",
             CSV,
             "fragments-00001-cups-v1.csv",
             "fragments-00002-smoke-in-a-box-v0.csv",
             "fragments-00003-smoke-in-a-box-v1.csv",
-            "manifest.json",
         ]
     );
 }
@@ -391,6 +379,7 @@ fn files_that_no_manifest_lists_are_never_removed() {
     };
     for (name, text) in [
         ("manifest.json", r#"{"name": "an app", "icons": []}"#),
+        ("_peelnet", "mine"),
         ("manifest.json", "not even JSON"),
         ("fragments-x.csv", "mine"),
         (".partial-notes", "mine"),
@@ -430,10 +419,26 @@ fn a_writer_killed_while_it_moved_files_is_not_in_the_way() {
     fs::create_dir(&dead).unwrap();
     fs::write(dead.join("lock"), "").unwrap();
     // The old manifest is away, some old files are gone, and one new file is there.
-    fs::rename(old.join("manifest.json"), dead.join("replaced.json")).unwrap();
+    let list = contents(&old)
+        .into_iter()
+        .map(|(name, c)| format!("{name:?}: {}", c.len()));
+    let list = list
+        .filter(|l| l.starts_with("\"fragments"))
+        .collect::<Vec<_>>()
+        .join(", ");
+    fs::write(
+        dead.join("replaced.json"),
+        format!("{{\"files\": {{{list}}}}}"),
+    )
+    .unwrap();
+    fs::remove_dir_all(old.join("_peelnet")).unwrap();
     fs::remove_file(old.join("fragments-00000-cups-v0.x.npy")).unwrap();
     fs::copy(new.join(CSV), old.join(CSV)).unwrap();
-    fs::copy(new.join("manifest.json"), dead.join("manifest.json")).unwrap();
+    fs::copy(
+        new.join("_peelnet/manifest.json"),
+        dead.join("manifest.json"),
+    )
+    .unwrap();
     fs::copy(new.join(CSV), dead.join("fragments-00001-cups-v1.csv")).unwrap();
     fs::write(old.join("fragments-mine"), "mine").unwrap();
     let message = write(&old, Format::Csv, None, 1, 1000).unwrap_err();
@@ -479,7 +484,7 @@ fn absurd_counts_are_refused_before_memory_is_taken() {
     for format in Format::ALL {
         let folder = tempfile::tempdir().unwrap();
         let manifest = write(folder.path(), format, None, 1, 1000).unwrap();
-        let path = folder.path().join("manifest.json");
+        let path = folder.path().join("_peelnet/manifest.json");
         let mut more = manifest.clone();
         more.rows += trillion - more.parts[0].rows;
         more.parts[0].rows = trillion;
@@ -547,7 +552,8 @@ fn absurd_counts_are_refused_before_memory_is_taken() {
 #[test]
 fn pipes_and_devices_are_no_files_of_a_dataset() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("manifest.json");
+    let path = folder.path().join("_peelnet/manifest.json");
+    fs::create_dir(folder.path().join("_peelnet")).unwrap();
     std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
     has(
         &Dataset::open(folder.path()).unwrap_err().to_string(),

@@ -111,37 +111,6 @@ fn large_parts_are_the_same_with_any_threads() {
 }
 
 #[test]
-fn shards_merge_to_the_whole() {
-    for format in Format::ALL {
-        let whole = tempfile::tempdir().unwrap();
-        write(whole.path(), format, None, 1, 1000).unwrap();
-        let whole = Dataset::open(whole.path()).unwrap();
-        for of in [1, 3, 5] {
-            let folder = tempfile::tempdir().unwrap();
-            for index in (1..=of).rev() {
-                let shard = Shard::new(index, of).unwrap();
-                if index < of {
-                    let message = Dataset::open(folder.path()).unwrap_err().to_string();
-                    assert!(message.contains(&format!("1/{of}")), "{message}");
-                }
-                write(folder.path(), format, Some(shard), 2, 500).unwrap();
-                assert!(folder.path().join(shard.folder()).is_dir());
-            }
-            let merged = Dataset::open(folder.path()).unwrap();
-            assert_eq!(merged.manifest(), whole.manifest());
-            assert_eq!(merged.hash(), whole.hash());
-            let columns = [Column::LinearDepth, Column::View];
-            assert_eq!(
-                merged.read_columns(&columns).unwrap(),
-                whole.read_columns(&columns).unwrap()
-            );
-            let rows: Vec<_> = merged.batches(usize::MAX).map(Result::unwrap).collect();
-            assert_eq!(bits(&rows[0]), bits(&all_rows()));
-        }
-    }
-}
-
-#[test]
 fn csv_is_the_shortest_text() {
     let folder = tempfile::tempdir().unwrap();
     let writer = DatasetWriter::create(
@@ -240,5 +209,60 @@ fn sums_are_checked() {
             .map(|v| (v.check.as_str(), v.row))
             .collect();
         assert_eq!(found, [(name, i as u64 + 1)]);
+    }
+}
+
+/// A reader that asks for one view, or for some rows of the image, sees in the footers which files, row groups and pages it can skip.
+#[test]
+fn statistics_say_which_view_is_where() {
+    use parquet::file::metadata::{PageIndexPolicy, ParquetMetaDataReader};
+    use parquet::file::page_index::column_index::ColumnIndexMetaData;
+    let rows = view(1, 200_000, 3);
+    let folder = tempfile::tempdir().unwrap();
+    let mut header = header(Format::Parquet, None);
+    header.work_items = 2;
+    let writer = DatasetWriter::create(folder.path(), header).unwrap();
+    for (index, rows) in [(0, view(0, 50, 3)), (1, rows.clone())] {
+        let mut part = writer.begin(info(index)).unwrap();
+        part.write(&rows).unwrap();
+        part.finish(PartCounts::default()).unwrap();
+    }
+    let manifest = writer.finish().unwrap();
+    for part in &manifest.parts {
+        let file = std::fs::File::open(folder.path().join(&part.files[0].name)).unwrap();
+        let metadata = ParquetMetaDataReader::new()
+            .with_page_index_policy(PageIndexPolicy::Required)
+            .parse_and_finish(&file)
+            .unwrap();
+        let mut first_row = 0;
+        for (k, group) in metadata.row_groups().iter().enumerate() {
+            let statistics = group.column(Column::View.index()).statistics().unwrap();
+            let view = part.index.to_le_bytes();
+            assert_eq!(statistics.min_bytes_opt(), Some(&view[..]));
+            assert_eq!(statistics.max_bytes_opt(), Some(&view[..]));
+            // Pages of image rows: what each may hold is known, and where it lies.
+            let pages = metadata.page_index_for_row_group(k);
+            let y = Column::Y.index();
+            let Some(ColumnIndexMetaData::INT32(index)) = pages.column_index(y) else {
+                panic!("no index of pages")
+            };
+            let places = pages.offset_index(y).unwrap().page_locations();
+            assert_eq!(index.num_pages() as usize, places.len());
+            let firsts = places.iter().map(|p| p.first_row_index as usize);
+            let ends = firsts.clone().skip(1).chain([group.num_rows() as usize]);
+            for (page, (start, end)) in firsts.zip(ends).enumerate() {
+                let least = *index.min_value(page).unwrap();
+                let most = *index.max_value(page).unwrap();
+                if part.index == 1 {
+                    let inside = &rows.y[first_row + start..first_row + end];
+                    assert_eq!(least as u32, inside[0]);
+                    assert_eq!(most as u32, *inside.last().unwrap());
+                }
+            }
+            if part.index == 1 && k == 0 {
+                assert!(places.len() > 4, "{} pages", places.len());
+            }
+            first_row += group.num_rows() as usize;
+        }
     }
 }

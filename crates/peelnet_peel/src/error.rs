@@ -46,8 +46,22 @@ pub enum PeelError {
     /// More synthetic lists than can be counted.
     #[error("{0} synthetic lists are too many: at most {most}", most = crate::synthetic::MAX_LISTS)]
     TooManyLists(u64),
-    /// Stopped from outside before the end; nothing was left behind.
-    #[error("interrupted: nothing was written; run the command again")]
+    /// A part of a shard: which one, and whose.
+    #[error("part {index} (scene '{scene}', view {view}) of worker {worker}: {source}")]
+    Part {
+        /// The work item.
+        index: u32,
+        /// The scene's name.
+        scene: String,
+        /// View of the scene.
+        view: u32,
+        /// This writer's name.
+        worker: String,
+        /// What went wrong.
+        source: Box<PeelError>,
+    },
+    /// Stopped from outside before the end; only finished parts stay.
+    #[error("interrupted: parts that were not finished are gone; run the command again")]
     Interrupted,
 }
 

@@ -8,12 +8,13 @@ use crate::{
 };
 use peelnet_dataset::{
     CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, PartCounts, PartInfo,
-    SceneEntry, Shard,
+    SceneEntry, Shard, worker_name,
 };
 use peelnet_gpu::Gpu;
 use peelnet_raster::PixelSample;
 use peelnet_scene::{Camera, Census, Scene};
 use std::{
+    collections::BTreeMap,
     path::PathBuf,
     sync::{
         atomic::{AtomicBool, Ordering},
@@ -49,8 +50,10 @@ pub struct ExtractOptions {
     pub augment: u32,
     /// Seed of the pixel sample and of the copies.
     pub seed: u64,
-    /// The part of the items to do.
+    /// The part of the items to do; other shards write the others into the same folder, at any time.
     pub shard: Option<Shard>,
+    /// Does only what is missing of the dataset that is there. Shards always do.
+    pub resume: bool,
     /// The command line, for the manifest.
     pub command: String,
     /// Fragments of one tile; memory grows with it.
@@ -71,6 +74,7 @@ impl ExtractOptions {
             augment: 0,
             seed: 1,
             shard: None,
+            resume: false,
             command: String::new(),
             budget: None,
         }
@@ -93,8 +97,12 @@ pub struct Progress {
 /// What an extraction did.
 #[derive(Clone, Debug)]
 pub struct ExtractReport {
-    /// The finished manifest.
+    /// The manifest: of the whole dataset if it is sealed now, otherwise of this shard's parts ([`Manifest::is_whole`]).
     pub manifest: Manifest,
+    /// Parts that this extraction wrote; others were there.
+    pub parts: u32,
+    /// Rows that it wrote.
+    pub rows: u64,
     /// GPU time of all passes, microseconds (0 without timestamps).
     pub gpu_micros: f64,
     /// Clock time of everything, microseconds.
@@ -141,7 +149,8 @@ pub(crate) fn work(
     Ok((all.len() as u32, mine))
 }
 
-/// Peels the scenes and writes the dataset. Nothing appears in the folder before everything is done.
+/// Peels the scenes and writes the dataset. Every part is the dataset's when it is finished, so that an extraction that is killed or fails
+/// can be resumed; only where an older dataset is replaced, everything appears at the end. Whoever finishes the last part seals the dataset.
 ///
 /// # Errors
 /// Scenes that lack views or share a name, a fraction outside 0 … 1, an adapter's limits, a folder that cannot be
@@ -154,23 +163,28 @@ pub fn extract(
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
     let start = Instant::now();
-    let (all, mine) = work(scenes, options)?;
+    let (all, mut mine) = work(scenes, options)?;
     let writer = DatasetWriter::create(
         &options.out,
         Header {
             format: options.format,
             seed: options.seed,
             adapter: gpu.info.name.clone(),
+            adapter_class: adapter_class(gpu),
             tool_version: env!("CARGO_PKG_VERSION").to_owned(),
             command: options.command.clone(),
             peel: options.peel.to_string(),
             pixels_fraction: options.pixels,
             augment: options.augment,
+            settings: settings(scenes, options)?,
             scenes: scenes.iter().map(scene_entry).collect(),
             work_items: all,
             shard: options.shard,
+            resume: options.resume,
+            worker: worker_name(),
         },
     )?;
+    mine.retain(|item| writer.needs(item.index));
     let mut effort = Effort::default();
     let counts = std::thread::scope(|scope| {
         let (send, receive) = sync_channel(1);
@@ -202,6 +216,8 @@ pub fn extract(
     let manifest = writer.finish()?;
     Ok(ExtractReport {
         manifest,
+        parts: mine.len() as u32,
+        rows: counts.rows,
         gpu_micros: effort.gpu_micros,
         wall_micros: start.elapsed().as_secs_f64() * 1e6,
         lost: counts.lost,
@@ -248,7 +264,8 @@ pub(crate) fn peel(
                 options.peel,
                 options.pixels < 1.0,
                 Some(options.budget.unwrap_or(DEFAULT_BUDGET)),
-            )?;
+            )
+            .map_err(|e| in_part(e, options, item, &scene.name))?;
             current = Some((key, scene, harvester));
         }
         let Some((_, scene, harvester)) = &mut current else {
@@ -282,18 +299,20 @@ pub(crate) fn peel(
             tiles,
             gpu_micros,
             ..
-        } = harvester.harvest(
-            camera,
-            sample,
-            options.max_passes,
-            || take.try_recv().unwrap_or_default(),
-            |tile| {
-                if stop.load(Ordering::Relaxed) {
-                    return Err(PeelError::Interrupted);
-                }
-                deliver(Message::Tile(tile))
-            },
-        )?;
+        } = harvester
+            .harvest(
+                camera,
+                sample,
+                options.max_passes,
+                || take.try_recv().unwrap_or_default(),
+                |tile| {
+                    if stop.load(Ordering::Relaxed) {
+                        return Err(PeelError::Interrupted);
+                    }
+                    deliver(Message::Tile(tile))
+                },
+            )
+            .map_err(|e| in_part(e, options, item, &scene.name))?;
         deliver(Message::End)?;
         effort.gpu_micros += gpu_micros;
         effort.tiles += u64::from(tiles);
@@ -306,6 +325,20 @@ pub(crate) fn peel(
         }
     }
     Ok(())
+}
+
+/// Of a shard, an error says which part and whose: it is read among those of other workers.
+fn in_part(error: PeelError, options: &ExtractOptions, item: &Item, scene: &str) -> PeelError {
+    if options.shard.is_none() || matches!(error, PeelError::Interrupted) {
+        return error;
+    }
+    PeelError::Part {
+        index: item.index,
+        scene: scene.to_owned(),
+        view: item.view,
+        worker: worker_name(),
+        source: Box::new(error),
+    }
 }
 
 /// The files' side: tiles from the channel to rows of parts.
@@ -346,6 +379,45 @@ fn write(
         total.coplanar += counts.coplanar;
     }
     Ok(total)
+}
+
+/// Adapters that are expected to give the same bytes: software, or GPUs of one name and back end.
+fn adapter_class(gpu: &Gpu) -> String {
+    let info = &gpu.info;
+    if info.device_type == peelnet_gpu::wgpu::DeviceType::Cpu {
+        // Behind the first word there are versions, and the width of the processor's vectors.
+        let rasterizer = info.name.split_whitespace().next().unwrap_or("rasterizer");
+        format!("software, {rasterizer} ({})", info.backend)
+    } else {
+        format!("{} ({})", info.name, info.backend)
+    }
+}
+
+/// What shapes the rows beside the scenes' contents.
+fn settings(
+    scenes: &[Scene],
+    options: &ExtractOptions,
+) -> Result<BTreeMap<String, String>, PeelError> {
+    let passes = options
+        .max_passes
+        .map_or("all".to_owned(), |n| n.to_string());
+    // Scenes that a program made or changed have cameras that no file has.
+    let mut cameras = String::new();
+    for item in items(scenes, options.views, options.augment)? {
+        let view = &scenes[item.scene as usize].views[item.view as usize];
+        let (scene, copy, camera) = (item.scene, item.copy, camera_info(view));
+        cameras += &format!("{scene} {copy} {} {camera:?}\n", item.view);
+    }
+    let [width, height] = options.size;
+    let named = [
+        ("size", format!("{width}x{height}")),
+        ("limit of passes", passes),
+        (
+            "list of cameras",
+            peelnet_dataset::sha256(cameras.as_bytes()),
+        ),
+    ];
+    Ok(named.map(|(name, value)| (name.to_owned(), value)).into())
 }
 
 fn scene_entry(scene: &Scene) -> SceneEntry {

@@ -13,7 +13,7 @@ use crate::{
 use peelnet_core::random::Random;
 use peelnet_dataset::{
     CameraInfo, DatasetWriter, Format, FragmentBatch, Header, MAX_WORK_ITEMS, PartCounts, PartInfo,
-    SceneEntry,
+    SceneEntry, worker_name,
 };
 use std::{
     path::PathBuf,
@@ -41,6 +41,8 @@ pub struct SyntheticOptions {
     pub format: Format,
     /// Seed of everything.
     pub seed: u64,
+    /// Does only what is missing of the dataset that is there.
+    pub resume: bool,
     /// The command line, for the manifest.
     pub command: String,
 }
@@ -178,7 +180,7 @@ impl World {
     }
 }
 
-/// Writes the dataset. Nothing appears in the folder before everything is done.
+/// Writes the dataset, part by part, as [`extract`](crate::extract) does.
 ///
 /// # Errors
 /// A folder that cannot be written, or [`PeelError::Interrupted`] when `stop` becomes true.
@@ -198,11 +200,13 @@ pub fn synthetic(
             format: options.format,
             seed: options.seed,
             adapter: "none".to_owned(),
+            adapter_class: "none".to_owned(),
             tool_version: env!("CARGO_PKG_VERSION").to_owned(),
             command: options.command.clone(),
             peel: NAME.to_owned(),
             pixels_fraction: 1.0,
             augment: 0,
+            settings: [("number of lists".to_owned(), options.lists.to_string())].into(),
             scenes: vec![SceneEntry {
                 name: NAME.to_owned(),
                 file: NAME.to_owned(),
@@ -213,11 +217,14 @@ pub fn synthetic(
             }],
             work_items: worlds,
             shard: None,
+            resume: options.resume,
+            worker: worker_name(),
         },
     )?;
     let mut batch = FragmentBatch::default();
     let (mut rows, mut coplanar) = (0, 0);
-    for index in 0..worlds {
+    let mut parts = 0;
+    for index in (0..worlds).filter(|k| writer.needs(*k)) {
         if stop.load(Ordering::Relaxed) {
             return Err(PeelError::Interrupted);
         }
@@ -253,6 +260,7 @@ pub fn synthetic(
             lost_fragments: 0,
             coplanar_ties: counts.coplanar,
         })?;
+        parts += 1;
         rows += counts.rows;
         coplanar += counts.coplanar;
         progress(&Progress {
@@ -264,6 +272,8 @@ pub fn synthetic(
     }
     Ok(ExtractReport {
         manifest: writer.finish()?,
+        parts,
+        rows,
         gpu_micros: 0.0,
         wall_micros: start.elapsed().as_secs_f64() * 1e6,
         lost: 0,
@@ -308,6 +318,7 @@ mod tests {
             lists: MAX_LISTS + 1,
             format: Format::Csv,
             seed: 1,
+            resume: false,
             command: String::new(),
         };
         let refused = synthetic(&options, &AtomicBool::new(false), &mut |_| {});

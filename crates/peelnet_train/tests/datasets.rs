@@ -72,14 +72,18 @@ fn write_views(
             format: Format::Npy,
             seed: 1,
             adapter: "none".to_owned(),
+            adapter_class: "none".to_owned(),
             tool_version: "0".to_owned(),
             command: "test".to_owned(),
             peel: "sbuffer".to_owned(),
             pixels_fraction: 1.0,
             augment: 0,
+            settings: std::collections::BTreeMap::new(),
             scenes,
             work_items: parts,
             shard: None,
+            resume: false,
+            worker: "test".to_owned(),
         },
     )
     .unwrap();

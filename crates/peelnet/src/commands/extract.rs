@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::outputs::is_folder;
 use crate::parse::{ViewCount, command_line, json_path, shown};
 use crate::progress::Bar;
+use peelnet_dataset::is_remote;
 use peelnet_files::{counted, printable, thousands};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{
@@ -17,13 +18,64 @@ use serde_json::json;
 use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
-    is_folder("--out", &args.out)?;
-    if peelnet_dataset::replaces(&args.out, args.shard)? {
+    if !is_remote(&args.out) {
+        is_folder("--out", &args.out)?;
+    }
+    if peelnet_dataset::replaces(&args.out, args.resume || args.shard.is_some())? {
         context
             .console
             .message(format!("replacing {} (a dataset)", shown(&args.out)));
     }
-    let report = if let Some(lists) = args.synthetic {
+    let before = finished(&args.out);
+    let report = report(context, args).inspect_err(|_| hint(context, &args.out, before))?;
+    let folder = &args.out;
+    context.console.result(
+        || text(folder, &report),
+        || {
+            let m = &report.manifest;
+            json!({
+                "out": json_path(folder),
+                "rows": m.rows,
+                "pixels": m.pixels,
+                "parts": m.parts.len(),
+                "hash": m.hash,
+                "sealed": m.is_whole(),
+                "work_items": m.work_items,
+                "parts_written": report.parts,
+                "rows_written": report.rows,
+                "lost_fragments": report.lost,
+                "coplanar_ties": report.coplanar,
+                "tiles": report.tiles,
+                "gpu_ms": report.gpu_micros / 1e3,
+                "wall_ms": report.wall_micros / 1e3,
+                "rows_by_scene": m.rows_by_scene(),
+                "adapter": m.adapter,
+            })
+        },
+    )
+}
+
+/// How many parts of a dataset that is not sealed are finished, and how many it will have.
+fn finished(folder: &Path) -> (u32, u32) {
+    let parts = peelnet_dataset::unsealed_parts(folder);
+    parts.ok().flatten().unwrap_or_default()
+}
+
+/// Says what stays of a run that failed, if it finished anything.
+fn hint(context: &Context<'_>, folder: &Path, before: (u32, u32)) {
+    let (done, of) = finished(folder);
+    if done > before.0 {
+        context.console.message(format!(
+            "{}: {done} of {} stay; the same command with --resume writes the others",
+            shown(folder),
+            counted(of.into(), "part")
+        ));
+    }
+}
+
+/// Peels, or makes lists up.
+fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Failure> {
+    if let Some(lists) = args.synthetic {
         make_up(
             context,
             &SyntheticOptions {
@@ -31,9 +83,10 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
                 lists,
                 format: args.format,
                 seed: args.seed,
+                resume: args.resume,
                 command: command_line(),
             },
-        )?
+        )
     } else {
         let scenes = context.scenes(&args.scenes)?;
         let gpu = context.gpu()?;
@@ -51,36 +104,12 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
             augment: args.augment,
             seed: args.seed,
             shard: args.shard,
+            resume: args.resume,
             command: command_line(),
             budget: None,
         };
-        peel(context, &gpu, &scenes, &options)?
-    };
-    // A shard lies in a folder of its own.
-    let folder = match args.shard {
-        Some(shard) => args.out.join(shard.folder()),
-        None => args.out.clone(),
-    };
-    context.console.result(
-        || text(&folder, &report),
-        || {
-            let m = &report.manifest;
-            json!({
-                "out": json_path(&folder),
-                "rows": m.rows,
-                "pixels": m.pixels,
-                "parts": m.parts.len(),
-                "hash": m.hash,
-                "lost_fragments": report.lost,
-                "coplanar_ties": report.coplanar,
-                "tiles": report.tiles,
-                "gpu_ms": report.gpu_micros / 1e3,
-                "wall_ms": report.wall_micros / 1e3,
-                "rows_by_scene": m.rows_by_scene(),
-                "adapter": m.adapter,
-            })
-        },
-    )
+        peel(context, &gpu, &scenes, &options)
+    }
 }
 
 /// Generates lists with a progress bar.
@@ -141,13 +170,24 @@ pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
     } else {
         String::new()
     };
+    let m = &report.manifest;
+    let whole = if m.is_whole() {
+        String::new()
+    } else {
+        format!(" of {} (not all are there yet)", m.work_items)
+    };
+    let written = if (report.parts as usize) < m.parts.len() {
+        format!(", {} written now", counted(report.parts.into(), "part"))
+    } else {
+        String::new()
+    };
     format!(
-        "{}: {} of {} in {}, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {}{lost}",
+        "{}: {} of {} in {}{whole}{written}, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {}{lost}",
         shown(folder),
-        counted(report.manifest.rows, "row"),
-        counted(report.manifest.pixels, "pixel"),
-        counted(report.manifest.parts.len() as u64, "part"),
-        thousands((report.manifest.rows as f64 / seconds.max(1e-6)) as u64),
+        counted(m.rows, "row"),
+        counted(m.pixels, "pixel"),
+        counted(m.parts.len() as u64, "part"),
+        thousands((report.rows as f64 / seconds.max(1e-6)) as u64),
         report.gpu_micros / 1e6,
         counted(report.coplanar, "coplanar pair"),
     )

@@ -5,7 +5,7 @@ use crate::cli::InspectArgs;
 use crate::failure::{Failure, one_line};
 use crate::parse::{json_path, shown};
 use crate::summary_text::summary_text;
-use peelnet_dataset::{Dataset, Summary};
+use peelnet_dataset::{Dataset, Summary, is_remote};
 use peelnet_eval::effects::{self, Cost, Settings};
 use peelnet_files::{counted, one_line as escaped, printable, thousands};
 use peelnet_model::Model;
@@ -25,7 +25,9 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         .and_then(|e| e.to_str())
         .unwrap_or_default();
     let ships = path.to_str().and_then(suite::find).is_some();
-    if path.is_dir() {
+    if is_remote(path) {
+        dataset(context, path)
+    } else if path.is_dir() {
         if ships {
             context.console.message(format!(
                 "{}: the folder here, not the shipped scene of this name",

@@ -12,6 +12,7 @@ mod inspect;
 mod recommend;
 mod render;
 mod run;
+mod seal;
 mod stress;
 mod train;
 mod view;
@@ -124,6 +125,7 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::Run(args) => run::run(&context, args),
         Command::Extract(args) => extract::run(&context, args),
+        Command::Seal(args) => seal::run(&context, args),
         Command::Train(args) => train::run(&context, args),
         Command::Export(args) => export::run(&context, args),
         Command::Render(args) => render::run(&context, args),

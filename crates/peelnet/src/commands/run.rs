@@ -108,7 +108,7 @@ fn outputs<'a>(context: &'a Context<'a>, args: &RunArgs) -> Result<Outputs<'a>, 
     let mut outputs = Outputs::new(context, &args.scenes);
     outputs.results("--out", &args.out, Results::<ThesisRun>::FILES)?;
     outputs.pictures("--out", &args.out.join("images"))?;
-    peelnet_dataset::replaces(&args.out.join("dataset"), None)?;
+    peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
     let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
     let networks = [
         ("model.safetensors", peelnet_model::KIND),
@@ -221,6 +221,7 @@ impl Run<'_> {
                 augment: 0,
                 seed: self.args.seed,
                 shard: None,
+                resume: false,
                 command: command_line(),
                 budget: None,
             },

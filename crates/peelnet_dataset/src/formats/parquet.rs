@@ -3,6 +3,9 @@
 //! A dictionary makes the writer hash every value of columns that hardly repeat; without it, snappy still turns a
 //! constant column into next to nothing. The columns of a row group are encoded into memory independently, on
 //! several threads, and appended in order, so that the threads do not change the bytes.
+//!
+//! Every row group and page has its least and greatest value, and the footer has where pages lie: a reader that asks for one view fetches
+//! one view.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -66,11 +69,11 @@ fn properties() -> WriterPropertiesPtr {
             .set_created_by("peelnet".to_owned())
             .set_compression(Compression::SNAPPY)
             .set_dictionary_enabled(false)
-            .set_statistics_enabled(EnabledStatistics::None)
+            // A query for one view, or for a range of rows of the image, skips the other files, row groups and pages.
+            .set_statistics_enabled(EnabledStatistics::Page)
             .set_data_page_row_count_limit(PAGE_ROWS)
             .set_write_batch_size(PAGE_ROWS)
             .set_max_row_group_row_count(Some(ROW_GROUP_ROWS))
-            .set_offset_index_disabled(true)
             .build(),
     )
 }

@@ -69,14 +69,18 @@ pub fn header(format: Format, shard: Option<Shard>) -> Header {
         format,
         seed: 7,
         adapter: "test".to_owned(),
+        adapter_class: "software".to_owned(),
         tool_version: "0.1.0".to_owned(),
         command: "peelnet extract".to_owned(),
         peel: "sbuffer".to_owned(),
         pixels_fraction: 1.0,
         augment: 0,
+        settings: [("size".to_owned(), "640x480".to_owned())].into(),
         scenes: vec![scene("cups", false), scene("smoke in a box", true)],
         work_items: 4,
         shard,
+        resume: false,
+        worker: "test".to_owned(),
     }
 }
 
@@ -105,12 +109,19 @@ pub fn write(
     threads: usize,
     batch_rows: usize,
 ) -> Result<Manifest, DatasetError> {
-    let writer = DatasetWriter::create(folder, header(format, shard))?.with_threads(threads);
+    write_by(folder, header(format, shard), threads, batch_rows)
+}
+
+/// As [`write`], with a header of one's own.
+pub fn write_by(
+    folder: &Path,
+    header: Header,
+    threads: usize,
+    batch_rows: usize,
+) -> Result<Manifest, DatasetError> {
+    let writer = DatasetWriter::create(folder, header)?.with_threads(threads);
     // Backwards: the order of the parts is by index, not by time.
-    for index in (0..4)
-        .rev()
-        .filter(|&k| shard.is_none_or(|s| s.contains(k)))
-    {
+    for index in (0..4).rev().filter(|&k| writer.needs(k)) {
         let mut part = writer.begin(info(index))?;
         let rows = view(index, pixels(index), 1);
         for start in (0..rows.len()).step_by(batch_rows) {
@@ -152,6 +163,43 @@ pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     }
     all.sort();
     all
+}
+
+/// Turns a dataset into one of schema 1, with so many shards or whole.
+pub fn make_old(folder: &Path, shards: Option<u32>) {
+    let path = folder.join("_peelnet/manifest.json");
+    let whole: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    std::fs::remove_dir_all(folder.join("_peelnet")).unwrap();
+    for index in 1..=shards.unwrap_or(1) {
+        let mut manifest = whole.clone();
+        let fields = manifest.as_object_mut().unwrap();
+        fields.insert("schema".into(), 1.into());
+        fields.remove("plan");
+        fields.remove("settings");
+        let mut into = folder.to_owned();
+        if let Some(of) = shards {
+            let shard = Shard::new(index, of).unwrap();
+            fields.insert("shard".into(), serde_json::to_value(shard).unwrap());
+            let parts = fields["parts"].as_array_mut().unwrap();
+            parts.retain(|p| shard.contains(p["index"].as_u64().unwrap() as u32));
+            let rows: u64 = parts.iter().map(|p| p["rows"].as_u64().unwrap()).sum();
+            let mut lines = String::new();
+            into = folder.join(shard.folder());
+            std::fs::create_dir(&into).unwrap();
+            for part in parts.iter() {
+                for file in part["files"].as_array().unwrap() {
+                    let name = file["name"].as_str().unwrap();
+                    std::fs::rename(folder.join(name), into.join(name)).unwrap();
+                    let sha256 = file["sha256"].as_str().unwrap();
+                    lines += &format!("{} {sha256}\n", part["index"]);
+                }
+            }
+            fields.insert("rows".into(), rows.into());
+            fields.insert("hash".into(), sha256(lines.as_bytes()).into());
+        }
+        let text = serde_json::to_string_pretty(&manifest).unwrap();
+        std::fs::write(into.join("manifest.json"), text).unwrap();
+    }
 }
 
 /// Bit patterns, so that −0 and 0 differ.

@@ -1,0 +1,255 @@
+//! Where a dataset lies that several writers share: a few operations that folders and object stores both have.
+//!
+//! Nothing here needs a lock or a clock: whoever creates a name first has it, and everyone else learns that it is taken.
+
+#[cfg(feature = "object-store")]
+mod remote;
+
+use std::fmt;
+use std::fs;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::error::DatasetError;
+use crate::hashed_file::hash_file;
+use crate::layout::META;
+
+/// A name directly under a prefix, and its length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Entry {
+    /// The name, without the prefix.
+    pub name: String,
+    /// Length in bytes.
+    pub bytes: u64,
+}
+
+/// A file on this machine with a store's contents: removed when it is dropped, if it is a copy.
+#[derive(Debug)]
+pub(crate) struct Fetched {
+    pub path: PathBuf,
+    #[allow(dead_code, reason = "removes the copy")]
+    copy: Option<tempfile::TempPath>,
+    #[allow(dead_code, reason = "has the copy removed when the process must end")]
+    unfinished: Option<peelnet_files::Unfinished>,
+}
+
+impl Fetched {
+    /// A file that is no copy.
+    pub(crate) fn in_place(path: PathBuf) -> Self {
+        Self {
+            path,
+            copy: None,
+            unfinished: None,
+        }
+    }
+}
+
+/// A folder, or a prefix of a bucket. Names are relative, with `/`.
+pub(crate) trait Store: fmt::Debug + Send + Sync {
+    /// The dataset's path, for messages.
+    fn path(&self) -> &Path;
+
+    /// The files directly under a prefix, which is empty or ends with `/`, sorted by name. None where there is no such prefix.
+    fn list(&self, prefix: &str) -> Result<Vec<Entry>, DatasetError>;
+
+    /// A small file's contents; `None` where it does not exist.
+    fn get(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, DatasetError>;
+
+    /// Creates a small file, whole or not at all; false where the name is taken.
+    fn put_if_absent(&self, name: &str, bytes: &[u8]) -> Result<bool, DatasetError>;
+
+    /// Creates a file with the contents of a finished one; false where the name is taken.
+    fn put_file_if_absent(&self, name: &str, file: &Path) -> Result<bool, DatasetError>;
+
+    /// A file of this machine with the contents.
+    fn fetch(&self, name: &str) -> Result<Fetched, DatasetError>;
+
+    /// Removes a file; one that is gone is no error.
+    fn remove(&self, name: &str) -> Result<(), DatasetError>;
+
+    /// The name as a path, for messages.
+    fn shown(&self, name: &str) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// Length and sha256 of a file.
+    fn hash(&self, name: &str) -> Result<(u64, String), DatasetError> {
+        let file = self.fetch(name)?;
+        hash_file(&file.path).map_err(DatasetError::io(&self.shown(name), "read"))
+    }
+}
+
+/// A folder.
+#[derive(Clone, Debug)]
+pub(crate) struct Folder {
+    path: PathBuf,
+    /// Where unfinished files are made: on the same file system.
+    scratch: PathBuf,
+}
+
+impl Folder {
+    /// A folder; what is unfinished lies in `scratch`.
+    pub(crate) fn new(path: &Path, scratch: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            scratch: scratch.to_owned(),
+        }
+    }
+
+    /// Makes the folder that a file lies in.
+    fn make_room(target: &Path) -> Result<(), DatasetError> {
+        let folder = peelnet_files::folder_of(target);
+        fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))
+    }
+}
+
+impl Store for Folder {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn list(&self, prefix: &str) -> Result<Vec<Entry>, DatasetError> {
+        let folder = self.path.join(prefix);
+        let io = || DatasetError::io(&folder, "list");
+        let entries = match fs::read_dir(&folder) {
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            other => other.map_err(io())?,
+        };
+        let mut all = Vec::new();
+        for entry in entries {
+            let entry = entry.map_err(io())?;
+            // Links are followed: parts may lie on another disk.
+            match fs::metadata(entry.path()) {
+                Ok(metadata) if metadata.is_dir() => {}
+                Ok(metadata) => all.push(Entry {
+                    name: entry.file_name().to_string_lossy().into_owned(),
+                    bytes: metadata.len(),
+                }),
+                // Another writer's, gone between the two looks.
+                Err(e) if e.kind() == ErrorKind::NotFound => {}
+                Err(e) => return Err(io()(e)),
+            }
+        }
+        all.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(all)
+    }
+
+    fn get(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, DatasetError> {
+        let path = self.path.join(name);
+        match peelnet_files::read(&path, most) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
+            Err(e) => Err(DatasetError::io(&path, "read")(e)),
+        }
+    }
+
+    fn put_if_absent(&self, name: &str, bytes: &[u8]) -> Result<bool, DatasetError> {
+        let target = self.path.join(name);
+        Self::make_room(&target)?;
+        let write = || -> std::io::Result<bool> {
+            let mut builder = tempfile::Builder::new();
+            // Temporary files are private by default; a dataset has the permissions of any new file.
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+            let mut file = builder.prefix(".put-").tempfile_in(&self.scratch)?;
+            let _unfinished = peelnet_files::Unfinished::new(file.path());
+            file.write_all(bytes)?;
+            match file.persist_noclobber(&target) {
+                Ok(_) => Ok(true),
+                Err(e) if e.error.kind() == ErrorKind::AlreadyExists => Ok(false),
+                Err(e) => Err(e.error),
+            }
+        };
+        write().map_err(DatasetError::io(&target, "write"))
+    }
+
+    fn put_file_if_absent(&self, name: &str, file: &Path) -> Result<bool, DatasetError> {
+        let target = self.path.join(name);
+        let moved = match fs::hard_link(file, &target) {
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => return Ok(false),
+            // File systems without hard links: nothing is replaced but in a race that these cannot decide.
+            Err(_) if !target.exists() => fs::rename(file, &target),
+            other => other,
+        };
+        moved.map_err(DatasetError::io(&target, "move into place"))?;
+        Ok(true)
+    }
+
+    fn fetch(&self, name: &str) -> Result<Fetched, DatasetError> {
+        Ok(Fetched::in_place(self.path.join(name)))
+    }
+
+    fn remove(&self, name: &str) -> Result<(), DatasetError> {
+        let path = self.path.join(name);
+        match fs::remove_file(&path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => Err(DatasetError::io(&path, "remove")(e)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Where a path leads.
+#[derive(Clone, Debug)]
+pub(crate) enum Place {
+    /// A folder of this machine.
+    Folder(PathBuf),
+    /// An object store's prefix.
+    Remote(Arc<dyn Store>),
+}
+
+impl Place {
+    /// What a path stands for: `scheme://…` is an object store, `file:///…` a folder.
+    pub(crate) fn of(path: &Path) -> Result<Self, DatasetError> {
+        match path.to_str().filter(|_| is_remote(path)) {
+            None => Ok(Self::Folder(path.to_owned())),
+            Some(url) => match url.strip_prefix("file://") {
+                Some(folder) if folder.starts_with('/') => Ok(Self::Folder(PathBuf::from(folder))),
+                Some(_) => Err(DatasetError::Usage {
+                    path: path.to_owned(),
+                    reason: "an address of a folder is file:///path".to_owned(),
+                }),
+                None => remote(url).map(Self::Remote),
+            },
+        }
+    }
+
+    /// The store, to read.
+    pub(crate) fn store(&self) -> Arc<dyn Store> {
+        match self {
+            Self::Folder(path) => Arc::new(Folder::new(path, &path.join(META))),
+            Self::Remote(store) => Arc::clone(store),
+        }
+    }
+}
+
+/// Whether a path is the address of an object store, `scheme://…`, and no folder.
+pub fn is_remote(path: &Path) -> bool {
+    path.to_str()
+        .and_then(|text| text.split_once("://"))
+        .is_some_and(|(scheme, _)| {
+            scheme.len() > 1
+                && scheme
+                    .bytes()
+                    .all(|b| b.is_ascii_alphanumeric() || b == b'+')
+        })
+}
+
+/// A store of another machine.
+#[cfg(feature = "object-store")]
+fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
+    remote::Remote::open(url)
+}
+
+/// A store of another machine.
+#[cfg(not(feature = "object-store"))]
+fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
+    let scheme = url.split_once("://").map_or("", |(scheme, _)| scheme);
+    Err(DatasetError::Usage {
+        // An address may have a password in it.
+        path: PathBuf::from(format!("{scheme}://…")),
+        reason:
+            "this build reads and writes folders only; build peelnet with `--features object-store`"
+                .to_owned(),
+    })
+}

@@ -1,0 +1,357 @@
+//! Object stores: `s3://`, `gs://` and `az://`, by the crate `object_store`.
+//!
+//! Settings come from the environment, under the names that the services' own tools read: `AWS_…`, `GOOGLE_…`, `AZURE_…`. Every object is
+//! created by one conditional request. No error has a text of the server in it but its error code, because such texts quote credentials.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use object_store::aws::AmazonS3Builder;
+use object_store::azure::MicrosoftAzureBuilder;
+use object_store::gcp::GoogleCloudStorageBuilder;
+use object_store::path::Path as Key;
+use object_store::{
+    ObjectStore, ObjectStoreExt as _, PutMode, PutOptions, PutPayload, RetryConfig,
+};
+use tokio::runtime::Runtime;
+
+use super::{Entry, Fetched, Store};
+use crate::error::DatasetError;
+
+/// Bytes of one object that one request may create.
+const MAX_OBJECT: u64 = 5 << 30;
+
+/// How often a request is tried whose connection was cut. Answers that ask for patience are retried by `object_store` itself.
+const TRIES: u32 = 5;
+
+/// A prefix of a bucket.
+#[derive(Debug)]
+pub(crate) struct Remote {
+    /// The address, for messages.
+    path: PathBuf,
+    prefix: Key,
+    store: Box<dyn ObjectStore>,
+    runtime: Runtime,
+}
+
+impl Remote {
+    /// The store at an address. Nothing is asked of the server yet.
+    pub(crate) fn open(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
+        let (scheme, rest) = url.split_once("://").unwrap_or_default();
+        let (bucket, prefix) = rest.split_once('/').unwrap_or((rest, ""));
+        let refused = |reason: &str| DatasetError::Usage {
+            // Without what could be a password.
+            path: PathBuf::from(format!("{scheme}://…")),
+            reason: reason.to_owned(),
+        };
+        if bucket.is_empty() {
+            return Err(refused(
+                "the address has no bucket; write scheme://bucket/prefix",
+            ));
+        }
+        if rest.contains(['@', '?', '#']) {
+            return Err(refused(
+                "an address is scheme://bucket/prefix, without credentials and options; set these in the environment",
+            ));
+        }
+        let prefix = Key::parse(prefix.trim_end_matches('/'))
+            .map_err(|_| refused("the prefix is not one of an object store"))?;
+        let retry = RetryConfig {
+            max_retries: 8,
+            retry_timeout: Duration::from_mins(2),
+            ..RetryConfig::default()
+        };
+        let address = format!("{scheme}://{bucket}");
+        let built: object_store::Result<Box<dyn ObjectStore>> = match scheme {
+            "s3" => AmazonS3Builder::from_env()
+                .with_url(address)
+                .with_retry(retry)
+                .build()
+                .map(|s| Box::new(s) as _),
+            "gs" => GoogleCloudStorageBuilder::from_env()
+                .with_url(address)
+                .with_retry(retry)
+                .build()
+                .map(|s| Box::new(s) as _),
+            "az" => MicrosoftAzureBuilder::from_env()
+                .with_url(address)
+                .with_retry(retry)
+                .build()
+                .map(|s| Box::new(s) as _),
+            _ => return Err(refused("expected s3://, gs://, az:// or file://")),
+        };
+        let path = PathBuf::from(url.trim_end_matches('/'));
+        let store = built.map_err(|e| fault(&path, "reach", &e))?;
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .map_err(DatasetError::io(&path, "start the network of"))?;
+        Ok(Arc::new(Self {
+            path,
+            prefix,
+            store,
+            runtime,
+        }))
+    }
+
+    fn key(&self, name: &str) -> Key {
+        let name = name.trim_end_matches('/').split('/');
+        name.filter(|part| !part.is_empty())
+            .fold(self.prefix.clone(), |key, part| key.join(part))
+    }
+
+    /// Does a request, again where its connection was cut.
+    fn retried<T>(
+        &self,
+        request: impl AsyncFn() -> object_store::Result<T>,
+    ) -> Result<T, object_store::Error> {
+        let mut tried = 1;
+        loop {
+            match self.runtime.block_on(request()) {
+                Err(e) if tried < TRIES && is_cut(&e) => {
+                    std::thread::sleep(Duration::from_millis(100 << tried));
+                    tried += 1;
+                }
+                other => return other,
+            }
+        }
+    }
+
+    fn put(&self, name: &str, bytes: Vec<u8>) -> Result<bool, DatasetError> {
+        let key = self.key(name);
+        let payload = PutPayload::from(bytes);
+        let create = async || {
+            let options = PutOptions::from(PutMode::Create);
+            self.store.put_opts(&key, payload.clone(), options).await
+        };
+        match self.retried(create) {
+            Ok(_) => Ok(true),
+            // Also where an earlier try was cut after the server had done it: whoever asks compares what is there.
+            Err(
+                object_store::Error::AlreadyExists { .. }
+                | object_store::Error::Precondition { .. },
+            ) => Ok(false),
+            Err(e) => Err(fault(&self.shown(name), "write", &e)),
+        }
+    }
+}
+
+impl Store for Remote {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn list(&self, prefix: &str) -> Result<Vec<Entry>, DatasetError> {
+        let key = self.key(prefix);
+        let list = async || self.store.list_with_delimiter(Some(&key)).await;
+        let found = self
+            .retried(list)
+            .map_err(|e| fault(&self.shown(prefix), "list", &e))?;
+        let mut all: Vec<Entry> = found
+            .objects
+            .into_iter()
+            .filter_map(|o| {
+                Some(Entry {
+                    name: o.location.filename()?.to_owned(),
+                    bytes: o.size,
+                })
+            })
+            .collect();
+        all.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(all)
+    }
+
+    fn get(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, DatasetError> {
+        let key = self.key(name);
+        let shown = self.shown(name);
+        let get = async || {
+            let found = self.store.get(&key).await?;
+            if found.meta.size > most {
+                return Ok(Err(found.meta.size));
+            }
+            found.bytes().await.map(Ok)
+        };
+        match self.retried(get) {
+            Ok(Ok(bytes)) => Ok(Some(bytes.into())),
+            Ok(Err(size)) => {
+                let error = peelnet_files::check_size(size, most).err();
+                Err(DatasetError::io(&shown, "read")(error.unwrap_or_else(
+                    || std::io::Error::other("its length changed"),
+                )))
+            }
+            Err(e @ object_store::Error::NotFound { .. }) if !lacks_bucket(&e) => Ok(None),
+            Err(e) => Err(fault(&shown, "read", &e)),
+        }
+    }
+
+    fn put_if_absent(&self, name: &str, bytes: &[u8]) -> Result<bool, DatasetError> {
+        self.put(name, bytes.to_vec())
+    }
+
+    fn put_file_if_absent(&self, name: &str, file: &Path) -> Result<bool, DatasetError> {
+        let io = |e| DatasetError::io(&self.shown(name), "send")(e);
+        let length = fs::metadata(file).map_err(io)?.len();
+        peelnet_files::check_size(length, MAX_OBJECT).map_err(io)?;
+        self.put(name, fs::read(file).map_err(io)?)
+    }
+
+    fn fetch(&self, name: &str) -> Result<Fetched, DatasetError> {
+        let Some(bytes) = self.get(name, MAX_OBJECT)? else {
+            return Err(DatasetError::io(&self.shown(name), "read")(
+                std::io::ErrorKind::NotFound.into(),
+            ));
+        };
+        let write = || -> std::io::Result<Fetched> {
+            let file = tempfile::Builder::new().prefix("peelnet-").tempfile()?;
+            fs::write(file.path(), &bytes)?;
+            let copy = file.into_temp_path();
+            Ok(Fetched {
+                path: copy.to_path_buf(),
+                unfinished: Some(peelnet_files::Unfinished::new(&copy)),
+                copy: Some(copy),
+            })
+        };
+        write().map_err(DatasetError::io(&self.shown(name), "keep a copy of"))
+    }
+
+    fn remove(&self, name: &str) -> Result<(), DatasetError> {
+        let key = self.key(name);
+        match self.retried(async || self.store.delete(&key).await) {
+            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(e) => Err(fault(&self.shown(name), "remove", &e)),
+        }
+    }
+}
+
+/// The whole text of an error and its sources: to look for codes in it, never to print it.
+fn secret_text(error: &object_store::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = std::error::Error::source(error);
+    while let Some(next) = source {
+        text.push('\n');
+        text.push_str(&next.to_string());
+        source = next.source();
+    }
+    text
+}
+
+/// The server's code of an error: letters, such as `NoSuchBucket`.
+fn code(text: &str) -> Option<&str> {
+    let xml = text
+        .split_once("<Code>")
+        .and_then(|(_, rest)| rest.split_once("</Code>"))
+        .map(|(code, _)| code);
+    xml.filter(|c| c.len() < 64 && c.bytes().all(|b| b.is_ascii_alphanumeric()))
+}
+
+/// The status of the server's answer.
+fn status(text: &str) -> Option<&str> {
+    let (_, rest) = text.split_once("status code: ")?;
+    rest.get(..3)
+        .filter(|s| s.bytes().all(|b| b.is_ascii_digit()))
+}
+
+fn lacks_bucket(error: &object_store::Error) -> bool {
+    let text = secret_text(error);
+    matches!(code(&text), Some("NoSuchBucket" | "ContainerNotFound"))
+}
+
+/// Whether no answer came, so that nobody knows what the server did.
+fn is_cut(error: &object_store::Error) -> bool {
+    let object_store::Error::Generic { .. } = error else {
+        return false;
+    };
+    let text = secret_text(error);
+    status(&text).is_none() && text.contains("HTTP error")
+}
+
+/// An error in our own words.
+fn fault(path: &Path, action: &'static str, error: &object_store::Error) -> DatasetError {
+    let text = secret_text(error);
+    let code = code(&text);
+    let status = status(&text);
+    let why = match (code, error) {
+        (Some("NoSuchBucket" | "ContainerNotFound"), _) => {
+            "the bucket does not exist; create it, or correct the address".to_owned()
+        }
+        (Some("RequestTimeTooSkewed" | "RequestExpired"), _) => {
+            "the clock of this machine is off by minutes; set it".to_owned()
+        }
+        (Some("InvalidAccessKeyId" | "SignatureDoesNotMatch" | "InvalidToken" | "ExpiredToken"), _)
+        | (_, object_store::Error::Unauthenticated { .. }) => {
+            "the server refused the credentials; set those of an account that may use the bucket in the environment".to_owned()
+        }
+        (_, object_store::Error::PermissionDenied { .. }) => {
+            "the account may not do this; give it the right to read, list and write this prefix".to_owned()
+        }
+        (_, object_store::Error::NotFound { .. }) => {
+            "there is no such object or bucket".to_owned()
+        }
+        (Some("SlowDown" | "ServerBusy" | "RequestLimitExceeded"), _) => {
+            "the server asked for fewer requests again and again; start fewer workers, and resume".to_owned()
+        }
+        _ if is_cut(error) => {
+            format!("the server does not answer, or its connection was cut {TRIES} times; check the address and the network, and resume")
+        }
+        _ if status.is_none() => {
+            "the settings in the environment are incomplete, or no credentials were found there".to_owned()
+        }
+        _ => "the server refused the request".to_owned(),
+    };
+    let details: Vec<&str> = [status, code].into_iter().flatten().collect();
+    let details = if details.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", details.join(" "))
+    };
+    DatasetError::io(path, action)(std::io::Error::other(format!("{why}{details}")))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use super::*;
+
+    #[test]
+    fn addresses_that_are_none_are_refused_without_their_text() {
+        for url in [
+            "s3://AKIASECRET:hunter2@bucket/prefix",
+            "s3://bucket/prefix?X-Amz-Signature=hunter2",
+            "ftp://hunter2/prefix",
+            "s3:///hunter2",
+        ] {
+            let message = Remote::open(url).err().unwrap().to_string();
+            assert!(!message.contains("hunter2"), "{message}");
+            assert!(!message.contains("SECRET"), "{message}");
+        }
+    }
+
+    #[test]
+    fn an_answer_is_quoted_by_its_code_alone() {
+        let body = "Server returned non-2xx status code: 403 Forbidden: <Error><Code>SignatureDoesNotMatch</Code>\
+             <AWSAccessKeyId>AKIASECRET</AWSAccessKeyId><StringToSign>hunter2</StringToSign></Error>";
+        for error in [
+            object_store::Error::PermissionDenied {
+                path: "a".to_owned(),
+                source: body.into(),
+            },
+            object_store::Error::Generic {
+                store: "S3",
+                source: body.into(),
+            },
+        ] {
+            let message = peelnet_files::error_line(&fault(Path::new("s3://b/p"), "read", &error));
+            assert!(
+                message.contains("refused the credentials (403 SignatureDoesNotMatch)"),
+                "{message}"
+            );
+            assert!(
+                !message.contains("SECRET") && !message.contains("hunter2"),
+                "{message}"
+            );
+        }
+    }
+}
