@@ -70,6 +70,7 @@ mod device;
 mod error;
 mod files;
 mod fragment_mse;
+mod gather;
 mod lock;
 mod network;
 mod normalise;
