@@ -55,9 +55,9 @@ impl TrainingData {
             data.check_split(config);
         }
         // Scenes whose share of the rows holds no example of a subset are not set aside.
-        data.split = plan.split.filter(|split| {
-            data.subsets.is_some() || matches!(split, DataSplit::Pixels { .. })
-        });
+        data.split = plan
+            .split
+            .filter(|split| data.subsets.is_some() || matches!(split, DataSplit::Pixels { .. }));
         Ok(data)
     }
 

@@ -46,6 +46,15 @@ impl ViewWeights {
         }
     }
 
+    /// Factors 1, 2 and 3.
+    #[cfg(test)]
+    pub(crate) fn for_tests() -> Self {
+        Self {
+            overall: 6.0,
+            views: vec![6.0, 3.0, 2.0],
+        }
+    }
+
     /// Applies the factor of a view to weights of its examples.
     pub(crate) fn apply(&self, view: usize, weights: &mut [f32]) {
         for weight in weights {
