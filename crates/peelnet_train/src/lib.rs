@@ -6,9 +6,9 @@
 //! Config, seed ─► Shape ─► one flat tensor of weights ───┘
 //! ```
 //!
-//! [`train`] takes the columns of a dataset ([`TrainingData`]) and a [`Config`] that holds every hyper-parameter and
+//! [`train`] takes the examples of datasets ([`Source`]) and a [`Config`] that holds every hyper-parameter and
 //! the seed. It sets the held-out rows aside, computes each input's mean and deviation over the training rows, and
-//! runs epochs: the rows are permuted once (an order drawn from the seed and the epoch's number), batches are slices
+//! runs epochs: the rows are permuted (an order drawn from the seed and the epoch's number), batches are slices
 //! of the permuted tensors, and a batch's gradient goes to Adam. What a recipe wants to be trained *on* is a [`Task`]:
 //! it owns the tensors and turns a range of examples into a loss. The loop, the gradient, checkpoints and curves know
 //! nothing about recipes, so a recipe with batches of whole pixels and a loss of its own is one more file.
@@ -30,9 +30,16 @@
 //!
 //! # Memory
 //!
-//! Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
+//! Examples are in memory ([`TrainingData`]) or streamed ([`StreamedData`]).
+//!
+//! *In memory.* Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
 //! epoch. Of a dataset with more than [`Config::max_rows`] rows, whole pixels are drawn from the seed, the same share of every view, and
 //! [`TrainingData::used`] says how many rows are used. With the default, a training takes about 4 GiB at most, however large the dataset.
+//!
+//! *Streamed.* One pass over the datasets makes the examples of all rows, merges the moments of the inputs block by block in the order of
+//! the parts, and writes the examples to a scratch file. An epoch reads its blocks in an order drawn from the seed and trains on windows
+//! of [`Config::buffer_rows`] rows, each permuted. Memory depends on the buffer; of the dataset it holds 24 bytes for each block
+//! of 4,096 rows, twice.
 //!
 //! # Same seed, same weights
 //!
