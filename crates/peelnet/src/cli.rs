@@ -237,6 +237,13 @@ pub struct TrainArgs {
     /// Rows of the datasets that are used at most; of more, whole pixels are drawn from the seed
     #[arg(long, value_name = "N", default_value_t = peelnet_train::DEFAULT_MAX_ROWS)]
     pub max_rows: u64,
+    /// Train on all rows with bounded memory: the examples go to a scratch file in MODEL.checkpoint, and every epoch reads it in an order
+    /// drawn from the seed
+    #[arg(long, conflicts_with = "max_rows")]
+    pub stream: bool,
+    /// Rows in memory at once with --stream; the weights depend on it, because they depend on the order of the examples
+    #[arg(long, value_name = "N", requires = "stream", default_value_t = peelnet_train::DEFAULT_BUFFER_ROWS)]
+    pub buffer_rows: u64,
     /// What stays together when rows are set aside for testing: scenes (one scene alone is split by pixel), or pixels of all scenes alike
     #[arg(long, value_name = "BY", default_value = "scene")]
     pub split: SplitChoice,
@@ -570,9 +577,14 @@ mod tests {
             "run --out o",
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
+<<<<<<< HEAD
             "extract --synthetic 1000 --out d --seed 3 --resume",
             "extract a.toml --out d --resume",
             "seal d --quiet --json",
+=======
+            "extract --synthetic 1000 --out d --seed 3",
+            "train d --out m --stream --buffer-rows 1000",
+>>>>>>> stream
             "train d e --out m --recipe thesis --hidden 4,3 --loss image --epochs 3 --batch 64 --lr 1e-3 --seed 2 --max-rows 1000 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",

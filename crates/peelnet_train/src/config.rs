@@ -57,6 +57,12 @@ pub struct Config {
         skip_serializing_if = "is_default_max_rows"
     )]
     pub max_rows: u64,
+    /// Rows in memory at once where the examples are streamed ([`StreamedData`]), beside those that are made into tensors; none where
+    /// all are in memory. A training that streams uses all rows.
+    ///
+    /// [`StreamedData`]: crate::StreamedData
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub buffer_rows: Option<u64>,
     /// What recipes that learn from whole pixels minimise.
     #[serde(default, skip_serializing_if = "is_default")]
     pub loss: PixelLoss,
@@ -99,6 +105,9 @@ impl Schedule {
 
 /// Rows that take about 4 GiB while the largest recipe trains.
 pub const DEFAULT_MAX_ROWS: u64 = 1 << 25;
+
+/// Rows of the buffer of a streamed training: large enough to mix hundreds of blocks, at about 200 MiB with the largest recipe.
+pub const DEFAULT_BUFFER_ROWS: u64 = 1 << 20;
 
 const fn default_max_rows() -> u64 {
     DEFAULT_MAX_ROWS
@@ -174,6 +183,7 @@ impl Config {
             split: SplitBy::Scene,
             patience: None,
             max_rows: DEFAULT_MAX_ROWS,
+            buffer_rows: None,
             loss: recipe.loss.unwrap_or_default(),
         }
     }
@@ -221,6 +231,11 @@ impl Config {
                 self.max_rows.to_string(),
                 "give 1 to 2147483647",
             );
+        }
+        if let Some(rows) = self.buffer_rows
+            && !(1..=MAX_ROWS).contains(&rows)
+        {
+            return bad("buffer_rows", rows.to_string(), "give 1 to 2147483647");
         }
         if !(self.learning_rate.is_finite() && self.learning_rate > 0.0) {
             return bad(
@@ -297,7 +312,7 @@ mod tests {
         let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 16] = [
+        let spoiled: [(&str, Spoil); 17] = [
             ("epochs", |c| c.epochs = 0),
             ("1,000,000", |c| c.epochs = u32::MAX),
             ("batch", |c| c.batch = 0),
@@ -310,6 +325,7 @@ mod tests {
             ("2147483647", |c| c.max_rows = u64::MAX),
             ("1 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
             ("4,194,304", |c| c.hidden = vec![4096; 1000]),
+            ("buffer_rows", |c| c.buffer_rows = Some(0)),
             ("chunk", |c| c.chunk = 0),
             ("hidden", |c| c.hidden = vec![3, 0]),
             ("learning_rate", |c| c.learning_rate = f64::NAN),

@@ -1,15 +1,13 @@
 //! From datasets to columns.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use peelnet_core::features::Feature;
-use peelnet_core::methods::deep::Row;
 use peelnet_dataset::{Dataset, FragmentBatch, Part, Split, SplitBy, Subset};
-use peelnet_model::{DatasetRef, Inputs, Model};
+use peelnet_model::{DatasetRef, Model};
 
 use crate::config::Config;
 use crate::error::TrainError;
+use crate::gather;
 use crate::pixels::{self, View};
 use crate::sample::Sample;
 use crate::training_data::{DataSplit, TrainingData, UsedRows};
@@ -24,42 +22,7 @@ impl TrainingData {
     /// # Errors
     /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
-        let split = Split::new(config.seed, config.validation, config.held_out)?;
-        let scenes = scenes_of(datasets);
-        let rows: BTreeMap<&str, u64> = scenes.iter().map(|(n, r)| (n.as_str(), *r)).collect();
-        let subsets = (config.split == SplitBy::Scene)
-            .then(|| split.scenes(&rows))
-            .flatten();
-        let Some(subsets) = subsets else {
-            let mut data = Self::of_parts(config, &[(datasets, &|_, _| split)])?;
-            data.check_split(config);
-            data.split = Some(DataSplit::Pixels {
-                scenes: scenes.len(),
-            });
-            return Ok(data);
-        };
-        let of = |dataset: &Dataset, part: &Part| {
-            let subset = subsets.get(scene_of(dataset, part).as_str());
-            Split::whole(subset.copied().unwrap_or(Subset::Train))
-        };
-        let mut data = Self::of_parts(config, &[(datasets, &of)])?;
-        data.check_split(config);
-        let names = |wanted: Subset| {
-            let of = subsets.iter().filter(move |(_, s)| **s == wanted);
-            of.map(|(name, _)| (*name).to_owned()).collect()
-        };
-        let aside = DataSplit::Scenes {
-            validation: names(Subset::Validation),
-            test: names(Subset::Test),
-        };
-        if let Some(reference) = &mut data.dataset {
-            let all = std::mem::take(&mut reference.scenes);
-            (reference.set_aside, reference.scenes) =
-                all.into_iter().partition(|name| aside.contains(name));
-        }
-        // A share of the rows that holds no example of a subset is dropped above.
-        data.split = data.subsets.is_some().then_some(aside);
-        Ok(data)
+        Self::of_plan(config, Plan::of_datasets(config, datasets)?)
     }
 
     /// The rows of `training` to learn from and those of `validation` to choose by: whole scenes, because pixels of one view say much
@@ -72,56 +35,29 @@ impl TrainingData {
         training: &[Dataset],
         validation: &[Dataset],
     ) -> Result<Self, TrainError> {
-        Self::of_parts(
-            config,
-            &[
-                (training, &|_, _| Split::whole(Subset::Train)),
-                (validation, &|_, _| Split::whole(Subset::Validation)),
-            ],
-        )
+        let plan = Plan::new(&[
+            (training, &|_, _| Split::whole(Subset::Train)),
+            (validation, &|_, _| Split::whole(Subset::Validation)),
+        ]);
+        Self::of_plan(config, plan)
     }
 
-    /// The rows of all scenes that are not held out, of datasets with the split of each part's pixels.
-    fn of_parts(config: &Config, all: &[(&[Dataset], SplitOf<'_>)]) -> Result<Self, TrainError> {
-        let datasets = || {
-            all.iter()
-                .flat_map(|(datasets, split)| datasets.iter().map(move |d| (d, split)))
-        };
-        let parts: Vec<(&Dataset, &Part, Split)> = datasets()
-            .flat_map(|(dataset, split)| {
-                let parts = dataset.manifest().parts.iter();
-                let parts = parts.filter(move |part| !dataset.is_held_out(part));
-                parts.map(move |part| (dataset, part, split(dataset, part)))
-            })
-            .collect();
-        let total = parts
-            .iter()
-            .map(|(_, p, _)| p.rows)
-            .fold(0, u64::saturating_add);
-        let mut sample = Sample::new(config.seed, config.max_rows, total);
-        let views = parts.iter().filter(|(_, part, _)| part.rows > 0);
-        let views = views.map(|&(dataset, part, split)| (View::Stored(dataset, part), split));
-        let mut data = match config.recipe.inputs {
-            Inputs::Row(features) => rows(features, &mut sample, views)?,
-            _ => pixels::gather(config.recipe, &mut sample, views)?,
-        };
+    fn of_plan(config: &Config, plan: Plan<'_>) -> Result<Self, TrainError> {
+        let mut sample = Sample::new(config.seed, config.max_rows, plan.dataset.rows);
+        let mut data = gather::in_memory(config.recipe, &mut sample, plan.views())?;
         data.used = Some(UsedRows {
             used: sample.kept()?,
-            of: total,
+            of: plan.dataset.rows,
         });
-        let paths: Vec<String> = datasets()
-            .map(|(d, _)| d.path().display().to_string())
-            .collect();
-        data.source = paths.join(", ");
-        let hashes: Vec<&str> = datasets().map(|(d, _)| d.hash()).collect();
-        data.dataset = Some(DatasetRef {
-            hash: hashes.join("+"),
-            rows: total,
-            set_aside: Vec::new(),
-            scenes: pixels::training_scenes(datasets().map(|(d, _)| d))
-                .into_iter()
-                .collect(),
-        });
+        data.source = plan.source;
+        data.dataset = Some(plan.dataset);
+        if plan.split.is_some() {
+            data.check_split(config);
+        }
+        // Scenes whose share of the rows holds no example of a subset are not set aside.
+        data.split = plan
+            .split
+            .filter(|split| data.subsets.is_some() || matches!(split, DataSplit::Pixels { .. }));
         Ok(data)
     }
 
@@ -145,10 +81,7 @@ impl TrainingData {
         }
         let views = batches.chunk_by(|a, b| a.view.first() == b.view.first());
         let views = views.map(|batches| (View::Held(batches), split));
-        let mut data = match config.recipe.inputs {
-            Inputs::Row(features) => rows(features, &mut Sample::all(), views)?,
-            _ => pixels::gather(config.recipe, &mut Sample::all(), views)?,
-        };
+        let mut data = gather::in_memory(config.recipe, &mut Sample::all(), views)?;
         data.source = source.to_owned();
         data.check_split(config);
         Ok(data)
@@ -165,24 +98,100 @@ impl TrainingData {
             && there(Subset::Validation, config.validation);
         self.subsets = self.subsets.take().filter(|_| usable);
     }
-
-    fn of_rows(features: &[&Feature<Row>]) -> Self {
-        Self {
-            source: String::new(),
-            inputs: vec![Vec::new(); features.len()],
-            targets: vec![Vec::new()],
-            weights: None,
-            pixels: None,
-            subsets: Some(Vec::new()),
-            used: None,
-            split: None,
-            dataset: None,
-        }
-    }
 }
 
 /// The split of a part's pixels.
 type SplitOf<'a> = &'a dyn Fn(&Dataset, &Part) -> Split;
+
+/// The views that are trained on, and what is known of them before they are read.
+pub(crate) struct Plan<'a> {
+    parts: Vec<(&'a Dataset, &'a Part, Split)>,
+    /// The paths, for messages.
+    pub(crate) source: String,
+    pub(crate) dataset: DatasetRef,
+    /// How rows are set aside; none where the datasets themselves say what for.
+    pub(crate) split: Option<DataSplit>,
+}
+
+impl<'a> Plan<'a> {
+    /// The plan of [`TrainingData::from_datasets`].
+    pub(crate) fn of_datasets(
+        config: &Config,
+        datasets: &'a [Dataset],
+    ) -> Result<Self, TrainError> {
+        let split = Split::new(config.seed, config.validation, config.held_out)?;
+        let scenes = scenes_of(datasets);
+        let rows: BTreeMap<&str, u64> = scenes.iter().map(|(n, r)| (n.as_str(), *r)).collect();
+        let subsets = (config.split == SplitBy::Scene)
+            .then(|| split.scenes(&rows))
+            .flatten();
+        let Some(subsets) = subsets else {
+            let mut plan = Self::new(&[(datasets, &|_, _| split)]);
+            plan.split = Some(DataSplit::Pixels {
+                scenes: scenes.len(),
+            });
+            return Ok(plan);
+        };
+        let of = |dataset: &Dataset, part: &Part| {
+            let subset = subsets.get(scene_of(dataset, part).as_str());
+            Split::whole(subset.copied().unwrap_or(Subset::Train))
+        };
+        let mut plan = Self::new(&[(datasets, &of)]);
+        let names = |wanted: Subset| {
+            let of = subsets.iter().filter(move |(_, s)| **s == wanted);
+            of.map(|(name, _)| (*name).to_owned()).collect()
+        };
+        let aside = DataSplit::Scenes {
+            validation: names(Subset::Validation),
+            test: names(Subset::Test),
+        };
+        let all = std::mem::take(&mut plan.dataset.scenes);
+        (plan.dataset.set_aside, plan.dataset.scenes) =
+            all.into_iter().partition(|name| aside.contains(name));
+        plan.split = Some(aside);
+        Ok(plan)
+    }
+
+    /// All scenes that are not held out, of datasets with the split of each part's pixels.
+    fn new(all: &[(&'a [Dataset], SplitOf<'_>)]) -> Self {
+        let datasets = || {
+            all.iter()
+                .flat_map(|(datasets, split)| datasets.iter().map(move |d| (d, split)))
+        };
+        let parts: Vec<(&Dataset, &Part, Split)> = datasets()
+            .flat_map(|(dataset, split)| {
+                let parts = dataset.manifest().parts.iter();
+                let parts = parts.filter(move |part| !dataset.is_held_out(part));
+                parts.map(move |part| (dataset, part, split(dataset, part)))
+            })
+            .collect();
+        let rows = parts.iter().map(|(_, part, _)| part.rows);
+        let hashes: Vec<&str> = datasets().map(|(d, _)| d.hash()).collect();
+        let dataset = DatasetRef {
+            hash: hashes.join("+"),
+            rows: rows.fold(0, u64::saturating_add),
+            set_aside: Vec::new(),
+            scenes: pixels::training_scenes(datasets().map(|(d, _)| d))
+                .into_iter()
+                .collect(),
+        };
+        let paths: Vec<String> = datasets()
+            .map(|(d, _)| d.path().display().to_string())
+            .collect();
+        Self {
+            parts,
+            source: paths.join(", "),
+            dataset,
+            split: None,
+        }
+    }
+
+    /// The views that have rows.
+    pub(crate) fn views(&self) -> impl Iterator<Item = (View<'a>, Split)> + '_ {
+        let parts = self.parts.iter().filter(|(_, part, _)| part.rows > 0);
+        parts.map(|&(dataset, part, split)| (View::Stored(dataset, part), split))
+    }
+}
 
 /// The name that a part's rows are split by: its scene, or of a synthetic dataset its world.
 fn scene_of(dataset: &Dataset, part: &Part) -> String {
@@ -208,54 +217,6 @@ fn scenes_of(datasets: &[Dataset]) -> BTreeMap<String, u64> {
         }
     }
     rows
-}
-
-/// Every row is an example with its transmittance as the target.
-fn rows<'a>(
-    features: &[&Feature<Row>],
-    sample: &mut Sample,
-    views: impl IntoIterator<Item = (View<'a>, Split)>,
-) -> Result<TrainingData, TrainError> {
-    let mut data = TrainingData::of_rows(features);
-    for (view, split) in views {
-        sample.begin(view.rows());
-        view.for_each_batch(|batch| {
-            for pixel in batch.pixels() {
-                let (view, x, y) = (
-                    batch.view[pixel.start],
-                    batch.x[pixel.start],
-                    batch.y[pixel.start],
-                );
-                if sample.keep([x, y], pixel.len()) {
-                    append(&mut data, features, split.pixel(view, x, y), batch, pixel);
-                }
-            }
-        })?;
-    }
-    Ok(data)
-}
-
-/// Appends the rows of a pixel as examples.
-fn append(
-    data: &mut TrainingData,
-    features: &[&Feature<Row>],
-    subset: Subset,
-    batch: &FragmentBatch,
-    pixel: Range<usize>,
-) {
-    for i in pixel.clone() {
-        let row = Row {
-            linear_depth: batch.linear_depth[i],
-            alpha_sum: batch.alpha_sum[i],
-            // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
-            fragment_count: batch.fragment_count[i] as f32,
-        };
-        for (column, feature) in data.inputs.iter_mut().zip(features) {
-            column.push((feature.value)(&row) as f32);
-        }
-        data.subsets.iter_mut().for_each(|all| all.push(subset));
-    }
-    data.targets[0].extend_from_slice(&batch.transmittance[pixel]);
 }
 
 /// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records. Empty for a

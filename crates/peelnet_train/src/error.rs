@@ -31,7 +31,7 @@ pub enum TrainError {
         /// Where the rows are from.
         data: String,
         /// From 0, in the order of the columns.
-        row: usize,
+        row: u64,
         /// The column.
         column: String,
         /// The value.
@@ -51,6 +51,17 @@ pub enum TrainError {
         /// What the system says.
         error: std::io::Error,
     },
+    /// The examples of a streamed training could not be written or read.
+    #[error("the scratch file of streamed training in {}: {error}; it needs room for all examples", folder.display())]
+    Scratch {
+        /// Where the file lies.
+        folder: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// Asked to stop before the first epoch.
+    #[error("interrupted while the rows were read: nothing was trained")]
+    Stopped,
     /// Another training has the lock of the same model file.
     #[error("{}: another training writes to this file and its checkpoint; wait for it to end, or write to another file", out.display())]
     Busy {
@@ -91,4 +102,13 @@ pub enum TrainError {
         /// The model file with the last good weights, where an epoch had been finished.
         kept: Option<PathBuf>,
     },
+}
+
+impl TrainError {
+    pub(crate) fn no_rows(data: &str) -> Self {
+        Self::Columns {
+            data: data.to_owned(),
+            problem: "no rows to train on: extract views with transparent objects in them, of scenes that are not held out".to_owned(),
+        }
+    }
 }

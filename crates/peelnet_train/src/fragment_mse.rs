@@ -6,11 +6,10 @@ use burn::tensor::{Device, Tensor, TensorData};
 
 use crate::network::Network;
 use crate::normalise::Normalisation;
-use crate::split::Split;
-use crate::task::{Part, Task};
+use crate::task::Task;
 use crate::training_data::TrainingData;
 
-/// Normalised inputs and targets of one part.
+/// Normalised inputs and targets.
 struct Columns {
     /// `[features, rows]`
     inputs: Tensor<2>,
@@ -18,7 +17,6 @@ struct Columns {
     target: Tensor<2>,
     /// `[1, rows]`
     weight: Option<Tensor<2>>,
-    rows: usize,
 }
 
 impl Columns {
@@ -50,65 +48,37 @@ impl Columns {
             inputs: upload(inputs, normalisation.len()),
             target: upload(target, data.targets.len()),
             weight: weight.map(|w| upload(w, 1)),
-            rows: n,
         }
     }
 }
 
-/// Rows as examples, squared error as loss. The training rows are on the device in the order of the epoch only.
+/// Rows as examples, squared error as loss.
 pub(crate) struct FragmentMse<'a> {
-    data: &'a TrainingData,
     normalisation: &'a [Normalisation],
-    train: &'a [u32],
-    shuffled: Columns,
-    validation: Columns,
-    test: Columns,
+    columns: Option<Columns>,
     device: Device,
 }
 
 impl<'a> FragmentMse<'a> {
-    pub(crate) fn new(
-        data: &'a TrainingData,
-        normalisation: &'a [Normalisation],
-        split: &'a Split,
-        device: &Device,
-    ) -> Self {
+    pub(crate) fn new(normalisation: &'a [Normalisation], device: &Device) -> Self {
         Self {
-            data,
             normalisation,
-            train: &split.train,
-            shuffled: Columns::new(data, normalisation, &[], device),
-            validation: Columns::new(data, normalisation, &split.validation, device),
-            test: Columns::new(data, normalisation, &split.test, device),
+            columns: None,
             device: device.clone(),
         }
     }
 }
 
 impl Task for FragmentMse<'_> {
-    fn examples(&self, part: Part) -> usize {
-        match part {
-            Part::Train => self.train.len(),
-            Part::Validation => self.validation.rows,
-            Part::Test => self.test.rows,
-        }
+    fn load(&mut self, data: &TrainingData, order: &[u32]) {
+        self.columns = Some(Columns::new(data, self.normalisation, order, &self.device));
     }
 
-    fn shuffle(&mut self, order: &[u32]) {
-        let columns =
-            |rows: &[u32]| Columns::new(self.data, self.normalisation, rows, &self.device);
-        // The old order's tensors go before the new one's come.
-        self.shuffled = columns(&[]);
-        let rows: Vec<u32> = order.iter().map(|&i| self.train[i as usize]).collect();
-        self.shuffled = columns(&rows);
-    }
-
-    fn loss_sum(&self, network: &Network, part: Part, range: Range<usize>) -> Tensor<1> {
-        let columns = match part {
-            Part::Train => &self.shuffled,
-            Part::Validation => &self.validation,
-            Part::Test => &self.test,
-        };
+    fn loss_sum(&self, network: &Network, range: Range<usize>) -> Tensor<1> {
+        let columns = self
+            .columns
+            .as_ref()
+            .expect("examples are loaded before their loss is asked for");
         let inputs = columns.inputs.clone().narrow(1, range.start, range.len());
         let target = columns.target.clone().narrow(1, range.start, range.len());
         let difference = network.forward(inputs) - target;

@@ -6,9 +6,9 @@
 //! Config, seed ─► Shape ─► one flat tensor of weights ───┘
 //! ```
 //!
-//! [`train`] takes the columns of a dataset ([`TrainingData`]) and a [`Config`] that holds every hyper-parameter and
+//! [`train`] takes the examples of datasets ([`Source`]) and a [`Config`] that holds every hyper-parameter and
 //! the seed. It sets the held-out rows aside, computes each input's mean and deviation over the training rows, and
-//! runs epochs: the rows are permuted once (an order drawn from the seed and the epoch's number), batches are slices
+//! runs epochs: the rows are permuted (an order drawn from the seed and the epoch's number), batches are slices
 //! of the permuted tensors, and a batch's gradient goes to Adam. What a recipe wants to be trained *on* is a [`Task`]:
 //! it owns the tensors and turns a range of examples into a loss. The loop, the gradient, checkpoints and curves know
 //! nothing about recipes, so a recipe with batches of whole pixels and a loss of its own is one more file.
@@ -30,9 +30,16 @@
 //!
 //! # Memory
 //!
-//! Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
+//! Examples are in memory ([`TrainingData`]) or streamed ([`StreamedData`]).
+//!
+//! *In memory.* Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
 //! epoch. Of a dataset with more than [`Config::max_rows`] rows, whole pixels are drawn from the seed, the same share of every view, and
 //! [`TrainingData::used`] says how many rows are used. With the default, a training takes about 4 GiB at most, however large the dataset.
+//!
+//! *Streamed.* One pass over the datasets makes the examples of all rows, merges the moments of the inputs block by block in the order of
+//! the parts, and writes the examples to a scratch file. An epoch reads its blocks in an order drawn from the seed and trains on windows
+//! of [`Config::buffer_rows`] rows, each permuted. Memory depends on the buffer; of the dataset it holds 24 bytes for each block
+//! of 4,096 rows, twice.
 //!
 //! # Same seed, same weights
 //!
@@ -68,8 +75,10 @@ mod curve;
 mod data;
 mod device;
 mod error;
+mod feed;
 mod files;
 mod fragment_mse;
+mod gather;
 mod lock;
 mod network;
 mod normalise;
@@ -77,7 +86,9 @@ mod pixel_share;
 mod pixels;
 mod report;
 mod sample;
+mod scratch;
 mod split;
+mod streamed;
 mod streams;
 mod task;
 mod team;
@@ -85,7 +96,7 @@ mod train;
 mod training_data;
 
 pub use checkpoint::{FILES as CHECKPOINT_FILES, folder as checkpoint_folder};
-pub use config::{Config, DEFAULT_MAX_ROWS, Schedule};
+pub use config::{Config, DEFAULT_BUFFER_ROWS, DEFAULT_MAX_ROWS, Schedule};
 pub use curve::{CurveFormat, curve_chart, write_curve};
 pub use data::held_out_errors;
 pub use device::Compute;
@@ -94,6 +105,7 @@ pub use lock::OutputLock;
 pub use network::{Network, Shape};
 pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};
+pub use streamed::{Source, StreamedData};
 pub use task::{Part, Task};
 pub use train::{RunOptions, train};
 pub use training_data::{DataSplit, PixelColumns, PixelFixed, TrainingData, UsedRows};

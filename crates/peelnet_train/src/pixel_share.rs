@@ -14,7 +14,7 @@ use peelnet_core::guards::SUM_FLOOR;
 
 use crate::network::Network;
 use crate::normalise::Normalisation;
-use crate::task::{Part, Task};
+use crate::task::Task;
 use crate::training_data::{PixelColumns, TrainingData};
 use peelnet_model::PixelLoss;
 
@@ -105,67 +105,47 @@ impl Tensors {
     }
 }
 
-/// Pixels as examples. Those of a part are on the device only, the training ones in the order of the epoch.
+/// Pixels as examples.
 pub(crate) struct PixelShare<'a> {
-    source: Source<'a>,
-    examples: [&'a [u32]; 3],
-    /// By part.
-    tensors: [Tensors; 3],
+    normalisation: &'a [Normalisation],
+    tensors: Option<Tensors>,
     loss: PixelLoss,
     device: Device,
 }
 
 impl<'a> PixelShare<'a> {
-    /// `examples`: those of each part.
     pub(crate) fn new(
-        data: &'a TrainingData,
-        pixels: &'a PixelColumns,
         normalisation: &'a [Normalisation],
-        examples: [&'a [u32]; 3],
         loss: PixelLoss,
         device: &Device,
     ) -> Self {
-        let source = Source {
-            data,
-            pixels,
-            normalisation,
-        };
-        let [_, validation, test] = examples;
         Self {
-            source,
-            examples,
-            // The training pixels come with the first order.
-            tensors: [&[], validation, test].map(|part| Tensors::new(source, part, device)),
+            normalisation,
+            tensors: None,
             loss,
             device: device.clone(),
         }
     }
 }
 
-const fn index(part: Part) -> usize {
-    match part {
-        Part::Train => 0,
-        Part::Validation => 1,
-        Part::Test => 2,
-    }
-}
-
 impl Task for PixelShare<'_> {
-    fn examples(&self, part: Part) -> usize {
-        self.examples[index(part)].len()
+    fn load(&mut self, data: &TrainingData, order: &[u32]) {
+        self.tensors = data.pixels.as_ref().map(|pixels| {
+            let source = Source {
+                data,
+                pixels,
+                normalisation: self.normalisation,
+            };
+            Tensors::new(source, order, &self.device)
+        });
     }
 
-    fn shuffle(&mut self, order: &[u32]) {
-        // The old order's tensors go before the new one's come.
-        self.tensors[0] = Tensors::new(self.source, &[], &self.device);
-        let train = self.examples[0];
-        let order: Vec<u32> = order.iter().map(|&i| train[i as usize]).collect();
-        self.tensors[0] = Tensors::new(self.source, &order, &self.device);
-    }
-
-    fn loss_sum(&self, network: &Network, part: Part, range: Range<usize>) -> Tensor<1> {
-        let t = &self.tensors[index(part)];
-        let inputs = self.source.normalisation.len();
+    fn loss_sum(&self, network: &Network, range: Range<usize>) -> Tensor<1> {
+        let t = self
+            .tensors
+            .as_ref()
+            .expect("pixels are loaded before their loss is asked for");
+        let inputs = self.normalisation.len();
         let (from, to) = (t.first[range.start] as usize, t.first[range.end] as usize);
         let rows = t.rows.clone().narrow(1, from, to - from);
         let row = |k: usize| rows.clone().narrow(0, inputs + k, 1);

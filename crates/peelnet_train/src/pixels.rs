@@ -11,12 +11,11 @@ use peelnet_core::methods::dfaoit::{FRONT, Layers};
 use peelnet_core::methods::moments::{MomentSums, Settings};
 use peelnet_core::methods::slabs::{self, Between};
 use peelnet_core::methods::{mboit4, nmt};
-use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Split, Subset};
+use peelnet_dataset::{Column, Dataset, FragmentBatch, Part, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
 
 use crate::error::TrainError;
-use crate::sample::Sample;
-use crate::training_data::{PixelColumns, PixelFixed, TrainingData};
+use crate::training_data::{PixelFixed, TrainingData};
 
 /// Rows that are read at once.
 const ROWS_AT_A_TIME: usize = 1 << 16;
@@ -92,23 +91,23 @@ impl View<'_> {
         self,
         mut each: impl FnMut([u32; 3], &Pixel<'_>),
     ) -> Result<(), TrainError> {
-        self.for_each_batch(|batch| pixels_of(batch, &mut each))
+        self.for_each_batch(|batch| {
+            pixels_of(batch, &mut each);
+            Ok(())
+        })
     }
 
-    /// Calls `each` with batches of whole pixels.
+    /// Calls `each` with batches of whole pixels, until it fails.
     pub(crate) fn for_each_batch(
         self,
-        mut each: impl FnMut(&FragmentBatch),
+        mut each: impl FnMut(&FragmentBatch) -> Result<(), TrainError>,
     ) -> Result<(), TrainError> {
         match self {
-            Self::Stored(dataset, part) => {
-                for batch in dataset.batches_where(ROWS_AT_A_TIME, |p| p.index == part.index) {
-                    each(&batch?);
-                }
-            }
-            Self::Held(batches) => batches.iter().for_each(each),
+            Self::Stored(dataset, part) => dataset
+                .batches_where(ROWS_AT_A_TIME, |p| p.index == part.index)
+                .try_for_each(|batch| each(&batch?)),
+            Self::Held(batches) => batches.iter().try_for_each(each),
         }
-        Ok(())
     }
 
     /// Number of rows.
@@ -120,7 +119,7 @@ impl View<'_> {
     }
 }
 
-fn pixels_of(batch: &FragmentBatch, each: &mut impl FnMut([u32; 3], &Pixel<'_>)) {
+pub(crate) fn pixels_of(batch: &FragmentBatch, mut each: impl FnMut([u32; 3], &Pixel<'_>)) {
     let points: Vec<(f32, f32)> = batch
         .linear_depth
         .iter()
@@ -147,7 +146,7 @@ fn pixels_of(batch: &FragmentBatch, each: &mut impl FnMut([u32; 3], &Pixel<'_>))
 ///
 /// The figure that a user looks at is a method's error over that of another on the same image. Weighing each view by the
 /// inverse of its mean hardness trains for that figure: faint scenes count as much as glaring ones.
-fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
+pub(crate) fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
     let found: [f64; 3] = if let Inputs::Slabs(design, _) = recipe.inputs {
         let points = pixel.points.iter().zip(pixel.colors);
         let fragments: Vec<_> = points
@@ -196,89 +195,30 @@ fn by_moments(pixel: &Pixel<'_>, warp: &DepthWarp) -> [f64; 3] {
     sum
 }
 
-/// Examples of one view, before they are weighed.
-#[derive(Default)]
-struct Gathered {
-    hardness: f64,
-    pixels: u64,
-    /// First example of the view.
-    first: usize,
-}
-
-/// Reads views, each with the split of its pixels, as the recipe's examples.
-pub(crate) fn gather<'a>(
+/// Appends what the recipe learns from a pixel.
+pub(crate) fn add(
     recipe: Recipe,
-    sample: &mut Sample,
-    views: impl IntoIterator<Item = (View<'a>, Split)>,
-) -> Result<TrainingData, TrainError> {
-    let mut data = TrainingData {
-        source: String::new(),
-        inputs: vec![Vec::new(); recipe.inputs.about().len()],
-        targets: vec![Vec::new(); recipe.output.count()],
-        weights: Some(Vec::new()),
-        pixels: recipe.loss.map(|_| PixelColumns::default()),
-        subsets: Some(Vec::new()),
-        used: None,
-        split: None,
-        dataset: None,
-    };
-    let mut all = Vec::new();
-    for (view, split) in views {
-        let warp = view.warp()?;
-        let mut gathered = Gathered {
-            first: data.weights.as_ref().map_or(0, Vec::len),
-            ..Default::default()
-        };
-        sample.begin(view.rows());
-        view.for_each_pixel(|[view, x, y], pixel| {
-            if !sample.keep([x, y], pixel.points.len()) {
-                return;
-            }
-            gathered.hardness += hardness(recipe, pixel, &warp);
-            gathered.pixels += 1;
-            let subset = split.pixel(view, x, y);
-            match recipe.inputs {
-                Inputs::Moments(features) => {
-                    transmittance_rows(features, &mut data, pixel, &warp, subset);
-                }
-                Inputs::Layers(features) => color_row(features, &mut data, pixel, subset),
-                Inputs::Rest(features) => {
-                    let apart = recipe.output == Output::AnchoredShareSeparateEnds;
-                    let all = anchored::seen(pixel.points, &warp, recipe.sums);
-                    let all = all.iter().map(of_anchored);
-                    share_pixel(features, &mut data, pixel, subset, apart, all);
-                }
-                Inputs::Slabs(design, features) => {
-                    let all = slabs::seen(pixel.points, &warp, design, recipe.sums);
-                    let all = all.iter().map(of_slabs);
-                    share_pixel(features, &mut data, pixel, subset, design.apart, all);
-                }
-                // Columns of the dataset, read without whole pixels.
-                Inputs::Row(_) => {}
-            }
-        })?;
-        all.push(gathered);
-    }
-    weigh(&mut data, &all);
-    Ok(data)
-}
-
-/// Divides the weights of each view's examples by the view's mean hardness, and all by their mean.
-fn weigh(data: &mut TrainingData, views: &[Gathered]) {
-    let Some(weights) = &mut data.weights else {
-        return;
-    };
-    let (sum, pixels) = views.iter().fold((0.0, 0), |(s, p), view| {
-        (s + view.hardness, p + view.pixels)
-    });
-    let overall = sum / pixels.max(1) as f64;
-    for (k, view) in views.iter().enumerate() {
-        let end = views.get(k + 1).map_or(weights.len(), |next| next.first);
-        // A view that MBOIT-4 draws almost exactly must not outweigh all others.
-        let mean = view.hardness / view.pixels.max(1) as f64 + 0.02 * overall;
-        for weight in &mut weights[view.first..end] {
-            *weight = (f64::from(*weight) * overall / mean.max(f64::MIN_POSITIVE)) as f32;
+    data: &mut TrainingData,
+    pixel: &Pixel<'_>,
+    warp: &DepthWarp,
+    subset: Subset,
+) {
+    match recipe.inputs {
+        Inputs::Moments(features) => transmittance_rows(features, data, pixel, warp, subset),
+        Inputs::Layers(features) => color_row(features, data, pixel, subset),
+        Inputs::Rest(features) => {
+            let apart = recipe.output == Output::AnchoredShareSeparateEnds;
+            let all = anchored::seen(pixel.points, warp, recipe.sums);
+            let all = all.iter().map(of_anchored);
+            share_pixel(features, data, pixel, subset, apart, all);
         }
+        Inputs::Slabs(design, features) => {
+            let all = slabs::seen(pixel.points, warp, design, recipe.sums);
+            let all = all.iter().map(of_slabs);
+            share_pixel(features, data, pixel, subset, design.apart, all);
+        }
+        // Columns of the dataset, read without whole pixels.
+        Inputs::Row(_) => {}
     }
 }
 

@@ -3,6 +3,7 @@
 use peelnet_dataset::Subset;
 
 use crate::streams::Stream;
+use crate::task::Part;
 
 /// Indices of the examples of each part, ascending.
 pub(crate) struct Split {
@@ -12,6 +13,15 @@ pub(crate) struct Split {
 }
 
 impl Split {
+    /// The examples of a part.
+    pub(crate) fn part(&self, part: Part) -> &[u32] {
+        match part {
+            Part::Train => &self.train,
+            Part::Validation => &self.validation,
+            Part::Test => &self.test,
+        }
+    }
+
     /// Draws `⌊n·share⌋` examples for testing at random from the seed. At least one example is left for training.
     pub(crate) fn random(n: u32, share: f64, seed: u64) -> Self {
         let held_out = (f64::from(n) * share) as usize;

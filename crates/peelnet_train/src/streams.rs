@@ -11,6 +11,10 @@ pub(crate) enum Stream {
     Order(u32),
     /// Whether a pixel is used: its view, and its place in it.
     Sample(u64, u64),
+    /// The order of blocks in an epoch of streamed examples.
+    Blocks(u32),
+    /// The order of examples in a window of an epoch.
+    Window(u32, u64),
 }
 
 impl Stream {
@@ -21,6 +25,10 @@ impl Stream {
             Self::Split => (2, 0),
             Self::Order(epoch) => (3, u64::from(epoch)),
             Self::Sample(view, place) => return Random::new(seed, &[4, view, place]),
+            Self::Blocks(epoch) => (5, u64::from(epoch)),
+            Self::Window(epoch, window) => {
+                return Random::new(seed, &[6, epoch.into(), window]);
+            }
         };
         Random::new(seed, &[kind, index])
     }

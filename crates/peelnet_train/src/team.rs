@@ -10,7 +10,7 @@ use burn::tensor::Tensor;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::network::{Network, Shape};
-use crate::task::{Part, Task};
+use crate::task::Task;
 
 /// What the threads of a pool evaluate. Its functions run in the pool: to enter it takes longer than a small batch.
 pub(crate) struct Team<'a> {
@@ -21,15 +21,11 @@ pub(crate) struct Team<'a> {
 }
 
 impl Team<'_> {
-    pub(crate) fn examples(&self, part: Part) -> usize {
-        self.task.examples(part)
-    }
-
-    /// Gradient of the summed loss of training examples, then that loss: `[Shape::parameters + 1]`.
+    /// Gradient of the summed loss of examples, then that loss: `[Shape::parameters + 1]`.
     pub(crate) fn gradient(&self, parameters: &Tensor<1>, range: Range<usize>) -> Tensor<1> {
         self.chunks(range, |range| {
             let network = Network::tracked(self.shape, parameters);
-            let loss = self.task.loss_sum(&network, Part::Train, range);
+            let loss = self.task.loss_sum(&network, range);
             network.gradient(loss)
         })
         .into_iter()
@@ -37,11 +33,11 @@ impl Team<'_> {
         .expect("a batch holds at least one example")
     }
 
-    /// The summed loss of each chunk of a whole part, in order.
-    pub(crate) fn losses(&self, parameters: &Tensor<1>, part: Part) -> Vec<Tensor<1>> {
-        self.chunks(0..self.task.examples(part), |range| {
+    /// The summed loss of each chunk of the first examples, in order.
+    pub(crate) fn losses(&self, parameters: &Tensor<1>, examples: usize) -> Vec<Tensor<1>> {
+        self.chunks(0..examples, |range| {
             let network = Network::new(self.shape, parameters);
-            self.task.loss_sum(&network, part, range)
+            self.task.loss_sum(&network, range)
         })
     }
 

@@ -6,22 +6,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use burn::tensor::{Device, Tensor, TensorData};
-use peelnet_model::{Input, Losses, Metadata, Model};
+use peelnet_model::{DatasetRef, Input, Losses, Metadata, Model};
 
 use crate::adam::Adam;
 use crate::checkpoint::{self, State};
-use crate::config::Config;
+use crate::config::{Config, DEFAULT_BUFFER_ROWS};
 use crate::curve::{CurveFormat, write_curve};
 use crate::device::Compute;
 use crate::error::TrainError;
-use crate::fragment_mse::FragmentMse;
+use crate::feed::{Examples, Feed, Windows};
 use crate::lock::OutputLock;
 use crate::network::Shape;
 use crate::normalise::Normalisation;
-use crate::pixel_share::PixelShare;
 use crate::report::{End, EpochReport, Outcome};
 use crate::split::Split;
-use crate::streams::Stream;
+use crate::streamed::Source;
 use crate::task::{Part, Task};
 use crate::team::Team;
 use crate::training_data::TrainingData;
@@ -71,12 +70,13 @@ const SAVE_EVERY: Duration = Duration::from_secs(5);
 /// Settings out of range, columns that do not fit, files that cannot be written or that another run writes, a checkpoint that belongs to
 /// another run, or [`TrainError::Diverged`] when a loss or a weight is no longer finite. Being asked to stop is not an error:
 /// see [`End::Interrupted`].
-pub fn train(
+pub fn train<'a>(
     config: &Config,
-    data: &TrainingData,
+    data: impl Into<Source<'a>>,
     options: &RunOptions<'_>,
     on_epoch: impl FnMut(&EpochReport),
 ) -> Result<Outcome, TrainError> {
+    let source = data.into();
     config.check()?;
     for path in &options.loss_curve {
         CurveFormat::of(path)?;
@@ -89,33 +89,42 @@ pub fn train(
             });
         }
     }
-    data.check(config.recipe)?;
+    if let Source::Memory(data) = source {
+        data.check(config.recipe)?;
+    }
     let _lock = match options.lock {
         Some(_) => None,
         None => Some(OutputLock::take(&options.out)?),
     };
-    let split = match &data.subsets {
-        Some(subsets) => Split::of(subsets),
-        None => Split::random(data.examples() as u32, config.held_out, config.seed),
+    let (examples, normalisation, dataset, fingerprint) = match source {
+        Source::Memory(data) => {
+            let split = match &data.subsets {
+                Some(subsets) => Split::of(subsets),
+                None => Split::random(data.examples() as u32, config.held_out, config.seed),
+            };
+            let normalisation = normalisation(data, &split);
+            let examples = Examples::in_memory(data, split);
+            (examples, normalisation, &data.dataset, data.fingerprint())
+        }
+        Source::Streamed(data) => {
+            let most = config.buffer_rows.unwrap_or(DEFAULT_BUFFER_ROWS);
+            let windows = Windows::new(data, config, most);
+            let normalisation = data.normalisation.clone();
+            (
+                Examples::Streamed(windows),
+                normalisation,
+                &data.dataset,
+                data.fingerprint(),
+            )
+        }
     };
-    let normalisation = normalisation(data, &split);
     let device = options.compute.device();
-    let mut task: Box<dyn Task + '_> = match &data.pixels {
-        Some(pixels) => Box::new(PixelShare::new(
-            data,
-            pixels,
-            &normalisation,
-            [&split.train, &split.validation, &split.test],
-            config.loss,
-            &device,
-        )),
-        None => Box::new(FragmentMse::new(data, &normalisation, &split, &device)),
-    };
+    let mut feed = Feed::new(config, examples, &normalisation, &device);
     let run = Run {
         config,
         normalisation: &normalisation,
-        data,
-        fingerprint: data.fingerprint(),
+        dataset,
+        fingerprint,
         options,
         device,
         threads: rayon::ThreadPoolBuilder::new()
@@ -125,7 +134,7 @@ pub fn train(
         shape: shape(config),
         folder: checkpoint::folder(&options.out),
     };
-    run.go(task.as_mut(), on_epoch)
+    run.go(&mut feed, on_epoch)
 }
 
 /// Over the training rows.
@@ -158,7 +167,7 @@ fn shape(config: &Config) -> Shape {
 struct Run<'a> {
     config: &'a Config,
     normalisation: &'a [Normalisation],
-    data: &'a TrainingData,
+    dataset: &'a Option<DatasetRef>,
     fingerprint: String,
     options: &'a RunOptions<'a>,
     device: Device,
@@ -188,7 +197,7 @@ struct Pass {
 impl Run<'_> {
     fn go(
         &self,
-        task: &mut dyn Task,
+        feed: &mut Feed<'_>,
         mut on_epoch: impl FnMut(&EpochReport),
     ) -> Result<Outcome, TrainError> {
         let (mut progress, resumed_from) = self.start()?;
@@ -203,10 +212,13 @@ impl Run<'_> {
             if epoch > self.config.epochs {
                 break End::Finished;
             }
-            let Some(pass) = self.threads.install(|| self.epoch(epoch, task, &progress)) else {
+            let Some(pass) = self
+                .threads
+                .install(|| self.epoch(epoch, feed, &progress))?
+            else {
                 break End::Interrupted;
             };
-            self.take(pass, epoch, task.examples(Part::Train), &mut progress)?;
+            self.take(pass, epoch, feed.examples(Part::Train), &mut progress)?;
             if let Some(report) = progress.history.last() {
                 on_epoch(report);
             }
@@ -219,7 +231,7 @@ impl Run<'_> {
         for path in &self.options.loss_curve {
             write_curve(path, &progress.history)?;
         }
-        self.finish(task, progress, end, resumed_from)
+        self.finish(feed, progress, end, resumed_from)
     }
 
     /// The state that a run starts from: the checkpoint's, with the epoch that it was saved after, or a new one.
@@ -252,7 +264,7 @@ impl Run<'_> {
         &self,
         pass: Pass,
         epoch: u32,
-        examples: usize,
+        examples: u64,
         progress: &mut Progress,
     ) -> Result<(), TrainError> {
         if let Some(what) = self.not_finite(pass.train_loss, pass.held_out_loss, &pass.parameters) {
@@ -280,7 +292,7 @@ impl Run<'_> {
     /// Chooses the model, judges it by the test examples and writes it, unless the run was interrupted.
     fn finish(
         &self,
-        task: &dyn Task,
+        feed: &mut Feed<'_>,
         progress: Progress,
         end: End,
         resumed_from: Option<u32>,
@@ -291,13 +303,12 @@ impl Run<'_> {
             _ => (progress.history.len() as u32, &progress.parameters),
         };
         let mut model = self.model(chosen.0, chosen.1, &progress.history, &self.options.out)?;
-        if task.examples(Part::Validation) > 0 {
+        if feed.examples(Part::Validation) > 0 {
             let losses = &mut model.meta.losses;
             losses.validation = losses.validation.or(losses.test);
-            let team = self.team(task);
             losses.test = self
                 .threads
-                .install(|| mean_loss(&team, chosen.1, Part::Test));
+                .install(|| self.mean_loss(feed, chosen.1, Part::Test))?;
         }
         if end != End::Interrupted {
             save_model(&model, &self.options.out)?;
@@ -313,46 +324,77 @@ impl Run<'_> {
     }
 
     /// One pass over the training examples and one over the held-out ones; none when asked to stop.
-    fn epoch(&self, epoch: u32, task: &mut dyn Task, start: &Progress) -> Option<Pass> {
+    fn epoch(
+        &self,
+        epoch: u32,
+        feed: &mut Feed<'_>,
+        start: &Progress,
+    ) -> Result<Option<Pass>, TrainError> {
         let config = self.config;
-        let examples = task.examples(Part::Train);
-        let steps_per_epoch = examples.div_ceil(config.batch) as u64;
-        let steps = steps_per_epoch * u64::from(config.epochs);
+        let examples = feed.examples(Part::Train);
+        let steps = examples.div_ceil(config.batch as u64) * u64::from(config.epochs);
         let begin = Instant::now();
-        task.shuffle(
-            &Stream::Order(epoch)
-                .of(config.seed)
-                .permutation(examples as u32),
-        );
-        let team = self.team(task);
         let mut parameters = start.parameters.clone();
         let mut adam = start.adam.clone();
         let count = self.shape.parameters();
-        let mut losses = Vec::with_capacity(steps_per_epoch as usize);
-        for first in (0..examples).step_by(config.batch) {
-            if self.options.stop.load(Ordering::Relaxed) {
-                return None;
+        let mut loss = 0.0;
+        feed.begin(Part::Train, Some(epoch));
+        while let Some(window) = feed.next(Part::Train)? {
+            let team = self.team(feed.task(Part::Train));
+            let mut losses = Vec::with_capacity(window.div_ceil(config.batch));
+            for first in (0..window).step_by(config.batch) {
+                if self.options.stop.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
+                let range = first..(first + config.batch).min(window);
+                let scale = 1.0 / range.len() as f64;
+                let sum = team.gradient(&parameters, range);
+                losses.push(sum.clone().narrow(0, count, 1));
+                let gradient = sum.narrow(0, 0, count) * scale;
+                let rate = config
+                    .schedule
+                    .rate(config.learning_rate, adam.steps, steps);
+                (adam, parameters) = adam.step(config, rate, parameters, gradient);
             }
-            let range = first..(first + config.batch).min(examples);
-            let scale = 1.0 / range.len() as f64;
-            let sum = team.gradient(&parameters, range);
-            losses.push(sum.clone().narrow(0, count, 1));
-            let gradient = sum.narrow(0, 0, count) * scale;
-            let rate = config
-                .schedule
-                .rate(config.learning_rate, adam.steps, steps);
-            (adam, parameters) = adam.step(config, rate, parameters, gradient);
+            loss += total(losses);
         }
-        let train_loss = total(losses) / examples as f64;
         let seconds = begin.elapsed().as_secs_f64();
-        let held_out_loss = held_out_loss(&team, &parameters);
-        Some(Pass {
-            train_loss,
+        let held_out_loss = self.held_out_loss(feed, &parameters)?;
+        Ok(Some(Pass {
+            train_loss: loss / examples as f64,
             held_out_loss,
             seconds,
             parameters,
             adam,
-        })
+        }))
+    }
+
+    /// Mean loss of what an epoch is judged by: the validation examples, or the test examples where there are none.
+    fn held_out_loss(
+        &self,
+        feed: &mut Feed<'_>,
+        parameters: &Tensor<1>,
+    ) -> Result<Option<f64>, TrainError> {
+        match self.mean_loss(feed, parameters, Part::Validation)? {
+            None => self.mean_loss(feed, parameters, Part::Test),
+            loss => Ok(loss),
+        }
+    }
+
+    /// Mean loss of a part; none when it is empty.
+    fn mean_loss(
+        &self,
+        feed: &mut Feed<'_>,
+        parameters: &Tensor<1>,
+        part: Part,
+    ) -> Result<Option<f64>, TrainError> {
+        let examples = feed.examples(part);
+        let mut sum = 0.0;
+        feed.begin(part, None);
+        while let Some(window) = feed.next(part)? {
+            sum += total(self.team(feed.task(part)).losses(parameters, window));
+        }
+        Ok((examples > 0).then(|| sum / examples as f64))
     }
 
     fn team<'a>(&'a self, task: &'a dyn Task) -> Team<'a> {
@@ -517,7 +559,7 @@ impl Run<'_> {
                 inputs,
                 output: self.config.recipe.output,
                 seed: self.config.seed,
-                dataset: self.data.dataset.clone(),
+                dataset: self.dataset.clone(),
                 epochs: epoch,
                 losses: Losses {
                     train: row.map(|r| r.train_loss),
@@ -529,18 +571,6 @@ impl Run<'_> {
             },
         })
     }
-}
-
-/// Mean loss of what an epoch is judged by: the validation examples, or the test examples where there are none.
-fn held_out_loss(team: &Team<'_>, parameters: &Tensor<1>) -> Option<f64> {
-    mean_loss(team, parameters, Part::Validation)
-        .or_else(|| mean_loss(team, parameters, Part::Test))
-}
-
-/// Mean loss of a part; none when it is empty.
-fn mean_loss(team: &Team<'_>, parameters: &Tensor<1>, part: Part) -> Option<f64> {
-    let examples = team.examples(part);
-    (examples > 0).then(|| total(team.losses(parameters, part)) / examples as f64)
 }
 
 fn save_model(model: &Model, path: &Path) -> Result<(), TrainError> {

@@ -111,6 +111,14 @@ impl TrainingData {
         self.targets.first().map_or(0, Vec::len)
     }
 
+    /// The rows of an example.
+    pub(crate) fn rows_of(&self, example: u32) -> Range<u32> {
+        match &self.pixels {
+            Some(pixels) => pixels.rows(example as usize, self.rows()),
+            None => example..example + 1,
+        }
+    }
+
     /// Number of examples.
     pub fn examples(&self) -> usize {
         self.pixels.as_ref().map_or(self.rows(), |p| p.first.len())
@@ -160,7 +168,7 @@ impl TrainingData {
             ));
         }
         if self.rows() == 0 {
-            return columns("no rows to train on: extract views with transparent objects in them, of scenes that are not held out".into());
+            return Err(TrainError::no_rows(&self.source));
         }
         if self.rows() > i32::MAX as usize {
             return columns(format!(
@@ -193,18 +201,43 @@ impl TrainingData {
                 );
             }
         }
+        self.check_values(recipe, &self.source, 0)
+    }
+
+    /// # Errors
+    /// A value that is not finite. `before` is the number of the first row.
+    pub(crate) fn check_values(
+        &self,
+        recipe: Recipe,
+        source: &str,
+        before: u64,
+    ) -> Result<(), TrainError> {
+        let names = recipe.input_names();
         let named = names.into_iter().chain(std::iter::repeat("target"));
         for (name, values) in named.zip(self.inputs.iter().chain(&self.targets)) {
             if let Some(row) = values.iter().position(|v| !v.is_finite()) {
                 return Err(TrainError::Value {
-                    data: self.source.clone(),
-                    row,
+                    data: source.to_owned(),
+                    row: before + row as u64,
                     column: name.to_owned(),
                     value: values[row],
                 });
             }
         }
         Ok(())
+    }
+
+    /// Removes all rows; the columns keep their room.
+    pub(crate) fn clear(&mut self) {
+        let columns = self.inputs.iter_mut().chain(&mut self.targets);
+        columns.chain(&mut self.weights).for_each(Vec::clear);
+        self.subsets.iter_mut().for_each(Vec::clear);
+        if let Some(pixels) = &mut self.pixels {
+            pixels.first.clear();
+            pixels.fixed.clear();
+            let rows = [&mut pixels.rest, &mut pixels.alpha].into_iter();
+            rows.chain(&mut pixels.color).for_each(Vec::clear);
+        }
     }
 
     /// Identifies the rows, so that a checkpoint is continued with the same ones: a 64-bit hash over the bits of every value.

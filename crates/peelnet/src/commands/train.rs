@@ -10,7 +10,8 @@ use peelnet_dataset::{Dataset, SplitBy};
 use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
 use peelnet_train::{
     CHECKPOINT_FILES, Config, CurveFormat, DataSplit, End, Outcome, OutputLock, RunOptions,
-    Schedule, TrainingData, UsedRows, checkpoint_folder, held_out_errors, train,
+    Schedule, Source, StreamedData, TrainingData, UsedRows, checkpoint_folder, held_out_errors,
+    train,
 };
 use serde_json::json;
 use std::path::Path;
@@ -73,7 +74,8 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
                 "resumed_from": outcome.resumed_from,
                 "losses": meta.losses,
                 "held_out": meta.held_out,
-                "max_rows": args.max_rows,
+                "max_rows": (!args.stream).then_some(args.max_rows),
+                "buffer_rows": args.stream.then_some(args.buffer_rows),
                 "rows": meta.dataset.as_ref().map(|d| d.rows),
                 "dataset": meta.dataset.as_ref().map(|d| &d.hash),
                 "set_aside": meta.dataset.as_ref().map(|d| &d.set_aside),
@@ -102,6 +104,7 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     config.patience = args.patience.or(config.patience);
     config.loss = args.loss;
     config.max_rows = args.max_rows;
+    config.buffer_rows = args.stream.then_some(args.buffer_rows);
     config.split = match args.split {
         SplitChoice::Scene => SplitBy::Scene,
         SplitChoice::Pixel => SplitBy::Pixel,
@@ -123,22 +126,31 @@ pub(super) fn fit(
         lock: Some(&lock),
         ..options.clone()
     };
-    let data = TrainingData::from_datasets(config, datasets)?;
-    warn_of_rows(context, &data, config);
-    if let Some(split) = &data.split
+    let (held, streamed);
+    let (source, split, rows, from): (Source<'_>, _, _, _) = if let Some(most) = config.buffer_rows
+    {
+        streamed = stream(context, config, datasets, options, most)?;
+        let data = &streamed;
+        (data.into(), &data.split, data.rows(), &data.source)
+    } else {
+        held = TrainingData::from_datasets(config, datasets)?;
+        warn_of_rows(context, &held, config);
+        let rows = held.rows() as u64;
+        ((&held).into(), &held.split, rows, &held.source)
+    };
+    if let Some(split) = split
         && config.held_out + config.validation > 0.0
     {
         context.console.message(split_text(split));
     }
     context.console.message(format!(
-        "training recipe {} on {} of {}, {}",
+        "training recipe {} on {} of {from}, {}",
         config.recipe,
-        counted(data.rows() as u64, "row"),
-        data.source,
+        counted(rows, "row"),
         counted(config.epochs.into(), "epoch")
     ));
     let bar = Bar::new(context.console, "train", config.epochs.into());
-    let outcome = train(config, &data, options, |e| {
+    let outcome = train(config, source, options, |e| {
         let held_out = e
             .held_out_loss
             .map_or_else(String::new, |l| format!(", held out {l:.6}"));
@@ -181,11 +193,39 @@ pub(super) fn fit(
     Ok(outcome)
 }
 
+/// Reads the datasets into a scratch file in the checkpoint's folder.
+fn stream(
+    context: &Context<'_>,
+    config: &Config,
+    datasets: &[Dataset],
+    options: &RunOptions<'_>,
+    most: u64,
+) -> Result<StreamedData, Failure> {
+    let folder = checkpoint_folder(&options.out);
+    let bar = Bar::new(
+        context.console,
+        "read",
+        datasets.iter().map(Dataset::rows).sum(),
+    );
+    let data = StreamedData::from_datasets(config, datasets, &folder, options.stop, |rows, of| {
+        bar.set(rows, of, String::new());
+    });
+    drop(bar);
+    let data = data?;
+    context.console.message(format!(
+        "streaming: at most {} in memory at once, {:.1} MiB of scratch space in {}",
+        counted(most, "row"),
+        data.scratch_bytes() as f64 / f64::from(1 << 20),
+        shown(&folder)
+    ));
+    Ok(data)
+}
+
 /// Says if not all rows are used.
 pub(super) fn warn_of_rows(context: &Context<'_>, data: &TrainingData, config: &Config) {
     if let Some(UsedRows { used, of }) = data.used.filter(|rows| rows.used < rows.of) {
         context.console.warn(format!(
-            "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows)",
+            "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows; --stream uses all)",
             thousands(used),
             thousands(of),
             thousands(config.max_rows)

@@ -81,6 +81,7 @@ fn train(error: &TrainError) -> Option<&'static str> {
             "batch" => Some("set it with --batch"),
             "hidden" => Some("set it with --hidden"),
             "max_rows" => Some("set it with --max-rows"),
+            "buffer_rows" => Some("set it with --buffer-rows"),
             "learning_rate" => Some("set it with --lr"),
             "patience" => Some("set it with --patience"),
             "loss" => Some("set it with --loss"),
