@@ -577,14 +577,10 @@ mod tests {
             "run --out o",
             "run a.toml b.toml --out o --full --adapter software",
             "extract a.toml --out d --size 64x48 --views 2 --format npy --peel dual --max-passes 3 --pixels 0.5 --augment 2 --seed 9 --shard 1/4",
-<<<<<<< HEAD
             "extract --synthetic 1000 --out d --seed 3 --resume",
             "extract a.toml --out d --resume",
             "seal d --quiet --json",
-=======
-            "extract --synthetic 1000 --out d --seed 3",
             "train d --out m --stream --buffer-rows 1000",
->>>>>>> stream
             "train d e --out m --recipe thesis --hidden 4,3 --loss image --epochs 3 --batch 64 --lr 1e-3 --seed 2 --max-rows 1000 --resume --loss-curve a.csv --loss-curve a.svg",
             "export m --out w --lang wgsl --precision f32",
             "render s --out i.png --method wboit-eq9:targets=f32 --view 2 --size 8x8 -q",
