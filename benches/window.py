@@ -324,7 +324,8 @@ def film(display, binary, out, home):
         w.key("space")
         w.rest("film-timeline")
         w.click(MEASURE)
-        w.rest("film-front")
+        # Sixty methods and settings, one after the other.
+        time.sleep(PATIENCE)
     finally:
         recorder.close()
         w.close()

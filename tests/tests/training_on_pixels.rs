@@ -17,6 +17,7 @@ fn lists(folder: &Path, lists: u64, seed: u64) -> Dataset {
         format: Format::Parquet,
         seed,
         command: "test".into(),
+        resume: false,
     };
     synthetic(&options, &NEVER, &mut |_| {}).unwrap();
     Dataset::open(folder).unwrap()

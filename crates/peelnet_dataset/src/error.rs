@@ -77,22 +77,14 @@ pub enum DatasetError {
     },
     /// A writer whose rows would not be the dataset's.
     #[error(
-        "{}: the dataset there has another plan: its {field} is {theirs} (worker {other}), and here (worker {worker}) it is {mine}; use the same command, version and adapter, or another folder",
+        "{}: the dataset there has another plan: {difference}; use the same command, version and adapter, or another folder",
         path.display()
     )]
     PlanDiffers {
         /// The dataset.
         path: PathBuf,
-        /// The first thing that differs.
-        field: String,
-        /// Its value here.
-        mine: String,
-        /// Its value in the dataset's plan.
-        theirs: String,
-        /// This writer.
-        worker: String,
-        /// The writer that made the plan.
-        other: String,
+        /// What differs first, with both values and both workers.
+        difference: String,
     },
     /// Two writers of one part with different bytes.
     #[error(

@@ -184,11 +184,10 @@ impl Plan {
             None => Ok((there, false)),
             Some((field, mine, theirs)) => Err(DatasetError::PlanDiffers {
                 path: store.path().to_owned(),
-                field,
-                mine,
-                theirs,
-                worker: self.worker.clone(),
-                other: there.worker,
+                difference: format!(
+                    "its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}",
+                    there.worker, self.worker
+                ),
             }),
         }
     }

@@ -47,7 +47,7 @@ pub(crate) enum Examples<'a> {
         begins: bool,
     },
     /// From a scratch file.
-    Streamed(Windows<'a>),
+    Streamed(Box<Windows<'a>>),
 }
 
 impl<'a> Examples<'a> {

@@ -23,7 +23,6 @@ use crate::split::Split;
 use crate::streamed::Source;
 use crate::task::{Part, Task};
 use crate::team::Team;
-use crate::training_data::TrainingData;
 
 /// What a run needs besides its configuration and data, without an effect on the weights.
 #[derive(Clone, Debug)]
@@ -102,7 +101,7 @@ pub fn train<'a>(
                 Some(subsets) => Split::of(subsets),
                 None => Split::random(data.examples() as u32, config.held_out, config.seed),
             };
-            let normalisation = normalisation(data, &split);
+            let normalisation = data.normalisation(&split);
             let examples = Examples::in_memory(data, split);
             (examples, normalisation, &data.dataset, data.fingerprint())
         }
@@ -111,7 +110,7 @@ pub fn train<'a>(
             let windows = Windows::new(data, config, most);
             let normalisation = data.normalisation.clone();
             (
-                Examples::Streamed(windows),
+                Examples::Streamed(Box::new(windows)),
                 normalisation,
                 &data.dataset,
                 data.fingerprint(),
@@ -135,19 +134,6 @@ pub fn train<'a>(
         folder: checkpoint::folder(&options.out),
     };
     run.go(&mut feed, on_epoch)
-}
-
-/// Over the training rows.
-fn normalisation(data: &TrainingData, split: &Split) -> Vec<Normalisation> {
-    let pixel_rows: Option<Vec<u32>> = data.pixels.as_ref().map(|pixels| {
-        let examples = split.train.iter();
-        examples
-            .flat_map(|&p| pixels.rows(p as usize, data.rows()))
-            .collect()
-    });
-    let rows = pixel_rows.as_ref().unwrap_or(&split.train);
-    let over = |values: &Vec<f32>| Normalisation::over(values, rows);
-    data.inputs.iter().map(over).collect()
 }
 
 fn shape(config: &Config) -> Shape {

@@ -6,6 +6,8 @@ use peelnet_dataset::Subset;
 use peelnet_model::{DatasetRef, Recipe};
 
 use crate::error::TrainError;
+use crate::normalise::Normalisation;
+use crate::split::Split;
 
 /// Rows in memory, by column. All columns are equally long.
 ///
@@ -260,5 +262,18 @@ impl TrainingData {
                 .rotate_left(29);
         }
         format!("{hash:016x}")
+    }
+
+    /// Over the rows that train.
+    pub(crate) fn normalisation(&self, split: &Split) -> Vec<Normalisation> {
+        let pixel_rows: Option<Vec<u32>> = self.pixels.as_ref().map(|pixels| {
+            let examples = split.train.iter();
+            examples
+                .flat_map(|&p| pixels.rows(p as usize, self.rows()))
+                .collect()
+        });
+        let rows = pixel_rows.as_ref().unwrap_or(&split.train);
+        let over = |values: &Vec<f32>| Normalisation::over(values, rows);
+        self.inputs.iter().map(over).collect()
     }
 }

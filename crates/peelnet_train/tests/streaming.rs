@@ -1,6 +1,7 @@
 //! Training from a scratch file: the same examples as in memory, the same bytes for the same seed, and as good a network.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
 
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -67,6 +68,10 @@ fn write(folder: &Path, views: u32) -> Dataset {
         format: Format::Npy,
         seed: 1,
         adapter: "none".to_owned(),
+        adapter_class: "software".to_owned(),
+        settings: BTreeMap::new(),
+        resume: false,
+        worker: "test".to_owned(),
         tool_version: "0".to_owned(),
         command: "test".to_owned(),
         peel: "sbuffer".to_owned(),
