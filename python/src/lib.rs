@@ -30,7 +30,7 @@ mod _native {
     #[pymodule_export]
     use crate::render::{methods, render};
     #[pymodule_export]
-    use crate::rows::{Dataset, Rows, extract_rows};
+    use crate::rows::{Dataset, Rows, extract_rows, seal};
     #[pymodule_export]
     use crate::scene::{Camera, Scene, samples};
     #[pymodule_export]

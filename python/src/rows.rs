@@ -333,7 +333,11 @@ fn in_memory(
 
 enum Done {
     Rows(Rows),
-    Folder(PathBuf, u64),
+    /// How many fragments were left out, and whether the dataset in it is whole.
+    Folder {
+        lost: u64,
+        whole: bool,
+    },
 }
 
 /// Peels scenes: every transparent fragment of every pixel becomes a row.
@@ -349,14 +353,16 @@ enum Done {
 ///     peel: "sbuffer", "dual" or "single".
 ///     max_passes: Stop peeling after N passes.
 ///     format: "parquet", "csv" or "npy", of the folder's files.
-///     shard: "I/N": only part I of N, into `out/shard-I-of-N`.
+///     shard: "I/N": only every Nth view, beginning with the Ith. All shards write into the same folder, in any order or at once.
+///     resume: Do only what is missing of the same extraction in `out`.
 ///     adapter: "auto", "software", or a part of an adapter's name.
 ///     progress: A progress bar of the tqdm protocol, or True for tqdm's own; it counts views.
 ///
 /// Returns:
-///     Rows without `out`, otherwise the Dataset in it. Ctrl-C leaves no dataset behind.
+///     Rows without `out`, otherwise the Dataset in it; None of a shard while views of others are missing. After Ctrl-C finished
+///     views stay, and `resume` goes on.
 #[pyfunction]
-#[pyo3(name = "extract", signature = (scenes, *, out=None, size=(1024, 768), views=None, pixels=1.0, augment=0, seed=1, peel="sbuffer", max_passes=None, format="parquet", shard=None, adapter="auto", progress=None))]
+#[pyo3(name = "extract", signature = (scenes, *, out=None, size=(1024, 768), views=None, pixels=1.0, augment=0, seed=1, peel="sbuffer", max_passes=None, format="parquet", shard=None, resume=false, adapter="auto", progress=None))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn extract_rows<'py>(
     py: Python<'py>,
@@ -371,6 +377,7 @@ pub fn extract_rows<'py>(
     max_passes: Option<u32>,
     format: &str,
     shard: Option<&str>,
+    resume: bool,
     adapter: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -395,6 +402,7 @@ pub fn extract_rows<'py>(
         augment,
         seed,
         shard: shard.map_err(|e| wrong(e.to_string()))?,
+        resume,
         command: "peelnet.extract of the Python package".to_owned(),
         ..ExtractOptions::new(out.clone().unwrap_or_default())
     };
@@ -415,17 +423,18 @@ pub fn extract_rows<'py>(
                     seconds: p.seconds,
                 });
             });
-            let folder = options
-                .shard
-                .map_or_else(|| options.out.clone(), |s| options.out.join(s.folder()));
-            Ok(Done::Folder(folder, report.map_err(raised)?.lost))
+            let report = report.map_err(raised)?;
+            Ok(Done::Folder {
+                lost: report.lost,
+                whole: report.manifest.is_whole(),
+            })
         },
         |_, told: Told| told.show(&mut bar),
     )
     .and_then(|result| result);
     match bar.close(result)? {
         Done::Rows(rows) => Ok(Bound::new(py, rows)?.into_any()),
-        Done::Folder(folder, lost) => {
+        Done::Folder { lost, whole } => {
             if lost > 0 {
                 let lost = counted(lost, "fragment");
                 warn(
@@ -435,10 +444,28 @@ pub fn extract_rows<'py>(
                     ),
                 )?;
             }
-            let dataset = py.detach(|| Dataset::open(folder))?;
+            if !whole {
+                return Ok(py.None().into_bound(py));
+            }
+            let dataset = py.detach(|| Dataset::open(options.out))?;
             Ok(Bound::new(py, dataset)?.into_any())
         }
     }
+}
+
+/// Seals a dataset of which several writers finished all parts: checks the parts and writes the manifest. A sealed one stays as it is.
+///
+/// Args:
+///     path: The dataset's folder.
+///
+/// Returns:
+///     The Dataset.
+#[pyfunction]
+pub fn seal(py: Python<'_>, path: PathBuf) -> PyResult<Dataset> {
+    py.detach(|| {
+        dataset::seal(&path).map_err(raised)?;
+        Dataset::open(path)
+    })
 }
 
 /// A dataset, or its folder.

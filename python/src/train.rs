@@ -10,8 +10,9 @@ use peelnet::{
     Recipe,
     dataset::{Dataset, SplitBy},
     train::{
-        CHECKPOINT_FILES, Config, CurveFormat, End, EpochReport, Outcome, OutputLock, RunOptions,
-        Schedule, TrainingData, checkpoint_folder, held_out_errors,
+        CHECKPOINT_FILES, Config, CurveFormat, DEFAULT_BUFFER_ROWS, End, EpochReport, Outcome,
+        OutputLock, RunOptions, Schedule, Source, StreamedData, TrainingData, checkpoint_folder,
+        held_out_errors,
     },
 };
 use peelnet_files::thousands;
@@ -127,14 +128,23 @@ fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<
         .map(DatasetArg::open)
         .collect::<PyResult<_>>()?;
     let lock = OutputLock::take(&run.out).map_err(raised)?;
-    let data = TrainingData::from_datasets(run.config, &datasets).map_err(raised)?;
+    let (held, streamed);
+    let source: Source<'_> = if run.config.buffer_rows.is_some() {
+        let folder = checkpoint_folder(&run.out);
+        streamed = StreamedData::from_datasets(run.config, &datasets, &folder, stop, |_, _| ())
+            .map_err(raised)?;
+        (&streamed).into()
+    } else {
+        held = TrainingData::from_datasets(run.config, &datasets).map_err(raised)?;
+        (&held).into()
+    };
     let mut options = RunOptions::new(&run.out, stop);
     options.resume = run.resume;
     options.loss_curve = run.loss_curve;
     options.threads = run.threads;
     options.lock = Some(&lock);
     let ask = |e: &EpochReport| reporter.ask(e.into());
-    let mut outcome = peelnet::train::train(run.config, &data, &options, ask).map_err(raised)?;
+    let mut outcome = peelnet::train::train(run.config, source, &options, ask).map_err(raised)?;
     if outcome.end != End::Interrupted && !stop.load(Ordering::Relaxed) {
         let held_out = held_out_errors(&outcome.model, &datasets).map_err(raised)?;
         if !held_out.is_empty() {
@@ -160,6 +170,8 @@ fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<
 ///     loss: "image", "contributions", "weighted-transmittance" or "transmittance", of small, medium and large.
 ///     seed: Of initial weights, order and split. The same seed gives the same weights.
 ///     max_rows: Rows that are used at most; of more, whole pixels are drawn from the seed.
+///     stream: Use all rows, read again from a scratch file beside `out` in every epoch, for datasets larger than memory.
+///     buffer_rows: Rows in memory at most, with `stream`.
 ///     split: "scene" or "pixel": what stays together when rows are set aside for testing.
 ///     threads: Threads to use, all cores by default. The result does not depend on it.
 ///     resume: Continue from the checkpoint of `out`.
@@ -174,7 +186,7 @@ fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<
 ///     A Training: the model and the history. After Ctrl-C or an exception of the callback the checkpoint of `out` holds
 ///     the last whole epoch, and no model file was written.
 #[pyfunction]
-#[pyo3(signature = (data, *, recipe="thesis", out=None, epochs=None, batch=None, lr=None, schedule=None, hidden=None, patience=None, loss="image", seed=1, max_rows=None, split="scene", threads=None, resume=false, loss_curve=None, callback=None, progress=None, force=false))]
+#[pyo3(signature = (data, *, recipe="thesis", out=None, epochs=None, batch=None, lr=None, schedule=None, hidden=None, patience=None, loss="image", seed=1, max_rows=None, stream=false, buffer_rows=None, split="scene", threads=None, resume=false, loss_curve=None, callback=None, progress=None, force=false))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn train<'py>(
     py: Python<'py>,
@@ -190,6 +202,8 @@ pub fn train<'py>(
     loss: &str,
     seed: u64,
     max_rows: Option<u64>,
+    stream: bool,
+    buffer_rows: Option<u64>,
     split: &str,
     threads: Option<NonZeroUsize>,
     resume: bool,
@@ -218,6 +232,7 @@ pub fn train<'py>(
     config.patience = patience.or(config.patience);
     config.loss = loss.parse().map_err(|e: String| wrong(e))?;
     config.max_rows = max_rows.unwrap_or(config.max_rows);
+    config.buffer_rows = stream.then(|| buffer_rows.unwrap_or(DEFAULT_BUFFER_ROWS));
     config.split = match split {
         "scene" => SplitBy::Scene,
         "pixel" => SplitBy::Pixel,

@@ -61,10 +61,27 @@ def test_a_folder_of_any_format_reads_back(rows, tmp_path, format):
 
 
 def test_shards_are_one_dataset(folder, tmp_path):
-    for i in (1, 2, 3):
-        shard = peelnet.extract(["cups", "panes"], size=SIZE, out=tmp_path / "d", shard=f"{i}/3")
-        assert shard.path.name == f"shard-{i}-of-3"
-    assert peelnet.Dataset(tmp_path / "d").hash == peelnet.Dataset(folder).hash
+    out = tmp_path / "d"
+    for i in (3, 1):
+        assert peelnet.extract(["cups", "panes"], size=SIZE, out=out, shard=f"{i}/3") is None
+    with pytest.raises(peelnet.PeelnetError, match="missing"):
+        peelnet.seal(out)
+    with pytest.raises(peelnet.PeelnetError, match="another plan"):
+        peelnet.extract(["cups", "panes"], size=(8, 8), out=out, shard="2/3")
+    whole = peelnet.extract(["cups", "panes"], size=SIZE, out=out, shard="2/3")
+    assert whole.hash == peelnet.Dataset(folder).hash == peelnet.seal(out).hash
+
+
+def test_resume_does_what_is_missing(folder, tmp_path):
+    out = tmp_path / "d"
+    assert peelnet.extract(["cups", "panes"], size=SIZE, out=out, shard="1/2") is None
+    before = {path.name: path.stat().st_mtime_ns for path in out.glob("*.parquet")}
+    whole = peelnet.extract(["cups", "panes"], size=SIZE, out=out, resume=True)
+    assert whole.hash == peelnet.Dataset(folder).hash
+    assert before.items() <= {path.name: path.stat().st_mtime_ns for path in out.glob("*.parquet")}.items()
+
+
+def test_slices_in_memory():
     part = peelnet.extract(["cups", "panes"], size=SIZE, shard="2/3").to_numpy(["view"])["view"]
     assert set(part) == {2, 5}
 
@@ -99,8 +116,7 @@ def test_pyarrow_reads_the_folder(folder, rows):
     import pyarrow.compute
     import pyarrow.dataset
 
-    parts = sorted(map(str, folder.rglob("*.parquet")))
-    table = pyarrow.dataset.dataset(parts).to_table()
+    table = pyarrow.dataset.dataset(folder).to_table()
     total = pyarrow.compute.sum(table["transmittance"].cast("float64")).as_py()
     views = len(pyarrow.compute.unique(table["view"]))
     assert (table.num_rows, pytest.approx(total), views) == expected(rows)

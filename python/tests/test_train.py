@@ -54,6 +54,16 @@ def test_the_command_trains_the_same(command, folder, training, tmp_path):
         np.testing.assert_allclose(value, theirs[name], rtol=1e-4, atol=1e-6)
 
 
+def test_streamed_training_gives_the_same_bytes_again(folder, tmp_path):
+    # A buffer far smaller than the dataset.
+    files = []
+    for name in ("a", "b"):
+        out = tmp_path / f"{name}.safetensors"
+        peelnet.train(folder, out=out, epochs=2, stream=True, buffer_rows=1000)
+        files.append(out.read_bytes())
+    assert files[0] == files[1]
+
+
 def test_a_model_goes_to_a_file_and_back(training, tmp_path):
     path = tmp_path / "m.safetensors"
     training.model.save(path)

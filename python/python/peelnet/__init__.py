@@ -29,6 +29,7 @@ from ._native import (
     recommend,
     render,
     samples,
+    seal,
     train,
 )
 
@@ -52,5 +53,6 @@ __all__ = [
     "recommend",
     "render",
     "samples",
+    "seal",
     "train",
 ]

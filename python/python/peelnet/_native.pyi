@@ -228,6 +228,7 @@ def extract(
     max_passes: int | None = None,
     format: str = "parquet",
     shard: str | None = None,
+    resume: bool = False,
     adapter: str = "auto",
     progress: _Progress = None,
 ) -> Rows: ...
@@ -244,10 +245,30 @@ def extract(
     peel: str = "sbuffer",
     max_passes: int | None = None,
     format: str = "parquet",
-    shard: str | None = None,
+    shard: None = None,
+    resume: bool = False,
     adapter: str = "auto",
     progress: _Progress = None,
 ) -> Dataset: ...
+@overload
+def extract(
+    scenes: _Scenes,
+    *,
+    out: _Path,
+    size: _Size = ...,
+    views: int | None = None,
+    pixels: float = 1.0,
+    augment: int = 0,
+    seed: int = 1,
+    peel: str = "sbuffer",
+    max_passes: int | None = None,
+    format: str = "parquet",
+    shard: str,
+    resume: bool = False,
+    adapter: str = "auto",
+    progress: _Progress = None,
+) -> Dataset | None: ...
+def seal(path: _Path) -> Dataset: ...
 def train(
     data: Dataset | _Path | Iterable[Dataset | _Path],
     *,
@@ -262,6 +283,8 @@ def train(
     loss: str = "image",
     seed: int = 1,
     max_rows: int | None = None,
+    stream: bool = False,
+    buffer_rows: int | None = None,
     split: str = "scene",
     threads: int | None = None,
     resume: bool = False,

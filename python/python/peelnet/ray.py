@@ -78,7 +78,7 @@ def extract(
                 # Of a run that failed or was interrupted; finished ones are not pending any more.
                 for reference in pending:
                     ray.cancel(reference, force=True)
-    return _seal(folder)
+    return peelnet.seal(folder)
 
 
 def _anywhere(place: _Path, *, exists: bool = False) -> str:
@@ -115,14 +115,6 @@ def _gather(pending: dict[Any, int], shards: int, bar: Any) -> None:
                 raise peelnet.PeelnetError(f"shard {index}/{shards} on {wrong}")
             if bar is not None:
                 bar.update(1)
-
-
-def _seal(folder: str) -> peelnet.Dataset:
-    """Makes one dataset of all shards: sealed where this version can, otherwise as the folder of shards that readers merge."""
-    seal: Callable[[str], object] | None = getattr(peelnet, "seal", None)
-    if seal is not None:
-        seal(folder)
-    return peelnet.Dataset(folder)
 
 
 @dataclass(frozen=True)
