@@ -34,10 +34,24 @@ pub fn python(with_ray: bool) -> Result<(), String> {
     run(&mut tests, "pytest")
 }
 
-/// Ray with two nodes on this machine, killed in the middle of its work.
+/// Datasets in an object store, against an S3 server on this machine; then Ray with two nodes on it, killed in the middle of its work.
 pub fn cluster(rest: &[&str]) -> Result<(), String> {
     ensure_driver()?;
     let python = installed("cluster")?;
+    println!("\n== object store");
+    let build = "build --package peelnet_dataset --features object-store --example shared_writer";
+    run(cargo().args(build.split(' ')), "shared_writer")?;
+    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
+    let writer = target.join(format!(
+        "debug/examples/shared_writer{}",
+        env::consts::EXE_SUFFIX
+    ));
+    let mut store = Command::new(&python);
+    run(
+        store.arg("tests/object_store.py").arg(writer),
+        "object store",
+    )?;
+    println!("\n== Ray");
     // Ray asks for addresses that other machines reach; a network namespace has none but its own, and two runs do not meet.
     let script = "ip link set lo up && exec \"$0\" python/cluster/run.py \"$@\"";
     let mut command = Command::new("unshare");
