@@ -52,44 +52,14 @@ fn has_std() -> Result<bool, String> {
     ))
 }
 
-/// Makes the JavaScript beside the wasm file: with the command wasm-bindgen where it is of the version that the code is built with,
-/// else with a program of ours.
+/// Makes the JavaScript beside the wasm file, and packs the file, with a program of ours.
 fn glue(wasm: &Path, into: &Path, target: &Path) -> Result<(), String> {
-    let version = locked_version("wasm-bindgen")?;
-    let installed = Command::new("wasm-bindgen").arg("--version").output();
-    let same = installed.is_ok_and(|o| {
-        let text = String::from_utf8_lossy(&o.stdout);
-        text.split_whitespace().nth(1) == Some(&version)
-    });
-    if same {
-        let mut command = Command::new("wasm-bindgen");
-        command.args([
-            "--target",
-            "web",
-            "--no-typescript",
-            "--remove-name-section",
-        ]);
-        command.args(["--remove-producers-section", "--out-dir"]);
-        return run(command.arg(into).arg(wasm), "wasm-bindgen");
-    }
     let mut command = cargo();
     command.args(["run", "--quiet", "--manifest-path"]);
     command.arg(root().join("xtask/glue/Cargo.toml"));
     // Apart: its profile and its lock file are its own.
     command.arg("--target-dir").arg(target.join("glue"));
     run(command.arg("--").arg(wasm).arg(into), "glue")
-}
-
-/// The version of a package in Cargo.lock.
-fn locked_version(package: &str) -> Result<String, String> {
-    let path = root().join("Cargo.lock");
-    let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-    let name = format!("name = \"{package}\"");
-    let mut lines = text.lines().skip_while(|line| *line != name).skip(1);
-    let version = lines.next().and_then(|line| line.split('"').nth(1));
-    version
-        .map(str::to_owned)
-        .ok_or_else(|| format!("{}: has no {package}", path.display()))
 }
 
 /// Prints what each file weighs, and on the line where `gzip` is there to tell.
@@ -100,9 +70,13 @@ fn sizes(folder: &Path) -> Result<(), String> {
     let mut all = Some(0);
     for path in paths.iter().filter(|p| p.is_file()) {
         let raw = fs::metadata(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let packed = Command::new("gzip").args(["-9", "-c"]).arg(path).output();
-        let packed = packed.ok().filter(|o| o.status.success());
-        let packed = packed.map(|o| o.stdout.len() as u64);
+        let packed = if path.extension().is_some_and(|e| e == "gz") {
+            Some(raw.len())
+        } else {
+            let packed = Command::new("gzip").args(["-9", "-c"]).arg(path).output();
+            let packed = packed.ok().filter(|o| o.status.success());
+            packed.map(|o| o.stdout.len() as u64)
+        };
         let shown = packed.map_or_else(String::new, |n| format!(", {n} gzipped"));
         println!("{}: {} bytes{shown}", path.display(), raw.len());
         all = all.zip(packed).map(|(a, b)| a + b);

@@ -113,7 +113,7 @@ impl<'a> Feed<'a> {
 
     /// Loads the next window of the pass, and returns the number of its examples; none at the end.
     pub(crate) fn next(&mut self, part: Part) -> Result<Option<usize>, TrainError> {
-        let (task, seed) = (&mut self.tasks[part as usize], self.seed);
+        let seed = self.seed;
         match &mut self.examples {
             Examples::Memory {
                 data,
@@ -127,6 +127,7 @@ impl<'a> Feed<'a> {
                 }
                 let examples = split.part(part);
                 if !loaded[part as usize] {
+                    let task = &mut self.tasks[part as usize];
                     // The old order's tensors go before the new one's come.
                     task.load(data, &[]);
                     match epoch {
@@ -141,11 +142,14 @@ impl<'a> Feed<'a> {
                 Ok((!examples.is_empty()).then_some(examples.len()))
             }
             Examples::Streamed(windows) => {
-                task.load(&windows.empty, &[]);
+                // One window is in memory, whichever part it is of.
+                for task in &mut self.tasks {
+                    task.load(&windows.empty, &[]);
+                }
                 let Some(order) = windows.next(seed)? else {
                     return Ok(None);
                 };
-                task.load(&windows.buffer, &order);
+                self.tasks[part as usize].load(&windows.buffer, &order);
                 Ok(Some(order.len()))
             }
         }
@@ -244,9 +248,19 @@ impl<'a> Windows<'a> {
         self.window += 1;
         let end = (u128::from(self.rows) * u128::from(self.window)
             / u128::from(self.windows.max(1))) as u64;
+        let begin = self.next;
+        let (mut rows, mut examples) = (self.buffer.rows(), self.buffer.examples());
         while let Some(&block) = self.blocks.get(self.next)
-            && (self.read < end || self.buffer.examples() < self.batch)
+            && (self.read < end || self.part == Part::Train && examples < self.batch)
         {
+            self.next += 1;
+            self.read += u64::from(block.rows);
+            rows += block.rows as usize;
+            examples += block.examples as usize;
+        }
+        // At once: a column that grows while it is filled is in memory twice.
+        self.buffer.reserve(examples, rows);
+        for &block in &self.blocks[begin..self.next] {
             let before = self.buffer.weights.as_ref().map_or(0, Vec::len);
             self.data
                 .scratch
@@ -256,8 +270,6 @@ impl<'a> Windows<'a> {
                     .weights
                     .apply(block.view as usize, &mut weights[before..]);
             }
-            self.next += 1;
-            self.read += u64::from(block.rows);
         }
         let examples = self.buffer.examples() as u32;
         if examples == 0 {

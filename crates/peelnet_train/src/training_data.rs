@@ -229,6 +229,23 @@ impl TrainingData {
         Ok(())
     }
 
+    /// Makes room for so many examples and rows in all.
+    pub(crate) fn reserve(&mut self, examples: usize, rows: usize) {
+        fn to<T>(column: &mut Vec<T>, most: usize) {
+            column.reserve_exact(most.saturating_sub(column.len()));
+        }
+        let columns = self.inputs.iter_mut().chain(&mut self.targets);
+        columns.for_each(|column| to(column, rows));
+        self.weights.iter_mut().for_each(|w| to(w, examples));
+        if let Some(pixels) = &mut self.pixels {
+            to(&mut pixels.first, examples);
+            to(&mut pixels.fixed, examples);
+            let columns = [&mut pixels.rest, &mut pixels.alpha].into_iter();
+            let columns = columns.chain(&mut pixels.color);
+            columns.for_each(|column| to(column, rows));
+        }
+    }
+
     /// Removes all rows; the columns keep their room.
     pub(crate) fn clear(&mut self) {
         let columns = self.inputs.iter_mut().chain(&mut self.targets);

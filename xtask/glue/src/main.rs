@@ -1,6 +1,13 @@
-//! `glue FILE.wasm FOLDER`: a wasm file for the web, and the JavaScript that loads it.
+//! `glue FILE.wasm FOLDER`: a wasm file for the web as NAME_bg.wasm.gz, and the JavaScript that loads it.
 
-use std::{env, process::ExitCode};
+use std::{
+    env,
+    error::Error,
+    fs::{self, File},
+    io::BufWriter,
+    path::Path,
+    process::ExitCode,
+};
 
 fn main() -> ExitCode {
     let paths: Vec<_> = env::args_os().skip(1).collect();
@@ -8,22 +15,34 @@ fn main() -> ExitCode {
         eprintln!("usage: glue FILE.wasm FOLDER");
         return ExitCode::from(2);
     };
-    let mut bindgen = wasm_bindgen_cli_support::Bindgen::new();
-    let made = bindgen
-        .input_path(wasm)
-        .web(true)
-        .and_then(|bindgen| {
-            bindgen
-                .typescript(false)
-                .remove_name_section(true)
-                .remove_producers_section(true)
-                .generate(folder)
-        });
-    match made {
+    match glue(Path::new(wasm), Path::new(folder)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(e) => {
-            eprintln!("error: {e:?}");
+            eprintln!("error: {e}");
             ExitCode::FAILURE
         }
     }
+}
+
+fn glue(wasm: &Path, folder: &Path) -> Result<(), Box<dyn Error>> {
+    wasm_bindgen_cli_support::Bindgen::new()
+        .input_path(wasm)
+        .web(true)
+        .map_err(|e| format!("{e:?}"))?
+        .typescript(false)
+        .remove_name_section(true)
+        .remove_producers_section(true)
+        .generate(folder)
+        .map_err(|e| format!("{e:?}"))?;
+    let name = wasm.file_stem().unwrap_or_default().to_string_lossy();
+    let plain = folder.join(format!("{name}_bg.wasm"));
+    let packed = BufWriter::new(File::create(plain.with_extension("wasm.gz"))?);
+    let options = zopfli::Options {
+        iteration_count: std::num::NonZeroU64::new(5).ok_or("no iterations")?,
+        maximum_block_splits: 60,
+        ..zopfli::Options::default()
+    };
+    zopfli::compress(options, zopfli::Format::Gzip, &*fs::read(&plain)?, packed)?;
+    fs::remove_file(plain)?;
+    Ok(())
 }
