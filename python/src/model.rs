@@ -9,7 +9,10 @@ use numpy::{
     IntoPyArray as _, PyArray2, PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArrayMethods as _,
     ndarray::{Array1, Array2},
 };
-use peelnet::export::{Language, Options, Precision};
+use peelnet::{
+    dataset::is_remote,
+    export::{Language, Options, Precision},
+};
 use peelnet_core::mlp::{Layer, Mlp};
 use peelnet_files::{Kind, Standing, shown};
 use pyo3::{
@@ -47,7 +50,7 @@ impl Model {
     /// Loads a model file (safetensors).
     #[staticmethod]
     fn load(path: PathBuf) -> PyResult<Self> {
-        peelnet::Model::load(path).map(Self).map_err(raised)
+        peelnet::load_model(path).map(Self).map_err(raised)
     }
 
     /// The network that ships for a recipe: "thesis", "small", "medium", "large", "nmt" or "dfaoit".
@@ -107,11 +110,13 @@ impl Model {
         Ok(Self(model))
     }
 
-    /// Writes the model file, whole or not at all. Another file than a model is replaced only with `force`.
+    /// Writes the model file, whole or not at all. Another file than a model is replaced only with `force`, an object at `s3://…` never.
     #[pyo3(signature = (path, *, force=false))]
     fn save(&self, path: PathBuf, force: bool) -> PyResult<()> {
-        may_write(&path, peelnet::model::KIND, force)?;
-        self.0.save(path).map_err(raised)
+        if !is_remote(&path) {
+            may_write(&path, peelnet::model::KIND, force)?;
+        }
+        peelnet::save_model(&self.0, path).map_err(raised)
     }
 
     /// The bytes of the model's file: the same for the same model.
@@ -303,7 +308,7 @@ impl ModelArg {
     pub fn load(self) -> PyResult<peelnet::Model> {
         match self {
             Self::Loaded(model) => Ok(*model),
-            Self::Path(path) => peelnet::Model::load(path).map_err(raised),
+            Self::Path(path) => peelnet::load_model(path).map_err(raised),
         }
     }
 }

@@ -8,14 +8,14 @@ use crate::{
 };
 use peelnet::{
     Recipe,
-    dataset::{Dataset, SplitBy},
+    dataset::{Dataset, SplitBy, is_remote},
     train::{
         CHECKPOINT_FILES, Config, CurveFormat, DEFAULT_BUFFER_ROWS, End, EpochReport, Outcome,
         OutputLock, RunOptions, Schedule, Source, StreamedData, TrainingData, checkpoint_folder,
         held_out_errors,
     },
 };
-use peelnet_files::thousands;
+use peelnet_files::{error_line, shown, thousands};
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use std::{
     num::NonZeroUsize,
@@ -160,7 +160,8 @@ fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<
 /// Args:
 ///     data: A Dataset or its folder, or a list of them. Rows of scenes that are marked held-out are never trained on.
 ///     recipe: "thesis", "small", "medium", "large", "nmt" or "dfaoit".
-///     out: The model file to write; its checkpoint is the folder `out + ".checkpoint"`. Without it nothing is kept.
+///     out: The model file to write; its checkpoint is the folder `out + ".checkpoint"`, and nothing for an `s3://…`. Without `out`
+///         nothing is kept.
 ///     epochs: Passes over the training rows.
 ///     batch: Fragments per step (pixels, for recipes that learn from whole pixels).
 ///     lr: Learning rate.
@@ -239,6 +240,13 @@ pub fn train<'py>(
         other => return Err(wrong(format!("split '{other}': there are scene, pixel"))),
     };
     config.check().map_err(raised)?;
+    let (out, stored): (Option<PathBuf>, _) = match out {
+        Some(out) if is_remote(&out) => (None, Some(out)),
+        out => (out, None),
+    };
+    if let Some(stored) = &stored {
+        peelnet::check_is_free(stored).map_err(raised)?;
+    }
     let scratch = match &out {
         Some(out) => {
             may_write(out, peelnet::model::KIND, force)?;
@@ -247,7 +255,11 @@ pub fn train<'py>(
             }
             None
         }
-        None if resume => return Err(wrong("resume needs out, beside which the checkpoint lies")),
+        None if resume => {
+            return Err(wrong(
+                "resume needs out, a file beside which the checkpoint lies",
+            ));
+        }
         None => Some(
             tempfile::tempdir()
                 .map_err(|e| failed(format!("cannot create a temporary folder: {e}")))?,
@@ -287,6 +299,17 @@ pub fn train<'py>(
     )
     .and_then(|result| result);
     let outcome = bar.close(result)?;
+    if let Some(stored) = &stored {
+        peelnet::save_model(&outcome.model, stored).map_err(|e| match scratch {
+            // Hours of training are not lost with a connection.
+            Some(folder) => failed(format!(
+                "{}; the model is kept: {}",
+                error_line(&e),
+                shown(&folder.keep().join("model.safetensors"))
+            )),
+            None => raised(e),
+        })?;
+    }
     Ok(Training {
         model: Py::new(py, Model(outcome.model))?,
         history: outcome.history.iter().map(Epoch::from).collect(),

@@ -107,7 +107,7 @@ def interrupted(tmp_path, code, after="begun", seconds=1.0) -> tuple[str, float]
             process.kill()
 
 
-def test_ctrl_c_ends_an_extraction_and_leaves_nothing(tmp_path):
+def test_ctrl_c_ends_an_extraction_and_keeps_whole_parts(tmp_path):
     out, seconds = interrupted(
         tmp_path,
         """
@@ -121,7 +121,14 @@ def test_ctrl_c_ends_an_extraction_and_leaves_nothing(tmp_path):
     )
     assert out.strip() == "interrupted", out
     assert seconds < 10, seconds
-    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+    out = tmp_path / "d"
+    records = sorted(p.stem for p in (out / "_peelnet" / "parts").glob("*"))
+    parts = sorted(p.name.split("-")[1] for p in out.glob("*.parquet"))
+    assert parts == records
+    left = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file() and p.suffix != ".parquet"}
+    assert left <= {"_peelnet/plan.json", *(f"_peelnet/parts/{n}.json" for n in records)}
+    with pytest.raises(peelnet.PeelnetError, match="missing"):
+        peelnet.seal(out)
 
 
 def test_ctrl_c_ends_a_training_and_keeps_its_checkpoint(tmp_path, folder):

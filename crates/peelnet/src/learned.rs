@@ -47,7 +47,7 @@ pub fn weight_of(
         console.message(about(&model, None)?);
         return text_of(gpu, &model).map(Some);
     };
-    let model = Model::load(path)?;
+    let model = peelnet::load_model(path)?;
     if model.meta.recipe != recipe {
         return Err(Failure::Usage(format!(
             "{}: the model's recipe is {}, but method {} draws with recipe {recipe}; use --method {}",

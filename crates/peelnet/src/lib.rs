@@ -70,6 +70,9 @@
 //! - `train`: [`train`], and with it burn, which takes the longest to compile. Part of `cli`.
 
 pub mod cause;
+mod model_files;
+
+pub use model_files::{check_is_free, load_model, save_model};
 
 #[doc(inline)]
 pub use peelnet_gpu::{AdapterRequest, Gpu};

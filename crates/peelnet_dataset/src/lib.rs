@@ -90,7 +90,7 @@ pub use reader::{Batches, Dataset};
 pub use seal::{seal, unsealed_parts};
 pub use shard::Shard;
 pub use split::{Split, SplitBy, Subset};
-pub use store::is_remote;
+pub use store::{create_object, is_remote, read_object};
 pub use summary::Summary;
 pub use worker::worker_name;
 pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter};

@@ -235,6 +235,43 @@ pub fn is_remote(path: &Path) -> bool {
         })
 }
 
+/// The bytes of one object, of at most `most`; `None` where it does not exist. The path is an address, see [`is_remote`].
+///
+/// # Errors
+/// An address that is none, a server that cannot be asked, or an object that is too large.
+pub fn read_object(path: &Path, most: u64) -> Result<Option<Vec<u8>>, DatasetError> {
+    let (store, name) = object(path)?;
+    store.get(&name, most)
+}
+
+/// Creates one object, whole or not at all; false where the name is taken, by whatever bytes. The path is an address, see [`is_remote`].
+///
+/// # Errors
+/// An address that is none, or a server that cannot be asked or refuses.
+pub fn create_object(path: &Path, bytes: &[u8]) -> Result<bool, DatasetError> {
+    let (store, name) = object(path)?;
+    store.put_if_absent(&name, bytes)
+}
+
+/// Where an object lies, and its name there.
+fn object(path: &Path) -> Result<(Arc<dyn Store>, String), DatasetError> {
+    let text = path.to_str().unwrap_or_default();
+    let (prefix, name) = text.rsplit_once('/').unwrap_or_default();
+    let place = Place::of(Path::new(prefix))?;
+    if name.is_empty() || !is_remote(Path::new(prefix)) || prefix.ends_with('/') {
+        return Err(DatasetError::Usage {
+            // An address may have a password in it.
+            path: PathBuf::from(text.split_once("://").map_or("", |(scheme, _)| scheme)),
+            reason: "the address of a file is scheme://bucket/prefix/name".to_owned(),
+        });
+    }
+    let store: Arc<dyn Store> = match place {
+        Place::Folder(folder) => Arc::new(Folder::new(&folder, &folder)),
+        Place::Remote(store) => store,
+    };
+    Ok((store, name.to_owned()))
+}
+
 /// A store of another machine.
 #[cfg(feature = "object-store")]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {

@@ -15,7 +15,7 @@ use crate::metadata::{FORMAT_VERSION, Metadata};
 use crate::model::Model;
 
 /// Bytes of a model file that are read: the largest network that training makes has 16 MiB of weights.
-const MAX_BYTES: u64 = 1 << 26;
+pub const MAX_BYTES: u64 = 1 << 26;
 
 /// The entry of the safetensors metadata that holds ours. It is the only one, because the format keeps its metadata
 /// in no particular order and the bytes must not vary.

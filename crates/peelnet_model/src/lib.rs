@@ -26,7 +26,7 @@ mod recipe;
 mod weights;
 
 pub use error::{ModelError, Problem};
-pub use file::KIND;
+pub use file::{KIND, MAX_BYTES};
 pub use metadata::{BOUNDS, DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output};
 pub use model::Model;
 pub use recipe::{Budget, Declaration, Inputs, Network, PixelLoss, Recipe};

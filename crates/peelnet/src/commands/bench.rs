@@ -247,7 +247,7 @@ pub(super) fn chosen(
 ) -> Result<Chosen, Failure> {
     let mut models: Vec<Model> = Vec::new();
     for path in named {
-        let model = Model::load(path)?;
+        let model = peelnet::load_model(path)?;
         if models.iter().any(|m| m.meta.recipe == model.meta.recipe) {
             return Err(Failure::Usage(format!(
                 "--models: {} is a second model of recipe {}; one run compares one of each",

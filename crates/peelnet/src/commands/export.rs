@@ -6,7 +6,6 @@ use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use peelnet_export::Language;
-use peelnet_model::Model;
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failure> {
@@ -16,7 +15,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
         outputs.file("--out", &description, peelnet_export::JSON_KIND)?;
     }
     let language = Language::from(args.lang);
-    let model = Model::load(&args.model)?;
+    let model = peelnet::load_model(&args.model)?;
     let gpu = context.gpu()?;
     outputs.begin(&[])?;
     let options = peelnet_export::Options {

@@ -25,7 +25,9 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         .and_then(|e| e.to_str())
         .unwrap_or_default();
     let ships = path.to_str().and_then(suite::find).is_some();
-    if is_remote(path) {
+    if is_remote(path) && ending.eq_ignore_ascii_case("safetensors") {
+        model(context, path)
+    } else if is_remote(path) {
         dataset(context, path)
     } else if path.is_dir() {
         if ships {
@@ -303,7 +305,7 @@ fn few(names: &[String]) -> String {
 }
 
 fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
-    let model = Model::load(path)?;
+    let model = peelnet::load_model(path)?;
     let hash = model
         .hash()
         .map_err(|e| Failure::Failed(format!("{}: {}", shown(path), one_line(&e))))?;

@@ -6,7 +6,8 @@ use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use crate::progress::Bar;
-use peelnet_dataset::{Dataset, SplitBy};
+use peelnet::{check_is_free, save_model};
+use peelnet_dataset::{Dataset, SplitBy, is_remote};
 use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
 use peelnet_train::{
     CHECKPOINT_FILES, Config, CurveFormat, DataSplit, End, Outcome, OutputLock, RunOptions,
@@ -19,9 +20,14 @@ use std::path::Path;
 pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
     let config = config(args)?;
     let mut outputs = Outputs::new(context, &args.datasets);
-    outputs.file("--out", &args.out, peelnet_model::KIND)?;
-    // A training needs a file beside which its state lies, also where the model goes to stdout or a device.
-    let is_file = matches!(destination(&args.out), Ok(Destination::File(_)));
+    let is_stored = is_remote(&args.out);
+    if is_stored {
+        check_is_free(&args.out)?;
+    } else {
+        outputs.file("--out", &args.out, peelnet_model::KIND)?;
+    }
+    // A training needs a file beside which its state lies, also where the model goes to stdout, a device or an object store.
+    let is_file = !is_stored && matches!(destination(&args.out), Ok(Destination::File(_)));
     if args.resume && !is_file {
         return Err(Failure::Usage(format!(
             "--resume: {} is no file, so no state lies beside it",
@@ -56,7 +62,14 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     options.loss_curve = args.loss_curve.clone();
     let outcome = fit(context, &config, &datasets, &options)?;
     if !is_file {
-        outcome.model.save(&args.out)?;
+        save_model(&outcome.model, &args.out).inspect_err(|_| {
+            // Hours of training are not lost with a connection.
+            if let Some((folder, _)) = scratch {
+                let kept = folder.keep().join("model.safetensors");
+                let kept = format!("the model is kept: {}", shown(&kept));
+                context.console.message(kept);
+            }
+        })?;
     }
     context.console.result(
         || text(&args.out, &outcome),
