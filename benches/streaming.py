@@ -43,10 +43,10 @@ def measured(command):
 
 
 def dataset(binary, folder, lists):
-    if not (folder / "manifest.json").exists():
+    if not (folder / "_peelnet/manifest.json").exists():
         subprocess.run([binary, "extract", "--synthetic", str(lists), "--out", str(folder), "--seed", "3", "--quiet"],
                        check=True, stdout=subprocess.DEVNULL)
-    return json.loads((folder / "manifest.json").read_text())["rows"]
+    return json.loads((folder / "_peelnet/manifest.json").read_text())["rows"]
 
 
 def main():
