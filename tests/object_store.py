@@ -4,8 +4,8 @@
     cargo build --release --package peelnet --features object-store
     venv/bin/python tests/object_store.py target/release/peelnet
 
-Tested: conditional commits, two writers of one part, a killed writer, throttling, connections that are cut before and after the server
-acted, wrong credentials (never printed), a bucket that is not there, one that may only be read. Prints one line for each test and ends
+Tested: models; conditional commits, two writers of one part, a killed writer, throttling, connections that are cut before and after the server
+acted, wrong credentials (never printed), a clock that is off, a bucket that is not there, is full, or may only be read. Prints one line for each test and ends
 with 1 if any failed. Nothing is left running.
 """
 
@@ -68,7 +68,8 @@ class Server:
 
 
 class Proxy:
-    """Between a command and the server. `hook(method, path, n)` says what happens to request n: None, "slow", "cut-before", "cut-after"."""
+    """Between a command and the server. `hook(method, path, n)` says what happens to request n: None, "slow", "cut-before", "cut-after", or an
+    error's status and code."""
 
     def __init__(self, port, hook):
         self.requests = []
@@ -88,6 +89,11 @@ class Proxy:
                 if what == "slow":
                     text = b"<Error><Code>SlowDown</Code><Message>Please reduce your request rate.</Message></Error>"
                     self.answer(503, {"content-type": "application/xml"}, text)
+                    return
+                if isinstance(what, tuple):
+                    status, code = what
+                    text = f"<Error><Code>{code}</Code><Message>{KEY} {SECRET}</Message></Error>"
+                    self.answer(status, {"content-type": "application/xml"}, text.encode())
                     return
                 if what == "cut-before":
                     self.cut()
@@ -324,6 +330,45 @@ class Tests:
         run = self.run(self.server.port, f"inspect s3://{KEY}:{SECRET.replace('/', '')}@rows/d")
         self.fails(run, "without credentials")
         assert SECRET.replace("/", "") not in run.err
+
+    def test_models(self):
+        self.extract("for-models").json()
+        place = "s3://rows/models/m.safetensors"
+        train = f"train s3://rows/for-models --epochs 1 --out {place}"
+        local = f"{self.folder.name}/local.safetensors"
+        answer = self.run(self.server.port, train).json()
+        assert answer["out"] == place, answer
+        self.run(self.server.port, train.replace(place, local)).json()
+        stored = self.s3.get_object(Bucket="rows", Key="models/m.safetensors")["Body"].read()
+        assert stored == pathlib.Path(local).read_bytes()
+        assert self.names("models") == ["m.safetensors"]
+        self.fails(self.run(self.server.port, train), place, "none is replaced")
+        first, second = (self.run(self.server.port, f"inspect {m}").json() for m in (place, local))
+        assert {k for k in first if first[k] != second[k]} <= {"path", "file", "model"}, (first, second)
+        for m, out in ((place, "a.wgsl"), (local, "b.wgsl")):
+            self.run(self.server.port, f"export {m} --out {self.folder.name}/{out}").json()
+        texts = [pathlib.Path(self.folder.name, out).read_text() for out in ("a.wgsl", "b.wgsl")]
+        assert texts[0] == texts[1]
+        self.fails(self.run(self.server.port, f"inspect {place[:-13]}/x.safetensors"), "s3://rows/models", "cannot read the model")
+        # The server is gone when the training ends: the model is kept on this machine.
+        proxy = Proxy(self.server.port, lambda method, _p, _n: (403, "AccessDenied") if method == "PUT" else None)
+        run = self.run(proxy.port, train.replace("m.safe", "n.safe"))
+        proxy.end()
+        self.fails(run, "s3://rows/models/n.safetensors", "the account may not do this")
+        kept = run.err.split("the model is kept: ")[1].splitlines()[0]
+        assert pathlib.Path(kept).read_bytes() == stored
+
+    def test_a_full_bucket_and_a_wrong_clock(self):
+        for code, words in (("QuotaExceeded", "full"), ("RequestTimeTooSkewed", "clock")):
+            # The first part is written, then nothing more.
+            hook = lambda method, path, _n, code=code: (403, code) if method == "PUT" and "/fragments-00002" in path else None
+            proxy = Proxy(self.server.port, hook)
+            run = self.extract(f"of-{code}", proxy.port)
+            proxy.end()
+            self.fails(run, "fragments-00002", words, code)
+            rest = self.extract(f"of-{code}", more="--resume").json()
+            assert rest["parts_written"] == 3, rest
+            self.same(rest)
 
     def test_credentials_and_rights(self):
         server = Server(open_calls=7)

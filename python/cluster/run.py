@@ -29,12 +29,16 @@ os.environ.setdefault("LP_NUM_THREADS", "1")
 
 # By what processes of a run are known.
 MARK = "PEELNET_CLUSTER_RUN"
+# A file with a line for each part that was drawn.
+LOG = "PEELNET_CLUSTER_LOG"
 
 import peelnet
 import peelnet.ray
 import psutil
 import ray
 from ray.cluster_utils import Cluster
+
+THEIRS = peelnet.ray._shard
 
 
 def scenes(count: int, folder: Path) -> list[str]:
@@ -79,12 +83,27 @@ def workers_of(node) -> list[psutil.Process]:
     return busy
 
 
+def logged(scenes: list[str], shard: str, threads: int, options: dict) -> str | None:
+    """The task of peelnet.ray, with a line in a file for each part that it finished drawing."""
+    import peelnet.ray
+
+    class Log:
+        total = 0
+
+        def update(self, n: int) -> None:
+            # Of a line's length, a write is whole.
+            with open(os.environ[LOG], "a") as log:
+                log.write(f"{shard}\n" * n)
+
+    return THEIRS(scenes, shard, threads, {**options, "progress": Log()})
+
+
 class Bar:
     """Kills a worker after a third of the shards, and a node after two thirds."""
 
     def __init__(self, cluster: Cluster, victim, alone: bool, kill: bool):
         self.cluster, self.victim, self.alone, self.kill = cluster, victim, alone, kill
-        self.total, self.done, self.events = 0, 0, []
+        self.total, self.done, self.events, self.killed = 0, 0, [], 0
 
     def update(self, n: int) -> None:
         self.done += n
@@ -96,10 +115,12 @@ class Bar:
                 busy = workers_of(node)
                 if busy:
                     busy[0].send_signal(signal.SIGKILL)
+                    self.killed += 1
                     self.events.append(f"killed worker {busy[0].pid} after {self.done} of {self.total} shards")
                     break
         if "node" not in self.events and self.done >= 2 * self.total // 3:
             self.events.append("node")
+            self.killed += len(workers_of(self.victim))
             # As a machine that loses its power.
             self.cluster.remove_node(self.victim, allow_graceful=False)
             if self.alone:
@@ -118,6 +139,7 @@ def one_run(workers: int, names: list[str], out: Path | str, size: tuple[int, in
     victim = cluster.add_node(num_cpus=workers - on_head)
     ray.init(address=cluster.address, log_to_driver=False, logging_level=logging.ERROR)
     bar = Bar(cluster, victim, on_head == 0, kill)
+    Path(os.environ[LOG]).write_text("")
     start = time.perf_counter()
     try:
         data = peelnet.ray.extract(names, out, shards=len(names), size=size, progress=bar, retries=5)
@@ -125,7 +147,9 @@ def one_run(workers: int, names: list[str], out: Path | str, size: tuple[int, in
     finally:
         ray.shutdown()
         cluster.shutdown()
-    return {"workers": workers, "hash": data.hash, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
+    drawn = len(Path(os.environ[LOG]).read_text().splitlines())
+    twice = drawn - len(data.manifest["parts"])
+    return {"workers": workers, "hash": data.hash, "twice": twice, "killed": bar.killed, "rows": len(data), "seconds": round(seconds, 1), "events": [e for e in bar.events if " " in e]}
 
 
 @contextlib.contextmanager
@@ -176,18 +200,17 @@ def main() -> int:
     arguments.add_argument("--scenes", type=int, default=16)
     arguments.add_argument("--size", default="512x384")
     arguments.add_argument("--no-kill", action="store_true", help="kill nothing: for times")
-    arguments.add_argument("--s3", action="store_true", help="write to an S3 server (moto) instead of folders")
+    arguments.add_argument("--folders", action="store_true", help="write to folders instead of an S3 server (moto)")
     arguments.add_argument("--out", type=Path, help="also write the results here, JSON")
     options = arguments.parse_args()
-    if options.s3 and not hasattr(peelnet, "seal"):
-        print("error: this peelnet writes no object storage: leave out --s3", file=sys.stderr)
-        return 1
     size = tuple(int(n) for n in options.size.split("x"))
     # Processes that are started from here on are counted, also those that lose their parent.
     os.environ[MARK] = str(os.getpid())
+    peelnet.ray._shard = logged
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="peelnet-cluster-"))
-        place = stack.enter_context(bucket()) if options.s3 else Path(folder)
+        os.environ[LOG] = str(Path(folder) / "drawn")
+        place = Path(folder) if options.folders else stack.enter_context(bucket())
         names = scenes(options.scenes, Path(folder))
         start = time.perf_counter()
         local = peelnet.extract(names, size=size, out=Path(folder) / "local", adapter="software")
@@ -195,7 +218,7 @@ def main() -> int:
         print(f"one process: {len(local):,} rows, {seconds:.1f} s, {local.hash[:16]}", flush=True)
         runs, right = [], True
         for workers in (int(n) for n in options.workers.split(",")):
-            out = f"{place}/of-{workers}" if options.s3 else place / f"of-{workers}"
+            out = f"{place}/of-{workers}"
             run = one_run(workers, names, out, size, not options.no_kill)
             run["same"] = run["hash"] == local.hash
             # Processes that were killed are gone once their parent has waited for them.
@@ -203,11 +226,11 @@ def main() -> int:
             while orphans() and time.monotonic() < deadline:
                 time.sleep(0.2)
             run["orphans"] = orphans()
-            right &= run["same"] and not run["orphans"] and (options.no_kill or len(run["events"]) == 2)
+            right &= run["same"] and not run["orphans"] and run["twice"] <= run["killed"] and (options.no_kill or len(run["events"]) == 2)
             runs.append(run)
             print(f"{workers} workers: {run['rows']:,} rows, {run['seconds']} s, {run['hash'][:16]}, "
                   f"{'the same' if run['same'] else 'ANOTHER hash'}; {'; '.join(run['events']) or 'nothing killed'}; "
-                  f"orphans: {', '.join(run['orphans']) or 'none'}", flush=True)
+                  f"parts drawn twice: {run['twice']} (processes killed: {run['killed']}); orphans: {', '.join(run['orphans']) or 'none'}", flush=True)
     if options.out:
         options.out.write_text(json.dumps({"local": {"hash": local.hash, "seconds": seconds}, "runs": runs}, indent=1))
     if not right:

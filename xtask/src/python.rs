@@ -34,23 +34,28 @@ pub fn python(with_ray: bool) -> Result<(), String> {
     run(&mut tests, "pytest")
 }
 
-/// Datasets in an object store, against an S3 server on this machine; then Ray with two nodes on it, killed in the middle of its work.
+/// Lints of the templates in deploy/; datasets and models in an object store, against an S3 server on this machine; then Ray with two nodes on it, killed in the middle of its work.
 pub fn cluster(rest: &[&str]) -> Result<(), String> {
     ensure_driver()?;
     let python = installed("cluster")?;
+    println!("\n== templates");
+    for lint in [
+        "shellcheck deploy/slurm-array.sh",
+        "hadolint deploy/Containerfile",
+        "kubernetes-validate --strict deploy/kubernetes-indexed-job.yaml",
+    ] {
+        let mut words = lint.split(' ');
+        let tool = python.with_file_name(words.next().unwrap_or_default());
+        run(Command::new(tool).args(words), lint)?;
+    }
     println!("\n== object store");
-    let build = "build --package peelnet_dataset --features object-store --example shared_writer";
-    run(cargo().args(build.split(' ')), "shared_writer")?;
+    let build = "build --package peelnet --features object-store";
+    run(cargo().args(build.split(' ')), "peelnet")?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
-    let writer = target.join(format!(
-        "debug/examples/shared_writer{}",
-        env::consts::EXE_SUFFIX
-    ));
+    let program = target.join(format!("debug/peelnet{}", env::consts::EXE_SUFFIX));
     let mut store = Command::new(&python);
-    run(
-        store.arg("tests/object_store.py").arg(writer),
-        "object store",
-    )?;
+    let tests = "tests/object_store.py";
+    run(store.arg(tests).arg(program), tests)?;
     println!("\n== Ray");
     // Ray asks for addresses that other machines reach; a network namespace has none but its own, and two runs do not meet.
     let script = "ip link set lo up && exec \"$0\" python/cluster/run.py \"$@\"";

@@ -58,7 +58,7 @@ def extract(
         The Dataset of all shards. Its hash is that of one process, however many tasks did the work.
 
     Raises:
-        peelnet.PeelnetError: The first shard that failed, with its node. Shards that were finished stay.
+        peelnet.PeelnetError: The first shard that failed, with its node and process. Shards that were finished stay.
     """
     listed = [scenes] if isinstance(scenes, (str, os.PathLike)) else list(scenes)
     names = [_anywhere(scene) for scene in listed]
@@ -96,7 +96,7 @@ def _shard(scenes: list[str], shard: str, threads: int, options: dict[str, Any])
     try:
         peelnet.extract(scenes, shard=shard, **options)
     except (peelnet.PeelnetError, ValueError) as error:
-        return f"{ray.util.get_node_ip_address()}: {error}"
+        return f"node {ray.util.get_node_ip_address()}, process {os.getpid()}: {error}"
     return None
 
 

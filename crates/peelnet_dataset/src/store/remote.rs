@@ -277,6 +277,9 @@ fn fault(path: &Path, action: &'static str, error: &object_store::Error) -> Data
         (Some("NoSuchBucket" | "ContainerNotFound"), _) => {
             "the bucket does not exist; create it, or correct the address".to_owned()
         }
+        (Some("QuotaExceeded" | "XMinioStorageFull" | "InsufficientCapacity"), _) => {
+            "the bucket is full; make room, and resume".to_owned()
+        }
         (Some("RequestTimeTooSkewed" | "RequestExpired"), _) => {
             "the clock of this machine is off by minutes; set it".to_owned()
         }
