@@ -203,3 +203,19 @@ def test_without_pandas_bench_gives_columns(monkeypatch):
     columns = peelnet.bench("cups", ["wboit-eq9"], size=(32, 24), views=1, frames=0)
     assert len(set(map(len, columns.values()))) == 1
     assert "wboit-eq9" in columns["method"] and len(columns["method"]) == len(columns["mse_linear"])
+
+
+def test_addresses_stand_for_folders_and_files(folder, tmp_path):
+    rows, model = f"file://{tmp_path}/rows", f"file://{tmp_path}/m.safetensors"
+    data = peelnet.extract(["cups", "panes"], size=(64, 48), out=rows)
+    assert data.hash == peelnet.Dataset(folder).hash == peelnet.Dataset(rows).hash == peelnet.seal(rows).hash
+    made = peelnet.train(rows, recipe="thesis", epochs=1, out=model).model
+    assert peelnet.Model.load(model) == made
+    assert [p.name for p in tmp_path.iterdir() if p.is_file()] == ["m.safetensors"]
+    with pytest.raises(peelnet.PeelnetError, match="none is replaced"):
+        peelnet.train(rows, recipe="thesis", epochs=2, out=model)
+    made.save(model)
+    with pytest.raises(peelnet.PeelnetError, match="none is replaced"):
+        peelnet.Model.shipped("small").save(model)
+    assert peelnet.Model.load(model) == made
+    assert peelnet.export(model, "wgsl") == peelnet.export(made, "wgsl")

@@ -11,6 +11,9 @@ use crate::plan::Plan;
 use crate::record::PartRecord;
 use crate::store::{Place, Store};
 
+/// Records that are read at a time.
+const READERS: usize = 32;
+
 /// Seals a dataset of which every part is finished: checks the parts and writes the manifest. A dataset that is sealed stays as it is, and
 /// its manifest is returned. The bytes of the manifest do not depend on who seals, or when.
 ///
@@ -92,6 +95,31 @@ pub(crate) fn missing(store: &dyn Store, plan: &Plan) -> Result<Vec<u32>, Datase
         .collect())
 }
 
+/// The records of all parts, read by several threads: an object store answers each after tens of milliseconds.
+fn records(store: &dyn Store, plan: &Plan) -> Result<Vec<Option<PartRecord>>, DatasetError> {
+    let parts: Vec<u32> = (0..plan.work_items).collect();
+    let share = parts.len().div_ceil(READERS).max(1);
+    let read = |parts: &[u32]| -> Result<Vec<_>, DatasetError> {
+        let records = parts.iter();
+        records
+            .map(|&index| PartRecord::read(store, index, Some(plan)))
+            .collect()
+    };
+    let mut all = Vec::with_capacity(parts.len());
+    std::thread::scope(|scope| {
+        let shares = parts.chunks(share);
+        let readers: Vec<_> = shares.map(|parts| scope.spawn(|| read(parts))).collect();
+        for reader in readers {
+            // In the order of the parts, so that the error is that of the first wrong one.
+            let records = reader
+                .join()
+                .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            all.extend(records?);
+        }
+        Ok(all)
+    })
+}
+
 /// Writes the manifest if every part is there, and returns it; otherwise the missing parts.
 pub(crate) fn whole(
     store: &dyn Store,
@@ -113,8 +141,8 @@ pub(crate) fn whole(
     }
     let mut workers = BTreeMap::new();
     let mut parts = Vec::new();
-    for index in 0..plan.work_items {
-        let Some(record) = PartRecord::read(store, index, Some(plan))? else {
+    for (index, record) in (0..).zip(records(store, plan)?) {
+        let Some(record) = record else {
             return Ok(Err(vec![index]));
         };
         workers.insert(index, record.worker);

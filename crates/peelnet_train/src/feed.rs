@@ -248,10 +248,12 @@ impl<'a> Windows<'a> {
         self.window += 1;
         let end = (u128::from(self.rows) * u128::from(self.window)
             / u128::from(self.windows.max(1))) as u64;
+        // Whole batches to learn from; for judging, something.
+        let least = if self.part == Part::Train { self.batch } else { 1 };
         let begin = self.next;
         let (mut rows, mut examples) = (self.buffer.rows(), self.buffer.examples());
         while let Some(&block) = self.blocks.get(self.next)
-            && (self.read < end || self.part == Part::Train && examples < self.batch)
+            && (self.read < end || examples < least)
         {
             self.next += 1;
             self.read += u64::from(block.rows);
