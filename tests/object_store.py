@@ -349,7 +349,7 @@ class Tests:
             self.run(self.server.port, f"export {m} --out {self.folder.name}/{out}").json()
         texts = [pathlib.Path(self.folder.name, out).read_text() for out in ("a.wgsl", "b.wgsl")]
         assert texts[0] == texts[1]
-        self.fails(self.run(self.server.port, f"inspect {place[:-13]}/x.safetensors"), "s3://rows/models", "cannot read the model")
+        self.fails(self.run(self.server.port, f"inspect {place.replace('m.safe', 'x.safe')}"), "s3://rows/models/x.safetensors", "cannot read the model")
         # The server is gone when the training ends: the model is kept on this machine.
         proxy = Proxy(self.server.port, lambda method, _p, _n: (403, "AccessDenied") if method == "PUT" else None)
         run = self.run(proxy.port, train.replace("m.safe", "n.safe"))
