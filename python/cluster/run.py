@@ -21,6 +21,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+os.environ.setdefault("RAY_BACKEND_LOG_LEVEL", "fatal")
 # A node that dies is noticed in seconds instead of half a minute.
 os.environ.setdefault("RAY_health_check_period_ms", "500")
 os.environ.setdefault("RAY_health_check_failure_threshold", "4")
@@ -83,8 +84,16 @@ def workers_of(node) -> list[psutil.Process]:
     return busy
 
 
-def logged(scenes: list[str], shard: str, threads: int, options: dict) -> str | None:
-    """The task of peelnet.ray, with a line in a file for each part that it finished drawing."""
+def soon(look, seconds: float = 5.0) -> list:
+    """What `look` finds as soon as it finds something: between two tasks no worker is busy."""
+    deadline = time.monotonic() + seconds
+    while not (found := look()) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return found
+
+
+def _shard(scenes: list[str], shard: str, threads: int, options: dict) -> str | None:
+    """The task of peelnet.ray under its name, with a line in a file for each part that it finished drawing."""
     import peelnet.ray
 
     class Log:
@@ -111,16 +120,14 @@ class Bar:
             return
         if "worker" not in self.events and self.done >= self.total // 3:
             self.events.append("worker")
-            for node in self.cluster.list_all_nodes():
-                busy = workers_of(node)
-                if busy:
-                    busy[0].send_signal(signal.SIGKILL)
-                    self.killed += 1
-                    self.events.append(f"killed worker {busy[0].pid} after {self.done} of {self.total} shards")
-                    break
+            busy = soon(lambda: [w for node in self.cluster.list_all_nodes() for w in workers_of(node)])
+            if busy:
+                busy[0].send_signal(signal.SIGKILL)
+                self.killed += 1
+                self.events.append(f"killed worker {busy[0].pid} after {self.done} of {self.total} shards")
         if "node" not in self.events and self.done >= 2 * self.total // 3:
             self.events.append("node")
-            self.killed += len(workers_of(self.victim))
+            self.killed += len(soon(lambda: workers_of(self.victim)))
             # As a machine that loses its power.
             self.cluster.remove_node(self.victim, allow_graceful=False)
             if self.alone:
@@ -206,7 +213,7 @@ def main() -> int:
     size = tuple(int(n) for n in options.size.split("x"))
     # Processes that are started from here on are counted, also those that lose their parent.
     os.environ[MARK] = str(os.getpid())
-    peelnet.ray._shard = logged
+    peelnet.ray._shard = _shard
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="peelnet-cluster-"))
         os.environ[LOG] = str(Path(folder) / "drawn")
