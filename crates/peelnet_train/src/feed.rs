@@ -249,7 +249,11 @@ impl<'a> Windows<'a> {
         let end = (u128::from(self.rows) * u128::from(self.window)
             / u128::from(self.windows.max(1))) as u64;
         // Whole batches to learn from; for judging, something.
-        let least = if self.part == Part::Train { self.batch } else { 1 };
+        let least = if self.part == Part::Train {
+            self.batch
+        } else {
+            1
+        };
         let begin = self.next;
         let (mut rows, mut examples) = (self.buffer.rows(), self.buffer.examples());
         while let Some(&block) = self.blocks.get(self.next)
