@@ -96,13 +96,13 @@ pub(crate) fn missing(store: &dyn Store, plan: &Plan) -> Result<Vec<u32>, Datase
 }
 
 /// The records of all parts, read by several threads: an object store answers each after tens of milliseconds.
-fn records(store: &dyn Store, plan: &Plan) -> Result<Vec<Option<PartRecord>>, DatasetError> {
+fn records(store: &dyn Store, plan: &Plan) -> Result<Vec<(u32, Option<PartRecord>)>, DatasetError> {
     let parts: Vec<u32> = (0..plan.work_items).collect();
     let share = parts.len().div_ceil(READERS).max(1);
     let read = |parts: &[u32]| -> Result<Vec<_>, DatasetError> {
         let records = parts.iter();
         records
-            .map(|&index| PartRecord::read(store, index, Some(plan)))
+            .map(|&index| Ok((index, PartRecord::read(store, index, Some(plan))?)))
             .collect()
     };
     let mut all = Vec::with_capacity(parts.len());
@@ -141,7 +141,7 @@ pub(crate) fn whole(
     }
     let mut workers = BTreeMap::new();
     let mut parts = Vec::new();
-    for (index, record) in (0..).zip(records(store, plan)?) {
+    for (index, record) in records(store, plan)? {
         let Some(record) = record else {
             return Ok(Err(vec![index]));
         };

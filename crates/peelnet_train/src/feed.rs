@@ -406,14 +406,15 @@ mod tests {
                         assert!(windows.buffer.rows() <= room);
                         seen.extend(order.iter().map(|&e| id(&windows.buffer, e)));
                     }
-                    seen
+                    (seen, windows.blocks.clone())
                 };
-                let test = pass(Part::Test, None);
+                let (test, _) = pass(Part::Test, None);
                 assert_eq!(test, expected[1], "in the order of the views");
                 let [first, second] = [1, 2].map(|epoch| pass(Part::Train, Some(epoch)));
-                assert_ne!(first, second);
+                assert_ne!(first.0, second.0);
+                assert_ne!(first.1, second.1, "the order of the blocks");
                 assert_eq!(pass(Part::Train, Some(1)), first);
-                for mut seen in [first, second] {
+                for (mut seen, _) in [first, second] {
                     assert_ne!(seen, expected[0]);
                     seen.sort_unstable();
                     assert!(
