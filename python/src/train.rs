@@ -245,7 +245,7 @@ pub fn train<'py>(
         out => (out, None),
     };
     if let Some(stored) = &stored {
-        peelnet::check_is_free(stored).map_err(raised)?;
+        peelnet::check_model_place(stored).map_err(raised)?;
     }
     let scratch = match &out {
         Some(out) => {

@@ -39,15 +39,17 @@ cargo xtask <command>
   wasm            check the crates that run in a browser for wasm32
   web             build the viewer's page into out/web (needs the Rust target wasm32-unknown-unknown)
   view-test [STEP…]
-                  tests of the viewer as people see it: the page in Chromium (minutes; needs Node.js 20 and npm); steps: page
+                  tests of the viewer as people see it: the window under Xvfb, the page in Chromium (minutes; needs Node.js 20 and npm);
+                  steps: window, page
   docs            build the book in docs/ with mdBook, into target/book
   search          a million random fragment lists for every property (minutes)
   faults          extract, train and bench killed fifty times each (minutes)
   fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust
   three           the package for three.js: types, tests in Chromium on WebGPU and WebGL 2 (minutes; needs Node.js 20 and npm)
   python [--ray]  the Python package: lints, pip install ./python, its tests; with Ray in it (700 MB from PyPI) also those of peelnet.ray
-  cluster [--workers N,…] [--scenes N]
-                  Ray with two nodes in a network namespace: scenes extracted while a worker and a node are killed, compared with one process
+  cluster [--workers N,…] [--scenes N] [--folders]
+                  lints of deploy/; datasets and models in an S3 server; Ray with two nodes in a network namespace: scenes extracted to S3
+                  (or folders) while a worker and a node are killed, compared with one process
   languages       compile the exported texts with glslangValidator and DXC (installed from Debian and PyPI)
   peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
 

@@ -156,7 +156,7 @@ pub struct ExtractArgs {
         value_parser = clap::value_parser!(u64).range(1..)
     )]
     pub synthetic: Option<u64>,
-    /// Folder of the dataset
+    /// Folder of the dataset, or its address: s3://, gs:// or az://BUCKET/PREFIX
     #[arg(long, value_name = "DATASET")]
     pub out: PathBuf,
     /// Frame size in pixels
@@ -200,10 +200,10 @@ pub struct ExtractArgs {
 
 Rows of scenes that are marked held-out are never trained on.")]
 pub struct TrainArgs {
-    /// Dataset folders
+    /// Dataset folders or addresses (s3://, gs://, az://)
     #[arg(value_name = "DATASET", required = true)]
     pub datasets: Vec<PathBuf>,
-    /// The model file to write; its checkpoint is the folder MODEL.checkpoint
+    /// The model file to write, or its address; the checkpoint of a file is the folder MODEL.checkpoint
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
     /// What to train: thesis, small, medium, large, nmt or dfaoit

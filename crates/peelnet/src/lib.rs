@@ -72,7 +72,7 @@
 pub mod cause;
 mod model_files;
 
-pub use model_files::{check_is_free, load_model, save_model};
+pub use model_files::{check_model_place, load_model, save_model};
 
 #[doc(inline)]
 pub use peelnet_gpu::{AdapterRequest, Gpu};

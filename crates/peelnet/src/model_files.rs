@@ -52,7 +52,7 @@ pub fn save_model(model: &Model, path: impl AsRef<Path>) -> Result<(), ModelErro
 ///
 /// # Errors
 /// An address that is none or is taken, or an object store that cannot be asked.
-pub fn check_is_free(path: &Path) -> Result<(), ModelError> {
+pub fn check_model_place(path: &Path) -> Result<(), ModelError> {
     if !is_remote(path) {
         return Ok(());
     }
@@ -101,13 +101,15 @@ mod tests {
         let (small, medium) = (Recipe::SMALL, Recipe::MEDIUM);
         let [small, medium] = [small, medium].map(|r| Model::shipped(r).unwrap());
         let place = address("m.safetensors");
-        check_is_free(Path::new(&place)).unwrap();
+        check_model_place(Path::new(&place)).unwrap();
         save_model(&small, &place).unwrap();
         assert_eq!(load_model(&place).unwrap(), small);
         save_model(&small, &place).unwrap();
         let error = save_model(&medium, &place).unwrap_err().to_string();
         assert!(error.contains("none is replaced"), "{error}");
-        let error = check_is_free(Path::new(&place)).unwrap_err().to_string();
+        let error = check_model_place(Path::new(&place))
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("none is replaced"), "{error}");
         assert_eq!(load_model(&place).unwrap(), small);
         assert_eq!(

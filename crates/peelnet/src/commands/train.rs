@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::parse::{json_path, shown};
 use crate::progress::Bar;
-use peelnet::{check_is_free, save_model};
+use peelnet::{check_model_place, save_model};
 use peelnet_dataset::{Dataset, SplitBy, is_remote};
 use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
 use peelnet_train::{
@@ -22,7 +22,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     let mut outputs = Outputs::new(context, &args.datasets);
     let is_stored = is_remote(&args.out);
     if is_stored {
-        check_is_free(&args.out)?;
+        check_model_place(&args.out)?;
     } else {
         outputs.file("--out", &args.out, peelnet_model::KIND)?;
     }
