@@ -19,9 +19,10 @@ use peelnet_files::{error_line, shown, thousands};
 use pyo3::{exceptions::PyTypeError, prelude::*};
 use std::{
     num::NonZeroUsize,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
 };
+use tempfile::TempDir;
 
 /// One finished epoch of a training.
 #[pyclass(frozen, module = "peelnet", get_all)]
@@ -155,6 +156,28 @@ fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<
     Ok(outcome)
 }
 
+/// Writes a model to an object store. Where that fails, the folder it was made in stays: hours of training are not lost with a connection.
+fn send(model: &peelnet::Model, place: &Path, made_in: Option<TempDir>) -> PyResult<()> {
+    peelnet::save_model(model, place).map_err(|e| match made_in {
+        Some(folder) => failed(format!(
+            "{}; the model is kept: {}",
+            error_line(&e),
+            shown(&folder.keep().join("model.safetensors"))
+        )),
+        None => raised(e),
+    })
+}
+
+fn schedule_of(name: &str) -> PyResult<Schedule> {
+    match name {
+        "constant" => Ok(Schedule::Constant),
+        "one-cycle" => Ok(Schedule::ONE_CYCLE),
+        other => Err(wrong(format!(
+            "schedule '{other}': there are constant, one-cycle"
+        ))),
+    }
+}
+
 /// Trains a network on datasets.
 ///
 /// Args:
@@ -219,16 +242,7 @@ pub fn train<'py>(
     config.epochs = epochs.unwrap_or(config.epochs);
     config.batch = batch.unwrap_or(config.batch);
     config.learning_rate = lr.unwrap_or(config.learning_rate);
-    config.schedule = match schedule {
-        None => config.schedule,
-        Some("constant") => Schedule::Constant,
-        Some("one-cycle") => Schedule::ONE_CYCLE,
-        Some(other) => {
-            return Err(wrong(format!(
-                "schedule '{other}': there are constant, one-cycle"
-            )));
-        }
-    };
+    config.schedule = schedule.map_or(Ok(config.schedule), schedule_of)?;
     config.hidden = hidden.unwrap_or(config.hidden);
     config.patience = patience.or(config.patience);
     config.loss = loss.parse().map_err(|e: String| wrong(e))?;
@@ -299,16 +313,8 @@ pub fn train<'py>(
     )
     .and_then(|result| result);
     let outcome = bar.close(result)?;
-    if let Some(stored) = &stored {
-        peelnet::save_model(&outcome.model, stored).map_err(|e| match scratch {
-            // Hours of training are not lost with a connection.
-            Some(folder) => failed(format!(
-                "{}; the model is kept: {}",
-                error_line(&e),
-                shown(&folder.keep().join("model.safetensors"))
-            )),
-            None => raised(e),
-        })?;
+    if let Some(place) = &stored {
+        send(&outcome.model, place, scratch)?;
     }
     Ok(Training {
         model: Py::new(py, Model(outcome.model))?,
