@@ -139,7 +139,7 @@ class Bar:
         pass
 
 
-def one_run(workers: int, names: list[str], out: Path | str, size: tuple[int, int], kill: bool) -> dict:
+def one_run(workers: int, names: list[str], out: str, size: tuple[int, int], kill: bool) -> dict:
     """Extracts with so many workers on two nodes."""
     on_head = workers // 2
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": on_head, "include_dashboard": False})

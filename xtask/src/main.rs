@@ -105,6 +105,17 @@ fn main() -> ExitCode {
     }
 }
 
+/// Where cargo builds.
+fn target_folder() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into)
+}
+
+/// The program as cargo builds it, of the folder `debug` or `release`.
+fn program(profile: &str) -> PathBuf {
+    let name = format!("peelnet{}", env::consts::EXE_SUFFIX);
+    target_folder().join(profile).join(name)
+}
+
 /// The workspace's root: this package's parent, where it was built.
 fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -1,7 +1,7 @@
 //! The Python package in `python/`, in a virtual environment of its own.
 
 use crate::setup::ensure_driver;
-use crate::{cargo, root, run};
+use crate::{cargo, program, root, run};
 use std::{env, path::PathBuf, process::Command};
 
 /// Lints, the package built and installed as pip does it, and its tests.
@@ -30,7 +30,7 @@ pub fn python(with_ray: bool) -> Result<(), String> {
     let mut tests = Command::new(&python);
     tests
         .args(["-m", "pytest", "python/tests"])
-        .env("PEELNET", root().join("target/debug/peelnet"));
+        .env("PEELNET", program("debug"));
     run(&mut tests, "pytest")
 }
 
@@ -51,11 +51,9 @@ pub fn cluster(rest: &[&str]) -> Result<(), String> {
     println!("\n== object store");
     let build = "build --package peelnet --features object-store";
     run(cargo().args(build.split(' ')), "peelnet")?;
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
-    let program = target.join(format!("debug/peelnet{}", env::consts::EXE_SUFFIX));
     let mut store = Command::new(&python);
     let tests = "tests/object_store.py";
-    run(store.arg(tests).arg(program), tests)?;
+    run(store.arg(tests).arg(program("debug")), tests)?;
     println!("\n== Ray");
     // Ray asks for addresses that other machines reach; a network namespace has none but its own, and two runs do not meet.
     let script = "ip link set lo up && exec \"$0\" python/cluster/run.py \"$@\"";

@@ -1,7 +1,7 @@
 //! The viewer as people see it: `cargo xtask view-test`.
 
 use crate::{
-    cargo, root, run,
+    cargo, program, run,
     setup::{apt_install, ensure_browser, ensure_driver},
     web,
 };
@@ -38,9 +38,7 @@ fn binary() -> Result<PathBuf, String> {
     }
     let build = "build --release --package peelnet --features view";
     run(cargo().args(build.split(' ')), "peelnet")?;
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
-    let name = format!("peelnet{}", env::consts::EXE_SUFFIX);
-    Ok(target.join("release").join(name))
+    Ok(program("release"))
 }
 
 /// The window under a display of its own, driven by pointer and keys.

@@ -1,6 +1,6 @@
 //! The viewer's page: `cargo xtask web`.
 
-use crate::{cargo, root, run};
+use crate::{cargo, root, run, target_folder};
 use std::{
     env, fs,
     path::{Path, PathBuf},
@@ -15,7 +15,7 @@ const MOST: u64 = 3_000_000;
 
 /// Builds the page into out/web.
 pub fn web() -> Result<(), String> {
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
+    let target = target_folder();
     let mut build = cargo();
     build.args(["rustc", "--package", "peelnet_view", "--lib"]);
     build.args(["--crate-type", "cdylib", "--profile", "web", "--target"]);

@@ -192,7 +192,7 @@ pub(crate) fn encode(data: &TrainingData, examples: &[u32], to: &mut Vec<u8>) {
 /// Appends the examples of a block to columns of the same recipe.
 pub(crate) fn decode(bytes: &[u8], examples: usize, to: &mut TrainingData) {
     let (mut words, _) = bytes.as_chunks::<4>();
-    // From the end: what is there once for each example, so that the rows are what is left.
+    // Values of examples lie at the end and are taken off first. All before them are values of rows.
     let mut last = |count: usize| {
         let (left, last) = words.split_at(words.len() - count);
         words = left;

@@ -1,29 +1,19 @@
 //! From a dataset on disk to columns, and a model's error on its held-out scenes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
 
+mod common;
+
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use peelnet_dataset::{
-    CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo,
-    SceneEntry, SplitBy, Subset,
-};
+use common::{scene, write_views};
+use peelnet_dataset::{Dataset, FragmentBatch, SceneEntry, SplitBy, Subset};
 use peelnet_model::Recipe;
 use peelnet_train::{
     Config, DataSplit, RunOptions, TrainError, TrainingData, held_out_errors, train,
 };
 
 const SIDE: u32 = 30;
-
-fn scene(name: &str, held_out: bool) -> SceneEntry {
-    SceneEntry {
-        name: name.to_owned(),
-        file: format!("{name}.toml"),
-        sha256: "0".repeat(64),
-        held_out,
-        effects: Vec::new(),
-    }
-}
 
 /// A view of 30×30 pixels with three fragments of α = ½ each.
 fn view(index: u32) -> FragmentBatch {
@@ -57,60 +47,7 @@ fn stacks(index: u32, layers: u32) -> FragmentBatch {
 }
 
 fn write(folder: &Path, scenes: Vec<SceneEntry>) -> Dataset {
-    write_views(folder, scenes, view)
-}
-
-fn write_views(
-    folder: &Path,
-    scenes: Vec<SceneEntry>,
-    rows: impl Fn(u32) -> FragmentBatch,
-) -> Dataset {
-    let parts = scenes.len() as u32;
-    let writer = DatasetWriter::create(
-        folder,
-        Header {
-            format: Format::Npy,
-            seed: 1,
-            adapter: "none".to_owned(),
-            adapter_class: "none".to_owned(),
-            tool_version: "0".to_owned(),
-            command: "test".to_owned(),
-            peel: "sbuffer".to_owned(),
-            pixels_fraction: 1.0,
-            augment: 0,
-            settings: std::collections::BTreeMap::new(),
-            scenes,
-            work_items: parts,
-            shard: None,
-            resume: false,
-            worker: "test".to_owned(),
-        },
-    )
-    .unwrap();
-    for index in 0..parts {
-        let mut part = writer
-            .begin(PartInfo {
-                index,
-                scene: index,
-                copy: 0,
-                view: 0,
-                camera: CameraInfo {
-                    position: [0.0, 0.0, 6.0],
-                    target: [0.0; 3],
-                    up: [0.0, 1.0, 0.0],
-                    fov_y_degrees: 45.0,
-                    near: 0.1,
-                    far: 100.0,
-                },
-                width: SIDE,
-                height: SIDE,
-            })
-            .unwrap();
-        part.write(&rows(index)).unwrap();
-        part.finish(PartCounts::default()).unwrap();
-    }
-    writer.finish().unwrap();
-    Dataset::open(folder).unwrap()
+    write_views(folder, SIDE, scenes, view)
 }
 
 #[test]
@@ -199,7 +136,7 @@ fn batches_in_memory_train_as_their_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let view = |index| stacks(index, 6);
     let scenes = vec![scene("one", false), scene("two", false)];
-    let dataset = write_views(&folder.path().join("rows"), scenes, view);
+    let dataset = write_views(&folder.path().join("rows"), SIDE, scenes, view);
     let mut halves = [FragmentBatch::default(), FragmentBatch::default()];
     let first = view(0);
     let half = first.len() / 2 / 6 * 6;
@@ -243,7 +180,7 @@ fn batches_in_memory_train_as_their_dataset() {
 fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = (0..8).map(|k| scene(&format!("s{k}"), k == 3)).collect();
-    let dataset = write_views(&folder.path().join("rows"), scenes, |index| {
+    let dataset = write_views(&folder.path().join("rows"), SIDE, scenes, |index| {
         stacks(index, 6)
     });
     let datasets = std::slice::from_ref(&dataset);
@@ -295,7 +232,7 @@ fn whole_scenes_are_set_aside() {
     let names = ["a", "b", "c", "d", "e", "f"];
     let mut scenes: Vec<SceneEntry> = names.iter().map(|n| scene(n, false)).collect();
     scenes.push(scene("held", true));
-    let dataset = write_views(&folder.path().join("rows"), scenes, |k| stacks(k, 6));
+    let dataset = write_views(&folder.path().join("rows"), SIDE, scenes, |k| stacks(k, 6));
     let datasets = std::slice::from_ref(&dataset);
     let rows = 6 * (SIDE * SIDE) as usize;
     for recipe in [Recipe::THESIS, Recipe::MEDIUM] {
@@ -344,8 +281,9 @@ fn whole_scenes_are_set_aside() {
 #[test]
 fn whole_datasets_validate() {
     let folder = tempfile::tempdir().unwrap();
-    let make =
-        |name: &str, scenes| write_views(&folder.path().join(name), scenes, |k| stacks(k, 24));
+    let make = |name: &str, scenes| {
+        write_views(&folder.path().join(name), SIDE, scenes, |k| stacks(k, 24))
+    };
     let training = [make("a", vec![scene("one", false), scene("held", true)])];
     let validation = [make("b", vec![scene("two", false)])];
     for recipe in Recipe::ALL {

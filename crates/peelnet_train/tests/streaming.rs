@@ -1,16 +1,15 @@
 //! Training from a scratch file: the same examples as in memory, the same bytes for the same seed, and as good a network.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
 
-use std::collections::BTreeMap;
+mod common;
+
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use common::{scene, write_views};
 use peelnet_core::random::Random;
-use peelnet_dataset::{
-    CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo,
-    SceneEntry, SplitBy, Subset,
-};
+use peelnet_dataset::{Dataset, FragmentBatch, SplitBy, Subset};
 use peelnet_model::Recipe;
 use peelnet_train::{
     Config, DataSplit, End, Outcome, Part, RunOptions, Source, StreamedData, TrainError,
@@ -55,56 +54,8 @@ fn view(index: u32) -> FragmentBatch {
 }
 
 fn write(folder: &Path, views: u32) -> Dataset {
-    let scenes = (0..views)
-        .map(|k| SceneEntry {
-            name: format!("s{k}"),
-            file: format!("s{k}.toml"),
-            sha256: "0".repeat(64),
-            held_out: false,
-            effects: Vec::new(),
-        })
-        .collect();
-    let header = Header {
-        format: Format::Npy,
-        seed: 1,
-        adapter: "none".to_owned(),
-        adapter_class: "software".to_owned(),
-        settings: BTreeMap::new(),
-        resume: false,
-        worker: "test".to_owned(),
-        tool_version: "0".to_owned(),
-        command: "test".to_owned(),
-        peel: "sbuffer".to_owned(),
-        pixels_fraction: 1.0,
-        augment: 0,
-        scenes,
-        work_items: views,
-        shard: None,
-    };
-    let writer = DatasetWriter::create(folder, header).unwrap();
-    for index in 0..views {
-        let info = PartInfo {
-            index,
-            scene: index,
-            copy: 0,
-            view: 0,
-            camera: CameraInfo {
-                position: [0.0, 0.0, 6.0],
-                target: [0.0; 3],
-                up: [0.0, 1.0, 0.0],
-                fov_y_degrees: 45.0,
-                near: 0.1,
-                far: 100.0,
-            },
-            width: SIDE,
-            height: SIDE,
-        };
-        let mut part = writer.begin(info).unwrap();
-        part.write(&view(index)).unwrap();
-        part.finish(PartCounts::default()).unwrap();
-    }
-    writer.finish().unwrap();
-    Dataset::open(folder).unwrap()
+    let scenes = (0..views).map(|k| scene(&format!("s{k}"), false));
+    write_views(folder, SIDE, scenes.collect(), view)
 }
 
 fn config(recipe: Recipe) -> Config {

@@ -129,7 +129,7 @@ impl Remote {
         };
         match self.retried(create) {
             Ok(_) => Ok(true),
-            // Also where an earlier try was cut after the server had done it: whoever asks compares what is there.
+            // The object may be ours, of an earlier try whose answer was lost: callers compare the bytes that are there.
             Err(
                 object_store::Error::AlreadyExists { .. }
                 | object_store::Error::Precondition { .. },
