@@ -1,8 +1,9 @@
-// S-buffer: sorts each pixel's run by (linear depth, triangle), one thread a pixel.
+// S-buffer: sorts each pixel's run of at most SHORT fragments by (linear depth, triangle), one thread a pixel. Longer ones: long_runs.
 //
 // Shell sort (Shell 1959, gaps of Ciura 2001): in place, no recursion, insertion sort for the short runs that
-// almost all pixels have, and n^1.3 for the rest. Depths are positive, so comparing their bits compares them.
-// Variants: none | tinted
+// almost all pixels have. Depths are positive, so comparing their bits compares them.
+// Variants: none | tinted | long | tinted long
+import package::parameters::SHORT;
 import package::peel::tile::Tile;
 
 @group(0) @binding(0) var<uniform> tile: Tile;
@@ -10,15 +11,14 @@ import package::peel::tile::Tile;
 @group(0) @binding(2) var<storage, read_write> depths: array<f32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> colors: array<vec4f>;
+// Slots in sorted order: a short run's own, once it is sorted in place.
+@if(long) @group(0) @binding(5) var<storage, read_write> order: array<u32>;
 
 // Colours of a fragment.
 @if(!tinted) const COLORS: u32 = 1u;
 @if(tinted) const COLORS: u32 = 2u;
 
 fn next_gap(gap: u32) -> u32 {
-    if gap > 1750u { return u32(f32(gap) / 2.25); }
-    if gap > 701u { return 701u; }
-    if gap > 301u { return 301u; }
     if gap > 132u { return 132u; }
     if gap > 57u { return 57u; }
     if gap > 23u { return 23u; }
@@ -37,6 +37,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let base = offsets[tile.begin];
     let begin = min(offsets[pixel] - base, tile.capacity);
     let end = min(offsets[pixel + 1u] - base, tile.capacity);
+    if end - begin > SHORT {
+        return;
+    }
+    @if(long) {
+        for (var i = begin; i < end; i++) {
+            order[i] = i;
+        }
+    }
     var gap = next_gap(max(end - begin, 1u));
     // A short run is nearly free by insertion alone.
     if end - begin <= 24u {

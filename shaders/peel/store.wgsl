@@ -1,5 +1,6 @@
 // S-buffer, pass 2: every fragment into its pixel's own run of slots.
-// Variants: none | tinted | layered | named | dataset
+// Variants: none | tinted | layered | named | dataset | half_colors | byte_colors | tinted half_colors
+@if(half_colors || byte_colors) import package::helpers::stored::{restored, stored};
 import package::scene::camera::camera;
 @if(dataset) import package::scene::shade::radiance as shade;
 @if(layered) import package::scene::shade::layered as shade;
@@ -16,6 +17,12 @@ import package::peel::tile::Tile;
 // Where light takes a colour two of a fragment: its colour, and what it covers of each channel. `named`: material and side instead.
 @group(1) @binding(4) var<storage, read_write> colors: array<vec4f>;
 @group(1) @binding(5) var<uniform> tile: Tile;
+
+// As the linked list keeps colours.
+fn rounded(color: vec4f) -> vec4f {
+    @if(half_colors || byte_colors) return restored(stored(color));
+    @if(!half_colors && !byte_colors) return color;
+}
 
 @fragment
 fn fragment_main(surface: Surface, @if(named) @builtin(front_facing) is_front: bool) {
@@ -36,9 +43,9 @@ fn fragment_main(surface: Surface, @if(named) @builtin(front_facing) is_front: b
     depths[slot] = surface.depth_linear;
     triangles[slot] = surface.triangle;
     @if(named) colors[slot] = vec4f(f32(surface.material), f32(is_front), 0.0, 0.0);
-    @if(!tinted && !named) colors[slot] = shade(surface);
+    @if(!tinted && !named) colors[slot] = rounded(shade(surface));
     @if(tinted) {
-        colors[2u * slot] = shade(surface);
-        colors[2u * slot + 1u] = vec4f(covering(surface), 0.0);
+        colors[2u * slot] = rounded(shade(surface));
+        colors[2u * slot + 1u] = rounded(vec4f(covering(surface), 0.0));
     }
 }

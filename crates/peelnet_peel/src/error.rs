@@ -40,6 +40,12 @@ pub enum PeelError {
         /// Views that were asked for.
         asked: u32,
     },
+    /// The check of rows that came from the GPU.
+    #[error(
+        "{0} rows are nearer than the row before them in their pixel. This is a fault of peelnet or of the GPU's driver: please report it \
+         with what `peelnet doctor` prints"
+    )]
+    Unsorted(u64),
     /// Not a fraction.
     #[error("{0} is not a fraction of the pixels: it must be above 0 and at most 1")]
     Fraction(f64),

@@ -362,6 +362,7 @@ fn write(
                     counts.rows += found.rows;
                     counts.lost += found.lost;
                     counts.coplanar += found.coplanar;
+                    counts.unsorted += found.unsorted;
                     // Nobody may be left to use it again; then it is freed.
                     let _ = give_back.send(tile);
                 }
@@ -369,6 +370,9 @@ fn write(
                 // The other side ended early: the part is abandoned with the whole dataset.
                 Err(_) => return Err(PeelError::Interrupted),
             }
+        }
+        if counts.unsorted > 0 {
+            return Err(PeelError::Unsorted(counts.unsorted));
         }
         part.finish(PartCounts {
             lost_fragments: counts.lost,

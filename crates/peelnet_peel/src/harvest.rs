@@ -11,6 +11,7 @@ use peelnet_gpu::{
 };
 use peelnet_raster::{
     FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers,
+    count::{Faults, FragmentCount},
     dual::DualPeel,
     frame::Output,
     sbuffer::{SBuffer, Tile},
@@ -185,9 +186,14 @@ impl Harvester {
             .sbuffer
             .count
             .run(&mut recorder, &self.scene, &self.frame)?;
-        let (tiles, grown) =
-            self.sbuffer
-                .plan_counted(gpu, &self.scene, &self.frame, found.total)?;
+        let needed = match self.peeler {
+            Peeler::SBuffer => found,
+            // They come sorted.
+            Peeler::Dual(_) | Peeler::Single(_) => FragmentCount { most: 0, ..found },
+        };
+        let (tiles, grown) = self
+            .sbuffer
+            .plan_counted(gpu, &self.scene, &self.frame, needed)?;
         if grown {
             self.collector = self.collector()?;
         }
@@ -208,6 +214,8 @@ impl Harvester {
                 ready(raw)?;
             }
         }
+        let faults = gpu.read(&self.sbuffer.count.faults, Faults::BYTES)?;
+        Faults::check(&faults, self.frame.size[0])?;
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let times = gpu.block_on(times.read())?;
@@ -326,7 +334,21 @@ impl Harvester {
             if self.with_triangles {
                 gpu.read_into(&storage.triangles, 0..fragments * 4, &mut raw.triangles)?;
             }
+            // Long runs are sorted by the numbers of their slots.
+            if let Some(long) = self.sbuffer.long_runs() {
+                let order: Vec<u32> = gpu.read(&long.order, 0..fragments * 4)?;
+                put_in_order(&mut raw.depths, &order);
+                put_in_order(&mut raw.colors, &order);
+                if self.with_triangles {
+                    put_in_order(&mut raw.triangles, &order);
+                }
+            }
         }
         Ok(())
     }
+}
+
+/// Replaces the `i`-th value by that in slot `order[i]`.
+fn put_in_order<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
+    *values = order.iter().map(|&slot| values[slot as usize]).collect();
 }

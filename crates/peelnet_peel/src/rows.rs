@@ -40,7 +40,13 @@ pub struct RowCounts {
     pub lost: u64,
     /// Neighbours of equal depth.
     pub coplanar: u64,
+    /// Rows that are nearer than the one before in their pixel.
+    pub unsorted: u64,
 }
+
+/// Fragments of a pixel beyond which sums and products are formed in 64 bits: `n` factors formed in 32 bits err by up to `2n` roundings
+/// of 2⁻²⁴, a hundredth at 100,000. Rows of shorter runs keep the bits that they have always had.
+const LONG: usize = 1500;
 
 /// Appends the rows of `tile`, calling `flush` whenever the batch holds `chunk` rows or more (pixels stay whole) and
 /// once at the end.
@@ -61,11 +67,17 @@ pub fn append_rows<E>(
             continue;
         }
         let (mut n, mut alpha_sum) = (0u32, 0.0f32);
+        let is_long = run.len() > LONG;
+        let (mut long_sum, mut long_product) = (0.0f64, 1.0f64);
         for i in run.clone() {
             if tile.depths[i] > 0.0 {
                 n += 1;
                 alpha_sum += tile.colors[i][3];
+                long_sum += f64::from(tile.colors[i][3]);
             }
+        }
+        if is_long {
+            alpha_sum = long_sum as f32;
         }
         counts.lost += u64::from(run.len() as u32 - n);
         counts.rows += u64::from(n);
@@ -77,6 +89,7 @@ pub fn append_rows<E>(
             }
             let [r, g, b, alpha] = tile.colors[i];
             counts.coplanar += u64::from(depth == before);
+            counts.unsorted += u64::from(depth < before);
             before = depth;
             let through = 1.0 - alpha;
             batch.one_minus_alpha.push(through);
@@ -86,7 +99,12 @@ pub fn append_rows<E>(
             batch.r.push(r);
             batch.g.push(g);
             batch.b.push(b);
-            transmittance *= through;
+            if is_long {
+                long_product *= 1.0 - f64::from(alpha);
+                transmittance = long_product as f32;
+            } else {
+                transmittance *= through;
+            }
             layer += 1;
         }
         // The columns that a pixel's rows share.
@@ -161,7 +179,7 @@ mod tests {
             RowCounts {
                 rows: 5,
                 lost: 1,
-                coplanar: 0
+                ..Default::default()
             }
         );
         assert_eq!(all.transmittance, [1.0, 0.5, 0.25, 0.125, 1.0]);

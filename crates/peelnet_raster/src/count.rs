@@ -20,6 +20,44 @@ pub struct FragmentCount {
     pub most: u32,
 }
 
+/// What the checks of a frame found wrong, fragment by fragment. Anything is a bug of ours or of the GPU's driver.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// Fragments that do not come before the next one of their pixel.
+    pub unsorted: u32,
+    /// Fragments that were counted and not stored.
+    pub lost: u32,
+    /// Fragments that were stored and not counted.
+    pub uncounted: u32,
+    /// The last pixel where anything is wrong.
+    pub pixel: [u32; 2],
+}
+
+impl Faults {
+    /// The bytes of [`CountPass::faults`] that are read back.
+    pub const BYTES: std::ops::Range<u64> = 0..16;
+
+    /// Nothing, for words without a fault in a frame of this width.
+    ///
+    /// # Errors
+    /// [`RasterError::Faults`].
+    pub fn check(words: &[u32], width: u32) -> Result<(), RasterError> {
+        match *words {
+            [0, 0, 0, ..] => Ok(()),
+            [unsorted, lost, uncounted, last, ..] => {
+                let pixel = last.saturating_sub(1);
+                Err(RasterError::Faults(Self {
+                    unsorted,
+                    lost,
+                    uncounted,
+                    pixel: [pixel % width, pixel / width],
+                }))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// The count pass and the three kernels of the prefix sum.
 #[derive(Debug)]
 pub struct CountPass {
@@ -29,6 +67,8 @@ pub struct CountPass {
     pub offsets: wgpu::Buffer,
     /// See [`Self::found`]; the bytes [`Self::TOTAL`].
     pub total: wgpu::Buffer,
+    /// What is wrong with the frame's fragments, see [`Faults`]; the bytes [`Faults::BYTES`].
+    pub faults: wgpu::Buffer,
     // A pass needs an attachment; nothing is written to this one.
     attachment: wgpu::TextureView,
     pipelines: GeometryPipelines,
@@ -56,6 +96,7 @@ impl CountPass {
         let blocks_count = pixels.div_ceil(BLOCK);
         let blocks = gpu.storage("prefix-sum blocks", u64::from(blocks_count) * 8)?;
         let total = gpu.storage("fragment total", 12)?;
+        let faults = gpu.storage("faults", 16)?;
         let attachment = unwritten_texture(gpu, frame)?;
         let group = gpu.bind(
             "count",
@@ -121,6 +162,7 @@ impl CountPass {
             counts,
             offsets,
             total,
+            faults,
             attachment,
             pipelines,
             group,
@@ -131,6 +173,7 @@ impl CountPass {
     /// Counts a frame; [`Self::total`] holds the result once the commands are done.
     pub fn encode(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, frame: &FrameTargets) {
         recorder.encoder().clear_buffer(&self.counts, 0, None);
+        recorder.encoder().clear_buffer(&self.faults, 0, None);
         {
             let mut pass =
                 recorder.render("count", &[unwritten_attachment(&self.attachment)], None);

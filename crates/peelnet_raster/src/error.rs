@@ -26,6 +26,13 @@ pub enum RasterError {
         /// Fragments that storage holds.
         capacity: u64,
     },
+    /// The check of a frame's fragments found some that are wrong.
+    #[error(
+        "the fragments of this frame are wrong: {} out of order, {} lost, {} found twice, the last at pixel ({}, {}). This is a fault of \
+         peelnet or of the GPU's driver: please report it with what `peelnet doctor` prints. Depth peeling needs no sort",
+        .0.unsorted, .0.lost, .0.uncounted, .0.pixel[0], .0.pixel[1]
+    )]
+    Faults(crate::count::Faults),
     /// More fragments than 32-bit offsets can count.
     #[error(
         "a frame holds {0} fragments or more, beyond what 32-bit offsets can count; draw it in smaller frames"

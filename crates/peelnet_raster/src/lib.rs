@@ -16,6 +16,7 @@ mod edit;
 mod error;
 pub mod frame;
 pub mod fullscreen;
+pub mod long_runs;
 mod maps;
 mod mip_levels;
 pub mod pipelines;

@@ -1,11 +1,12 @@
 //! The S-buffer (Vasilakis & Fudos 2012): every fragment of a tile, in storage of exactly the right size, sorted.
 //!
 //! Storage is bounded: a frame whose fragments exceed the budget is worked off in tiles, runs of row-major pixels
-//! whose fragments fit. Nothing is dropped.
+//! whose fragments fit. Nothing is dropped: a pass behind every sort counts what is out of order, lost or stored twice ([`CountPass::faults`]).
 
 use crate::{
     FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
-    count::{CountPass, groups_2d, unwritten},
+    count::{CountPass, FragmentCount, groups_2d, unwritten},
+    long_runs::{Kernel, LongRuns, MAX_RUN, SHORT},
 };
 use bytemuck::{Pod, Zeroable};
 use peelnet_gpu::{
@@ -158,15 +159,19 @@ pub struct SBuffer {
 #[derive(Debug)]
 struct Kernels {
     storage: FragmentStorage,
+    /// Fragments of a pixel that are sorted.
+    most: u32,
     store: GeometryPipelines,
     store_group: Bound,
-    sort: wgpu::ComputePipeline,
-    sort_group: Bound,
+    sort: Kernel,
+    check: Kernel,
+    /// Where a pixel may have more than [`SHORT`] fragments.
+    long: Option<LongRuns>,
 }
 
 impl SBuffer {
     /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`, and one of
-    /// `dataset`, `tinted`, `layered` and `named`, which say what is kept of a fragment.
+    /// `dataset`, `tinted`, `layered` and `named`, which say what is kept of a fragment; `half_colors` or `byte_colors` rounds it.
     ///
     /// # Errors
     /// See [`CountPass::new`].
@@ -201,7 +206,24 @@ impl SBuffer {
         self.store.as_ref().map(|k| &k.storage)
     }
 
-    /// Decides the tiles of a frame of `total` fragments and makes storage for the largest; returns whether storage was made anew, or
+    /// How long runs are sorted, once [`Self::plan`] has made room for them.
+    pub fn long_runs(&self) -> Option<&LongRuns> {
+        self.store.as_ref()?.long.as_ref()
+    }
+
+    /// Fragments of a pixel that [`Self::plan`] has made room for. A frame that has more in one is not sorted.
+    pub fn most(&self) -> u32 {
+        self.store.as_ref().map_or(SHORT, |k| k.most)
+    }
+
+    /// Bytes of one fragment in storage, with its places in the orders of long runs.
+    pub fn bytes_per_fragment(&self) -> f64 {
+        let tinted = self.features.iter().any(|f| f == "tinted");
+        let long = self.long_runs().map_or(0.0, |_| LongRuns::BYTES);
+        bytes_per_fragment(tinted) as f64 + long
+    }
+
+    /// Decides the tiles of a frame of `needed` fragments and makes storage for the largest; returns whether storage was made anew, or
     /// `None` where the frame needs several tiles and so the offsets of its pixels. Where the GPU has no memory for it, tiles get
     /// smaller until they fit.
     ///
@@ -212,9 +234,23 @@ impl SBuffer {
         gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
-        total: u64,
+        needed: FragmentCount,
         offsets: Option<&[u32]>,
     ) -> Result<Option<(Vec<Tile>, bool)>, RasterError> {
+        let FragmentCount { total, most } = needed;
+        if most > MAX_RUN {
+            return Err(RasterError::PixelOverBudget {
+                fragments: most.into(),
+                capacity: MAX_RUN.into(),
+            });
+        }
+        let has_room = most <= self.most();
+        // A power of two, so that a moving camera does not grow it every frame.
+        let most = if has_room {
+            self.most()
+        } else {
+            most.next_power_of_two()
+        };
         let pixels = frame.pixels();
         loop {
             let (mut tiles, largest) = if total <= self.limit {
@@ -226,7 +262,7 @@ impl SBuffer {
                 return Ok(None);
             };
             let known = self.storage().map(|s| s.capacity);
-            let capacity = known.filter(|&c| c >= largest);
+            let capacity = known.filter(|&c| c >= largest && has_room);
             for tile in &mut tiles {
                 *tile = Tile::new(tile.begin, tile.end, capacity.unwrap_or(largest));
             }
@@ -235,7 +271,7 @@ impl SBuffer {
             }
             // The old storage goes first, so that both are never held at once.
             self.store = None;
-            match self.kernels(gpu, scene, frame, largest) {
+            match self.kernels(gpu, scene, frame, largest, most) {
                 Ok(kernels) => {
                     self.store = Some(kernels);
                     return Ok(Some((tiles, true)));
@@ -259,14 +295,14 @@ impl SBuffer {
         gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
-        total: u64,
+        needed: FragmentCount,
     ) -> Result<(Vec<Tile>, bool), RasterError> {
-        if let Some(planned) = self.plan(gpu, scene, frame, total, None)? {
+        if let Some(planned) = self.plan(gpu, scene, frame, needed, None)? {
             return Ok(planned);
         }
         let bytes = u64::from(frame.pixels()) * 4 + 4;
         let offsets: Vec<u32> = gpu.read(&self.count.offsets, 0..bytes)?;
-        let planned = self.plan(gpu, scene, frame, total, Some(&offsets))?;
+        let planned = self.plan(gpu, scene, frame, needed, Some(&offsets))?;
         Ok(planned.unwrap_or_default())
     }
 
@@ -276,6 +312,7 @@ impl SBuffer {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         fragments: u64,
+        most: u32,
     ) -> Result<Kernels, RasterError> {
         let tinted = self.features.iter().any(|f| f == "tinted");
         let storage = FragmentStorage::new(gpu, fragments, tinted)?;
@@ -305,32 +342,42 @@ impl SBuffer {
                 ..GeometryPass::NONE
             },
         )?;
-        let sort_group = gpu.bind(
-            "sort",
-            wgpu::ShaderStages::COMPUTE,
-            &[
-                Bind::Uniform(&self.tile),
-                Bind::Read(&self.count.offsets),
-                Bind::Write(&storage.depths),
-                Bind::Write(&storage.triangles),
-                Bind::Write(&storage.colors),
-            ],
-        );
-        let sort = gpu.compute(
-            "peel::sort",
-            &peelnet_shaders::link("peel::sort", if tinted { &["tinted"] } else { &[] }, &[])?,
-            &sort_group,
-        );
+        let (offsets, faults) = (&self.count.offsets, &self.count.faults);
+        let long = (most > SHORT)
+            .then(|| LongRuns::new(gpu, &self.tile, offsets, &storage, faults, most))
+            .transpose()?;
+        let mut sorted = vec![
+            Bind::Uniform(&self.tile),
+            Bind::Read(offsets),
+            Bind::Write(&storage.depths),
+            Bind::Write(&storage.triangles),
+            Bind::Write(&storage.colors),
+        ];
+        let mut features = if tinted { vec!["tinted"] } else { vec![] };
+        if let Some(long) = &long {
+            sorted.push(Bind::Write(&long.order));
+            features.push("long");
+        }
+        let checked = [
+            Bind::Uniform(&self.tile),
+            Bind::Read(offsets),
+            Bind::Read(&storage.depths),
+            Bind::Read(&storage.triangles),
+            Bind::Read(&self.count.counts),
+            Bind::Write(faults),
+        ];
         Ok(Kernels {
+            sort: Kernel::new(gpu, "peel::sort", &features, &sorted)?,
+            check: Kernel::new(gpu, "peel::check", &[], &checked)?,
+            long,
+            most,
             storage,
             store,
             store_group,
-            sort,
-            sort_group,
         })
     }
 
-    /// Stores and sorts one tile's fragments, in storage that [`Self::plan`] made.
+    /// Stores and sorts one tile's fragments, in storage that [`Self::plan`] made, and adds what is wrong to [`CountPass::faults`].
     pub fn store_and_sort(
         &self,
         recorder: &mut Recorder<'_>,
@@ -349,11 +396,11 @@ impl SBuffer {
             pass.set_bind_group(1, &kernels.store_group.group, &[]);
             scene.draw(&mut pass, frame, Surfaces::Transparent, &kernels.store);
         }
-        let mut pass = recorder.compute("sort");
-        pass.set_pipeline(&kernels.sort);
-        pass.set_bind_group(0, &kernels.sort_group.group, &[]);
-        let [x, y] = tile.dispatch();
-        pass.dispatch_workgroups(x, y, 1);
+        kernels.sort.dispatch(recorder, tile.dispatch());
+        kernels.check.dispatch(recorder, tile.dispatch());
+        if let Some(long) = &kernels.long {
+            long.sort(recorder);
+        }
     }
 }
 

@@ -2,7 +2,12 @@
 
 use crate::{error::RenderError, renderer::Renderer};
 use peelnet_gpu::record::Recorder;
-use peelnet_raster::{PixelSample, SamplePoint, frame::Output, sbuffer::SBuffer};
+use peelnet_raster::{
+    PixelSample, SamplePoint,
+    count::{CountPass, Faults},
+    frame::Output,
+    sbuffer::SBuffer,
+};
 use peelnet_scene::Camera;
 
 /// A transparent fragment of a pixel.
@@ -71,10 +76,11 @@ impl Renderer {
         scene.draw_background(&mut recorder, &frame, opaque.as_ref(), None, true);
         sbuffer.count.encode(&mut recorder, scene, &frame);
         gpu.queue.submit([encoder.finish()]);
-        let total = peelnet_raster::count::CountPass::TOTAL;
-        let words: Vec<u32> = gpu.read_async(&sbuffer.count.total, total).await?;
-        let found = peelnet_raster::count::CountPass::found(&words)?;
-        let planned = sbuffer.plan(gpu, scene, &frame, found.total.max(1), None)?;
+        let words: Vec<u32> = gpu
+            .read_async(&sbuffer.count.total, CountPass::TOTAL)
+            .await?;
+        let found = CountPass::found(&words)?;
+        let planned = sbuffer.plan(gpu, scene, &frame, found, None)?;
         let Some((tiles, _)) = planned.filter(|_| found.total > 0) else {
             return Ok(Vec::new());
         };
@@ -87,19 +93,27 @@ impl Renderer {
         let Some(storage) = sbuffer.storage() else {
             return Ok(Vec::new());
         };
+        let faults: Vec<u32> = gpu.read_async(&sbuffer.count.faults, Faults::BYTES).await?;
+        Faults::check(&faults, 1)?;
         let (n, words) = (found.total, 0..found.total * 4);
         let depths: Vec<f32> = gpu.read_async(&storage.depths, words.clone()).await?;
-        let triangles: Vec<u32> = gpu.read_async(&storage.triangles, words).await?;
+        let triangles: Vec<u32> = gpu.read_async(&storage.triangles, words.clone()).await?;
         let colors: Vec<[f32; 4]> = gpu.read_async(&storage.colors, 0..n * 16).await?;
-        let fragments = depths.into_iter().zip(triangles).zip(colors);
-        Ok(fragments
-            .map(|((depth, triangle), [r, g, b, alpha])| PixelFragment {
-                depth,
+        let order = match sbuffer.long_runs() {
+            Some(long) => gpu.read_async(&long.order, words).await?,
+            None => (0..n as u32).collect::<Vec<u32>>(),
+        };
+        let fragment = |slot: u32| {
+            let slot = slot as usize;
+            let [r, g, b, alpha] = colors[slot];
+            PixelFragment {
+                depth: depths[slot],
                 alpha,
                 color: [r, g, b],
-                triangle,
-            })
-            .collect())
+                triangle: triangles[slot],
+            }
+        };
+        Ok(order.into_iter().map(fragment).collect())
     }
 
     /// The same as [`Self::pixel_async`], waiting for the device. Not in a browser.

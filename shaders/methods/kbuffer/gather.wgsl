@@ -19,19 +19,21 @@ struct Tail {
     @location(1) alpha: f32,
 }
 
+// Weak exchanges may fail though the place is free. A fragment that fails as often as this is blended into the tail.
+const ATTEMPTS: u32 = 64u;
+
 // Takes a place of this nearness; coplanar fragments have several. False where all are taken.
 fn placed(first: u32, own: u32, triangle: u32, color: vec4f) -> bool {
     for (var i = first; i < first + K; i++) {
         if nearest[i] != own {
             continue;
         }
-        loop {
+        for (var attempt = 0u; attempt < ATTEMPTS; attempt++) {
             let claim = atomicCompareExchangeWeak(&triangles[i], 0u, triangle + 1u);
             if claim.exchanged {
                 colors[i] = stored(color);
                 return true;
             }
-            // Weak: it may fail though the place is free.
             if claim.old_value != 0u {
                 break;
             }

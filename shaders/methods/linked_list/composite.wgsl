@@ -11,6 +11,23 @@ import package::scene::camera::Camera;
 @group(0) @binding(4) var<storage, read> triangles: array<u32>;
 @group(0) @binding(5) var<storage, read> colors: array<Stored>;
 @group(0) @binding(6) var background: texture_2d<f32>;
+@group(0) @binding(7) var<storage, read_write> found: Found;
+
+// What is found of a frame's lists. The first word is the number of nodes used, which `build` counts.
+struct Found {
+    used: u32,
+    // Lists of more than LONGEST nodes: the frame is drawn again from the S-buffer.
+    too_long: atomic<u32>,
+    // Nodes that were composited: as many as were used.
+    composited: atomic<u32>,
+    // Nodes that do not come before the next one.
+    unsorted: atomic<u32>,
+    // The last pixel where a node is not in order, + 1.
+    pixel: atomic<u32>,
+}
+
+// Nodes of a list at most: relinking passes each about 2 log2(LONGEST) times.
+const LONGEST: u32 = 1024u;
 
 // Whether one node comes before another; nodes are counted from 1.
 fn before(a: u32, b: u32) -> bool {
@@ -19,16 +36,20 @@ fn before(a: u32, b: u32) -> bool {
     return near < far || (near == far && triangles[a - 1u] < triangles[b - 1u]);
 }
 
-// Merge sort from the bottom up by relinking: in place, n log n whatever the order. Returns the new first node.
+// Merge sort from the bottom up by relinking: in place, n log n whatever the order. Returns the new first node, 0 of a list that is too long.
 fn sorted(first: u32) -> u32 {
     var list = first;
-    for (var width = 1u; ; width *= 2u) {
+    for (var width = 1u; width <= LONGEST; width *= 2u) {
         var rest = list;
         var tail = 0u;
         var merges = 0u;
         list = 0u;
         while rest != 0u {
             merges++;
+            if merges * 2u * width > LONGEST {
+                atomicAdd(&found.too_long, 1u);
+                return 0u;
+            }
             // Runs of `width` nodes: one from `left`, the next from `right`.
             var left = rest;
             var right = rest;
@@ -80,7 +101,9 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     @if(!tinted) var transmittance = 1.0;
     @if(tinted) var transmittance = vec3f(1.0);
     var node = sorted(heads[index]);
-    while node != 0u {
+    var composited = 0u;
+    var unsorted = 0u;
+    while node != 0u && composited < LONGEST {
         @if(!tinted) {
             let fragment = restored(colors[node - 1u]);
             color += transmittance * fragment.rgb;
@@ -90,7 +113,17 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             color += transmittance * restored(colors[2u * node - 2u]).rgb;
             transmittance *= 1.0 - restored(colors[2u * node - 1u]).rgb;
         }
-        node = next[node - 1u];
+        composited++;
+        let following = next[node - 1u];
+        unsorted += u32(following != 0u && !before(node, following));
+        node = following;
+    }
+    if composited > 0u {
+        atomicAdd(&found.composited, composited);
+    }
+    if unsorted > 0u {
+        atomicAdd(&found.unsorted, unsorted);
+        atomicMax(&found.pixel, index + 1u);
     }
     let behind = textureLoad(background, pixel, 0).rgb;
     @if(!tinted) let covered = 1.0 - transmittance;

@@ -12,9 +12,10 @@ use peelnet_core::methods::over;
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_raster::{
     FrameTargets, SceneBuffers,
-    count::CountPass,
+    count::{CountPass, Faults, FragmentCount},
     fullscreen::FullscreenPass,
-    sbuffer::{SBuffer, Tile, bytes_per_fragment},
+    long_runs::{self, Fold},
+    sbuffer::{SBuffer, Tile},
 };
 use std::ops::Range;
 
@@ -47,6 +48,8 @@ pub(super) const FIRST_GUESS: u64 = 4;
 #[derive(Debug)]
 pub(super) struct Composite {
     pub shader: &'static str,
+    /// The feature of `peel::fold` that stands for it.
+    pub fold: &'static str,
     pub features: &'static [&'static str],
     /// The text of its module `parameters`.
     pub parameters: String,
@@ -57,7 +60,8 @@ struct ABuffer {
     sbuffer: SBuffer,
     composite: Composite,
     pass: Option<FullscreenPass>,
-    tinted: bool,
+    /// Where runs are long.
+    fold: Option<Fold>,
     /// Of the last plan; empty before the first.
     tiles: Vec<Tile>,
     /// Offsets of the frame at the ends of its tiles, for frames of several.
@@ -70,14 +74,25 @@ struct ABuffer {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let features: &'static [&'static str] = if b.scene.tinted { &["tinted"] } else { &[] };
+    let features: &[&str] = if b.scene.tinted { &["tinted"] } else { &[] };
+    build_exact(b.gpu, b.scene, b.frame, BUDGET.given(b.spec), features)
+}
+
+/// Composites every pixel's run front to back; `features` are those of storing.
+pub(super) fn build_exact(
+    gpu: &Gpu,
+    scene: &SceneBuffers,
+    frame: &FrameTargets,
+    budget: Option<u64>,
+    features: &[&str],
+) -> Result<Box<dyn Compositor>, RenderError> {
     let composite = Composite {
         shader: "methods::abuffer::composite",
-        features,
+        fold: "abuffer",
+        features: if scene.tinted { &["tinted"] } else { &[] },
         parameters: String::new(),
     };
-    let budget = BUDGET.given(b.spec);
-    build_with(b.gpu, b.scene, b.frame, budget, features, composite)
+    build_with(gpu, scene, frame, budget, features, composite)
 }
 
 /// Stores, sorts and composites every pixel's run; `features` are those of storing.
@@ -93,7 +108,7 @@ pub(super) fn build_with(
         sbuffer: SBuffer::new(gpu, scene, frame, budget, features)?,
         composite,
         pass: None,
-        tinted: features.contains(&"tinted"),
+        fold: None,
         tiles: Vec::new(),
         ends: gpu.storage("tile ends", 4)?,
         is_counted: false,
@@ -110,10 +125,10 @@ impl ABuffer {
         gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
-        total: u64,
+        needed: FragmentCount,
         offsets: Option<&[u32]>,
     ) -> Result<bool, RenderError> {
-        let planned = self.sbuffer.plan(gpu, scene, frame, total, offsets)?;
+        let planned = self.sbuffer.plan(gpu, scene, frame, needed, offsets)?;
         let Some((tiles, is_new)) = planned else {
             return Ok(false);
         };
@@ -122,18 +137,29 @@ impl ABuffer {
             self.ends = gpu.storage("tile ends", ends)?;
         }
         if let (true, Some(storage)) = (is_new || self.pass.is_none(), self.sbuffer.storage()) {
+            let mut entries = vec![
+                Bind::Uniform(self.sbuffer.tile_buffer()),
+                Bind::Uniform(scene.camera_buffer()),
+                Bind::Read(&self.sbuffer.count.offsets),
+                Bind::Read(&storage.colors),
+                Bind::Texture(&frame.background),
+            ];
+            let mut features = self.composite.features.to_vec();
+            let parameters = self.composite.parameters.clone() + &long_runs::parameters();
+            self.fold = None;
+            if let Some(long) = self.sbuffer.long_runs() {
+                entries.push(Bind::Write(&long.order));
+                features.push("long");
+                let of_fold = [features.as_slice(), &[self.composite.fold]].concat();
+                let most = self.sbuffer.most();
+                self.fold = Some(Fold::new(gpu, &of_fold, &parameters, &entries, most)?);
+            }
             self.pass = Some(FullscreenPass::resolve(
                 gpu,
                 self.composite.shader,
-                self.composite.features,
-                &[("parameters", &self.composite.parameters)],
-                &[
-                    Bind::Uniform(self.sbuffer.tile_buffer()),
-                    Bind::Uniform(scene.camera_buffer()),
-                    Bind::Read(&self.sbuffer.count.offsets),
-                    Bind::Read(&storage.colors),
-                    Bind::Texture(&frame.background),
-                ],
+                &features,
+                &[("parameters", &parameters)],
+                &entries,
                 frame.output,
             )?);
         }
@@ -166,12 +192,19 @@ impl Compositor for ABuffer {
         if self.tiles.is_empty() {
             let guess = u64::from(cx.frame.pixels()) * FIRST_GUESS;
             let guess = guess.min(self.sbuffer.limit());
+            let guess = FragmentCount {
+                total: guess,
+                most: 0,
+            };
             self.plan(gpu, cx.scene, cx.frame, guess, None)?;
         }
         let mut output = cx.output();
         for (number, tile) in (0..).zip(&self.tiles) {
             self.sbuffer
                 .store_and_sort(cx.recorder, cx.scene, cx.frame, tile);
+            if let Some(fold) = &self.fold {
+                fold.encode(cx.recorder, tile);
+            }
             if let Some(pass) = &self.pass {
                 let within = tile.scissor(cx.frame.size[0]);
                 pass.draw_within(cx.recorder, &[output.clone()], within);
@@ -203,6 +236,7 @@ impl Compositor for ABuffer {
         let tiles = self.tiles.len().max(1) as u64;
         let mut all = vec![
             (count.total.clone(), CountPass::TOTAL),
+            (count.faults.clone(), Faults::BYTES),
             (self.ends.clone(), 0..tiles * 4),
         ];
         if self.wants_offsets {
@@ -220,17 +254,22 @@ impl Compositor for ABuffer {
         let found = CountPass::found(&words[0])?;
         stats.fragments = Some(found.total);
         stats.max_layers = Some(found.most);
-        let bytes = bytes_per_fragment(self.tinted);
         let stored = if self.tiles.len() > 1 {
             self.sbuffer.limit().min(found.total)
         } else {
             found.total
         };
         // Count, offset and the unwritten attachment; then the fragments.
-        stats.bytes_per_pixel = 9.0 + (stored * bytes) as f64 / f64::from(cx.frame.pixels());
+        stats.bytes_per_pixel = 9.0
+            + stored as f64 * self.sbuffer.bytes_per_fragment() / f64::from(cx.frame.pixels());
         // A frame that fits one tile may be followed by one that does not; at least half of a tile is left then.
         self.wants_offsets = found.total > self.sbuffer.limit() / 2;
-        let is_whole = !self.tiles.is_empty() && self.had_room(found.total, words.get(1));
+        let is_whole = !self.tiles.is_empty()
+            && found.most <= self.sbuffer.most()
+            && self.had_room(found.total, words.get(2));
+        if is_whole {
+            Faults::check(&words[1], cx.frame.size[0])?;
+        }
         let one_would_do = self.tiles.len() > 1 && found.total <= self.sbuffer.limit();
         if is_whole && !one_would_do {
             self.is_counted = true;
@@ -242,8 +281,12 @@ impl Compositor for ABuffer {
         } else {
             found.total
         };
-        let offsets = words.get(2).map(Vec::as_slice);
-        self.is_counted = self.plan(cx.gpu, cx.scene, cx.frame, room, offsets)?;
+        let needed = FragmentCount {
+            total: room,
+            most: found.most,
+        };
+        let offsets = words.get(3).map(Vec::as_slice);
+        self.is_counted = self.plan(cx.gpu, cx.scene, cx.frame, needed, offsets)?;
         Ok(if is_whole { Fit::Whole } else { Fit::TooSmall })
     }
 

@@ -53,6 +53,7 @@ pub(crate) fn build(
     };
     let composite = Composite {
         shader: "methods::layers::composite",
+        fold: "layers",
         features,
         parameters,
     };

@@ -1,9 +1,11 @@
 //! `linked-list`: every fragment in its pixel's linked list, in one geometry pass (Yang, Hensley, Grün & Thibieroz 2010).
 //!
 //! A pool that turns out too small is made larger for the next frame, which counts as too small until then: nothing is dropped silently.
+//! One thread sorts and composites a list, so lists of more than 1,024 nodes are not walked: such frames are drawn from the S-buffer, with
+//! colours rounded as the list rounds them.
 
 use super::{
-    abuffer::FIRST_GUESS,
+    abuffer::{self, FIRST_GUESS},
     compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
     method::{Method, Promises},
     parameter::{Count, Parameter},
@@ -18,7 +20,7 @@ use peelnet_gpu::{
 };
 use peelnet_raster::{
     FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces,
-    count::{unwritten, unwritten_attachment, unwritten_texture},
+    count::{Faults, unwritten, unwritten_attachment, unwritten_texture},
     fullscreen::FullscreenPass,
 };
 use std::ops::Range;
@@ -82,19 +84,25 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
+/// The bytes of what is found of a frame's lists.
+const FOUND: Range<u64> = 0..20;
+
 #[derive(Debug)]
 struct LinkedList {
     shared: Shared,
     attachment: wgpu::TextureView,
     pool: Pool,
     version: u64,
+    /// What draws instead, since a list was too long.
+    long: Option<Box<dyn Compositor>>,
 }
 
 /// What every pool is bound with.
 #[derive(Debug)]
 struct Shared {
     heads: wgpu::Buffer,
-    used: wgpu::Buffer,
+    /// `Found` in `methods/linked_list/composite.wgsl`.
+    found: wgpu::Buffer,
     background: wgpu::TextureView,
     /// How colours are stored: features of the shaders, and bytes of a fragment's.
     features: Vec<&'static str>,
@@ -115,7 +123,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let colors = stored::colors(b.spec);
     let shared = Shared {
         heads: gpu.storage("list heads", u64::from(pixels) * 4)?,
-        used: gpu.storage("nodes used", 4)?,
+        found: gpu.storage("nodes found", FOUND.end)?,
         background: frame.background.clone(),
         features: [
             stored::features(colors),
@@ -132,6 +140,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         pool: Pool::new(gpu, b.scene, frame, &shared, first)?,
         shared,
         version: 0,
+        long: None,
     }))
 }
 
@@ -153,7 +162,7 @@ impl Pool {
             wgpu::ShaderStages::FRAGMENT,
             &[
                 Bind::Write(&shared.heads),
-                Bind::Write(&shared.used),
+                Bind::Write(&shared.found),
                 Bind::Write(&next),
                 Bind::Write(&depths),
                 Bind::Write(&triangles),
@@ -186,6 +195,7 @@ impl Pool {
                 Bind::Read(&triangles),
                 Bind::Read(&colors),
                 Bind::Texture(&shared.background),
+                Bind::Write(&shared.found),
             ],
             frame.output,
         )?;
@@ -200,9 +210,12 @@ impl Pool {
 
 impl Compositor for LinkedList {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
+        if let Some(long) = &mut self.long {
+            return long.draw(cx);
+        }
         let encoder = cx.recorder.encoder();
         encoder.clear_buffer(&self.shared.heads, 0, None);
-        encoder.clear_buffer(&self.shared.used, 0, None);
+        encoder.clear_buffer(&self.shared.found, 0, None);
         {
             let attachment = [unwritten_attachment(&self.attachment)];
             let mut pass = cx.recorder.render("build", &attachment, None);
@@ -225,8 +238,15 @@ impl Compositor for LinkedList {
         })
     }
 
+    fn is_ready(&self) -> bool {
+        self.long.as_ref().is_none_or(|long| long.is_ready())
+    }
+
     fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
-        vec![(self.shared.used.clone(), 0..4)]
+        match &self.long {
+            Some(long) => long.feedback(),
+            None => vec![(self.shared.found.clone(), FOUND)],
+        }
     }
 
     fn learn(
@@ -235,19 +255,37 @@ impl Compositor for LinkedList {
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
-        let needed = u64::from(words[0][0]);
-        stats.fragments = Some(needed);
-        if needed <= self.pool.nodes {
-            return Ok(Fit::Whole);
+        if let Some(long) = &mut self.long {
+            return long.learn(cx, words, stats);
         }
-        // A quarter more, so that a moving camera does not grow it every frame.
-        let nodes = needed + needed / 4;
-        self.pool = Pool::new(cx.gpu, cx.scene, cx.frame, &self.shared, nodes)?;
-        self.version += 1;
-        Ok(Fit::TooSmall)
+        let &[used, too_long, composited, unsorted, pixel] = words[0].as_slice() else {
+            return Ok(Fit::TooSmall);
+        };
+        let needed = u64::from(used);
+        stats.fragments = Some(needed);
+        if needed > self.pool.nodes {
+            // A quarter more, so that a moving camera does not grow it every frame.
+            let nodes = needed + needed / 4;
+            self.pool = Pool::new(cx.gpu, cx.scene, cx.frame, &self.shared, nodes)?;
+            self.version += 1;
+            return Ok(Fit::TooSmall);
+        }
+        if too_long > 0 {
+            let features = &self.shared.features;
+            self.long = Some(abuffer::build_exact(cx.gpu, cx.scene, cx.frame, None, features)?);
+            self.version += 1;
+            return Ok(Fit::TooSmall);
+        }
+        let (lost, uncounted) = (
+            used.saturating_sub(composited),
+            composited.saturating_sub(used),
+        );
+        let faults = [unsorted, lost, uncounted, pixel];
+        Faults::check(&faults, cx.frame.size[0])?;
+        Ok(Fit::Whole)
     }
 
     fn version(&self) -> u64 {
-        self.version
+        self.version + self.long.as_ref().map_or(0, |long| long.version())
     }
 }

@@ -23,6 +23,7 @@ pub(crate) fn build(
 ) -> Result<Box<dyn Compositor>, RenderError> {
     let composite = Composite {
         shader: "methods::surfaces::composite",
+        fold: "surfaces",
         features: &[],
         parameters: String::new(),
     };

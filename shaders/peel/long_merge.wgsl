@@ -1,0 +1,52 @@
+// S-buffer, long runs, step 3, once for every doubling of the sorted length: merges neighbours of `sorted_length` slots.
+//
+// A thread writes a chunk of what is merged. Where its inputs begin, a binary search along a diagonal finds (merge path, Odeh et al. 2012).
+import package::peel::long_runs::{Chunk, before, chunk_of, depths, triangles, windows};
+
+// x: the sorted length.
+@group(0) @binding(5) var<uniform> step: vec4u;
+@group(0) @binding(6) var<storage, read> sorted: array<u32>;
+@group(0) @binding(7) var<storage, read_write> merged: array<u32>;
+
+fn merge(chunk: Chunk) {
+    if chunk.begin == chunk.end {
+        return;
+    }
+    // The slots begin .. middle and middle .. end are sorted.
+    let begin = chunk.begin - (chunk.begin - chunk.run_begin) % (2u * step.x);
+    let middle = min(begin + step.x, chunk.run_end);
+    let end = min(middle + step.x, chunk.run_end);
+    // Of the fragments before the chunk, `least` come from the left.
+    let ahead = chunk.begin - begin;
+    var least = max(ahead, end - middle) - (end - middle);
+    var most = min(ahead, middle - begin);
+    while least < most {
+        let half = (least + most) / 2u;
+        if before(sorted[begin + half], sorted[middle + ahead - 1u - half]) {
+            least = half + 1u;
+        } else {
+            most = half;
+        }
+    }
+    var left = begin + least;
+    var right = middle + ahead - least;
+    for (var i = chunk.begin; i < chunk.end; i++) {
+        if left < middle && (right >= end || before(sorted[left], sorted[right])) {
+            merged[i] = sorted[left];
+            left++;
+        } else {
+            merged[i] = sorted[right];
+            right++;
+        }
+    }
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let window = id.y * groups.x * 64u + id.x;
+    if window >= arrayLength(&windows) {
+        return;
+    }
+    merge(chunk_of(windows[window].x, window));
+    merge(chunk_of(windows[window].y, window));
+}
