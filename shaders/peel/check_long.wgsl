@@ -1,6 +1,6 @@
 // S-buffer: whether every long run is sorted. Keys differ, so an order that ascends strictly within its run's slots names each slot once.
 import package::peel::faults::Faults;
-import package::peel::long_runs::{NO_PIXEL, before, chunk_of, windows};
+import package::peel::long_runs::{chunk_of, depths, triangles, windows};
 
 @group(0) @binding(5) var<storage, read> order: array<u32>;
 @group(0) @binding(6) var<storage, read_write> faults: Faults;
@@ -8,10 +8,17 @@ import package::peel::long_runs::{NO_PIXEL, before, chunk_of, windows};
 fn check(pixel: u32, window: u32) {
     let chunk = chunk_of(pixel, window);
     var unsorted = 0u;
+    // The chunk before ends where this one begins.
+    var previous = order[max(chunk.begin, chunk.run_begin + 1u) - 1u];
+    var nearest = depths[previous];
     for (var i = chunk.begin; i < chunk.end; i++) {
-        let is_inside = order[i] >= chunk.run_begin && order[i] < chunk.run_end;
-        let is_sorted = i == chunk.run_begin || before(order[i - 1u], order[i]);
+        let slot = order[i];
+        let depth = depths[slot];
+        let is_inside = slot >= chunk.run_begin && slot < chunk.run_end;
+        let is_sorted = i == chunk.run_begin || nearest < depth || (nearest == depth && triangles[previous] < triangles[slot]);
         unsorted += u32(!(is_inside && is_sorted));
+        previous = slot;
+        nearest = depth;
     }
     if unsorted > 0u {
         atomicAdd(&faults.unsorted, unsorted);

@@ -8,6 +8,23 @@ import package::peel::long_runs::{Chunk, before, chunk_of, depths, triangles, wi
 @group(0) @binding(6) var<storage, read> sorted: array<u32>;
 @group(0) @binding(7) var<storage, read_write> merged: array<u32>;
 
+// Behind every fragment.
+const NOWHERE: f32 = 3.4e38;
+
+// The first of what is left of a sorted part.
+struct Head {
+    slot: u32,
+    depth: f32,
+}
+
+fn head(i: u32, end: u32) -> Head {
+    if i >= end {
+        return Head(0u, NOWHERE);
+    }
+    let slot = sorted[i];
+    return Head(slot, depths[slot]);
+}
+
 fn merge(chunk: Chunk) {
     if chunk.begin == chunk.end {
         return;
@@ -30,14 +47,19 @@ fn merge(chunk: Chunk) {
     }
     var left = begin + least;
     var right = middle + ahead - least;
+    var near = head(left, middle);
+    var far = head(right, end);
     for (var i = chunk.begin; i < chunk.end; i++) {
-        if left < middle && (right >= end || before(sorted[left], sorted[right])) {
-            merged[i] = sorted[left];
-            left++;
-        } else {
-            merged[i] = sorted[right];
-            right++;
-        }
+        let from_left = near.depth < far.depth || (near.depth == far.depth && triangles[near.slot] < triangles[far.slot]);
+        merged[i] = select(far.slot, near.slot, from_left);
+        left += u32(from_left);
+        right += u32(!from_left);
+        // One read for both sides: neighbouring threads rarely agree.
+        let next = head(select(right, left, from_left), select(end, middle, from_left));
+        near.slot = select(near.slot, next.slot, from_left);
+        near.depth = select(near.depth, next.depth, from_left);
+        far.slot = select(next.slot, far.slot, from_left);
+        far.depth = select(next.depth, far.depth, from_left);
     }
 }
 

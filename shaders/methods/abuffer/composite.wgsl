@@ -3,7 +3,7 @@
 // Where runs are long, sums are compensated (Kahan 1965): their error does not grow with the number of fragments.
 // Variants: none | tinted | long | tinted long
 import package::helpers::screen::screen_corner;
-import package::peel::runs::{Run, background, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};
+import package::peel::runs::{Run, background, camera, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};
 
 @if(tinted) alias Transmittance = vec3f;
 @if(!tinted) alias Transmittance = f32;
@@ -21,6 +21,23 @@ fn begun() -> State {
     @if(!long) return State(vec3f(0.0), Transmittance(1.0));
 }
 
+// Zero, which no compiler knows: frames are smaller. Compilers take (a + b) - a for b, which rounding makes false here.
+@if(long)
+fn unknown_zero() -> u32 {
+    return camera.frame_size.x >> 31u;
+}
+
+@if(long)
+fn rounded(sum: Transmittance) -> Transmittance {
+    @if(tinted) return rounded_color(sum);
+    @if(!tinted) return bitcast<f32>(bitcast<u32>(sum) ^ unknown_zero());
+}
+
+@if(long)
+fn rounded_color(sum: vec3f) -> vec3f {
+    return bitcast<vec3f>(bitcast<vec3u>(sum) ^ vec3u(unknown_zero()));
+}
+
 fn with_fragment(state: State, slot: u32) -> State {
     @if(!tinted) let fragment = fragments[slot];
     @if(!tinted) let covering = fragment.a;
@@ -33,11 +50,11 @@ fn with_fragment(state: State, slot: u32) -> State {
     }
     @else {
         let shown = state.transmittance * fragment.rgb - state.color_excess;
-        next.color += shown;
-        next.color_excess = (next.color - state.color) - shown;
+        next.color = rounded_color(state.color + shown);
+        next.color_excess = rounded_color(next.color - state.color) - shown;
         let hidden = state.transmittance * covering + state.transmittance_excess;
-        next.transmittance -= hidden;
-        next.transmittance_excess = (next.transmittance - state.transmittance) + hidden;
+        next.transmittance = rounded(state.transmittance - hidden);
+        next.transmittance_excess = rounded(next.transmittance - state.transmittance) + hidden;
     }
     return next;
 }

@@ -263,16 +263,16 @@ impl Compositor for LinkedList {
         };
         let needed = u64::from(used);
         stats.fragments = Some(needed);
+        if too_long > 0 {
+            let features = &self.shared.features;
+            self.long = Some(abuffer::build_exact(cx.gpu, cx.scene, cx.frame, None, features)?);
+            self.version += 1;
+            return Ok(Fit::TooSmall);
+        }
         if needed > self.pool.nodes {
             // A quarter more, so that a moving camera does not grow it every frame.
             let nodes = needed + needed / 4;
             self.pool = Pool::new(cx.gpu, cx.scene, cx.frame, &self.shared, nodes)?;
-            self.version += 1;
-            return Ok(Fit::TooSmall);
-        }
-        if too_long > 0 {
-            let features = &self.shared.features;
-            self.long = Some(abuffer::build_exact(cx.gpu, cx.scene, cx.frame, None, features)?);
             self.version += 1;
             return Ok(Fit::TooSmall);
         }
