@@ -164,7 +164,6 @@ struct Kernels {
     store: GeometryPipelines,
     store_group: Bound,
     sort: Kernel,
-    check: Kernel,
     /// Where a pixel may have more than [`SHORT`] fragments.
     long: Option<LongRuns>,
 }
@@ -352,23 +351,16 @@ impl SBuffer {
             Bind::Write(&storage.depths),
             Bind::Write(&storage.triangles),
             Bind::Write(&storage.colors),
+            Bind::Read(&self.count.counts),
+            Bind::Write(faults),
         ];
         let mut features = if tinted { vec!["tinted"] } else { vec![] };
         if let Some(long) = &long {
             sorted.push(Bind::Write(&long.order));
             features.push("long");
         }
-        let checked = [
-            Bind::Uniform(&self.tile),
-            Bind::Read(offsets),
-            Bind::Read(&storage.depths),
-            Bind::Read(&storage.triangles),
-            Bind::Read(&self.count.counts),
-            Bind::Write(faults),
-        ];
         Ok(Kernels {
             sort: Kernel::new(gpu, "peel::sort", &features, &sorted)?,
-            check: Kernel::new(gpu, "peel::check", &[], &checked)?,
             long,
             most,
             storage,
@@ -397,7 +389,6 @@ impl SBuffer {
             scene.draw(&mut pass, frame, Surfaces::Transparent, &kernels.store);
         }
         kernels.sort.dispatch(recorder, tile.dispatch());
-        kernels.check.dispatch(recorder, tile.dispatch());
         if let Some(long) = &kernels.long {
             long.sort(recorder);
         }
