@@ -7,7 +7,7 @@ use crate::{
     upload::{Placement, Sharing, Vertex, write_attributes, write_shared},
 };
 use peelnet_gpu::{Gpu, wgpu};
-use peelnet_scene::{Light, Material, Setting, Variant};
+use peelnet_scene::{Light, MAX_LIGHTS, Material, Setting, Variant};
 
 impl SceneBuffers {
     /// Moves an object: its vertices are uploaded again, and where a mirror or tangents may change it, which of them are the same.
@@ -93,7 +93,7 @@ impl SceneBuffers {
         gpu.queue
             .write_buffer(&self.materials, offset, bytemuck::bytes_of(&data));
         if self.specify(gpu, number)? {
-            self.upload_lights(gpu);
+            self.upload_lights(gpu)?;
             self.arrange();
             self.generation += 1;
         }
@@ -104,8 +104,9 @@ impl SceneBuffers {
     /// Replaces all lights. As many as before or fewer are one small write.
     ///
     /// # Errors
-    /// A texture beyond the adapter's limits, of materials that were unlit so far.
+    /// More than [`MAX_LIGHTS`], or a texture beyond the adapter's limits, of materials that were unlit so far.
     pub fn set_lights(&mut self, gpu: &Gpu, lights: Vec<Light>) -> Result<(), RasterError> {
+        check_lights(&lights)?;
         let before = Setting::of(&self.scene);
         self.scene.lights = lights;
         if Setting::of(&self.scene) != before {
@@ -115,7 +116,7 @@ impl SceneBuffers {
             self.arrange();
             self.generation += 1;
         }
-        self.upload_lights(gpu);
+        self.upload_lights(gpu)?;
         self.colors_changed();
         Ok(())
     }
@@ -161,7 +162,8 @@ impl SceneBuffers {
     }
 
     /// Writes the lights where any material is lit; makes their buffer larger where they do not fit.
-    pub(crate) fn upload_lights(&mut self, gpu: &Gpu) {
+    pub(crate) fn upload_lights(&mut self, gpu: &Gpu) -> Result<(), RasterError> {
+        check_lights(&self.scene.lights)?;
         let drawn = self.parts.iter().filter(|p| !p.run.vertices.is_empty());
         let is_lit = drawn.into_iter().any(|p| p.run.variant.is_lit());
         let lights: Vec<_> = self.scene.lights.iter().map(LightData::of).collect();
@@ -176,5 +178,14 @@ impl SceneBuffers {
             }
             _ => {}
         }
+        Ok(())
     }
+}
+
+/// Shaders loop over all lights.
+fn check_lights(lights: &[Light]) -> Result<(), RasterError> {
+    if lights.len() > MAX_LIGHTS {
+        return Err(RasterError::TooManyLights(lights.len()));
+    }
+    Ok(())
 }

@@ -38,6 +38,9 @@ pub enum RasterError {
         "a frame holds {0} fragments or more, beyond what 32-bit offsets can count; draw it in smaller frames"
     )]
     TooManyFragments(u64),
+    /// More lights than a shader loops over.
+    #[error("the scene has {0} lights, and at most {most} are drawn; give it fewer, brighter ones", most = peelnet_scene::MAX_LIGHTS)]
+    TooManyLights(usize),
     /// An object or a part of one that the scene does not have.
     #[error("the scene has no {what} {index}; it has {count}")]
     NoSuch {

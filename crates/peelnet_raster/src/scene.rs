@@ -154,7 +154,7 @@ impl SceneBuffers {
             transparency_scale: scene.transparency_scale,
             scene: scene.clone(),
         };
-        buffers.upload_lights(gpu);
+        buffers.upload_lights(gpu)?;
         buffers.arrange();
         Ok(buffers)
     }

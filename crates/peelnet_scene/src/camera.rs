@@ -1,5 +1,8 @@
 use glam::{Mat4, Quat, Vec3};
 
+/// Vertical fields of view that files may ask for, degrees: of smaller or larger ones, 32-bit positions on the screen keep too few bits.
+pub(crate) const FOV_Y: std::ops::RangeInclusive<f32> = 0.01..=179.0;
+
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -186,6 +186,10 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     }
     let all = objects.iter().map(|o| o.mesh.triangles.len() as u64);
     budget::check_instances(all.sum()).map_err(|e| loader.value("object", e))?;
+    for object in &objects {
+        budget::check_reach(object, &views)
+            .map_err(|e| loader.value(&peelnet_files::printable(&object.name), e))?;
+    }
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());
     }

@@ -46,6 +46,7 @@ mod texture;
 mod vary;
 mod warnings;
 
+pub use budget::MAX_LIGHTS;
 pub use camera::Camera;
 pub use census::{Census, Effect, Setting, Variant};
 pub use displacement::Displacement;

@@ -8,6 +8,7 @@ mod tests;
 mod unwrap;
 
 use crate::{
+    budget::MAX_COORDINATE,
     material::Material,
     mesh::{Mesh, smooth_normals},
 };
@@ -446,11 +447,17 @@ fn cup(
     Ok(smooth_revolved(profile, segments))
 }
 
+/// Lengths whose squares 32-bit numbers hold.
+const LENGTHS: std::ops::RangeInclusive<f32> = 1e-16..=MAX_COORDINATE;
+
 fn length(name: &str, x: f32) -> Result<(), String> {
-    if x.is_finite() && x > 0.0 {
+    if LENGTHS.contains(&x) {
         Ok(())
     } else {
-        Err(format!("{name} {x} must be a positive length"))
+        let (least, most) = (LENGTHS.start(), LENGTHS.end());
+        Err(format!(
+            "{name} {x} must be a positive length, {least:e} to {most:e}"
+        ))
     }
 }
 

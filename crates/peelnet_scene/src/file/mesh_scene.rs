@@ -1,7 +1,8 @@
 //! A mesh file as a whole scene.
 
 use crate::{
-    camera::Camera,
+    budget::{MAX_COORDINATE, check_lights},
+    camera::{Camera, FOV_Y},
     displacement::displaced,
     error::{SceneError, shown},
     files::Files,
@@ -82,6 +83,7 @@ pub(super) fn load(path: &Path, format: Format, mut files: Files<'_>) -> Result<
         }
     }
     let bounds = Bounds::of(&mesh).map_err(&fail)?;
+    check_lights(lights.len()).map_err(&fail)?;
     let cameras = cameras.iter();
     let mut views: Vec<Camera> = cameras.filter_map(|c| camera(c, bounds)).collect();
     if views.is_empty() {
@@ -152,16 +154,12 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// Lengths beyond this overflow when they are squared.
-    const LARGEST: f32 = 1e16;
-
     fn of(mesh: &Mesh) -> Result<Self, String> {
         let (low, high) = mesh.bounds().unwrap_or_default();
         let farthest = low.abs().max(high.abs()).max_element();
-        if farthest > Self::LARGEST {
+        if farthest > MAX_COORDINATE {
             return Err(format!(
-                "reaches {farthest:e} from the origin, and a scene at most {:e}; scale it down",
-                Self::LARGEST
+                "reaches {farthest:e} from the origin, and a scene at most {MAX_COORDINATE:e}; scale it down"
             ));
         }
         let middle = (low + high) / 2.0;
@@ -190,7 +188,7 @@ fn camera(c: &GltfCamera, bounds: Bounds) -> Option<Camera> {
     let is_sound = c.near > 0.0
         && c.near < far
         && far.is_finite()
-        && (0.01..179.0).contains(&camera.fov_y_degrees);
+        && FOV_Y.contains(&camera.fov_y_degrees);
     (is_sound && camera.view_from_world().is_finite()).then_some(camera)
 }
 

@@ -6,7 +6,8 @@ use super::{
     raw::{RawCamera, RawLight, RawScene},
 };
 use crate::{
-    camera::Camera,
+    budget::check_lights,
+    camera::{Camera, FOV_Y},
     error::SceneError,
     scene::{Light, Source},
 };
@@ -68,10 +69,15 @@ fn camera(loader: &Loader<'_>, raw: &RawCamera, field: &str) -> Result<Camera, S
             format!("near {near} must be positive and below far {far}"),
         ));
     }
-    if !(raw.fov_y > 0.0 && raw.fov_y < 180.0) {
+    if !FOV_Y.contains(&raw.fov_y) {
         return Err(loader.value(
             &at("fov_y"),
-            format!("{} must lie between 0 and 180 degrees", raw.fov_y),
+            format!(
+                "{} must lie between {} and {} degrees",
+                raw.fov_y,
+                FOV_Y.start(),
+                FOV_Y.end()
+            ),
         ));
     }
     let camera = Camera {
@@ -98,6 +104,7 @@ fn camera(loader: &Loader<'_>, raw: &RawCamera, field: &str) -> Result<Camera, S
 
 /// The lights of a scene.
 pub(super) fn lights(loader: &Loader<'_>, raw: &[RawLight]) -> Result<Vec<Light>, SceneError> {
+    check_lights(raw.len()).map_err(|e| loader.value("light", e))?;
     let lights = raw.iter().enumerate();
     lights
         .map(|(i, light)| {
