@@ -9,7 +9,7 @@ use peelnet_eval::{
     learning::Learning,
     numerics::Numerics,
     scaling::Scaling,
-    stress::{CASES, Subject, Work},
+    stress::{CASES, Subject},
 };
 use peelnet_render::MethodSpec;
 use peelnet_report::{ReportError, Results};
@@ -98,8 +98,7 @@ fn stress(machine: &Path) -> Result<Vec<String>, ReportError> {
     let mut lines = Vec::new();
     for method in Subject::all_methods() {
         for case in CASES {
-            let drawn = matches!(case.work, Work::Frames(_)) || method.needs_model();
-            if drawn && !rows.contains(&format!("\n{method},{},", case.id)) {
+            if case.judges(&method) && !rows.contains(&format!("\n{method},{},", case.id)) {
                 lines.push(format!("{method} in {}", case.id));
             }
         }

@@ -3,11 +3,18 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use glam::Vec3;
-use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
+use peelnet_core::{
+    fragment::Fragment,
+    hash,
+    methods::over,
+    random::Random,
+    scanline,
+    tolerance::{self, UNIT_ROUNDOFF},
+};
 use peelnet_eval::stress::judge::clip_triangles;
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::PixelSample;
+use peelnet_render::{MethodOptions, PixelSample, Renderer};
 use peelnet_scene::{Light, Lighting, Material, Object, Scene, Source, Texture};
 use peelnet_tests::{gpu, scene, wall};
 use std::sync::Arc;
@@ -96,6 +103,268 @@ fn all_three_ways_find_the_same_fragments() {
                 harvest(&gpu, &scene, peel, None, None).0 == sbuffer,
                 "{peel}, seed {seed}"
             );
+        }
+    }
+}
+
+/// Stacks side by side, one pixel each: `lists` are their depths in the order of drawing. The layers of a stack are quads of 32 materials.
+fn deep_pixels(lists: &[Vec<f32>]) -> (Scene, [u32; 2]) {
+    let columns = (lists.len() as f32).sqrt().ceil() as usize;
+    let size = [columns, lists.len().div_ceil(columns)];
+    let side = |i: usize, n: usize| 2.0 * i as f32 / n as f32 - 1.0;
+    let aspect = size[0] as f32 / size[1] as f32;
+    let mut objects: Vec<Vec<[Vec3; 3]>> = vec![Vec::new(); 32];
+    for (i, list) in lists.iter().enumerate() {
+        let (x, y) = (i % columns, i / columns);
+        for (k, &z) in list.iter().enumerate() {
+            let v = |px: usize, py: usize| {
+                Vec3::new(side(px, size[0]) * aspect * z, -side(py, size[1]) * z, -z)
+            };
+            let (a, b, c, d) = (v(x, y + 1), v(x + 1, y + 1), v(x + 1, y), v(x, y));
+            objects[k % 32].extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    let object = |(i, triangles): (usize, &Vec<[Vec3; 3]>)| {
+        let color = [i as f32 / 32.0, 1.0 - i as f32 / 32.0, 0.25];
+        Object::of_triangles(
+            &format!("layers {i}"),
+            triangles,
+            Material::unlit(color, 0.01),
+        )
+    };
+    let objects = objects.iter().enumerate().map(object).collect();
+    (
+        scene("deep pixels", [0.5; 3], objects),
+        size.map(|n| n as u32),
+    )
+}
+
+/// Runs of every length around the borders between one sort and another, random ones up to 20,000, with ties: the rows are those that the
+/// CPU's sort gives, bit for bit, and no fragment is lost, found twice, or given another's colour.
+#[test]
+fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
+    use peelnet_raster::long_runs::{PIECE, SHORT};
+    let gpu = gpu();
+    let mut random = Random::new(33, &[]);
+    // Once and twice the window of a thread lie among them.
+    let mut lengths: Vec<usize> = (1..=2 * SHORT as usize + 3).collect();
+    for border in [256, 512, 1024, 2048, 4096, PIECE as usize] {
+        lengths.extend([border - 1, border, border + 1]);
+    }
+    lengths.extend((0..4).map(|_| 129 + (random.unit() * 19_871.0) as usize));
+    let mut list = |n: usize, tied: bool| -> Vec<f32> {
+        let depth = |t: f32| 2.0 + if tied { (t * 7.0).floor() } else { 4.0 * t };
+        (0..n).map(|_| depth(random.unit())).collect()
+    };
+    let lists: Vec<Vec<f32>> = lengths
+        .iter()
+        .enumerate()
+        .map(|(i, &n)| list(n, i % 3 == 0))
+        .collect();
+    let (scene, size) = deep_pixels(&lists);
+    let colors: Vec<[f32; 3]> = scene
+        .objects
+        .iter()
+        .flat_map(|o| vec![o.materials[0].color; o.mesh.triangles.len()])
+        .collect();
+    // A tile for all, and tiles of which some hold a few pixels.
+    for budget in [None, Some(30_000)] {
+        let mut harvester =
+            Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, budget).unwrap();
+        harvester.keep_triangles(true);
+        let mut pixels = 0;
+        let mut check = |tile: RawTile| {
+            for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
+                let run = run[0] as usize..run[1] as usize;
+                let Some(list) = lists.get(pixel as usize) else {
+                    continue;
+                };
+                pixels += 1;
+                let key = |i: usize| (tile.depths[i].to_bits(), tile.triangles[i]);
+                let rows: Vec<(u32, u32)> = run.clone().map(key).collect();
+                assert_eq!(rows.len(), list.len());
+                let mut sorted = rows.clone();
+                sorted.sort_unstable();
+                assert!(rows == sorted, "{} rows of pixel {pixel}", rows.len());
+                sorted.dedup();
+                assert_eq!(sorted.len(), list.len());
+                for i in run {
+                    let color = colors[tile.triangles[i] as usize];
+                    assert_eq!(tile.colors[i][..3], color, "pixel {pixel}");
+                }
+                let mut depths = list.clone();
+                depths.sort_unstable_by(f32::total_cmp);
+                for (row, depth) in rows.iter().zip(depths) {
+                    let error = (f32::from_bits(row.0) - depth).abs();
+                    assert!(
+                        f64::from(error) <= 8.0 * UNIT_ROUNDOFF * f64::from(depth),
+                        "{error}"
+                    );
+                }
+            }
+            Ok(())
+        };
+        harvester
+            .harvest(
+                &scene.views[0],
+                PixelSample::ALL,
+                None,
+                RawTile::default,
+                &mut check,
+            )
+            .unwrap();
+        assert_eq!(pixels, lists.len());
+    }
+}
+
+/// What `with_altered` makes of a shader ends the extraction and the exact image with an error that says what is wrong and where.
+#[test]
+fn broken_sorts_and_lost_fragments_are_errors() {
+    let gpu = gpu();
+    let random_depths = |n: usize, seed: u64| -> Vec<f32> {
+        let mut random = Random::new(seed, &[]);
+        (0..n).map(|_| 2.0 + 4.0 * random.unit()).collect()
+    };
+    let (scene, size) = deep_pixels(&[random_depths(40, 1), random_depths(3000, 2)]);
+    let broken: [(&str, &str, &str, &str); 6] = [
+        (
+            "peel::sort",
+            "if next < depth",
+            "if next <= depth + 1.0",
+            "out of order",
+        ),
+        (
+            "peel::long_chunks",
+            "depth < own",
+            "depth < own * 0.5",
+            "out of order",
+        ),
+        (
+            "peel::long_merge",
+            "near.depth < far.depth",
+            "near.depth > far.depth",
+            "out of order",
+        ),
+        (
+            "peel::long_merge",
+            "least = half + 1u",
+            "least = half + 2u",
+            "out of order",
+        ),
+        (
+            "peel::store",
+            "let pixel =",
+            "if surface.triangle == 6u { discard; }\n    let pixel =",
+            "1 lost",
+        ),
+        (
+            "peel::count",
+            "let pixel =",
+            "if surface.triangle == 6u { discard; }\n    let pixel =",
+            "1 found twice",
+        ),
+    ];
+    for (module, from, to, expected) in broken {
+        let text = peelnet_shaders::source(module).unwrap();
+        assert!(text.contains(from), "{module}: {from}");
+        let altered = text.replacen(from, to, 1);
+        peelnet_shaders::with_altered(module, &altered, || {
+            let mut harvester =
+                Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None).unwrap();
+            let ignored = |_| Ok(());
+            let harvested = harvester.harvest(
+                &scene.views[0],
+                PixelSample::ALL,
+                None,
+                RawTile::default,
+                ignored,
+            );
+            let message = harvested.unwrap_err().to_string();
+            assert!(
+                message.contains(expected) && message.contains("pixel ("),
+                "{message}"
+            );
+            let renderer = Renderer::new(&gpu, &scene).unwrap();
+            let mut abuffer = renderer
+                .method(&"abuffer".parse().unwrap(), MethodOptions::sized(size))
+                .unwrap();
+            let message = renderer
+                .image(&mut abuffer, &scene.views[0])
+                .unwrap_err()
+                .to_string();
+            assert!(message.contains(expected), "{message}");
+        });
+    }
+    let text = peelnet_shaders::source("methods::linked_list::composite").unwrap();
+    let (short, size) = deep_pixels(&[random_depths(40, 1)]);
+    for (from, to, expected) in [
+        ("return near < far", "return near > far", ""),
+        (
+            "let following = next[node - 1u];",
+            "let following = next[next[node - 1u] - 1u];",
+            "lost",
+        ),
+        (
+            "left_count > 0u && (right_empty || before(left, right))",
+            "left_count > 0u",
+            "out of order",
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        peelnet_shaders::with_altered(
+            "methods::linked_list::composite",
+            &text.replacen(from, to, 1),
+            || {
+                let renderer = Renderer::new(&gpu, &short).unwrap();
+                let mut list = renderer
+                    .method(&"linked-list".parse().unwrap(), MethodOptions::sized(size))
+                    .unwrap();
+                let drawn = renderer.image(&mut list, &short.views[0]);
+                // Where the comparison itself is turned around, the check agrees with it: the stress cases see that.
+                assert_eq!(drawn.is_err(), !expected.is_empty(), "{to}");
+                if let Err(e) = drawn {
+                    assert!(e.to_string().contains(expected), "{e}");
+                }
+            },
+        );
+    }
+}
+
+/// Images of pixels of any depth: within the bound of compensated sums, which does not grow with the number of layers.
+#[test]
+fn deep_pixels_are_composited_within_the_bound() {
+    let gpu = gpu();
+    for n in [2_000, 100_000] {
+        let depths = (0..n)
+            .map(|i| 2.0 + 4.0 * (i * 7_919 % n) as f32 / n as f32)
+            .collect();
+        let (mut scene, size) = deep_pixels(&[depths]);
+        let mut fragments = Vec::new();
+        for (i, object) in scene.objects.iter_mut().enumerate() {
+            let material = &mut object.materials[0];
+            material.alpha = 3.0 / n as f32;
+            let layers = (i..n).step_by(32);
+            fragments.extend(layers.map(|k| {
+                let depth = 2.0 + 4.0 * (k * 7_919 % n) as f32 / n as f32;
+                Fragment::new(depth, material.alpha, material.color)
+            }));
+        }
+        let expected = over::composite_f64(&fragments, scene.background);
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        for method in ["abuffer", "linked-list"] {
+            let options = MethodOptions::sized(size);
+            let mut prepared = renderer.method(&method.parse().unwrap(), options).unwrap();
+            let image = renderer
+                .image(&mut prepared, &scene.views[0])
+                .unwrap()
+                .image;
+            for (k, expected) in expected.iter().enumerate() {
+                let error = (f64::from(image.pixels[0][k]) - expected).abs();
+                assert!(
+                    error <= tolerance::compensated(1.0),
+                    "{method}, {n} layers: {error:e}"
+                );
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_eval::stress::{CASES, Outcome, Row, Subject, Work, stress};
+use peelnet_eval::stress::{CASES, Outcome, Row, Subject, stress};
 use peelnet_tests::{gpu, network_of};
 
 /// Every method with its precisions, learned ones with the shipped network.
@@ -40,8 +40,7 @@ fn run(id: &str) {
         failed.len(),
         rows.len()
     );
-    let learned = |s: &&Subject| matches!(case.work, Work::Frames(_)) || s.learned.is_some();
-    for s in subjects().iter().filter(learned) {
+    for s in subjects().iter().filter(|s| case.judges(&s.method)) {
         let method = s.method.to_string();
         assert!(
             rows.iter().any(|r| r.method == method),
@@ -70,6 +69,9 @@ cases! {
     alpha_near_one = "alpha-near-one",
     high_alpha = "high-alpha",
     deep = "deep",
+    deep_2000 = "deep-2000",
+    deep_20000 = "deep-20000",
+    deep_100000 = "deep-100000",
     near_overflow = "near-overflow",
     far = "far",
     wide_range = "wide-range",

@@ -134,7 +134,10 @@ impl LongRuns {
             find: kernel("peel::long_windows", &[])?,
             sort: kernel("peel::long_chunks", &[Bind::Write(first)])?,
             merge: [merge(&other, &order)?, merge(&order, &other)?],
-            check: kernel("peel::check_long", &[Bind::Read(&order), Bind::Write(faults)])?,
+            check: kernel(
+                "peel::check_long",
+                &[Bind::Read(&order), Bind::Write(faults)],
+            )?,
             order,
             step,
         })

@@ -46,7 +46,11 @@ pub(crate) fn check_reach(object: &Object, views: &[Camera]) -> Result<(), Strin
         .fold(0.0f32, |m, p| {
             // A maximum skips NaN.
             let farthest = p.abs().max_element();
-            if p.is_finite() { m.max(farthest) } else { f32::INFINITY }
+            if p.is_finite() {
+                m.max(farthest)
+            } else {
+                f32::INFINITY
+            }
         });
     let far = views.iter().fold(0.0f32, |m, view| m.max(view.far));
     let limit = (MAX_REACH * far).min(MAX_COORDINATE);

@@ -9,6 +9,7 @@ use crate::EvalError;
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
 use peelnet_gpu::Gpu;
+use peelnet_render::MethodSpec;
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source, suite};
 
 /// One hard case.
@@ -29,12 +30,25 @@ pub struct Case {
 pub enum Work {
     /// Scenes are drawn.
     Frames(fn() -> Result<Vec<Trial>, EvalError>),
+    /// Scenes are drawn, by exact methods that take a fixed number of passes.
+    Deep(fn() -> Result<Vec<Trial>, EvalError>),
     /// The network itself is evaluated, of learned methods only.
     Network(Examine),
 }
 
 /// Evaluates a network and returns what it finds.
 pub type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
+
+impl Case {
+    /// Whether a method takes part.
+    pub fn judges(&self, method: &MethodSpec) -> bool {
+        match self.work {
+            Work::Frames(_) => true,
+            Work::Deep(_) => method.promises().exact && !method.promises().peels,
+            Work::Network(_) => method.needs_model(),
+        }
+    }
+}
 
 /// Every hard case, in the order of the specification.
 pub const CASES: &[Case] = &[
@@ -113,6 +127,24 @@ pub const CASES: &[Case] = &[
                 stack("1024 of 0.01", even(1024, 1.0, 20.0, |_| 0.01)),
             ])])
         }),
+    },
+    Case {
+        id: "deep-2000",
+        what: "2,000 layers, in one pixel of an otherwise empty frame and in all pixels of a small one",
+        breaks: "loops as long as a pixel's list: a watchdog or a driver's limit ends them",
+        work: Work::Deep(|| layers(2_000)),
+    },
+    Case {
+        id: "deep-20000",
+        what: "20,000 layers, in one pixel of an otherwise empty frame and in all pixels of a small one",
+        breaks: "the same, and sums in 32 bits",
+        work: Work::Deep(|| layers(20_000)),
+    },
+    Case {
+        id: "deep-100000",
+        what: "100,000 layers, in one pixel of an otherwise empty frame and in all pixels of a small one",
+        breaks: "the same",
+        work: Work::Deep(|| layers(100_000)),
     },
     Case {
         id: "near-overflow",
@@ -443,6 +475,19 @@ fn even(n: usize, from: f32, to: f32, alpha: impl Fn(f32) -> f32) -> Vec<(f32, f
             (from + (to - from) * t, alpha(t))
         })
         .collect()
+}
+
+/// Layers of which all together cover 0.95, drawn in an order that says nothing of their depths.
+fn layers(n: usize) -> Result<Vec<Trial>, EvalError> {
+    // A prime that does not divide n: every place comes once.
+    let shuffled = |i: usize| i * 7_919 % n;
+    let all = even(n, 2.0, 6.0, |_| 3.0 / n as f32);
+    let drawn: Vec<_> = (0..n).map(|i| all[shuffled(i)]).collect();
+    let of = |cover: u32| {
+        let stack = vec![stack(&format!("{n} layers"), drawn.clone())];
+        Trial::of_stacks(PLANES, BACKGROUND, cover, stack)
+    };
+    Ok(vec![of(1), of(3)])
 }
 
 fn trial(stacks: Vec<Stack>) -> Trial {

@@ -122,7 +122,7 @@ pub fn stress(
     // Of every trial its name, the exact image, and every subject's.
     let mut drawn: Vec<(String, Vec<Image>)> = Vec::new();
     let trials = match case.work {
-        Work::Frames(make) => make()?,
+        Work::Frames(make) | Work::Deep(make) => make()?,
         Work::Network(examine) => {
             examine_networks(gpu, examine, subjects, &mut findings, notify)?;
             Vec::new()
@@ -134,6 +134,10 @@ pub fn stress(
         let scene = format!("{}-{number}-{}", case.id, trial.scene.name);
         let mut frames = vec![exact[0].clone()];
         for (i, subject) in subjects.iter().enumerate() {
+            if !case.judges(&subject.method) {
+                frames.push(exact[0].clone());
+                continue;
+            }
             let method = subject.method.to_string();
             notify(&method)?;
             let mut note = |property, value, limit, place: &dyn Fn() -> String| {

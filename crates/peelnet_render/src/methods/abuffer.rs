@@ -260,8 +260,8 @@ impl Compositor for ABuffer {
             found.total
         };
         // Count, offset and the unwritten attachment; then the fragments.
-        stats.bytes_per_pixel = 9.0
-            + stored as f64 * self.sbuffer.bytes_per_fragment() / f64::from(cx.frame.pixels());
+        stats.bytes_per_pixel =
+            9.0 + stored as f64 * self.sbuffer.bytes_per_fragment() / f64::from(cx.frame.pixels());
         // A frame that fits one tile may be followed by one that does not; at least half of a tile is left then.
         self.wants_offsets = found.total > self.sbuffer.limit() / 2;
         let is_whole = !self.tiles.is_empty()

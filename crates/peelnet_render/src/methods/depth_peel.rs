@@ -37,6 +37,7 @@ pub(super) const METHOD: Method = Method {
     promises: |s| Promises {
         exact: PASSES.given(s).is_none(),
         sorted: PASSES.given(s).is_none(),
+        peels: true,
         ..Promises::EXACT
     },
     curve: &["", ":passes=2", ":passes=4", ":passes=8"],

@@ -49,6 +49,7 @@ pub(super) const METHOD: Method = Method {
         exact: PASSES.given(s).is_none() && colors(s) == Precision::Full,
         sums: colors(s),
         sorted: PASSES.given(s).is_none(),
+        peels: true,
         ..Promises::EXACT
     },
     curve: &["", ":passes=2", ":passes=4"],

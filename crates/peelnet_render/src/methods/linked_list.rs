@@ -265,7 +265,9 @@ impl Compositor for LinkedList {
         stats.fragments = Some(needed);
         if too_long > 0 {
             let features = &self.shared.features;
-            self.long = Some(abuffer::build_exact(cx.gpu, cx.scene, cx.frame, None, features)?);
+            self.long = Some(abuffer::build_exact(
+                cx.gpu, cx.scene, cx.frame, None, features,
+            )?);
             self.version += 1;
             return Ok(Fit::TooSmall);
         }

@@ -113,6 +113,8 @@ pub struct Promises {
     pub rounds_fragments: bool,
     /// A fragment's weight is a formula of its own depth and opacity (McGuire & Bavoil 2013).
     pub own_weight: bool,
+    /// It takes a pass over the geometry for every layer or two: pixels of many layers take as many.
+    pub peels: bool,
 }
 
 impl Promises {
@@ -133,6 +135,7 @@ impl Promises {
         own_share: 0.0,
         rounds_fragments: false,
         own_weight: false,
+        peels: false,
     };
 
     /// Of methods that normalise sums kept in 16 bits.

@@ -185,10 +185,8 @@ fn camera(c: &GltfCamera, bounds: Bounds) -> Option<Camera> {
         near: c.near,
         far,
     };
-    let is_sound = c.near > 0.0
-        && c.near < far
-        && far.is_finite()
-        && FOV_Y.contains(&camera.fov_y_degrees);
+    let is_sound =
+        c.near > 0.0 && c.near < far && far.is_finite() && FOV_Y.contains(&camera.fov_y_degrees);
     (is_sound && camera.view_from_world().is_finite()).then_some(camera)
 }
 
