@@ -390,6 +390,83 @@ mod tests {
         assert!(failures.is_empty(), "{}", failures.join("\n"));
     }
 
+    /// Every loop of a shader, and why a scene cannot make it long: some drivers end loops of more than 65,535 iterations without an error,
+    /// and watchdogs end what takes long. What does not stand here, or stands with another number of loops, fails.
+    const LOOPS: &[(&str, usize, &str)] = &[
+        ("helpers::weights", 1, "the parameter k, at most 16"),
+        (
+            "methods::abuffer::composite",
+            1,
+            "PIECE fragments, or SHORT",
+        ),
+        (
+            "methods::avboit::integrate",
+            1,
+            "the parameter slices, at most 1,024",
+        ),
+        ("methods::kbuffer::gather", 2, "K, at most 64; ATTEMPTS"),
+        ("methods::kbuffer::insert", 1, "K, at most 64"),
+        ("methods::kbuffer::resolve", 2, "K, at most 64"),
+        ("methods::layers::composite", 1, "PIECE fragments, or SHORT"),
+        (
+            "methods::linked_list::composite",
+            5,
+            "LONGEST nodes, and log2 of that",
+        ),
+        ("methods::low_resolution::upsample", 1, "4 texels"),
+        ("methods::mboit6::reconstruct", 1, "a constant"),
+        ("methods::mboit8::reconstruct", 11, "constants"),
+        ("methods::mboit_trig::reconstruct", 8, "MOMENTS, at most 4"),
+        ("methods::mboit_trig::roots", 1, "a constant"),
+        ("methods::stochastic::depths", 1, "SAMPLES, at most 256"),
+        ("methods::stochastic::gather", 1, "SAMPLES, at most 256"),
+        (
+            "methods::surfaces::composite",
+            1,
+            "PIECE fragments, or SHORT",
+        ),
+        ("peel::check_long", 1, "WINDOW slots"),
+        ("peel::fold", 1, "PIECE fragments"),
+        ("peel::long_chunks", 2, "WINDOW slots"),
+        (
+            "peel::long_merge",
+            2,
+            "WINDOW slots; a binary search over 22 bits",
+        ),
+        ("peel::long_windows", 1, "a binary search over 32 bits"),
+        ("peel::scan_blocks", 1, "BLOCK pixels"),
+        ("peel::scan_pixels", 1, "BLOCK pixels"),
+        (
+            "peel::scan_top",
+            3,
+            "LANES; blocks of a frame by LANES, 16,384 of 2^28 pixels",
+        ),
+        (
+            "peel::sort",
+            5,
+            "SHORT fragments, and the gaps of their sort",
+        ),
+        ("scene::shade", 2, "peelnet_scene::MAX_LIGHTS"),
+    ];
+
+    #[test]
+    fn every_loop_has_a_bound() {
+        let is_loop = |word: &&str| ["for", "while", "loop"].contains(word);
+        let code = |line: &'static str| line.split("//").next().unwrap_or_default();
+        let words =
+            |line: &'static str| code(line).split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let of_text = |text: &'static str| text.lines().flat_map(words).filter(is_loop).count();
+        let all = SOURCES.iter().map(|(path, text)| (*path, of_text(text)));
+        let found: BTreeSet<_> = all.filter(|(_, loops)| *loops > 0).collect();
+        let listed = LOOPS
+            .iter()
+            .map(|(path, loops, _)| (*path, *loops))
+            .collect();
+        let difference: Vec<_> = found.symmetric_difference(&listed).collect();
+        assert!(difference.is_empty(), "{difference:?}");
+        assert!(LOOPS.iter().all(|(.., bound)| !bound.is_empty()));
+    }
+
     #[test]
     fn a_missing_import_is_named() {
         let e = link("methods::deep_thesis::gather", &[], &[]).expect_err("no learned module");

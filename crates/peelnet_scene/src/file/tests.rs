@@ -115,6 +115,8 @@ fn bad_files_and_cameras() {
     }
     for (more, words) in [
         ("fov_y = 180.0", ["camera.fov_y", "180"]),
+        ("fov_y = 179.9999", ["camera.fov_y", "0.01 and 179"]),
+        ("fov_y = 1e-40", ["camera.fov_y", "0.01 and 179"]),
         ("[orbit]\nviews = 0", ["orbit.views", "1"]),
         (
             "[[light]]\nposition = [1, 1, 1]\ndirection = [1, 0, 0]",
@@ -132,6 +134,38 @@ fn bad_files_and_cameras() {
     ] {
         refuses(&format!("{CAMERA}{more}"), &words);
     }
+    let lights = "[[light]]\nposition = [1, 1, 1]\n".repeat(crate::MAX_LIGHTS + 1);
+    refuses(
+        &format!("{CAMERA}{lights}"),
+        &["light", "16385 lights", "at most 16384"],
+    );
+}
+
+/// Lengths and places that 32-bit numbers do not hold: a quad of a tenth of a billion loses half of itself on some rasterisers.
+#[test]
+fn shapes_beyond_their_numbers() {
+    for (mesh, words) in [
+        (
+            "{ shape = 'sphere', radius = 3e38 }",
+            ["object 1.mesh", "radius"],
+        ),
+        (
+            "{ shape = 'sphere', radius = 1e-30 }",
+            ["object 1.mesh", "radius"],
+        ),
+        (
+            "{ shape = 'quad', size = [1e9, 1e9] }",
+            ["object 1", "65536 times"],
+        ),
+        (
+            "{ shape = 'lathe', profile = [[0, -1e38], [1e38, 0], [0, 1e38]] }",
+            ["object 1", "reaches"],
+        ),
+    ] {
+        refuses(&format!("{CAMERA}[[object]]\nmesh = {mesh}"), &words);
+    }
+    let far = "[[object]]\nmesh = { shape = 'quad' }\ntranslate = [0, 1e30, 0]";
+    refuses(&format!("{CAMERA}{far}"), &["object 1", "reaches 1e30"]);
 }
 
 #[test]
