@@ -127,7 +127,11 @@ impl LongRuns {
             kernel("peel::long_merge", &own)
         };
         let doublings = most.div_ceil(WINDOW).max(1).next_power_of_two().ilog2();
-        let first = if doublings % 2 == 0 { &order } else { &other };
+        let first = if doublings.is_multiple_of(2) {
+            &order
+        } else {
+            &other
+        };
         Ok(Self {
             doublings,
             windows: windows as u32,

@@ -88,6 +88,13 @@ fn sorted(first: u32) -> u32 {
     return list;
 }
 
+// Whether a node does not come before the next, in other words than those that sort.
+fn is_behind(node: u32, following: u32) -> bool {
+    let depth = depths[node - 1u];
+    let next_depth = depths[following - 1u];
+    return depth > next_depth || (depth == next_depth && triangles[node - 1u] >= triangles[following - 1u]);
+}
+
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return screen_corner(index);
@@ -115,7 +122,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
         composited++;
         let following = next[node - 1u];
-        unsorted += u32(following != 0u && !before(node, following));
+        unsorted += u32(following != 0u && is_behind(node, following));
         node = following;
     }
     if composited > 0u {

@@ -1,54 +1,13 @@
 //! The hard cases: small generated scenes, most of them stacks of quads whose every pixel is known.
 
 use super::{
-    Note,
-    network::{self, Network},
+    Case, Work, network,
     trial::{Stack, Trial},
 };
 use crate::EvalError;
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
-use peelnet_gpu::Gpu;
-use peelnet_render::MethodSpec;
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source, suite};
-
-/// One hard case.
-#[derive(Clone, Copy, Debug)]
-pub struct Case {
-    /// Its name.
-    pub id: &'static str,
-    /// What is drawn.
-    pub what: &'static str,
-    /// What is known to break there.
-    pub breaks: &'static str,
-    /// What is done.
-    pub work: Work,
-}
-
-/// What a case consists of.
-#[derive(Clone, Copy, Debug)]
-pub enum Work {
-    /// Scenes are drawn.
-    Frames(fn() -> Result<Vec<Trial>, EvalError>),
-    /// Scenes are drawn, by exact methods that take a fixed number of passes.
-    Deep(fn() -> Result<Vec<Trial>, EvalError>),
-    /// The network itself is evaluated, of learned methods only.
-    Network(Examine),
-}
-
-/// Evaluates a network and returns what it finds.
-pub type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
-
-impl Case {
-    /// Whether a method takes part.
-    pub fn judges(&self, method: &MethodSpec) -> bool {
-        match self.work {
-            Work::Frames(_) => true,
-            Work::Deep(_) => method.promises().exact && !method.promises().peels,
-            Work::Network(_) => method.needs_model(),
-        }
-    }
-}
 
 /// Every hard case, in the order of the specification.
 pub const CASES: &[Case] = &[

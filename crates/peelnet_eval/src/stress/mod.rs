@@ -16,7 +16,7 @@ mod properties;
 mod subject;
 mod trial;
 
-pub use catalogue::{CASES, Case, Examine, Work};
+pub use catalogue::CASES;
 pub use network::Network;
 use peelnet_files::counted;
 pub use peelnet_render::{Flaw, MethodOptions, Property};
@@ -26,10 +26,48 @@ pub use trial::{Content, Kind, Stack, Trial, Truth};
 
 use crate::{EvalError, compare::EXACT, compare::image_name};
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
-use peelnet_render::{Image, Renderer, Submission};
+use peelnet_render::{Image, MethodSpec, Renderer, Submission};
 use peelnet_scene::Camera;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
+
+/// One hard case.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name.
+    pub id: &'static str,
+    /// What is drawn.
+    pub what: &'static str,
+    /// What is known to break there.
+    pub breaks: &'static str,
+    /// What is done.
+    pub work: Work,
+}
+
+/// What a case consists of.
+#[derive(Clone, Copy, Debug)]
+pub enum Work {
+    /// Scenes are drawn.
+    Frames(fn() -> Result<Vec<Trial>, EvalError>),
+    /// Scenes are drawn, by exact methods that take a fixed number of passes.
+    Deep(fn() -> Result<Vec<Trial>, EvalError>),
+    /// The network itself is evaluated, of learned methods only.
+    Network(Examine),
+}
+
+/// Evaluates a network and returns what it finds.
+pub type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
+
+impl Case {
+    /// Whether a method takes part.
+    pub fn judges(&self, method: &MethodSpec) -> bool {
+        match self.work {
+            Work::Frames(_) => true,
+            Work::Deep(_) => method.promises().exact && !method.promises().peels,
+            Work::Network(_) => method.needs_model(),
+        }
+    }
+}
 
 /// What became of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
