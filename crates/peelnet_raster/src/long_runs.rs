@@ -24,7 +24,7 @@ const WINDOW: u32 = 32;
 // A window touches two long runs at most.
 const _: () = assert!(SHORT >= WINDOW);
 
-/// Fragments of a pixel at most: 17 doublings of [`WINDOW`], 256 [`PIECE`]s.
+/// Fragments of a pixel at most: 17 doublings of 32 slots, 256 times [`PIECE`].
 pub const MAX_RUN: u32 = 1 << 22;
 
 /// Fragments of a run that a thread goes through at a time; `PIECE` in `peel/runs.wgsl`.
