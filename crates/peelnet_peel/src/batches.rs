@@ -101,8 +101,12 @@ impl Iterator for Batches {
                     });
                     // The other side may have ended; then the tile is freed.
                     let _ = self.give_back.send(tile);
-                    if let Err(e) = kept {
-                        return Some(Err(e));
+                    match kept {
+                        Ok(counts) if counts.unsorted > 0 => {
+                            return Some(Err(PeelError::Unsorted(counts.unsorted)));
+                        }
+                        Ok(_) => {}
+                        Err(e) => return Some(Err(e)),
                     }
                 }
                 Ok(Message::End) => {}
