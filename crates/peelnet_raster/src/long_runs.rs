@@ -15,7 +15,8 @@ use peelnet_gpu::{
     wgpu,
 };
 
-/// Fragments of a run that one thread sorts at most. Measured: from here on, many threads are faster.
+/// Fragments of a run that one thread sorts at most: two windows, and few enough that its neighbours do not wait long. Scenes of 100 layers are
+/// faster with it than with one thread for all, on a software rasteriser; where the border is best was not searched.
 pub const SHORT: u32 = 64;
 
 /// Slots that a thread works on; `WINDOW` in `peel/long_runs.wgsl`.

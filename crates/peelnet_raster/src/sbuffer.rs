@@ -1,7 +1,7 @@
 //! The S-buffer (Vasilakis & Fudos 2012): every fragment of a tile, in storage of exactly the right size, sorted.
 //!
 //! Storage is bounded: a frame whose fragments exceed the budget is worked off in tiles, runs of row-major pixels
-//! whose fragments fit. Nothing is dropped: a pass behind every sort counts what is out of order, lost or stored twice ([`CountPass::faults`]).
+//! whose fragments fit. Nothing is dropped: every sort counts what is out of order, lost or stored twice behind it ([`CountPass::faults`]).
 
 use crate::{
     FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
