@@ -1,0 +1,93 @@
+//! Tables in the documents are those of the committed results.
+//!
+//! `<!-- table of FILE | column; … | row; … -->` and `<!-- end of table -->` enclose columns of FILE's first table, in the order given,
+//! and of its rows those whose first cell is listed, or all where the third part is absent. `PEELNET_UPDATE=1` writes them again.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+use std::{fs, path::Path};
+
+const PAGES: [&str; 2] = ["README.md", "docs/benchmarks.md"];
+const BEGIN: &str = "<!-- table of ";
+const END: &str = "<!-- end of table -->";
+
+fn read(name: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    fs::read_to_string(root.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+fn cells(line: &str) -> Vec<&str> {
+    let inner = line.trim().trim_matches('|');
+    inner.split('|').map(str::trim).collect()
+}
+
+/// The table that a marker's text, without its brackets, asks for.
+fn table(marker: &str) -> String {
+    let parts: Vec<&str> = marker.split(" | ").map(str::trim).collect();
+    let text = read(parts[0]);
+    let lines: Vec<Vec<&str>> = text
+        .lines()
+        .skip_while(|line| !line.starts_with('|'))
+        .take_while(|line| line.starts_with('|'))
+        .map(cells)
+        .collect();
+    let columns: Vec<usize> = parts[1]
+        .split("; ")
+        .map(|name| {
+            let found = lines[0].iter().position(|cell| *cell == name);
+            found.unwrap_or_else(|| panic!("{}: no column {name:?}", parts[0]))
+        })
+        .collect();
+    let row = |cells: &Vec<&str>| {
+        let chosen: Vec<&str> = columns.iter().map(|&c| cells[c]).collect();
+        format!("| {} |\n", chosen.join(" | "))
+    };
+    // The header and its rule.
+    let mut out: String = lines[..2].iter().map(row).collect();
+    match parts.get(2) {
+        None => out.extend(lines[2..].iter().map(row)),
+        Some(names) => {
+            for name in names.split("; ") {
+                let found = lines[2..].iter().find(|cells| cells[0] == name);
+                out += &row(found.unwrap_or_else(|| panic!("{}: no row {name:?}", parts[0])));
+            }
+        }
+    }
+    out
+}
+
+/// A page with every table made again, and how many there are.
+fn regenerate(page: &str) -> (String, usize) {
+    let mut out = String::new();
+    let mut rest = page;
+    let mut tables = 0;
+    while let Some((before, after)) = rest.split_once(BEGIN) {
+        let (marker, after) = after.split_once(" -->\n").expect("the end of a marker");
+        let (_, after) = after.split_once(END).expect("the end of a table");
+        out += &format!("{before}{BEGIN}{marker} -->\n{}{END}", table(marker));
+        rest = after;
+        tables += 1;
+    }
+    (out + rest, tables)
+}
+
+#[test]
+fn tables_of_pages_are_those_of_the_results() {
+    for name in PAGES {
+        let page = read(name);
+        let (want, tables) = regenerate(&page);
+        assert!(tables > 0, "{name} has no table");
+        if std::env::var_os("PEELNET_UPDATE").is_some() {
+            fs::write(
+                Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name),
+                want,
+            )
+            .unwrap();
+        } else {
+            assert!(
+                page == want,
+                "{name}: PEELNET_UPDATE=1 writes its tables again"
+            );
+        }
+    }
+}
