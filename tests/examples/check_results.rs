@@ -6,8 +6,6 @@
 use peelnet_eval::{
     bench::Bench,
     effects::Effects,
-    learning::Learning,
-    numerics::Numerics,
     scaling::Scaling,
     stress::{CASES, Subject},
 };
@@ -64,9 +62,7 @@ fn missing(root: &Path) -> Result<Vec<String>, ReportError> {
         add("held-out/results.json", bench(&machine)?);
         add("stress/stress.csv", stress(&machine)?);
         add("effects/effects.json", effects(&machine, root)?);
-        add("numerics/numerics.json", numerics(&machine)?);
         add("scaling/scaling.json", scaling(&machine)?);
-        Results::<Learning>::read(&machine.join("training/training.json"))?;
     }
     Ok(lines)
 }
@@ -120,16 +116,6 @@ fn effects(machine: &Path, root: &Path) -> Result<Vec<String>, ReportError> {
         }
     }
     Ok(lines)
-}
-
-/// Every method whose targets may have either precision.
-fn numerics(machine: &Path) -> Result<Vec<String>, ReportError> {
-    let run = Results::<Numerics>::read(&machine.join("numerics/numerics.json"))?;
-    let there = |name: &str| run.measured.added.iter().any(|a| a.method == name);
-    let methods = peelnet_render::METHODS.iter();
-    let methods = methods.filter(|m| !m.learned && m.has_targets());
-    let names = methods.map(|m| MethodSpec::representative(m).to_string());
-    Ok(names.filter(|name| !there(name)).collect())
 }
 
 /// Every method once, whatever its settings.

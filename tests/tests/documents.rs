@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-use peelnet_eval::{
-    bench::Bench, effects::Effects, family::FAMILIES, numerics::Numerics, scenes_of,
-};
+use peelnet_eval::{bench::Bench, effects::Effects};
 use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
 use peelnet_tests::results;
@@ -282,61 +280,6 @@ fn benchmarks_show_the_committed_run() {
     generated("docs/benchmarks.md", "methods", &want);
 }
 
-/// The table of families in the README is what the rule chooses on the committed rows of the validation scenes. As long as these are not
-/// committed there is nothing to choose by, and no table; from then on the README must have it: `PEELNET_UPDATE=1` puts it before the
-/// list of pages.
-#[test]
-fn the_readme_shows_one_setting_of_each_family() {
-    let begin = "<!-- families:begin -->\n";
-    let readme = read("README.md");
-    let validation = format!("{}/results.json", results("validation"));
-    if !root().join(&validation).exists() {
-        assert!(
-            !readme.contains(begin),
-            "README.md has a table of families, but {validation} is not committed"
-        );
-        return;
-    }
-    let validation: Results<Bench> = serde_json::from_str(&read(&validation)).unwrap();
-    let held_out = held_out_run();
-    let (chosen_on, shown) = (
-        scenes_of(&validation.measured.rows),
-        scenes_of(&held_out.measured.rows),
-    );
-    assert_eq!(
-        chosen_on,
-        ["intersecting", "sixteen-050", "sixteen-random-color"],
-        "docs/benchmarks.md states the scenes of the rule"
-    );
-    assert!(shown.iter().all(|s| !chosen_on.contains(s)), "{shown:?}");
-    if !readme.contains(begin) {
-        assert!(
-            std::env::var_os("PEELNET_UPDATE").is_some(),
-            "README.md has no table of families: PEELNET_UPDATE=1 writes it"
-        );
-        let marks = format!("{begin}<!-- families:end -->\n\n## Documentation\n");
-        let text = readme.replace("## Documentation\n", &marks);
-        fs::write(root().join("README.md"), text).unwrap();
-    }
-    let want = format!(
-        "## The best of each family\n\n\
-         One setting of each family of methods, by [a rule that was fixed before](docs/benchmarks.md#which-setting-stands-for-a-family):\n\n{}",
-        held_out.families(&validation.measured)
-    );
-    generated("README.md", "families", &want);
-}
-
-/// The families of docs/benchmarks.md are those that the rule is applied to.
-#[test]
-fn families_are_documented() {
-    let page = read("docs/benchmarks.md");
-    for family in &FAMILIES {
-        let members: Vec<String> = family.members.iter().map(|m| format!("`{m}`")).collect();
-        let line = format!("| {} | {} |", family.name, members.join(", "));
-        assert!(page.contains(&line), "{line}");
-    }
-}
-
 /// The committed rows are sound: finite, and exact methods are exact. Whether any are missing is checked by
 /// `cargo xtask results --check`.
 #[test]
@@ -358,23 +301,6 @@ fn the_committed_rows_are_sound() {
                 row.mse_linear
             );
         }
-    }
-}
-
-/// The precision study shows what was measured, and nothing of it is beyond its bound.
-#[test]
-fn numerics_shows_the_committed_measurement() {
-    let want = read(&format!("{}/numerics.md", results("numerics")));
-    generated("docs/numerics.md", "numerics", &want);
-    let text = read(&format!("{}/numerics.json", results("numerics")));
-    let numerics: Results<Numerics> = serde_json::from_str(&text).unwrap();
-    let numerics = numerics.measured;
-    assert!(numerics.blended.len() >= 30 && numerics.added.len() >= 60);
-    for b in &numerics.blended {
-        assert!(b.error() <= b.bound, "{b:?}");
-    }
-    for a in &numerics.added {
-        assert!(a.bound.is_none_or(|bound| a.worst <= bound), "{a:?}");
     }
 }
 

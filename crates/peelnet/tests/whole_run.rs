@@ -128,27 +128,6 @@ fn a_run_writes_everything_it_promises() {
     );
 }
 
-/// What accuracy costs in training, on the lists in `d`.
-fn check_training(folder: &Path) {
-    peelnet(
-        "bench --training d s.toml --size 24x16 --views 1 --out t -q",
-        folder,
-    );
-    let text = std::fs::read(folder.join("t/training.json")).unwrap();
-    let training: serde_json::Value = serde_json::from_slice(&text).unwrap();
-    let lessons = training["rows"].as_array().unwrap();
-    for varied in ["parameters", "examples", "epochs"] {
-        let own = lessons.iter().filter(|l| l["varied"] == varied);
-        let values: Vec<f64> = own.map(|l| l[varied].as_f64().unwrap()).collect();
-        assert!(values.len() >= 5, "{varied}: {values:?}");
-        // Two networks of two layers stand behind those of one.
-        assert!(
-            values.windows(2).take(4).all(|w| w[0] < w[1]),
-            "{varied}: {values:?}"
-        );
-    }
-}
-
 /// Synthetic lists, a network from them, its export, and a bench of it against another method: from the command line, end to
 /// end.
 #[test]
@@ -224,7 +203,6 @@ fn a_network_from_synthetic_lists_is_benched() {
             .map(|r| r["mse_linear"].as_f64().unwrap())
             .sum()
     };
-    check_training(dir.path());
     // Three spheres are six layers at most: the anchors alone do better than a fixed weight.
     assert!(mean("deep-medium") < mean("wboit-eq9"));
     for name in [

@@ -1,11 +1,11 @@
-//! Measures methods: errors against the exact image, times, memory, hard cases and number formats.
+//! Measures methods: errors against the exact image, times, memory and hard cases.
 //!
 //! ```text
-//! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► front, ratios, by_scene ─► recommend, family
+//! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► front, ratios, by_scene ─► recommend
 //! hard cases ─► stress ─► rows (method × case × property)
 //! path: every frame of a moving camera and moving objects ─► rows (method × scene, and × frame)
 //! designs: fragments of a scene, composited on the CPU with each design of slabs ─► rows (design)
-//! effects, scaling, numerics, learning ─► rows of their own
+//! effects, scaling ─► rows of their own
 //! ```
 //!
 //! [`fn@bench`] compares methods and returns a [`Row`] for each method, scene and view. [`compare`] draws every view exactly
@@ -31,18 +31,12 @@ pub mod designs;
 pub mod effects;
 mod error;
 #[cfg(not(target_arch = "wasm32"))]
-pub mod family;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod front;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod learning;
 #[cfg(not(target_arch = "wasm32"))]
 mod machine;
 #[cfg(not(target_arch = "wasm32"))]
 mod mean;
 pub mod metrics;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod numerics;
 #[cfg(not(target_arch = "wasm32"))]
 mod partial;
 #[cfg(not(target_arch = "wasm32"))]

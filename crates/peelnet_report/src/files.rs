@@ -7,13 +7,12 @@ use serde::Serialize;
 use std::path::Path;
 
 /// First columns of the tables that are written as CSV.
-const TABLES: [&str; 5] = [
+const TABLES: [&str; 4] = [
     // Of paths: `method,scene,frames,` and `method,scene,frame,`.
     "method,scene,frame",
     "method,scene,view,",
     "method,case,property,",
     "method,series,value,",
-    "varied,topology,parameters,",
 ];
 
 /// By what a file of a measurement is known, from its name.

@@ -13,7 +13,6 @@ mod designs;
 mod effects;
 mod error;
 mod files;
-mod numerics;
 mod page;
 mod path;
 mod picture;
@@ -24,7 +23,6 @@ mod table;
 #[cfg(test)]
 mod testing;
 mod thesis;
-mod training;
 
 pub use error::ReportError;
 pub use files::{kind_of, write_file};

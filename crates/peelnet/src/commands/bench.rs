@@ -1,6 +1,6 @@
 //! `peelnet bench`: error against time for many methods.
 
-use super::{Context, bench_designs, bench_effects, bench_path, bench_training};
+use super::{Context, bench_designs, bench_effects, bench_path};
 use crate::cli::BenchArgs;
 use crate::failure::{Failure, one_line};
 use crate::learned;
@@ -24,9 +24,6 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    if !args.training.is_empty() {
-        return bench_training::run(context, args);
-    }
     if !args.designs.is_empty() {
         return bench_designs::run(context, args);
     }
@@ -69,7 +66,7 @@ pub(super) fn outputs<'a>(
     files: &[&str],
 ) -> Result<Outputs<'a>, Failure> {
     let inputs = args.scenes.iter().chain(&args.models);
-    let mut outputs = Outputs::new(context, inputs.chain(&args.training));
+    let mut outputs = Outputs::new(context, inputs);
     outputs.results("--out", &args.out, files)?;
     outputs.pictures("--out", &args.out.join("images"))?;
     Ok(outputs)

@@ -4,7 +4,6 @@ mod bench;
 mod bench_designs;
 mod bench_effects;
 mod bench_path;
-mod bench_training;
 mod doctor;
 mod export;
 mod extract;

@@ -22,7 +22,6 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
                 out: std::path::PathBuf::new(),
                 scaling: false,
                 effects: false,
-                training: Vec::new(),
                 designs: Vec::new(),
                 designs_file: None,
                 max_rows: None,

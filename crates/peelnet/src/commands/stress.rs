@@ -7,7 +7,7 @@ use crate::outputs::Outputs;
 use crate::parse::{MethodList, command_line, shown};
 use crate::progress::Bar;
 use peelnet_eval::{
-    EvalError, Machine, numerics,
+    EvalError, Machine,
     stress::{CASES, Case, Outcome, Stressed, Subject, stress},
 };
 use peelnet_render::MethodSpec;
@@ -16,9 +16,6 @@ use serde_json::json;
 use std::sync::atomic::Ordering;
 
 pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
-    if args.numerics {
-        return formats(context, args);
-    }
     let cases = cases(&args.cases)?;
     if let Some(out) = &args.out {
         let mut outputs = Outputs::new(context, &args.models);
@@ -102,39 +99,6 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         )));
     }
     Ok(())
-}
-
-/// What target formats cost in accuracy.
-fn formats(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
-    if let Some(out) = &args.out {
-        let mut outputs = Outputs::new(context, &args.models);
-        outputs.results("--out", out, Results::<numerics::Numerics>::FILES)?;
-        outputs.begin(&[])?;
-    }
-    let gpu = context.gpu()?;
-    let numerics = numerics::measure(&gpu)?;
-    context.check_interrupt()?;
-    let results = Results::new(Machine::of(&gpu), command_line(), numerics);
-    if let Some(out) = &args.out {
-        results.write(out)?;
-    }
-    let text = || {
-        let tables = [results.blended_table(), results.added_table()];
-        tables.map(|table| table.plain()).join("\n")
-    };
-    context.console.result(text, || json!(results))?;
-    let beyond = |b: &&numerics::Blended| b.error() > b.bound;
-    match results.measured.blended.iter().find(beyond) {
-        None => Ok(()),
-        Some(b) => Err(Failure::Failed(format!(
-            "{} layers of {} in {} are off by {:e}, beyond the bound {:e}",
-            b.layers,
-            b.source,
-            b.format,
-            b.error(),
-            b.bound
-        ))),
-    }
 }
 
 /// The matrix, the flaws with their reasons, and the failures.

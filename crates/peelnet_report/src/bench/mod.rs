@@ -10,10 +10,8 @@ use crate::{
 use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
-    family::{self, Choice, MOST_TIME},
     front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
-    geometric_mean,
-    ratios::{Bytes, MOMENTS, Ratios, ratios},
+    ratios::{Bytes, Ratios, ratios},
     scenes_of,
 };
 use std::path::Path;
@@ -126,68 +124,6 @@ impl Results<Bench> {
         Table::new(headings, lines)
     }
 
-    /// One setting of each family of methods, chosen by the rule of [`family::choose`] on rows of *other* scenes, with its figures on these;
-    /// and what was composited on the CPU, which has errors alone. A dash stands where these rows do not have a figure.
-    pub fn families(&self, validation: &Bench) -> String {
-        let all = ratios(&self.measured.rows);
-        let of = |method: &str| all.iter().find(|r| r.method == method);
-        // Errors of 0 have no logarithm; a method that is exact on some views only has a mean with the floor of errors.
-        let mean = |method: &str| {
-            let own = self.measured.rows.iter().filter(|r| r.method == method);
-            geometric_mean(own.map(|r| r.mse_linear.max(EXACT_MSE)))
-        };
-        let error = |method: &str| match (mean(method), mean(MOMENTS)) {
-            (Some(error), _) if error <= EXACT => "0".to_owned(),
-            (Some(error), Some(moments)) if error < LEAST_SHOWN * moments => {
-                format!("< {LEAST_SHOWN}")
-            }
-            (Some(error), Some(moments)) => format!("{:.3}", error / moments),
-            _ => "–".to_owned(),
-        };
-        let choices = family::choose(&validation.rows);
-        let line = |c: &Choice| {
-            let method = c.chosen.as_ref().map(|p| p.method.as_str());
-            let own = method.and_then(of);
-            let bytes = own.and_then(|r| r.bytes_per_pixel);
-            vec![
-                c.family.name.to_owned(),
-                method.map_or_else(|| "–".to_owned(), |m| format!("`{m}`")),
-                method.map_or_else(|| "–".to_owned(), error),
-                number(own.and_then(|r| r.time_to_base), 2),
-                bytes.map_or_else(|| "–".to_owned(), |b| self::bytes(&b)),
-            ]
-        };
-        let headings = [
-            "family",
-            "setting",
-            "error / mboit4",
-            "time / hardware blending",
-            "bytes a pixel (mean, median, most)",
-        ];
-        let mut text = Table::new(headings, choices.iter().map(line)).markdown();
-        for choice in choices.iter().filter(|c| !c.untimed.is_empty()) {
-            let errors = choice
-                .untimed
-                .iter()
-                .map(|(method, _)| format!("{} for `{method}`", error(method)));
-            text += &format!(
-                "\n{} also has {}, without a time: {}.\n",
-                capital(choice.family.name),
-                errors.collect::<Vec<_>>().join(", "),
-                choice.untimed[0].1
-            );
-        }
-        let scenes: Vec<String> = scenes_of(&validation.rows)
-            .iter()
-            .map(|s| format!("`{s}`"))
-            .collect();
-        text + &format!(
-            "\nEach is its family's least error in at most {MOST_TIME} times the time of its fastest, chosen on {}; figures are of the {} held-out scenes.\n",
-            scenes.join(", "),
-            scenes_of(&self.measured.rows).len()
-        )
-    }
-
     /// `table.md`.
     pub fn markdown(&self) -> String {
         let untimed = untimed(&self.measured.rows);
@@ -202,19 +138,6 @@ impl Results<Bench> {
             self.times_by_scene().markdown(),
         )
     }
-}
-
-/// Ratios below are shown as less than this: 0.000 would read as exact.
-const LEAST_SHOWN: f64 = 0.001;
-
-/// A geometric mean of floors, but for the roundings of logarithms.
-const EXACT: f64 = EXACT_MSE * (1.0 + 1e-9);
-
-/// With a capital letter, as at the beginning of a sentence.
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    let first = chars.next().map(|c| c.to_ascii_uppercase());
-    first.into_iter().chain(chars).collect()
 }
 
 /// Bytes a pixel: one number, or mean, median and most over the views.
@@ -266,7 +189,7 @@ pub(crate) fn chart(points: &[Point]) -> Svg {
 mod tests {
     use super::*;
     use crate::testing::{machine, row};
-    use peelnet_eval::Row;
+    use peelnet_eval::{Row, ratios::MOMENTS};
 
     fn bench(rows: Vec<Row>, trained_on: &[&str]) -> Results<Bench> {
         let measured = Bench {
@@ -292,44 +215,6 @@ mod tests {
         };
         assert_eq!(worst(&["cups"]), "2.00 (cups, trained on)");
         assert_eq!(worst(&["panes"]), "2.00 (cups)");
-    }
-
-    /// Chosen on one set of rows, shown with the figures of another; what has no time stands below with its error.
-    #[test]
-    fn families_are_chosen_on_other_rows_than_those_shown() {
-        let timed = |scene: &str, method: &str, mse, ms| Row {
-            time_ms: Some(ms),
-            ..row(scene, method, mse)
-        };
-        let rows = |scene: &str, four, six, mlab| {
-            vec![
-                timed(scene, BASE, 90.0, 1.0),
-                timed(scene, MOMENTS, four, 2.0),
-                timed(scene, "mboit6", six, 3.0),
-                timed(scene, "linked-list", 0.0, 5.0),
-                Row {
-                    bytes_per_pixel: None,
-                    ..row(scene, "mlab-4", mlab)
-                },
-            ]
-        };
-        // On the scenes shown the other one would be chosen.
-        let mut b = rows("b", 4.0, 8.0, 2.0);
-        b.push(timed("b", "kbuffer-8", 1e-4, 6.0));
-        let mut a = rows("a", 8.0, 4.0, 1.0);
-        a.push(timed("a", "kbuffer-8", 1e-4, 6.0));
-        let validation = bench(a, &[]);
-        let shown = bench(b, &[]).families(&validation.measured);
-        for part in [
-            "| moments | `mboit6` | 2.000 | 3.00 | 10 |",
-            "| exact | `linked-list` | 0 | 5.00 | 10 |",
-            "| bounded exact | `kbuffer-8` | &lt; 0.001 | 6.00 | 10 |",
-            "| learned, ours | – | – | – | – |",
-            "Bounded exact also has 0.500 for `mlab-4`, without a time: ",
-            "at most 2 times the time of its fastest, chosen on `a`; figures are of the 1 held-out scenes.",
-        ] {
-            assert!(shown.contains(part), "{part} in\n{shown}");
-        }
     }
 
     #[test]
