@@ -21,8 +21,8 @@ use crate::{
     budget,
     error::{SceneError, shown},
     files::{FileKind, Files},
+    import::Format,
     material::Lighting,
-    mesh_file::Format,
     scene::{Scene, State},
 };
 use loader::Loader;

@@ -1,7 +1,7 @@
 //! Scenes: read from TOML files or mesh files, or built in code.
 //!
-//! [`Scene::load`] reads a scene file ([`mod@file`]): cameras, lights, and objects, which are meshes of files ([`obj`], [`mod@gltf`],
-//! [`ply`], [`stl`]), generated shapes ([`shapes`]), or many of either scattered from a seed ([`scatter`]). [`Scene::from_bytes`] reads the same
+//! [`Scene::load`] reads a scene file ([`mod@file`]): cameras, lights, and objects, which are meshes of files (OBJ, glTF,
+//! PLY, STL), generated shapes ([`shapes`]), or many of either scattered from a seed ([`scatter`]). [`Scene::from_bytes`] reads the same
 //! through a function, so that an archive, a web page or a test can be the file system. Everything is resolved and checked
 //! here: a renderer meets no missing normal, no index out of range and no NaN.
 //!
@@ -27,20 +27,14 @@ mod displacement;
 mod error;
 pub mod file;
 mod files;
-pub mod gltf;
+mod import;
 mod material;
 mod mesh;
-mod mesh_file;
-pub mod obj;
 pub mod pattern;
-pub mod ply;
-mod polygons;
-mod scan;
 pub mod scatter;
 mod scene;
 pub mod shapes;
 mod specular_glossiness;
-pub mod stl;
 pub mod suite;
 mod texture;
 mod vary;

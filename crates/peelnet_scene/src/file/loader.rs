@@ -4,16 +4,12 @@ use super::references::MeshRef;
 use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
-    gltf,
+    import::Format,
     material::{Lighting, Material},
     mesh::Mesh,
-    mesh_file::Format,
-    obj,
     pattern::Pattern,
-    ply,
     shapes::Shape,
     specular_glossiness::Converter,
-    stl,
     texture::Texture,
 };
 use std::{
@@ -126,36 +122,17 @@ impl<'a> Loader<'a> {
     }
 
     fn mesh_file(&mut self, file: &Path, field: &str) -> Result<Mesh, SceneError> {
-        let (mesh, warnings) = match Format::of(file) {
-            Some(Format::Obj) => {
-                let loaded = obj::load(file, self.lighting, &mut self.files)?;
-                (loaded.mesh, loaded.warnings)
-            }
-            Some(Format::Gltf) => {
-                // The scene file's lights and cameras replace those of the mesh.
-                let loaded = gltf::load(file, &mut self.files)?;
-                (loaded.mesh, loaded.warnings)
-            }
-            Some(Format::Ply) => {
-                let loaded = ply::load(file, self.lighting, &mut self.files)?;
-                (loaded.mesh, loaded.warnings)
-            }
-            Some(Format::Stl) => {
-                let loaded = stl::load(file, self.lighting, &mut self.files)?;
-                (loaded.mesh, loaded.warnings)
-            }
-            None => {
-                return Err(self.value(
-                    field,
-                    format!(
-                        "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
-                        shown(file)
-                    ),
-                ));
-            }
+        let Some(format) = Format::of(file) else {
+            let message = format!(
+                "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
+                shown(file)
+            );
+            return Err(self.value(field, message));
         };
-        self.warnings.extend(warnings);
-        Ok(mesh)
+        // The scene file's lights and cameras replace those of the mesh.
+        let loaded = format.load(file, self.lighting, &mut self.files)?;
+        self.warnings.extend(loaded.warnings);
+        Ok(loaded.mesh)
     }
 
     /// A texture of a file, read once.

@@ -6,13 +6,10 @@ use crate::{
     displacement::displaced,
     error::{SceneError, shown},
     files::Files,
-    gltf::{self, GltfCamera},
+    import::{FileCamera, Format, Imported},
     material::{Lighting, Material},
     mesh::Mesh,
-    mesh_file::Format,
-    obj, ply,
     scene::{Light, Object, Scene, Source},
-    stl,
 };
 use glam::{Mat4, Vec3};
 use std::{path::Path, sync::Arc};
@@ -20,55 +17,18 @@ use std::{path::Path, sync::Arc};
 /// Views of a file without a camera.
 const VIEWS: u32 = 3;
 
-/// What a mesh file holds.
-struct Loaded {
-    mesh: Mesh,
-    lights: Vec<Light>,
-    cameras: Vec<GltfCamera>,
-    warnings: Vec<String>,
-}
-
-/// Reads a file of any format.
-fn read(path: &Path, format: Format, files: &mut Files<'_>) -> Result<Loaded, SceneError> {
-    let (mesh, warnings) = match format {
-        Format::Gltf => {
-            let loaded = gltf::load(path, files)?;
-            return Ok(Loaded {
-                mesh: loaded.mesh,
-                lights: loaded.lights,
-                cameras: loaded.cameras,
-                warnings: loaded.warnings,
-            });
-        }
-        Format::Obj => {
-            let loaded = obj::load(path, Lighting::Phong, files)?;
-            (loaded.mesh, loaded.warnings)
-        }
-        Format::Ply => {
-            let loaded = ply::load(path, Lighting::Phong, files)?;
-            (loaded.mesh, loaded.warnings)
-        }
-        Format::Stl => {
-            let loaded = stl::load(path, Lighting::Phong, files)?;
-            (loaded.mesh, loaded.warnings)
-        }
-    };
-    Ok(Loaded {
-        mesh,
-        lights: Vec::new(),
-        cameras: Vec::new(),
-        warnings,
-    })
-}
-
 /// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
-pub(super) fn load(path: &Path, format: Format, mut files: Files<'_>) -> Result<Scene, SceneError> {
-    let Loaded {
+pub(super) fn load(
+    path: &Path,
+    format: &Format,
+    mut files: Files<'_>,
+) -> Result<Scene, SceneError> {
+    let Imported {
         mut mesh,
         mut lights,
         cameras,
         mut warnings,
-    } = read(path, format, &mut files)?;
+    } = format.load(path, Lighting::Phong, &mut files)?;
     let fail = |message: String| SceneError::Mesh {
         path: path.to_owned(),
         line: None,
@@ -94,7 +54,7 @@ pub(super) fn load(path: &Path, format: Format, mut files: Files<'_>) -> Result<
         && let Some(lighting) = one_lighting(&mut materials)
     {
         // Other formats have no lights: that is no news.
-        if format == Format::Gltf {
+        if format.is_scene {
             warnings.push(format!(
                 "{}: has no point light: two are added; put it into a scene file with lights of your own, or none",
                 shown(path)
@@ -102,7 +62,7 @@ pub(super) fn load(path: &Path, format: Format, mut files: Files<'_>) -> Result<
         }
         lights.extend(default_lights(bounds, lighting));
     }
-    if format != Format::Gltf && materials.iter().all(Material::is_opaque) {
+    if !format.is_scene && materials.iter().all(Material::is_opaque) {
         warnings.push(format!(
             "{}: is opaque; to look through it, name it in a scene file, with material = {{ alpha = 0.5 }}",
             shown(path)
@@ -172,7 +132,7 @@ impl Bounds {
 }
 
 /// A camera of the file; `None` where its numbers make no sense.
-fn camera(c: &GltfCamera, bounds: Bounds) -> Option<Camera> {
+fn camera(c: &FileCamera, bounds: Bounds) -> Option<Camera> {
     let position = c.file_from_camera.transform_point3(Vec3::ZERO);
     let direction = |v: Vec3| c.file_from_camera.transform_vector3(v).try_normalize();
     let distance = (position - bounds.middle).length();

@@ -1,5 +1,6 @@
 //! Surfaces of PLY and STL files, as meshes.
 
+use super::Imported;
 use crate::{
     budget::Budget,
     error::{SceneError, shown},
@@ -10,30 +11,18 @@ use crate::{
 };
 use glam::{Vec2, Vec3};
 use peelnet_files::counted;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Positions beyond this overflow when they are squared.
 const FARTHEST: f32 = 1e15;
 
-/// A mesh file's contents.
-#[derive(Clone, Debug)]
-pub struct LoadedScan {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// What is missing or was repaired.
-    pub warnings: Vec<String>,
-    /// Every file that was read.
-    pub files: Vec<PathBuf>,
-}
-
 /// Reads a file, whose triangles `surface` finds.
-pub(crate) fn load(
+pub(super) fn load(
     path: &Path,
     lighting: Lighting,
     files: &mut Files<'_>,
     surface: impl FnOnce(&[u8], &mut Budget, &mut Warnings) -> Result<Surface, Fault>,
-) -> Result<LoadedScan, SceneError> {
-    let first = files.used().len();
+) -> Result<Imported, SceneError> {
     let bytes = files.read(path, FileKind::Mesh)?;
     files.record(path, &bytes);
     let mut warnings = Warnings::default();
@@ -47,18 +36,13 @@ pub(crate) fn load(
         message,
     })?;
     let texts = warnings.texts().into_iter();
-    Ok(LoadedScan {
-        mesh,
-        warnings: texts
-            .map(|text| format!("{}: {text}", shown(path)))
-            .collect(),
-        files: files.used()[first..].to_vec(),
-    })
+    let texts = texts.map(|text| format!("{}: {text}", shown(path)));
+    Ok(Imported::mesh(mesh, texts.collect()))
 }
 
 /// What is wrong in a file, and where.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Fault {
+pub(super) struct Fault {
     /// The line, from 1, in a file that has lines.
     pub line: Option<usize>,
     pub message: String,
@@ -82,7 +66,7 @@ impl Fault {
 
 /// The triangles of a file, before they are checked.
 #[derive(Default)]
-pub(crate) struct Surface {
+pub(super) struct Surface {
     pub positions: Vec<Vec3>,
     /// One for each position.
     pub normals: Option<Vec<Vec3>>,
@@ -94,7 +78,7 @@ pub(crate) struct Surface {
 }
 
 /// What is wrong with a position.
-pub(crate) fn fault_of(position: Vec3) -> Option<String> {
+pub(super) fn fault_of(position: Vec3) -> Option<String> {
     if !position.is_finite() {
         return Some("is not finite".into());
     }

@@ -1,154 +1,102 @@
-//! Wavefront OBJ and MTL files, read by `tobj`.
+//! Wavefront OBJ files, read by `tobj`.
 //!
-//! `tobj` is the only parser. What it lacks is added around it: encodings, comments and continued lines before it (`text`), the few
-//! statements that it would misread (`repair`), and behind it checks of the values that it returns, polygons cut into triangles
-//! (`polygons`), and the line of an error (`fault`).
+//! Before it, what it would misread or panic on is rewritten line by line, so that lines keep their numbers, or refused; behind it, values are
+//! checked and polygons cut into triangles. A fault has its line where `tobj` stops there.
 
-mod fault;
-mod library;
-mod repair;
-#[cfg(test)]
-mod tests;
-mod text;
-mod textures;
-
+use super::{Imported, mtl::Libraries, polygons::Triangulator, textures::Textures};
 use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
     mesh::{Mesh, NO_UVS, Part, PartGeometry, key_of},
-    polygons::Triangulator,
     warnings::Warnings,
 };
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_files::printable;
 use std::{
+    borrow::Cow,
     cell::RefCell,
     collections::{HashMap, HashSet},
-    io,
-    path::{Path, PathBuf},
+    path::Path,
 };
-use textures::Textures;
 
-/// A mesh file's contents.
-#[derive(Clone, Debug)]
-pub struct LoadedObj {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// What is missing or was repaired.
-    pub warnings: Vec<String>,
-    /// Every file that was read, the OBJ first.
-    pub files: Vec<PathBuf>,
-}
+#[cfg(test)]
+#[path = "obj_tests.rs"]
+mod tests;
+
+/// Digits of the largest index: `tobj` multiplies indices before it checks them, and panics where the product overflows. The largest file that
+/// is read has fewer than a billion vertices.
+const INDEX_DIGITS: usize = 9;
 
 /// Reads an OBJ file and the MTL files and textures that it names.
 ///
-/// Polygons are triangulated, missing or unusable normals computed, degenerate triangles left out with a warning. A
-/// missing MTL, or a name that no MTL has, is a warning and a default material.
-///
-/// # Errors
-/// A file that cannot be read, is empty or cut off, or holds numbers or indices that make no sense: with its line.
-pub fn load_obj(path: &Path, lighting: Lighting) -> Result<LoadedObj, SceneError> {
-    load(path, lighting, &mut Files::new(&peelnet_files::read))
-}
-
-/// The same with a function that reads files: from an archive, or from memory.
-///
-/// # Errors
-/// See [`load_obj`].
-pub fn load_obj_from(
-    path: &Path,
-    lighting: Lighting,
-    read: impl Fn(&Path) -> io::Result<Vec<u8>>,
-) -> Result<LoadedObj, SceneError> {
-    load(path, lighting, &mut Files::new(&|path, _| read(path)))
-}
-
-fn warnings_of(first: Option<String>) -> Warnings {
-    let mut warnings = Warnings::default();
-    if let Some(first) = first {
-        warnings.add(first);
-    }
-    warnings
-}
-
-/// Whether a position or normal is written with other letters than those of an exponent, as `nan` and `inf` are.
-fn is_not_numeric(line: &str) -> bool {
-    let numbers = line.strip_prefix("v ").or_else(|| line.strip_prefix("vn "));
-    let is_word = |b: u8| b.is_ascii_alphabetic() && !b.eq_ignore_ascii_case(&b'e');
-    numbers.is_some_and(|n| n.bytes().any(is_word))
-}
-
-/// Reads an OBJ file.
-pub(crate) fn load(
+/// Polygons are triangulated, missing or unusable normals computed, triangles without area left out with a warning. A missing MTL, or a name
+/// that no MTL has, is a warning and a default material.
+pub(super) fn load(
     path: &Path,
     lighting: Lighting,
     files: &mut Files<'_>,
-) -> Result<LoadedObj, SceneError> {
+) -> Result<Imported, SceneError> {
     let fail = |line: Option<usize>, message: String| SceneError::Mesh {
         path: path.to_owned(),
         line,
         message,
     };
-    let first = files.used().len();
     let bytes = files.read(path, FileKind::Mesh)?;
     files.record(path, &bytes);
-    let (text, warning) = text::decode(path, &bytes)?;
-    let text = text::statements(&text);
-    // Of a bad file, the first line that is wrong.
-    let bad = |(line, message): (usize, String)| {
-        let (line, message) = fault::first(&text).unwrap_or((line, message));
-        fail(Some(line), message)
-    };
-    let repaired = repair::repaired(&text).map_err(bad)?;
+    let mut warnings = Warnings::default();
+    let text = statements(path, &bytes, &mut warnings)?;
+    check(&text).map_err(|(line, message)| fail(Some(line), message))?;
+    // tobj takes a line of three points for a triangle.
+    let is_drawn = |line: &&str| !(line.starts_with("l ") || line.starts_with("p "));
+    let text: String = text
+        .lines()
+        .map(|line| if is_drawn(&line) { line } else { "" })
+        .flat_map(|line| [line, "\n"])
+        .collect();
     let options = tobj::LoadOptions {
         single_index: true,
-        // Points and lines are kept only to be refused: faces that were cut off.
         ..tobj::LoadOptions::default()
     };
-    let libraries = RefCell::new(Libraries {
-        path,
-        files,
-        read: HashSet::new(),
-        owners: Vec::new(),
-        warnings: warnings_of(warning),
-        is_incomplete: false,
-        error: None,
-    });
-    let mut unread = repaired.text.as_bytes();
+    let libraries = RefCell::new(Libraries::new(path, files, warnings));
+    let mut unread = text.as_bytes();
     let loaded = tobj::load_obj_buf(&mut unread, &options, |name| {
         libraries.borrow_mut().load(name)
     });
-    let libraries = libraries.into_inner();
+    let Libraries {
+        files,
+        owners,
+        mut warnings,
+        is_incomplete,
+        error,
+        ..
+    } = libraries.into_inner();
     let (models, materials) = loaded.map_err(|e| {
-        let line = text::last_line(&repaired.text, unread);
-        bad((line, format!("{e}; export the mesh again")))
+        // It stops reading where it fails.
+        let read = &text.as_bytes()[..text.len() - unread.len()];
+        let line = read.iter().filter(|&&b| b == b'\n').count().max(1);
+        let line_text = printable(text.lines().nth(line - 1).unwrap_or_default());
+        fail(Some(line), format!("{e} in '{line_text}'; repair the line"))
     })?;
-    if let Some(e) = libraries.error {
+    if let Some(e) = error {
         return Err(e);
     }
     if !models.iter().all(|m| is_sound(&m.mesh)) {
-        let message = "a number is not finite, or a face has fewer than 3 vertices";
-        return Err(bad((1, format!("{message}; export the mesh again"))));
-    }
-    // tobj drops what no face uses, but a file with such a number is damaged.
-    if text.lines().any(is_not_numeric) {
-        let message = "a number is not finite; repair the mesh and export it again";
-        return Err(bad((1, message.into())));
+        let message = "a number is not finite, or a face has fewer than 3 vertices; is the file cut off? Export the mesh again";
+        return Err(fail(None, message.into()));
     }
     if models.iter().all(|m| m.mesh.indices.is_empty()) {
         let message = "holds no faces; is the file empty or cut off?";
         return Err(fail(None, message.into()));
     }
     let materials = materials.unwrap_or_default();
-    let mut warnings = libraries.warnings;
-    if !libraries.is_incomplete {
+    if !is_incomplete {
         let known: HashSet<&str> = materials.iter().map(|m| m.name.as_str()).collect();
-        let all = repaired.materials.iter();
-        for name in all.filter(|name| !known.contains(name.as_str())) {
+        let named = text.lines().filter_map(|line| line.strip_prefix("usemtl "));
+        for name in named.filter(|name| !known.contains(name.trim())) {
             warnings.about(
                 format!("{}: no material ", shown(path)),
-                &format!("'{}'", printable(name)),
+                &format!("'{}'", printable(name.trim())),
                 " in its MTL files; default material used",
             );
         }
@@ -156,83 +104,116 @@ pub(crate) fn load(
     let mut textures = Textures::new(&mut warnings);
     let materials: Vec<Material> = materials
         .iter()
-        .zip(&libraries.owners)
-        .map(|(m, owner)| {
-            textures.put_on(libraries.files, owner, m, library::material(m, lighting))
-        })
+        .zip(&owners)
+        .map(|(m, owner)| textures.put_on(files, owner, m, super::mtl::material(m, lighting)))
         .collect();
     let material = |model: &tobj::Model| {
         let id = model.mesh.material_id;
         id.and_then(|i| materials.get(i).cloned())
             .unwrap_or_else(|| Material::default_with(lighting))
     };
-    let mesh = assemble(&models, material, &shown(path), &mut warnings);
+    let mesh = assemble(&models, material, &shown(path), &mut warnings)
+        .map_err(|message| fail(None, message))?;
     if mesh.triangles.is_empty() {
         let message = "holds no triangle with an area; export the mesh again";
         return Err(fail(None, message.into()));
     }
-    Ok(LoadedObj {
-        mesh,
-        warnings: warnings.texts(),
-        files: libraries.files.used()[first..].to_vec(),
-    })
+    Ok(Imported::mesh(mesh, warnings.texts()))
 }
 
-/// The material libraries of an OBJ file, read as `tobj` meets their names.
-struct Libraries<'a, 'f> {
-    /// The OBJ file.
-    path: &'a Path,
-    files: &'a mut Files<'f>,
-    /// Those read so far: naming one again adds nothing, and tobj asks for it all the same.
-    read: HashSet<PathBuf>,
-    /// The library of each material, in `tobj`'s order.
-    owners: Vec<PathBuf>,
-    warnings: Warnings,
-    /// Whether a library is missing.
-    is_incomplete: bool,
-    /// The first error. `tobj` continues after an error of a library, and its own errors hold no message.
-    error: Option<SceneError>,
-}
-
-impl Libraries<'_, '_> {
-    fn load(&mut self, name: &Path) -> tobj::MTLLoadResult {
-        self.read(name).map_err(|e| {
-            self.error.get_or_insert(e);
-            tobj::LoadError::ReadError
-        })
-    }
-
-    fn read(&mut self, name: &Path) -> Result<library::Library, SceneError> {
-        let file = self.path.parent().unwrap_or(Path::new(".")).join(name);
-        if !self.read.insert(file.clone()) {
-            return Ok(library::Library::default());
-        }
-        let bytes = match self.files.read(&file, FileKind::Materials) {
-            Err(SceneError::Read { source, .. }) => {
-                self.is_incomplete = true;
-                self.warnings.about(
-                    format!("{}: cannot read material file ", shown(self.path)),
-                    &shown(&file),
-                    format!(" ({source}); default material used"),
-                );
-                return Ok(library::Library::default());
+/// The text of an OBJ or MTL file: UTF-8, else Latin-1 as old exporters write it, with a warning. Without comments, with continued lines joined
+/// and blanks for all other white space; every statement stays on its line.
+pub(super) fn statements(
+    path: &Path,
+    bytes: &[u8],
+    warnings: &mut Warnings,
+) -> Result<String, SceneError> {
+    let text: Cow<'_, str> = match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(e) => {
+            let valid = &bytes[..e.valid_up_to()];
+            let line = 1 + valid.iter().filter(|&&b| b == b'\n').count();
+            // No text has these: it is UTF-16, or not text.
+            if bytes.contains(&0) {
+                return Err(SceneError::Mesh {
+                    path: path.to_owned(),
+                    line: Some(line),
+                    message: "is not UTF-8 text; is it an OBJ file? Save it as plain text".into(),
+                });
             }
-            bytes => bytes?,
+            warnings.add(format!(
+                "{}:{line}: is not UTF-8 and is read as Latin-1; save it as UTF-8 where names look wrong",
+                shown(path)
+            ));
+            let marked = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+            marked
+                .iter()
+                .map(|&b| char::from(b))
+                .collect::<String>()
+                .into()
+        }
+    };
+    let mut out = String::with_capacity(text.len());
+    let mut joined = 0;
+    for line in text.replace("\r\n", "\n").replace('\r', "\n").lines() {
+        // Files that were joined have byte order marks inside.
+        let line = line.trim_start_matches('\u{feff}');
+        let line = line.split('#').next().unwrap_or("").trim();
+        let (part, is_continued) = match line.strip_suffix('\\') {
+            Some(part) => (part, true),
+            None => (line, false),
         };
-        self.files.record(&file, &bytes);
-        let (text, warning) = text::decode(&file, &bytes)?;
-        if let Some(warning) = warning {
-            self.warnings.add(warning);
+        let blank = |c: char| if c.is_whitespace() { ' ' } else { c };
+        out.extend(part.chars().map(blank));
+        if is_continued {
+            out.push(' ');
+            joined += 1;
+        } else {
+            out.extend(std::iter::repeat_n('\n', joined + 1));
+            joined = 0;
         }
-        let library = library::read(&file, &text::statements(&text), &mut self.warnings)?;
-        for name in library::not_drawn(&library.0) {
-            let before = format!("{}: not drawn: ", shown(&file));
-            self.warnings.about(before, &printable(name), "");
-        }
-        let owners = std::iter::repeat_n(file, library.0.len());
-        self.owners.extend(owners);
-        Ok(library)
     }
+    Ok(out)
+}
+
+/// Refuses what `tobj` would read wrong or panic on: words for numbers, such as `nan`; indices that overflow; colours of some vertices alone,
+/// which would become those of others. The line from 1, and a message.
+fn check(text: &str) -> Result<(), (usize, String)> {
+    let mut has_colors = None;
+    for (line, number) in text.lines().zip(1..) {
+        let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
+        let is_word = |b: u8| b.is_ascii_alphabetic() && !b.eq_ignore_ascii_case(&b'e');
+        let is_index_too_large = || {
+            let mut numbers = rest.split(|c: char| !c.is_ascii_digit());
+            numbers.any(|n| n.len() > INDEX_DIGITS)
+        };
+        let message = match key {
+            "v" | "vn" if rest.bytes().any(is_word) => {
+                format!(
+                    "'{}' holds no finite numbers; repair the mesh",
+                    printable(line)
+                )
+            }
+            "v" => {
+                let count = rest.split_whitespace().count();
+                if (3..=4).contains(&count) || count == 6 {
+                    let is_colored = count == 6;
+                    if *has_colors.get_or_insert(is_colored) == is_colored {
+                        continue;
+                    }
+                    "a vertex with a colour among vertices without one; repair the line".into()
+                } else {
+                    format!(
+                        "a vertex of {count} numbers; a position has 3, with w 4, with a colour 6: repair the line, or is the file cut off?"
+                    )
+                }
+            }
+            "f" if is_index_too_large() => "an index is too large; repair the face".into(),
+            _ => continue,
+        };
+        return Err((number, message));
+    }
+    Ok(())
 }
 
 /// Whether a mesh has finite numbers, and faces of three vertices or more.
@@ -248,12 +229,12 @@ fn assemble(
     material: impl Fn(&tobj::Model) -> Material,
     file: &str,
     warnings: &mut Warnings,
-) -> Mesh {
+) -> Result<Mesh, String> {
     let mut triangulator = Triangulator::new();
     let triangles: Vec<Vec<[u32; 3]>> = models
         .iter()
         .map(|model| triangles(&model.mesh, &mut triangulator))
-        .collect();
+        .collect::<Result<_, _>>()?;
     let areas = area_sums(models, &triangles);
     let mut mesh = Mesh::empty();
     let mut lost = Lost::default();
@@ -287,7 +268,7 @@ fn assemble(
             warnings.add(format!("{file}: {count} {what}"));
         }
     }
-    mesh
+    Ok(mesh)
 }
 
 /// How many elements of a file could not be used.
@@ -303,11 +284,11 @@ fn vectors(flat: &[f32]) -> Vec<Vec3> {
 }
 
 /// The faces of a mesh as triangles.
-fn triangles(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Vec<[u32; 3]> {
+fn triangles(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Vec<[u32; 3]>, String> {
     // tobj lists no arities where all faces are triangles.
     if mesh.face_arities.is_empty() {
         let triangles = mesh.indices.chunks_exact(3);
-        return triangles.map(|t| [t[0], t[1], t[2]]).collect();
+        return Ok(triangles.map(|t| [t[0], t[1], t[2]]).collect());
     }
     let position = |i: &u32| {
         let p = &mesh.positions[3 * *i as usize..];
@@ -319,10 +300,10 @@ fn triangles(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Vec<[u32; 3]
         let (face, after) = rest.split_at(arity as usize);
         rest = after;
         let vertices: Vec<DVec3> = face.iter().map(position).collect();
-        let cut = triangulator.triangulate(&vertices);
+        let cut = triangulator.triangulate(&vertices)?;
         triangles.extend(cut.into_iter().map(|t| t.map(|i| face[i])));
     }
-    triangles
+    Ok(triangles)
 }
 
 /// The sum of the adjacent triangles' area vectors at every position of the file: groups and UV seams split vertices, but not the

@@ -1,14 +1,13 @@
 //! OBJ and MTL files as exporters write them, and as they should not.
 
 use super::*;
-use std::fs;
 
-fn load(files: &[(&str, &[u8])]) -> Result<LoadedObj, SceneError> {
-    let folder = tempfile::tempdir().expect("temporary folder");
-    for (name, bytes) in files {
-        fs::write(folder.path().join(name), bytes).expect("writes");
-    }
-    load_obj(&folder.path().join(files[0].0), Lighting::Unlit)
+fn load_counted(files: &[(&str, &[u8])]) -> (Result<Imported, SceneError>, usize) {
+    crate::import::load_from_memory(files, Lighting::Unlit)
+}
+
+fn load(files: &[(&str, &[u8])]) -> Result<Imported, SceneError> {
+    load_counted(files).0
 }
 
 const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -22,7 +21,6 @@ fn polygons_negative_indices_groups_and_materials() {
     let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
     let m = &loaded.mesh;
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
-    assert_eq!(loaded.files.len(), 2);
     assert_eq!(m.triangles.len(), 3);
     assert_eq!(m.parts.len(), 2);
     assert_eq!(
@@ -60,12 +58,26 @@ fn what_exporters_write() {
 }
 
 #[test]
-fn bad_materials_name_their_line() {
+fn bad_materials_are_named() {
     let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
     for (mtl, expected) in [
-        ("newmtl m\nKd 1 0\n", "a.mtl:2: 'Kd' needs 1 or 3 numbers"),
-        ("newmtl m\nd nan\n", "a.mtl:2: 'd nan' is not finite"),
-        ("newmtl m\n\nTr 1.5\n", "a.mtl:3: Tr 1.5 must lie in 0 … 1"),
+        (
+            "newmtl m\nKd 1 0\n",
+            "a.mtl:2: 'Kd 1 0' needs 1 or 3 numbers",
+        ),
+        ("newmtl m\nd x\n", "a.mtl:2: 'd x' cannot be read"),
+        (
+            "newmtl m\nd nan\n",
+            "a.mtl: material 'm': a number is not finite",
+        ),
+        (
+            "newmtl m\n\nTr 1.5\n",
+            "a.mtl: material 'm': d and Tr must lie in 0 … 1",
+        ),
+        (
+            "newmtl m\nTr x\n",
+            "a.mtl: material 'm': Tr is not a number",
+        ),
     ] {
         let e = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())]).expect_err(mtl);
         assert!(e.to_string().contains(expected), "{e}");
@@ -112,14 +124,15 @@ fn images_of_materials() {
     let color = picture([[200, 0, 0, 9], [0, 100, 0, 9]]);
     let leaf = picture([[0, 0, 0, 255], [255, 255, 255, 255]]);
     let mtl = b"newmtl m\nKd 1 1 1\nmap_Kd -clamp on a b.png\nmap_d leaf.png\nmap_Bump -bm 2 -s 2 2 leaf.png\nmap_Pr leaf.png\nmap_Ke a b.png\nmap_Ks gone.png\n# caf\xe9\n";
-    let obj = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n";
+    let obj = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n";
     let files: [(&str, &[u8]); 4] = [
         ("a.obj", obj.as_bytes()),
         ("a.mtl", mtl),
         ("a b.png", &color),
         ("leaf.png", &leaf),
     ];
-    let loaded = load(&files).expect("loads");
+    let (loaded, used) = load_counted(&files);
+    let loaded = loaded.expect("loads");
     let mesh = &loaded.mesh;
     let m = &mesh.parts[0].material;
     // Opacity comes of map_d alone, whatever the colour's file holds.
@@ -140,11 +153,7 @@ fn images_of_materials() {
     for word in ["option -s of map_Bump", "map_Ks", "Latin-1"] {
         assert!(warnings.contains(word), "{word}: {warnings}");
     }
-    assert_eq!(
-        (loaded.warnings.len(), loaded.files.len()),
-        (2, 4),
-        "{warnings}"
-    );
+    assert_eq!((loaded.warnings.len(), used), (2, 4), "{warnings}");
 }
 
 #[test]
@@ -165,9 +174,9 @@ fn a_missing_mtl_is_survived() {
 fn a_library_is_read_once() {
     let obj = format!("{}{QUAD}usemtl m\nf 1 2 3\n", "mtllib a.mtl\n".repeat(1000));
     let mtl = b"newmtl m\nKd 0.25 0.5 1\n";
-    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
-    assert_eq!(loaded.files.len(), 2);
-    assert_eq!(loaded.mesh.parts[0].material.color, [0.25, 0.5, 1.0]);
+    let (loaded, used) = load_counted(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]);
+    let part = &loaded.expect("loads").mesh.parts[0];
+    assert_eq!((used, part.material.color), (2, [0.25, 0.5, 1.0]));
 }
 
 #[test]
@@ -181,74 +190,54 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
     }
 }
 
-/// Each bad file gives one error that names the file, the line and a fix.
+/// Each bad file gives one error that names the file, the line where that is known, and a fix.
 #[test]
 fn bad_files() {
-    let cases: [(&str, Vec<u8>, &str); 11] = [
+    let quad = |rest: &str| format!("{QUAD}{rest}").into_bytes();
+    let cases: [(Vec<u8>, &str); 12] = [
         (
-            "NaN position",
             b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
-            "a.obj:2: position 'nan'",
+            "a.obj:2: 'v nan 0 0'",
         ),
         (
-            "NaN normal",
-            format!("{QUAD}vn 0 nan 0\nf 1//1 2//1 3//1\n").into_bytes(),
-            "a.obj:5: normal 'nan'",
+            quad("vn 0 nan 0\nf 1//1 2//1 3//1\n"),
+            "a.obj:5: 'vn 0 nan 0'",
         ),
         (
-            "NaN w",
-            b"v 0 0 0\nv 1 0 0 nan\nv 0 1 0\nf 1 2 3\n".to_vec(),
-            "a.obj:2: position 'nan'",
-        ),
-        (
-            "tiny w",
             b"v 0 0 0\nv 1 0 0 1e-42\nv 0 1 0\nf 1 2 3\n".to_vec(),
-            "a.obj:2: a position with w = 1e-42",
+            "not finite",
+        ),
+        (b"v 0 zero 0\nf 1 1 1\n".to_vec(), "a.obj:1: 'v 0 zero 0'"),
+        (
+            b"v 0 0\nf 1 1 1\n".to_vec(),
+            "a.obj:1: a vertex of 2 numbers",
         ),
         (
-            "word",
-            b"v 0 zero 0\nf 1 1 1\n".to_vec(),
-            "a.obj:1: 'zero' is not a number",
+            b"v 0 0 0 1 0 0\nv 0 0 0\n".to_vec(),
+            "a.obj:2: a vertex with a colour",
         ),
+        (quad("f 1 2 5\n"), "a.obj:5"),
+        (quad("f 0 1 2\n"), "a.obj:5"),
+        (quad("f -1 -2 -5\n"), "a.obj:5"),
+        // An index whose triple overflows 64 bits.
         (
-            "beyond",
-            format!("{QUAD}f 1 2 5\n").into_bytes(),
-            "a.obj:5: index 5 points at none of the 4 vertices",
+            quad("f 1//1 1//1 1//6148914691236517206\n"),
+            "a.obj:5: an index is too large",
         ),
-        (
-            "zero",
-            format!("{QUAD}f 0 1 2\n").into_bytes(),
-            "a.obj:5: index 0",
-        ),
-        (
-            "too far back",
-            format!("{QUAD}f -1 -2 -5\n").into_bytes(),
-            "a.obj:5: index -5",
-        ),
-        ("empty", Vec::new(), "a.obj: holds no faces"),
-        (
-            "cut off",
-            format!("{QUAD}f 1 2").into_bytes(),
-            "a.obj:5: a face of 2 vertices",
-        ),
-        (
-            "UTF-16",
-            vec![b'v', 0, b'\n', 0, 0xff, 0xfe],
-            "a.obj:2: is not UTF-8",
-        ),
+        (Vec::new(), "a.obj: holds no faces"),
+        (quad("f 1 2"), "a face has fewer than 3 vertices"),
     ];
-    for (name, bytes, expected) in cases {
-        let e = load(&[("a.obj", &bytes)]).expect_err(name).to_string();
-        assert!(e.contains(expected), "{name}: {e}");
+    for (bytes, expected) in cases {
+        let e = load(&[("a.obj", &bytes)]).expect_err(expected).to_string();
         assert!(
-            e.contains("repair") || e.contains('?'),
-            "{name} names no fix: {e}"
+            e.starts_with("a.obj") && e.contains(expected),
+            "{expected}: {e}"
         );
+        assert!(e.contains("repair") || e.contains('?'), "no fix: {e}");
     }
-    assert!(matches!(
-        load_obj(Path::new("no/such.obj"), Lighting::Unlit),
-        Err(SceneError::Read { .. })
-    ));
+    let utf16 = [b'v', 0, b'\n', 0, 0xff, 0xfe];
+    let e = load(&[("a.obj", &utf16)]).expect_err("UTF-16").to_string();
+    assert!(e.contains("a.obj:2: is not UTF-8"), "{e}");
 }
 
 /// One number is grey, a halo's factor is an opacity, an exponent of 0 is no highlight, colours end at 1; marks are no statements.

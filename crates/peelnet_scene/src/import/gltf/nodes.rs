@@ -1,6 +1,6 @@
 //! Nodes, lights and cameras.
 
-use super::{GltfCamera, LoadedGltf};
+use crate::import::{FileCamera, Imported};
 use crate::{
     budget::check_parts,
     error::SceneError,
@@ -26,7 +26,7 @@ pub(super) struct Reader<'a, 'f> {
     pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What the file uses and is not drawn.
     pub missing: Warnings,
-    pub loaded: LoadedGltf,
+    pub loaded: Imported,
 }
 
 /// A value within its bounds; the lower one instead of a value that is not finite.
@@ -68,13 +68,7 @@ impl<'a, 'f> Reader<'a, 'f> {
             converter: Converter::default(),
             images: HashMap::new(),
             missing: Warnings::default(),
-            loaded: LoadedGltf {
-                mesh: Mesh::empty(),
-                lights: Vec::new(),
-                cameras: Vec::new(),
-                warnings: Vec::new(),
-                files: Vec::new(),
-            },
+            loaded: Imported::mesh(Mesh::empty(), Vec::new()),
         }
     }
 
@@ -140,7 +134,7 @@ impl<'a, 'f> Reader<'a, 'f> {
         }
         if let Some(camera) = node.camera() {
             match camera.projection() {
-                Projection::Perspective(p) => self.loaded.cameras.push(GltfCamera {
+                Projection::Perspective(p) => self.loaded.cameras.push(FileCamera {
                     file_from_camera: world,
                     fov_y: p.yfov(),
                     near: p.znear(),

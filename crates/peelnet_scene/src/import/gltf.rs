@@ -9,49 +9,16 @@ mod nodes;
 mod primitives;
 mod repair;
 
+use super::Imported;
 use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
-    mesh::Mesh,
-    scene::Light,
+    material::Lighting,
 };
-use glam::Mat4;
 use nodes::Reader;
 use peelnet_files::{counted, printable};
 use serde_json::Value;
-use std::{
-    borrow::Cow,
-    io,
-    path::{Path, PathBuf},
-};
-
-/// A glTF file's contents.
-#[derive(Clone, Debug)]
-pub struct LoadedGltf {
-    /// All nodes' triangles in the file's space, a part for each primitive.
-    pub mesh: Mesh,
-    /// Point and directional lights.
-    pub lights: Vec<Light>,
-    /// Cameras with a perspective projection.
-    pub cameras: Vec<GltfCamera>,
-    /// What is not drawn.
-    pub warnings: Vec<String>,
-    /// Every file that was read, the named one first.
-    pub files: Vec<PathBuf>,
-}
-
-/// A camera of a glTF file, in its space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GltfCamera {
-    /// Camera to file space; the camera looks along −z.
-    pub file_from_camera: Mat4,
-    /// Vertical field of view, radians.
-    pub fov_y: f32,
-    /// Near plane.
-    pub near: f32,
-    /// Far plane, where the file gives one.
-    pub far: Option<f32>,
-}
+use std::{borrow::Cow, path::Path};
 
 /// Size of the largest JSON that is read, bytes: in memory it takes up to 16 times as much. Buffers can lie outside of it.
 const MAX_JSON_BYTES: usize = 256 << 20;
@@ -65,26 +32,6 @@ const KNOWN: [&str; 6] = [
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_texture_transform",
 ];
-
-/// Reads a glTF or GLB file and the buffers and images that it names.
-///
-/// # Errors
-/// A file that cannot be read, is no glTF 2.0, needs an extension that is not known here, or holds numbers or indices that make no
-/// sense.
-pub fn load_gltf(path: &Path) -> Result<LoadedGltf, SceneError> {
-    load(path, &mut Files::new(&peelnet_files::read))
-}
-
-/// The same with a function that reads files: from an archive, or from memory.
-///
-/// # Errors
-/// See [`load_gltf`].
-pub fn load_gltf_from(
-    path: &Path,
-    read: impl Fn(&Path) -> io::Result<Vec<u8>>,
-) -> Result<LoadedGltf, SceneError> {
-    load(path, &mut Files::new(&|path, _| read(path)))
-}
 
 /// Checks that the length in the header of a GLB file holds that header, which the crate subtracts from it unseen. Found by fuzzing.
 fn check_length(bytes: &[u8]) -> Result<(), String> {
@@ -131,14 +78,17 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     Ok((document, blob))
 }
 
-/// Reads a glTF or GLB file.
-pub(crate) fn load(path: &Path, files: &mut Files<'_>) -> Result<LoadedGltf, SceneError> {
+/// Reads a glTF or GLB file and the buffers and images that it names: a part of the mesh for each primitive. All materials say how they are lit.
+pub(super) fn load(
+    path: &Path,
+    _: Lighting,
+    files: &mut Files<'_>,
+) -> Result<Imported, SceneError> {
     let fail = |message: String| SceneError::Mesh {
         path: path.to_owned(),
         line: None,
         message,
     };
-    let first = files.used().len();
     let bytes = files.read(path, FileKind::Mesh)?;
     files.record(path, &bytes);
     let (document, blob) = parse(&bytes).map_err(&fail)?;
@@ -173,10 +123,8 @@ pub(crate) fn load(path: &Path, files: &mut Files<'_>) -> Result<LoadedGltf, Sce
     let Reader {
         mut loaded,
         missing,
-        files,
         ..
     } = reader;
-    loaded.files = files.used()[first..].to_vec();
     let missing = missing.texts();
     let missing = missing.iter();
     let warnings = missing.map(|what| format!("{}: not drawn: {what}", shown(path)));

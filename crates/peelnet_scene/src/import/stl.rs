@@ -1,55 +1,32 @@
 //! STL files, binary and ASCII (3D Systems 1989): meshes of CAD programs and printers.
 //!
-//! Read here, not by a crate: those that there are take a binary file whose header begins with `solid` for text, as many programs write it,
-//! and know no lines in their errors.
+//! Read here, not by a crate: `stl_io` and its like stop after the first solid of a file without a word, and take a binary file whose header
+//! begins with `solid` for text, as many programs write it.
 
-#[cfg(test)]
-mod tests;
-mod text;
-
+use super::{
+    Imported,
+    surface::{self, Fault, Surface, fault_of},
+};
 use crate::{
-    budget::Budget,
-    error::SceneError,
-    files::Files,
-    material::Lighting,
-    mesh::key_of,
-    scan::{self, Fault, Surface, fault_of},
+    budget::Budget, error::SceneError, files::Files, material::Lighting, mesh::key_of,
     warnings::Warnings,
 };
 use glam::Vec3;
-use peelnet_files::counted;
-use std::{collections::HashMap, io, path::Path};
+use peelnet_files::{counted, printable};
+use std::{collections::HashMap, path::Path};
 
-pub use crate::scan::LoadedScan;
+#[cfg(test)]
+#[path = "stl_tests.rs"]
+mod tests;
 
 /// Reads an STL file. Vertices at equal positions are one; normals are computed: smooth, but for edges of more than 30 degrees. All solids of a file
 /// are one part. Colours, which each program writes in another way, are not read.
-///
-/// # Errors
-/// A file that cannot be read, is cut off, has no facets, or holds numbers that make no sense: with its line or triangle.
-pub fn load_stl(path: &Path, lighting: Lighting) -> Result<LoadedScan, SceneError> {
-    load(path, lighting, &mut Files::new(&peelnet_files::read))
-}
-
-/// The same with a function that reads files: from an archive, or from memory.
-///
-/// # Errors
-/// See [`load_stl`].
-pub fn load_stl_from(
-    path: &Path,
-    lighting: Lighting,
-    read: impl Fn(&Path) -> io::Result<Vec<u8>>,
-) -> Result<LoadedScan, SceneError> {
-    load(path, lighting, &mut Files::new(&|path, _| read(path)))
-}
-
-/// Reads an STL file.
-pub(crate) fn load(
+pub(super) fn load(
     path: &Path,
     lighting: Lighting,
     files: &mut Files<'_>,
-) -> Result<LoadedScan, SceneError> {
-    scan::load(path, lighting, files, surface)
+) -> Result<Imported, SceneError> {
+    surface::load(path, lighting, files, read)
 }
 
 /// Bytes of a binary file's header, and of its count.
@@ -60,14 +37,13 @@ const COUNT: usize = 4;
 const TRIANGLE: usize = 50;
 
 /// The triangles of a file.
-fn surface(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
-    let count = bytes
-        .get(HEADER..HEADER + COUNT)
-        .map(|count| u64::from(u32::from_le_bytes([count[0], count[1], count[2], count[3]])));
+fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+    let number = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
+    let count = number(HEADER).map(|count| u64::from(u32::from_le_bytes(count)));
     let needed = count.map(|n| (HEADER + COUNT) as u64 + n * TRIANGLE as u64);
     let held = bytes.len() as u64;
-    if needed != Some(held) && text::is_text(bytes) {
-        return text::read(bytes, budget, warnings);
+    if needed != Some(held) && is_text(bytes) {
+        return read_text(bytes, budget, warnings);
     }
     let (Some(count), Some(needed)) = (count, needed) else {
         return Err(Fault::new(format!(
@@ -91,12 +67,9 @@ fn surface(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result
     let mut soup = Soup::default();
     let facets = &bytes[HEADER + COUNT..needed as usize];
     for (i, facet) in facets.chunks_exact(TRIANGLE).enumerate() {
-        let number = |k: usize| {
-            let at = 12 + 4 * k;
-            f32::from_le_bytes([facet[at], facet[at + 1], facet[at + 2], facet[at + 3]])
-        };
-        let vertex = |k: usize| Vec3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2));
-        let triangle = [0, 1, 2].map(vertex);
+        // Behind the normal stand nine numbers.
+        let number = |k: usize| f32::from_le_bytes([0, 1, 2, 3].map(|b| facet[12 + 4 * k + b]));
+        let triangle = [0, 3, 6].map(|k| Vec3::new(number(k), number(k + 1), number(k + 2)));
         if let Some(what) = triangle.into_iter().find_map(fault_of) {
             let message = format!("a vertex of triangle {i} {what}; repair the mesh");
             return Err(Fault::new(message));
@@ -104,6 +77,63 @@ fn surface(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result
         soup.push(triangle);
     }
     soup.into_surface(budget, warnings)
+}
+
+/// Whether a file is text: its first word is `solid`, as that of many binary files is, and a facet or the end follows it soon.
+fn is_text(bytes: &[u8]) -> bool {
+    let start = bytes[..bytes.len().min(4096)].to_ascii_lowercase();
+    let has = |word: &[u8]| start.windows(word.len()).any(|w| w == word);
+    start.trim_ascii_start().starts_with(b"solid") && (has(b"facet") || has(b"endsolid"))
+}
+
+/// Reads a file of text, a statement a line. Normals are not used: many files have wrong ones.
+fn read_text(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+    // Names may be of any encoding; all other words are ASCII.
+    let text = String::from_utf8_lossy(bytes).replace('\r', "\n");
+    let mut soup = Soup::default();
+    let mut vertices = Vec::new();
+    let mut is_open = false;
+    for (line, i) in text.lines().zip(1..) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let first = words.first().map(|word| word.to_ascii_lowercase());
+        match first.as_deref() {
+            None | Some("outer" | "endfacet") => {}
+            Some("solid") => is_open = true,
+            Some("endsolid") => is_open = false,
+            Some("facet") => vertices.clear(),
+            Some("vertex") if words.len() == 4 => {
+                let number = |k: usize| words[k].parse().unwrap_or(f32::NAN);
+                let vertex = Vec3::new(number(1), number(2), number(3));
+                if let Some(what) = fault_of(vertex) {
+                    return Err(Fault::at(i, format!("a vertex {what}; repair the mesh")));
+                }
+                vertices.push(vertex);
+            }
+            Some("endloop") => {
+                let &[a, b, c] = &vertices[..] else {
+                    let message = format!("a facet of {} vertices", vertices.len());
+                    return Err(Fault::at(i, message + "; triangulate the mesh"));
+                };
+                budget.take_mesh(1, 0).map_err(Fault::new)?;
+                soup.push([a, b, c]);
+                vertices.clear();
+            }
+            _ => {
+                let line = printable(line.trim());
+                let message = format!("'{line}' is no statement of STL; repair the line");
+                return Err(Fault::at(i, message));
+            }
+        }
+    }
+    if !vertices.is_empty() {
+        let message = "ends inside of a facet; is the file cut off?";
+        return Err(Fault::new(message));
+    }
+    let surface = soup.into_surface(budget, warnings)?;
+    if is_open {
+        warnings.add("has no 'endsolid' at its end: it may be cut off");
+    }
+    Ok(surface)
 }
 
 /// Triangles, whose vertices at equal positions become one.

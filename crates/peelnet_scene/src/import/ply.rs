@@ -1,0 +1,335 @@
+//! PLY files (Turk 1994), ASCII and binary of either byte order: meshes of scanners.
+//!
+//! `ply-rs-bw` reads the header and the elements. Before it, counts are compared with the length of the file, so that nothing is made of what a
+//! file cannot hold, and numbers of text that its grammar refuses, such as `.5` and `1.`, are written in another way.
+
+use super::{
+    Imported,
+    ply_elements::{Face, INDICES, RED, Skipped, U, Vertex},
+    polygons::Triangulator,
+    surface::{self, Fault, Surface, fault_of},
+};
+use crate::{
+    budget::Budget, error::SceneError, files::Files, material::Lighting, warnings::Warnings,
+};
+use glam::{DVec3, Vec2, Vec3};
+use peelnet_files::{counted, printable};
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyType, ScalarType},
+};
+use std::{borrow::Cow, io::ErrorKind, path::Path};
+
+#[cfg(test)]
+#[path = "ply_tests.rs"]
+mod tests;
+
+/// Most bytes of a header.
+const MAX_HEADER: usize = 1 << 20;
+
+/// Reads a PLY file: positions, normals, colours with opacity, texture coordinates (of vertices or of the vertices of faces), polygons and
+/// triangle strips.
+///
+/// Colours in bytes are sRGB, as programs show them, colours in floating-point numbers linear. Missing normals are computed.
+pub(super) fn load(
+    path: &Path,
+    lighting: Lighting,
+    files: &mut Files<'_>,
+) -> Result<Imported, SceneError> {
+    surface::load(path, lighting, files, read)
+}
+
+/// The triangles of a file.
+fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+    let head = head_length(bytes)?;
+    let is_text = String::from_utf8_lossy(&bytes[..head]).contains("format ascii");
+    let bytes = if is_text {
+        Cow::Owned(rewritten(bytes, head))
+    } else {
+        Cow::Borrowed(bytes)
+    };
+    let head = head_length(&bytes)?;
+    let mut input = Reader::new(&*bytes);
+    let header = Parser::<Skipped>::new().read_header(&mut input);
+    let header = header.map_err(|e| fault("header", &e, true))?;
+    check_header(&header, &bytes[..head], (bytes.len() - head) as u64)?;
+    let count = |name: &str| header.elements.get(name).map_or(0, |e| e.count as u64);
+    let (vertices, faces) = (count("vertex"), count("face") + count("tristrips"));
+    if faces == 0 {
+        return Err(Fault::new(match vertices {
+            0 => "holds no faces; is the file empty or cut off?".into(),
+            n => format!(
+                "holds {} and no faces: it is a point cloud; reconstruct a surface of it first, and export that",
+                counted(n, "point")
+            ),
+        }));
+    }
+    // Polygons of more than three vertices are counted when they are met.
+    budget.take_mesh(faces, vertices).map_err(Fault::new)?;
+    let is_texture = |c: &String| c.trim_start().starts_with("TextureFile");
+    if header.comments.iter().any(is_texture) {
+        let message = "not drawn: its texture; name it as color_map in a scene file";
+        warnings.add(message);
+    }
+    let mut reader = Faces {
+        surface: Surface::default(),
+        budget,
+        triangulator: Triangulator::new(),
+        vertex_uvs: Vec::new(),
+        short_faces: 0,
+    };
+    for element in header.elements.values() {
+        match element.name.as_str() {
+            "vertex" => reader.vertices(elements(&mut input, element, &header)?, element)?,
+            "face" | "tristrips" => {
+                reader.faces(elements(&mut input, element, &header)?, element)?
+            }
+            // It has no bytes, however many there are.
+            _ if element.properties.is_empty() => {}
+            _ => drop(elements::<Skipped>(&mut input, element, &header)?),
+        }
+    }
+    if reader.short_faces > 0 {
+        let count = counted(reader.short_faces, "face");
+        warnings.add(format!("{count} of fewer than 3 vertices left out"));
+    }
+    Ok(reader.surface)
+}
+
+/// The error of the crate as ours.
+fn fault(what: &str, e: &ParseError, has_lines: bool) -> Fault {
+    let message = match e.kind() {
+        ErrorKind::UnexpectedEof => format!("ends inside of '{what}'; is the file cut off?"),
+        _ => format!("'{what}' cannot be read; repair it, or export the mesh again"),
+    };
+    Fault {
+        line: e.line().filter(|_| has_lines),
+        message,
+    }
+}
+
+/// All elements of a kind.
+fn elements<E: PropertyAccess>(
+    input: &mut Reader<&[u8]>,
+    element: &ElementDef,
+    header: &Header,
+) -> Result<Vec<E>, Fault> {
+    let read = Parser::<E>::new().read_payload_for_element(input, element, header);
+    let has_lines = header.encoding == Encoding::Ascii;
+    read.map_err(|e| fault(&printable(&element.name), &e, has_lines))
+}
+
+/// Where the header ends, bytes.
+fn head_length(bytes: &[u8]) -> Result<usize, Fault> {
+    const END: &[u8] = b"end_header";
+    if !bytes.starts_with(b"ply") {
+        let message = "does not begin with 'ply': is it a PLY file? Export it again";
+        return Err(Fault::at(1, message));
+    }
+    let start = &bytes[..bytes.len().min(MAX_HEADER)];
+    let is_end = |w: &[u8]| matches!(w[0], b'\n' | b'\r') && &w[1..] == END;
+    let at = start.windows(END.len() + 1).position(is_end);
+    at.map(|at| at + 1 + END.len()).ok_or_else(|| {
+        let message = format!(
+            "has no 'end_header' in its first {}; is the file cut off?",
+            counted(start.len() as u64, "byte")
+        );
+        Fault::new(message)
+    })
+}
+
+/// A file of text as the crate reads it: a line for each element, and numbers as Rust writes them.
+fn rewritten(bytes: &[u8], head: usize) -> Vec<u8> {
+    let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
+    let text = text.replace('\r', "\n");
+    let head = text[..head.min(text.len())]
+        .rfind("end_header")
+        .unwrap_or(0);
+    let (head, body) = text.split_at(text[head..].find('\n').map_or(text.len(), |n| head + n + 1));
+    let mut out = head.to_owned();
+    for line in body.lines().filter(|line| !line.trim().is_empty()) {
+        let number = |word: &str| match word.parse::<f64>() {
+            Ok(x) if x.is_finite() => x.to_string(),
+            _ => word.to_owned(),
+        };
+        let words: Vec<String> = line.split_whitespace().map(number).collect();
+        out.push_str(&words.join(" "));
+        out.push('\n');
+    }
+    out.into_bytes()
+}
+
+/// Checks that each name stands once, as the crate keeps one of two, and that as many bytes as the header's counts need follow it.
+fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
+    let text = String::from_utf8_lossy(head);
+    let lines = |word: &str| {
+        text.split(['\n', '\r'])
+            .filter(|l| l.starts_with(word))
+            .count()
+    };
+    let properties = header.elements.values().map(|e| e.properties.len());
+    if lines("element") != header.elements.len() || lines("property") != properties.sum::<usize>() {
+        let message = "its header names an element or a property twice; export it again";
+        return Err(Fault::new(message));
+    }
+    let mut needed = 0u64;
+    for element in header.elements.values() {
+        let types = element.properties.values().map(|p| &p.data_type);
+        let least: u64 = types.map(|t| least_bytes(t, header.encoding)).sum();
+        needed = needed.saturating_add(least.saturating_mul(element.count as u64));
+        // The last number needs no space behind it.
+        if needed > held + 1 {
+            return Err(Fault::new(format!(
+                "its header says that it has {} of '{}', which take {} at least, and {held} follow it; is the file cut off?",
+                element.count,
+                printable(&element.name),
+                counted(needed, "byte"),
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The fewest bytes that a property takes.
+fn least_bytes(property: &PropertyType, encoding: Encoding) -> u64 {
+    // A digit and a blank.
+    if encoding == Encoding::Ascii {
+        return 2;
+    }
+    let (PropertyType::Scalar(first) | PropertyType::List(first, _)) = property;
+    match first {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    }
+}
+
+/// Makes a surface of elements.
+struct Faces<'a> {
+    surface: Surface,
+    budget: &'a mut Budget,
+    triangulator: Triangulator,
+    /// One for each vertex, or none.
+    vertex_uvs: Vec<Vec2>,
+    short_faces: u64,
+}
+
+impl Faces<'_> {
+    fn vertices(&mut self, vertices: Vec<Vertex>, element: &ElementDef) -> Result<(), Fault> {
+        let has = |names: &[&str]| names.iter().any(|n| element.properties.contains_key(*n));
+        for axis in ["x", "y", "z"] {
+            if !has(&[axis]) {
+                let message = format!("its vertices have no '{axis}'; export the mesh again");
+                return Err(Fault::new(message));
+            }
+        }
+        for (i, vertex) in vertices.iter().enumerate() {
+            let position = Vec3::from(vertex.position);
+            if let Some(what) = fault_of(position) {
+                return Err(Fault::new(format!("vertex {i} {what}; repair the mesh")));
+            }
+            self.surface.positions.push(position);
+        }
+        if has(&["nx"]) {
+            let normals = vertices.iter().map(|v| v.normal.into());
+            self.surface.normals = Some(normals.collect());
+        }
+        if has(&RED) {
+            self.surface.colors = Some(vertices.iter().map(|v| v.color).collect());
+        }
+        if has(&U) {
+            // v runs up in PLY, down here.
+            let uvs = vertices.iter().map(|v| Vec2::new(v.uv[0], 1.0 - v.uv[1]));
+            self.vertex_uvs = uvs.collect();
+        }
+        Ok(())
+    }
+
+    fn faces(&mut self, faces: Vec<Face>, element: &ElementDef) -> Result<(), Fault> {
+        let has = |name: &str| element.properties.contains_key(name);
+        if !INDICES.into_iter().any(has) {
+            let message = format!(
+                "its elements '{}' have no vertex_indices; export the mesh again",
+                printable(&element.name)
+            );
+            return Err(Fault::new(message));
+        }
+        if has("texcoord") || !self.vertex_uvs.is_empty() {
+            // Triangles of an element before this one have none.
+            let zeros = vec![[Vec2::ZERO; 3]; self.surface.triangles.len()];
+            self.surface.uvs.get_or_insert(zeros);
+        }
+        let is_strip = element.name == "tristrips";
+        for (i, face) in faces.iter().enumerate() {
+            let (corners, indices) = self
+                .face(face, is_strip)
+                .map_err(|e| Fault::new(format!("{} {i}: {e}", element.name)))?;
+            let uv = |corner: usize| match face.uvs.get(2 * corner..2 * corner + 2) {
+                Some(uv) => Vec2::new(uv[0], 1.0 - uv[1]),
+                None => {
+                    let uv = self.vertex_uvs.get(indices[corner] as usize);
+                    uv.copied().unwrap_or_default()
+                }
+            };
+            if let Some(uvs) = &mut self.surface.uvs {
+                uvs.extend(corners.iter().map(|t| t.map(uv)));
+            }
+            let triangles = corners.iter().map(|t| t.map(|k| indices[k]));
+            self.surface.triangles.extend(triangles);
+        }
+        Ok(())
+    }
+
+    /// The triangles of a face, as numbers of its vertices, and its vertices.
+    fn face(&mut self, face: &Face, is_strip: bool) -> Result<(Vec<[usize; 3]>, Vec<u32>), String> {
+        let n = self.surface.positions.len();
+        let mut indices = Vec::with_capacity(face.indices.len());
+        for &index in &face.indices {
+            // In strips, −1 begins a new one.
+            let is_gap = is_strip && index == -1;
+            if !is_gap && usize::try_from(index).ok().is_none_or(|index| index >= n) {
+                return Err(format!(
+                    "index {index} points at none of the {n} vertices before it; repair the mesh"
+                ));
+            }
+            indices.push(if is_gap { GAP } else { index as u32 });
+        }
+        let more = (indices.len() as u64).saturating_sub(3);
+        self.budget.take_mesh(more, 0)?;
+        let corners = if is_strip {
+            strip(&indices)
+        } else if indices.len() < 3 {
+            self.short_faces += 1;
+            Vec::new()
+        } else if indices.len() == 3 {
+            vec![[0, 1, 2]]
+        } else {
+            let position = |&i: &u32| self.surface.positions[i as usize].as_dvec3();
+            let vertices: Vec<DVec3> = indices.iter().map(position).collect();
+            self.triangulator.triangulate(&vertices)?
+        };
+        Ok((corners, indices))
+    }
+}
+
+/// Stands in a strip where another one begins.
+const GAP: u32 = u32::MAX;
+
+/// The triangles of strips, as numbers of their vertices: every second one is wound the other way.
+fn strip(indices: &[u32]) -> Vec<[usize; 3]> {
+    let mut triangles = Vec::new();
+    let mut first = 0;
+    for strip in indices.split(|&i| i == GAP) {
+        for k in 0..strip.len().saturating_sub(2) {
+            let i = first + k;
+            triangles.push(if k % 2 == 0 {
+                [i, i + 1, i + 2]
+            } else {
+                [i + 1, i, i + 2]
+            });
+        }
+        first += strip.len() + 1;
+    }
+    triangles
+}

@@ -1,0 +1,135 @@
+//! Vertices and faces of PLY files.
+
+use peelnet_core::srgb;
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult as Answer};
+
+/// Names of the red of a vertex, as programs write it.
+pub(super) const RED: [&str; 3] = ["red", "r", "diffuse_red"];
+
+/// Names of a texture coordinate of a vertex.
+pub(super) const U: [&str; 4] = ["s", "u", "texture_u", "texture_s"];
+
+/// Names of the vertices of a face.
+pub(super) const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// A vertex. What a file does not say has its default.
+pub(super) struct Vertex {
+    pub position: [f32; 3],
+    pub normal: [f32; 3],
+    /// Linear RGB and alpha.
+    pub color: [f32; 4],
+    pub uv: [f32; 2],
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self {
+            position: [0.0; 3],
+            normal: [0.0; 3],
+            color: [1.0; 4],
+            uv: [0.0; 2],
+        }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> Answer {
+        let Some(x) = value.to_f32_lossy() else {
+            return Answer::Ignored;
+        };
+        match name {
+            "x" => self.position[0] = x,
+            "y" => self.position[1] = x,
+            "z" => self.position[2] = x,
+            "nx" => self.normal[0] = x,
+            "ny" => self.normal[1] = x,
+            "nz" => self.normal[2] = x,
+            "red" | "r" | "diffuse_red" => self.color[0] = linear(&value, x),
+            "green" | "g" | "diffuse_green" => self.color[1] = linear(&value, x),
+            "blue" | "b" | "diffuse_blue" => self.color[2] = linear(&value, x),
+            "alpha" | "a" | "diffuse_alpha" => self.color[3] = share(&value, x),
+            "s" | "u" | "texture_u" | "texture_s" => self.uv[0] = x,
+            "t" | "v" | "texture_v" | "texture_t" => self.uv[1] = x,
+            _ => return Answer::Ignored,
+        }
+        Answer::Set
+    }
+}
+
+/// A value of 0 … 1; of whole numbers, the largest of a byte, or of a 16-bit number, is 1.
+fn share(value: &Property, x: f32) -> f32 {
+    let most = match value {
+        Property::Float(_) | Property::Double(_) => 1.0,
+        Property::UShort(_) => 65_535.0,
+        _ => 255.0,
+    };
+    let share = x / most;
+    if share.is_nan() {
+        0.0
+    } else {
+        share.clamp(0.0, 1.0)
+    }
+}
+
+/// A channel of a colour as linear light. Whole numbers are sRGB.
+fn linear(value: &Property, x: f32) -> f32 {
+    let share = share(value, x);
+    match value {
+        Property::Float(_) | Property::Double(_) => share,
+        _ => srgb::decode(share),
+    }
+}
+
+/// A polygon or a strip.
+pub(super) struct Face {
+    pub indices: Vec<i64>,
+    /// Two for each vertex, or none.
+    pub uvs: Vec<f32>,
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self {
+            indices: Vec::new(),
+            uvs: Vec::new(),
+        }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> Answer {
+        match (name, value) {
+            ("texcoord", Property::ListFloat(uvs)) => self.uvs = uvs,
+            ("texcoord", Property::ListDouble(uvs)) => {
+                self.uvs = uvs.into_iter().map(|x| x as f32).collect();
+            }
+            (name, value) if INDICES.contains(&name) => match whole(value) {
+                Some(indices) => self.indices = indices,
+                None => return Answer::UnsupportedType,
+            },
+            _ => return Answer::Ignored,
+        }
+        Answer::Set
+    }
+}
+
+/// A list of whole numbers.
+fn whole(list: Property) -> Option<Vec<i64>> {
+    fn all<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
+        list.into_iter().map(T::into).collect()
+    }
+    Some(match list {
+        Property::ListChar(list) => all(list),
+        Property::ListUChar(list) => all(list),
+        Property::ListShort(list) => all(list),
+        Property::ListUShort(list) => all(list),
+        Property::ListInt(list) => all(list),
+        Property::ListUInt(list) => all(list),
+        _ => return None,
+    })
+}
+
+/// An element that is read because others follow it.
+pub(super) struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+}
