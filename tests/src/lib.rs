@@ -1,7 +1,5 @@
 //! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
 
-pub mod altered;
-pub mod literals;
 pub mod readers;
 
 use glam::{Vec2, Vec3};

@@ -1,7 +1,5 @@
 //! The comparison of methods as a library: what is drawn again after an interruption, and how memory grows.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     fragment::{Fragment, worked_example},
     methods::{mlab, over},

@@ -1,7 +1,5 @@
 //! Every method × stacked walls, whose every pixel holds known fragments: the GPU against the CPU twin that the method declares.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{Fragment, worked_example},

@@ -1,7 +1,5 @@
 //! Which neighbours show the same surfaces, and contour pairs, of scenes whose regions are known.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_eval::{
     bench,

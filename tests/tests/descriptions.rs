@@ -1,7 +1,5 @@
 //! Who draws as a description says gets the colour that the exported self-test names.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_export::{Blend, Description, Drawn, SelfTest, Target};
 use peelnet_model::Recipe;
 use peelnet_tests::{gpu, run_text, shipped};

@@ -1,7 +1,5 @@
 //! Effects of materials and lights: they cost nothing in a scene without them, and neutral values change nothing.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_eval::effects::{Settings, parts};
 use peelnet_render::{MethodOptions, Renderer};

@@ -1,7 +1,5 @@
 //! The exported texts of slabs, function by function, against their CPU twin.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     methods::slabs::{self, Design, Layout, Range, Seen},

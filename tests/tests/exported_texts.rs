@@ -1,7 +1,5 @@
 //! The exported texts, function by function: against their CPU twins, against the committed files, and what documents say of them.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     features::Rest,

@@ -1,8 +1,6 @@
 //! Readers of files, on thousands of files that are nearly sound: no panic, no hang, bounded memory. `cargo xtask fuzz` searches
 //! longer, and knows which bytes matter.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::random::Random;
 use peelnet_tests::readers::{READERS, Reader};
 use std::time::{Duration, Instant};

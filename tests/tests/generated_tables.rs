@@ -3,8 +3,6 @@
 //! `<!-- table of FILE | column; … | row; … -->` and `<!-- end of table -->` enclose columns of FILE's first table, in the order given,
 //! and of its rows those whose first cell is listed, or all where the third part is absent. `PEELNET_UPDATE=1` writes them again.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use std::{fs, path::Path};
 
 const PAGES: [&str; 2] = ["README.md", "docs/benchmarks.md"];

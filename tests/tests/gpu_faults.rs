@@ -1,7 +1,5 @@
 //! A GPU whose memory is full, and one that goes away.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::GpuError;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};

@@ -2,8 +2,6 @@
 //!
 //! The compilers that users have are asked by `cargo xtask languages`.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use naga::{
     ShaderStage,
     back::wgsl,

@@ -1,7 +1,5 @@
 //! Frames of the learned methods: closed forms, scale, hard cases. All with the shipped networks.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{fragment::Fragment, methods::over, random::Random};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};

@@ -1,7 +1,5 @@
 //! Transparency at a lower resolution: nothing changes where nothing varies, and opaque edges stay sharp.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_core::fragment::worked_example;
 use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer};

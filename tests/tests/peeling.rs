@@ -1,7 +1,5 @@
 //! The three ways to peel against one another and against the 64-bit scan-line judge.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_core::{
     fragment::Fragment,

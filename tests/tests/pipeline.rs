@@ -1,7 +1,5 @@
 //! Extraction to datasets, and drawing with an exported network: the ends of the pipeline against the CPU.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     fragment::{Fragment, worked_example},
     methods::deep,

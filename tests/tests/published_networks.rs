@@ -1,7 +1,5 @@
 //! `nmt` and `dfaoit` as published: what their shaders make of known fragments, and what they cost.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     fragment::{Fragment, worked_example},

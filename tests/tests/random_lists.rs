@@ -3,8 +3,6 @@
 //!
 //! proptest chooses a list's seed, length and kind, and shrinks the last two: a list of 512 fragments is then made in microseconds.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     features::{self, Rest},

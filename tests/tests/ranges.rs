@@ -1,7 +1,5 @@
 //! Slabs over the range that boxes around transparent parts give a pixel.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::{fragment::Fragment, methods::over};
 use peelnet_render::{MethodOptions, Renderer};

@@ -1,7 +1,5 @@
 //! The bench's page in a real browser: headless Chromium, which `cargo xtask test` installs where it is missing.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_eval::{Machine, Row, bench::Bench, compare::EXACT, front::BASE};
 use peelnet_report::Results;
 use std::{path::Path, process::Command};

@@ -1,7 +1,5 @@
 //! Four samples a pixel: each is composited by itself, and the pixel is their mean in linear light.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::Gpu;

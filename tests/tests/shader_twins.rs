@@ -1,7 +1,5 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_core::{guards, hash, weights::Weight};
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_tests::gpu;

@@ -1,7 +1,5 @@
 //! The hard cases: every method and every shipped network, case by case.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_eval::stress::{CASES, Outcome, Row, Subject, stress};
 use peelnet_tests::{gpu, network_of};
 

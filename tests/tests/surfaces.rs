@@ -1,7 +1,5 @@
 //! What surfaces look like, with every method: shading, images, light that takes a colour, emission, cut-outs.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_core::{
     fragment::Fragment,

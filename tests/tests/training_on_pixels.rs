@@ -1,7 +1,5 @@
 //! Synthetic fragment lists, and the examples that recipes make of whole pixels.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use peelnet_dataset::{Dataset, Format, SplitBy, Summary};
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::synthetic::{SyntheticOptions, synthetic};

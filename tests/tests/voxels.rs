@@ -1,7 +1,5 @@
 //! `avboit` over several blocks of pixels: what its CPU twin, of a pixel among its like, does not know.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use glam::Vec3;
 use peelnet_core::{absorbance::absorbance, methods::avboit::UNIT};
 use peelnet_scene::{Material, Object};
