@@ -3,22 +3,12 @@
 pub mod readers;
 
 use glam::{Vec2, Vec3};
-use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
+use peelnet_core::fragment::Fragment;
 use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
 use std::sync::Arc;
-
-/// The folder of the committed results of a step of `cargo xtask measure`, such as `held-out`. Machines come and go: each step's results are of one,
-/// and its folder has that machine's name.
-pub fn results(step: &str) -> String {
-    let machine = match step {
-        "held-out" | "validation" | "path" | "samples" | "stress" => "llvmpipe-xeon-2cores",
-        _ => "llvmpipe-epyc-2cores",
-    };
-    format!("docs/results/{machine}/{step}")
-}
 
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
@@ -42,7 +32,7 @@ pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
     Some((LearnedWeight { recipe, wgsl }, model))
 }
 
-/// Draws a scene's first view with a method that needs no network.
+/// Draws a scene's first view; a learned method with its shipped network.
 pub fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
     let drawn = || {
         let renderer = Renderer::new(gpu, scene)?;
@@ -50,57 +40,6 @@ pub fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
         renderer.image(&mut prepared, &scene.views[0])
     };
     drawn().unwrap_or_else(|e| panic!("{e}")).image
-}
-
-/// Runs `body`, which reads `a = inputs[2i]` and `b = inputs[2i + 1]` and sets `y`, with functions of an exported text.
-pub fn evaluate_text(
-    gpu: &Gpu,
-    text: &str,
-    functions: &str,
-    body: &str,
-    inputs: &[[[f32; 4]; 2]],
-) -> Vec<[f32; 4]> {
-    let root = format!(
-        "import package::learned::weight::{{{functions}}};
-        @group(0) @binding(0) var<storage, read> inputs: array<vec4f>;
-        @group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
-        @compute @workgroup_size(64)
-        fn main(@builtin(global_invocation_id) id: vec3u) {{
-            if id.x >= arrayLength(&answers) {{ return; }}
-            let a = inputs[2u * id.x];
-            let b = inputs[2u * id.x + 1u];
-            var y = vec4f(0.0);
-            {body}
-            answers[id.x] = y;
-        }}"
-    );
-    let sources = [("driver", root.as_str()), ("learned::weight", text)];
-    let wgsl = peelnet_shaders::link("driver", &[], &sources).unwrap_or_else(|e| panic!("{e}"));
-    run_text(gpu, &wgsl, inputs.as_flattened(), inputs.len())
-}
-
-/// A pixel's fragments as (linear depth, α), in no order.
-pub type Points = Vec<(f32, f32)>;
-
-/// WGSL for `x` as a target of 16 bits keeps it, or one of 32.
-pub const fn stored(half: bool) -> &'static str {
-    if half {
-        "vec4f(unpack2x16float(pack2x16float(x.xy)), unpack2x16float(pack2x16float(x.zw)))"
-    } else {
-        "x"
-    }
-}
-
-/// Rows `(ζ, α, first, end)` of all fragments of pixels, each with the rows of its pixel.
-pub fn in_runs(pixels: &[Points], warp: &DepthWarp) -> Vec<[f32; 4]> {
-    let mut rows: Vec<[f32; 4]> = Vec::new();
-    for pixel in pixels {
-        let first = rows.len();
-        let end = (first + pixel.len()) as f32;
-        let fragments = pixel.iter();
-        rows.extend(fragments.map(|&(z, a)| [warp.apply(z.into()) as f32, a, first as f32, end]));
-    }
-    rows
 }
 
 /// Runs a compute shader on buffers of inputs and of `count` answers.
@@ -150,6 +89,20 @@ pub fn camera() -> Camera {
         near: 0.01,
         far: 2e4,
     }
+}
+
+/// The window depth that [`camera`] gives to a depth.
+pub fn window_depth(depth: f32) -> f32 {
+    let clip = camera().clip_from_view(1.0) * glam::Vec4::new(0.0, 0.0, -depth, 1.0);
+    clip.z / clip.w
+}
+
+/// Relative rounding of a half float.
+pub const HALF: f32 = 1.0 / 2048.0;
+
+/// Bound for sums in 16 bits of `n` terms: every addition and the stored T round once, values ≤ `peak`.
+pub fn half_sums(n: usize, peak: f32) -> f32 {
+    (n as f32 + 2.0) * HALF * peak
 }
 
 /// A quad facing the camera at depth `z` that covers the whole frame, and more.

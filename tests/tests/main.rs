@@ -3,28 +3,22 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 mod benching;
-mod closed_forms;
 mod contours;
-mod descriptions;
 mod effects;
-mod exported_slabs;
-mod exported_texts;
+mod exported;
 mod fuzzed_readers;
 mod generated_tables;
 mod gpu_faults;
-mod languages;
-mod learned;
 mod library;
-mod low_resolution;
+mod methods;
 mod peeling;
 mod pipeline;
-mod published_networks;
 mod random_lists;
 mod ranges;
+mod references;
 mod report_in_browser;
 mod samples;
 mod shader_twins;
-mod stress;
 mod surfaces;
 mod training_on_pixels;
 mod voxels;

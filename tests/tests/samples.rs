@@ -8,7 +8,7 @@ use peelnet_render::{
     methods::{Pixel, Precision},
 };
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{camera, gpu, scene};
+use peelnet_tests::{gpu, scene, window_depth};
 
 /// Pixels of a side; at depth 2 a pixel is one unit wide.
 const SIDE: u32 = 4;
@@ -38,12 +38,6 @@ fn half_plane(depth: f32, share: f32, material: Material) -> Object {
     let (a, b) = (v(-9.0 * unit, -9.0), v(edge, -9.0));
     let (c, d) = (v(edge, 9.0), v(-9.0 * unit, 9.0));
     Object::of_triangles("half-plane", &[[a, b, c], [a, c, d]], material)
-}
-
-/// The window depth that the test camera gives to a depth.
-fn window_depth(depth: f32) -> f32 {
-    let clip = camera().clip_from_view(1.0) * glam::Vec4::new(0.0, 0.0, -depth, 1.0);
-    clip.z / clip.w
 }
 
 /// Whether a half-plane covers a sample of the pixels that its edge cuts.

@@ -1,8 +1,8 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
 use peelnet_core::{guards, hash, weights::Weight};
-use peelnet_gpu::{Gpu, bind::Bind, wgpu};
-use peelnet_tests::gpu;
+use peelnet_gpu::Gpu;
+use peelnet_tests::{gpu, run_text};
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input.
 fn evaluate(gpu: &Gpu, imports: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
@@ -31,16 +31,7 @@ fn evaluate_with(
         }}"
     );
     let wgsl = peelnet_shaders::link("driver", features, &[("driver", &root)]).unwrap();
-    let input = gpu.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
-    let bytes = inputs.len() as u64 * 16;
-    let output = gpu.storage("outputs", bytes).unwrap();
-    let bound = gpu.bind(
-        "driver",
-        wgpu::ShaderStages::COMPUTE,
-        &[Bind::Read(&input), Bind::Write(&output)],
-    );
-    gpu.dispatch("driver", &wgsl, &bound, (inputs.len() as u32).div_ceil(64));
-    gpu.read(&output, 0..bytes).unwrap()
+    run_text(gpu, &wgsl, inputs, inputs.len())
 }
 
 #[test]

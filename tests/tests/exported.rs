@@ -1,0 +1,280 @@
+//! Exported texts: the committed ones are what the exporter writes, who draws as a description says gets the colour that the self-test
+//! names, and GLSL answers what the network answers. Frames drawn with WGSL texts are compared in `references`.
+//!
+//! The compilers that users have are asked by `cargo xtask languages`.
+
+use naga::{
+    ShaderStage,
+    back::wgsl,
+    front::glsl,
+    valid::{Capabilities, ValidationFlags, Validator},
+};
+use peelnet_core::random::Random;
+use peelnet_export::{Blend, Description, Drawn, Language, Options, SelfTest, Target};
+use peelnet_gpu::{Gpu, bind::Bind, wgpu};
+use peelnet_model::{Model, Recipe};
+use peelnet_tests::{gpu, run_text, shipped};
+use std::{fmt::Write as _, fs, path::Path};
+
+/// What engines are given is what the renderer draws with. `PEELNET_UPDATE=1` writes the texts anew.
+#[test]
+fn committed_texts_are_what_is_exported_today() {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
+    let is_current = |file: &Path, text: &str| {
+        let committed = fs::read_to_string(file).unwrap();
+        let hint = "run this test with PEELNET_UPDATE=1";
+        assert!(committed == text, "{}: {hint}", file.display());
+    };
+    for recipe in Recipe::ALL {
+        let model = shipped(recipe);
+        let folder = models.join(recipe.to_string());
+        for language in Language::ALL {
+            let file = folder.join(format!("model.{}", language.extension()));
+            let options = of(language);
+            if std::env::var_os("PEELNET_UPDATE").is_some() {
+                peelnet_export::export(&gpu(), &model, &file, &options).unwrap();
+            }
+            is_current(&file, &peelnet_export::text(&model, &options).unwrap());
+        }
+        let json = peelnet_export::json(&model).unwrap();
+        is_current(&folder.join("model.json"), &json);
+    }
+}
+
+/// The GPU computes in 32 bits what the self-test computed in 64: logarithms, exponentials and sums of four.
+const SOME_ROUNDINGS: f32 = 1e-4;
+
+fn channels(target: &Target) -> usize {
+    match target.format.split(|c: char| c.is_ascii_digit()).next() {
+        Some("r") => 1,
+        Some("rg") => 2,
+        _ => 4,
+    }
+}
+
+fn kind(channels: usize) -> String {
+    if channels == 1 {
+        "f32".into()
+    } else {
+        format!("vec{channels}f")
+    }
+}
+
+/// A target before anything is drawn.
+fn declared(target: &Target) -> String {
+    let n = channels(target);
+    let clear = target.clear[..n].iter().map(|c| format!("f32({c})"));
+    let clear: Vec<String> = clear.collect();
+    format!(
+        "    var {} = {}({});\n",
+        target.name,
+        kind(n),
+        clear.join(", ")
+    )
+}
+
+/// A target after one more fragment.
+fn blended(target: &Target) -> String {
+    let (name, n) = (target.name, channels(target));
+    let channel = |k: usize| match n {
+        1 => String::new(),
+        _ => format!(".{}", ["x", "y", "z", "w"][k]),
+    };
+    let mut text = format!("        let written_{name} = {};\n", target.write);
+    for k in 0..n {
+        let (dst, src) = (
+            format!("{name}{}", channel(k)),
+            format!("written_{name}{}", channel(k)),
+        );
+        let blend = if k == 3 { target.alpha } else { target.color };
+        let value = match blend {
+            Blend::Add => format!("{dst} + {src}"),
+            Blend::Max => format!("max({dst}, {src})"),
+            Blend::Transmit => format!("{dst} * (1.0 - {src})"),
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "        {dst} = {value};");
+    }
+    text
+}
+
+fn fragment(f: &Drawn, zeta: &str) -> String {
+    let [r, g, b] = f.rgb.map(|c| format!("f32({c})"));
+    format!(
+        "        let z = f32({});\n        let alpha = f32({});\n        let rgb = vec3f({r}, {g}, {b});\n        {zeta}\n",
+        f.z, f.alpha
+    )
+}
+
+#[test]
+fn descriptions_lead_to_the_colour_of_the_self_test() {
+    let gpu = gpu();
+    let mut drawn = 0;
+    for recipe in Recipe::ALL {
+        let model = shipped(recipe);
+        let Some(pixel) = SelfTest::of(&model).pixel else {
+            continue;
+        };
+        let text = peelnet_export::wgsl(&model).unwrap();
+        let description = Description::of(recipe);
+        let zeta = if text.contains("fn peelnet_zeta(") {
+            format!(
+                "let zeta = peelnet_zeta(z, f32({}), f32({}));",
+                pixel.near, pixel.far
+            )
+        } else {
+            String::new()
+        };
+        let mut body = String::new();
+        for pass in description.passes {
+            body.extend(pass.targets.iter().map(declared));
+            // Any order will do: here the farthest comes first.
+            for f in pixel.fragments.iter().rev() {
+                let compute = pass
+                    .compute
+                    .map_or_else(String::new, |value| value.to_string());
+                let blended: String = pass.targets.iter().map(blended).collect();
+                let begin = fragment(f, &zeta);
+                let _ = writeln!(body, "    {{\n{begin}        {compute}\n{blended}    }}");
+            }
+        }
+        let [r, g, b] = pixel.background.map(|c| format!("f32({c})"));
+        let resolve = description.resolve;
+        let program = format!(
+            "{text}
+@group(0) @binding(0) var<storage, read> unused: array<vec4f>;
+@group(0) @binding(1) var<storage, read_write> answers: array<vec4f>;
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {{
+    if id.x >= arrayLength(&answers) {{ return; }}
+{body}
+    let background = vec3f({r}, {g}, {b}) + 0.0 * unused[0].xyz;
+    answers[id.x] = {resolve};
+}}"
+        );
+        let found: Vec<[f32; 4]> = run_text(&gpu, &program, &[[0.0; 4]], 1);
+        for (found, want) in found[0].iter().zip(&pixel.color) {
+            assert!(
+                (found - want).abs() < SOME_ROUNDINGS,
+                "{recipe}: {found} for {want}"
+            );
+        }
+        drawn += 1;
+    }
+    assert_eq!(
+        drawn,
+        Recipe::ALL.len() - 1,
+        "all but the one that predicts colours"
+    );
+}
+
+fn of(language: Language) -> Options {
+    Options {
+        language,
+        ..Options::default()
+    }
+}
+
+/// The same function of the same numbers, compiled twice, in different orders of operations.
+const SAME_TEXT: f32 = 1e-5;
+
+/// Answers of the network's function in a GLSL text, one for each row of inputs and each output.
+fn evaluate(gpu: &Gpu, model: &Model, text: &str, rows: &[Vec<f32>]) -> Vec<f32> {
+    let inputs = model.meta.inputs.len();
+    let outputs = model.meta.output.count();
+    let arguments: Vec<String> = (0..inputs)
+        .map(|k| format!("inputs[id * {inputs}u + {k}u]"))
+        .collect();
+    let arguments = arguments.join(", ");
+    let body = if outputs == 1 {
+        format!("outputs[id] = peelnet_weight({arguments});")
+    } else {
+        format!(
+            "vec3 answer = peelnet_color({arguments});
+            outputs[id * 3u] = answer.x;
+            outputs[id * 3u + 1u] = answer.y;
+            outputs[id * 3u + 2u] = answer.z;"
+        )
+    };
+    let source = format!(
+        "#version 450
+        layout(local_size_x = 64) in;
+        layout(set = 0, binding = 0) readonly buffer Inputs {{ float inputs[]; }};
+        layout(set = 0, binding = 1) buffer Outputs {{ float outputs[]; }};
+        {text}
+        void main() {{
+            uint id = gl_GlobalInvocationID.x;
+            if (id < {count}u) {{
+                {body}
+            }}
+        }}",
+        count = rows.len()
+    );
+    let options = glsl::Options::from(ShaderStage::Compute);
+    let module = glsl::Frontend::default().parse(&options, &source);
+    let module = module.unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(&module).unwrap();
+    let read_back = wgsl::write_string(&module, &info, wgsl::WriterFlags::empty()).unwrap();
+    let flat: Vec<f32> = rows.iter().flatten().copied().collect();
+    let given = gpu.upload("inputs", &flat, wgpu::BufferUsages::STORAGE);
+    let bytes = (rows.len() * outputs * size_of::<f32>()) as u64;
+    let answers = gpu.storage("outputs", bytes).unwrap();
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let bound = gpu.bind(
+        "languages",
+        stages,
+        &[Bind::Read(&given), Bind::Write(&answers)],
+    );
+    let groups = (rows.len() as u32).div_ceil(64);
+    gpu.dispatch("languages", &read_back, &bound, groups);
+    gpu.read(&answers, 0..bytes).unwrap()
+}
+
+#[test]
+fn glsl_texts_answer_what_the_network_answers() {
+    let gpu = gpu();
+    let mut random = Random::new(61, &[]);
+    for recipe in Recipe::ALL {
+        let model = shipped(recipe);
+        let points = SelfTest::of(&model).network;
+        assert!(!points.is_empty(), "{recipe}");
+        let mut rows: Vec<Vec<f32>> = points.into_iter().map(|p| p.inputs).collect();
+        for _ in 0..500 {
+            let inputs = model.meta.inputs.iter();
+            rows.push(inputs.map(|i| random.between(i.min, i.max)).collect());
+        }
+        for language in [Language::Glsl, Language::GlslEs] {
+            let text = peelnet_export::text(&model, &of(language)).unwrap();
+            let found = evaluate(&gpu, &model, &text, &rows);
+            let want: Vec<f32> = rows.iter().flat_map(|r| model.shader_output(r)).collect();
+            assert_eq!(found.len(), want.len());
+            for (found, want) in found.iter().zip(&want) {
+                let bound = SAME_TEXT * want.abs().max(1.0) * 4.0;
+                assert!(
+                    (found - want).abs() <= bound,
+                    "{recipe}, {language}: {found} for {want}"
+                );
+            }
+        }
+    }
+}
+
+/// The functions keep their names in every language, and so do the names by which a description calls targets and values.
+#[test]
+fn names_survive() {
+    for recipe in Recipe::ALL {
+        let model = shipped(recipe);
+        for language in Language::ALL {
+            let text = peelnet_export::text(&model, &of(language)).unwrap();
+            let code: Vec<&str> = text.lines().filter(|l| !l.starts_with("//")).collect();
+            let code = code.join("\n");
+            for name in ["peelnet_statistics(", "peelnet_resolve("] {
+                assert!(code.contains(name), "{recipe}, {language}: {name}");
+            }
+            assert!(!code.contains("void main"), "{recipe}, {language}");
+            assert!(!code.contains("peelnet_entry"), "{recipe}, {language}");
+            assert!(!code.contains("#version"), "{recipe}, {language}");
+        }
+    }
+}

@@ -1,0 +1,361 @@
+//! What single methods do in scenes whose answer is known: coincident and opaque walls, capped peels, storage that grows, painters, few layers
+//! of learned methods, and transparency at a lower resolution.
+
+use glam::Vec3;
+use peelnet_core::{
+    absorbance::DepthWarp,
+    fragment::{Fragment, worked_example},
+    methods::over,
+    tolerance,
+};
+use peelnet_gpu::Gpu;
+use peelnet_model::Recipe;
+use peelnet_render::{Frame, Image, METHODS, MethodOptions, MethodSpec, Renderer};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{HALF, draw, gpu, half_sums, scene, shipped, wall, walls};
+
+fn frame(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, size: [u32; 2]) -> Frame {
+    let renderer = Renderer::new(gpu, scene).unwrap();
+    let mut prepared = renderer.method(spec, MethodOptions::sized(size)).unwrap();
+    renderer.image(&mut prepared, &scene.views[0]).unwrap()
+}
+
+fn representatives() -> impl Iterator<Item = MethodSpec> {
+    let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+    drawn.map(MethodSpec::representative)
+}
+
+fn assert_near(found: [f32; 4], want: [f32; 3], bound: f32, what: &dyn std::fmt::Display) {
+    let near = (0..3).all(|k| (found[k] - want[k]).abs() <= bound);
+    assert!(near, "{what}: {found:?} for {want:?}, bound {bound:e}");
+}
+
+/// Of coincident walls every method that is exact there keeps all, in the order of their triangles: coincident in front, behind and
+/// alone, of colours whose maximum by channel is none of them.
+#[test]
+fn coplanar_walls() {
+    let gpu = gpu();
+    let c0 = [1.0; 3];
+    let three = |depth: f32| {
+        (0..3).map(move |i| {
+            let mut color = [0.0; 3];
+            color[i] = 1.0;
+            Fragment::new(depth, 0.5, color)
+        })
+    };
+    let one = |depth: f32| std::iter::once(Fragment::new(depth, 0.25, [0.4, 0.2, 0.1]));
+    let stacks: [Vec<Fragment>; 4] = [
+        three(2.0).collect(),
+        three(2.0).chain(one(3.0)).chain(three(4.0)).collect(),
+        one(1.0).chain(three(2.0)).chain(one(3.0)).collect(),
+        three(2.0).chain(three(4.0)).chain(three(3.0)).collect(),
+    ];
+    let exact = [
+        "abuffer",
+        "linked-list",
+        "depth-peel",
+        "dual-peel",
+        "kbuffer-9",
+        "hybrid-12",
+    ];
+    for mut fragments in stacks {
+        for (f, i) in fragments.iter_mut().zip(0..) {
+            f.triangle = i;
+        }
+        let scene = walls(&fragments, c0);
+        let want = over::composite(&over::sorted(&fragments), c0);
+        for name in exact {
+            let frame = frame(&gpu, &scene, &name.parse().unwrap(), [4, 4]);
+            if let Some(found) = frame.stats.fragments {
+                assert_eq!(found, 16 * fragments.len() as u64, "{name}");
+            }
+            assert_eq!(frame.stats.lost, 0, "{name}");
+            let bound = tolerance::composite(fragments.len(), 1.0) as f32;
+            assert_near(frame.image.pixels[5], want, bound, &name);
+        }
+    }
+}
+
+/// An opaque silhouette inside smoke: all layers have one colour, so every normalised method, whatever its weights, shows
+/// `c (1 − (1−α)^k) + S (1−α)^k` behind k layers, and nothing of what lies behind the silhouette.
+#[test]
+fn a_silhouette_in_smoke_is_exact() {
+    const LAYERS: i32 = 30;
+    const ALPHA: f32 = 0.06;
+    const SILHOUETTE: [f32; 3] = [0.1, 0.02, 0.3];
+    let (gpu, smoke) = (gpu(), [0.7, 0.75, 0.8]);
+    for inside in [0, 7, 30] {
+        let mut fragments: Vec<_> = (0..LAYERS)
+            .map(|i| Fragment::new(2.0 + 0.2 * i as f32, ALPHA, smoke))
+            .collect();
+        fragments.push(Fragment::new(1.9 + 0.2 * inside as f32, 1.0, SILHOUETTE));
+        let mut scene = walls(&fragments, [1.0, 0.5, 0.0]);
+        scene.objects.last_mut().unwrap().materials[0].blend = false;
+        let t = (1.0 - ALPHA).powi(inside);
+        let want = [0, 1, 2].map(|k| smoke[k] * (1.0 - t) + SILHOUETTE[k] * t);
+        // Random samples hit their mean only in the mean.
+        for spec in representatives().filter(|s| s.promises().normalised && !s.promises().noisy) {
+            let frame = frame(&gpu, &scene, &spec, [4, 4]);
+            // Of one colour, half floats round sums of absorbance and of colour only: no root is magnified.
+            let bound = half_sums(LAYERS as usize, 3.0);
+            assert_near(frame.image.pixels[5], want, bound, &spec);
+        }
+    }
+}
+
+/// Opaque walls hide what is behind them, for every method.
+#[test]
+fn opaque_walls_hide() {
+    let gpu = gpu();
+    let mut opaque = Material::unlit([0.1, 0.6, 0.3], 1.0);
+    opaque.blend = false;
+    let front = [Fragment::new(1.0, 0.5, [1.0, 0.0, 0.0])];
+    let mut scene = walls(&front, [0.0; 3]);
+    scene.objects.push(wall(2.0, opaque));
+    let hidden = Material::unlit([0.0, 0.0, 1.0], 0.9);
+    scene.objects.push(wall(3.0, hidden));
+    let want = over::composite(&front, [0.1, 0.6, 0.3]);
+    for spec in representatives() {
+        let image = frame(&gpu, &scene, &spec, [3, 3]).image;
+        assert_near(image.pixels[4], want, half_sums(1, 1.0), &spec);
+    }
+}
+
+/// A capped run leaves out what it did not reach, and counts it.
+#[test]
+fn a_capped_peel_counts_what_it_left_out() {
+    let fragments: Vec<_> = (1..=9)
+        .map(|i| Fragment::new(i as f32, 0.25, [0.5; 3]))
+        .collect();
+    let scene = walls(&fragments, [0.0; 3]);
+    for (name, left) in [("depth-peel:passes=4", 5), ("dual-peel:passes=3", 3)] {
+        let frame = frame(&gpu(), &scene, &name.parse().unwrap(), [2, 2]);
+        assert_eq!(frame.stats.lost, left * 4, "{name}");
+    }
+}
+
+/// A pool that is too small is made larger: every fragment is there, the second frame needs no second pass, and enough places
+/// make the k-buffers exact.
+#[test]
+fn bounded_storage_loses_nothing() {
+    let gpu = gpu();
+    let c0 = [0.3, 0.6, 0.9];
+    let layer = |i: usize| {
+        let t = (i * 17 % 40) as f32;
+        Fragment::new(1.0 + t, 0.1, [t / 40.0, 0.5, 1.0 - t / 40.0])
+    };
+    let fragments: Vec<_> = (0..40).map(layer).collect();
+    let scene = walls(&fragments, c0);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let want = over::composite(&fragments, c0);
+    for (name, passes) in [
+        ("linked-list:nodes=1", [2, 1]),
+        ("linked-list:nodes=500", [2, 1]),
+        ("kbuffer-40", [2, 2]),
+        ("hybrid-64", [2, 2]),
+    ] {
+        let options = MethodOptions::sized([5, 4]);
+        let mut prepared = renderer.method(&name.parse().unwrap(), options).unwrap();
+        for passes in passes {
+            let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
+            assert_eq!(frame.stats.geometry_passes, passes, "{name}");
+            for p in &frame.image.pixels {
+                assert_near(*p, want, tolerance::EXACT as f32, &name);
+            }
+        }
+    }
+}
+
+/// Sorting by object fails where one object reaches through another, sorting by triangle does not; the scene's order fails at once.
+#[test]
+fn painters_have_their_known_flaw() {
+    let gpu = gpu();
+    let front = Fragment::new(2.0, 0.5, [1.0, 0.0, 0.0]);
+    let back = Fragment::new(3.0, 0.5, [0.0, 0.0, 1.0]);
+    let scene = walls(&[front, back], [0.0; 3]);
+    let middle = |scene: &Scene, name: &str| draw(&gpu, scene, name, [4, 4]).pixels[5];
+    // Nearest first is the wrong order for over-blending: the back wall lies on top.
+    let unsorted = middle(&scene, "painter-object:sort=off");
+    assert_near(unsorted, [0.25, 0.0, 0.5], 1e-3, &"unsorted");
+    let sorted = middle(&scene, "painter-object");
+    assert_near(sorted, [0.5, 0.0, 0.25], 1e-3, &"sorted");
+    // One object with a red wall before and one far behind the blue one: its centre lies behind it.
+    let mut joined = scene.clone();
+    let far = wall(5.0, Material::unlit(front.color, 0.5));
+    let mut both = (*joined.objects[0].mesh).clone();
+    let first = both.positions.len() as u32;
+    both.positions.extend(&far.mesh.positions);
+    both.normals.extend(&far.mesh.normals);
+    both.uvs.extend(&far.mesh.uvs);
+    let more = far.mesh.triangles.iter().map(|t| t.map(|i| i + first));
+    both.triangles.extend(more);
+    both.parts[0].triangles.end = both.triangles.len();
+    joined.objects[0].mesh = both.into();
+    let exact = middle(&joined, "abuffer")[0];
+    // Blue over red instead of red over blue over red: 0.375 instead of 0.625 of red.
+    let error = |name: &str| (middle(&joined, name)[0] - exact).abs();
+    assert!((error("painter-object") - 0.25).abs() < 1e-3);
+    assert!(error("painter-triangle") < 1e-3);
+}
+
+/// The biases that go with the precision of the moments, as the paper and `peelnet_core` state them.
+#[test]
+fn biases_go_with_the_precision() {
+    let points = [(0.5, 0.3), (2.0, 0.6), (2.01, 0.4), (7.0, 0.5)];
+    let warp = DepthWarp::new(0.5, 10.0);
+    let estimate = |name: &str| {
+        let spec: MethodSpec = name.parse().unwrap();
+        spec.transmittances(&points, &warp, None).unwrap()
+    };
+    for (method, targets, bias) in [
+        ("mboit4", "f32", 5e-7),
+        ("mboit4", "f16", 6e-5),
+        ("mboit6", "f32", 5e-6),
+        ("mboit6", "f16", 6e-4),
+        ("mboit8", "f32", 5e-5),
+        ("mboit8", "f16", 2.5e-3),
+        ("mboit-trig-2", "f32", 1e-4),
+        ("mboit-trig-2", "f16", 1e-3),
+    ] {
+        let with = |bias: f64| {
+            estimate(&format!(
+                "{method}:targets={targets},bias={bias},overestimation=0.25"
+            ))
+        };
+        let default = estimate(&format!("{method}:targets={targets}"));
+        assert_eq!(default, with(bias), "{method} in {targets}");
+        assert_ne!(default, with(1.1 * bias), "{method} in {targets}");
+    }
+}
+
+/// One and two layers are exact whatever a network of ours says, and with separate ends three; `dfaoit` up to two.
+///
+/// Three sums of n terms, each with a weight e^−b whose b ≤ 4 rounded, in half floats.
+#[test]
+fn few_layers_of_learned_methods_are_exact() {
+    let gpu = gpu();
+    let c0 = [0.2, 0.6, 0.4];
+    let stack = |layers: &[(f32, f32)]| -> Vec<Fragment> {
+        let colors = [[0.0, 0.0, 1.0], [0.37, 0.85, 0.63], [0.74, 0.7, 0.26]];
+        let layers = layers.iter().zip(colors);
+        layers.map(|(&(z, a), c)| Fragment::new(z, a, c)).collect()
+    };
+    let few = [
+        stack(&[(3.0, 0.5)]),
+        stack(&[(3.0, 0.999)]),
+        stack(&[(3.0, 1.0)]),
+        stack(&[(0.05, 0.4), (900.0, 0.8)]),
+        stack(&[(1.1, 0.3), (1.0, 0.97)]),
+    ];
+    let three = [
+        stack(&[(1.0, 0.3), (4.0, 0.6), (9.0, 0.8)]),
+        stack(&[(0.1, 0.9), (0.2, 0.05), (5000.0, 0.99)]),
+    ];
+    for (method, exact_at_three) in [
+        ("deep-small", true),
+        ("deep-medium", true),
+        ("deep-large", true),
+        ("deep-anchored-small", false),
+        ("deep-anchored-medium", true),
+        ("dfaoit", false),
+    ] {
+        let three = three.iter().filter(|_| exact_at_three);
+        for fragments in few.iter().chain(three) {
+            let want = over::composite(&over::sorted(fragments), c0);
+            let bound = (3 * fragments.len() + 4) as f32 * HALF;
+            let image = draw(&gpu, &walls(fragments, c0), method, [3, 2]);
+            for p in image.pixels {
+                assert_near(p, want, bound, &method);
+            }
+        }
+    }
+}
+
+/// The sizes that users count on: shaders of all weights must fit into registers.
+#[test]
+fn shipped_networks_are_as_small_as_they_say() {
+    for (recipe, most) in [
+        (Recipe::SMALL, 150),
+        (Recipe::MEDIUM, 150),
+        (Recipe::LARGE, 200),
+        (Recipe::ANCHORED_SMALL, 80),
+        (Recipe::ANCHORED_MEDIUM, 150),
+    ] {
+        let count = shipped(recipe).mlp.parameters();
+        assert!(count <= most, "{recipe}: {count}");
+    }
+}
+
+fn furthest(a: &Image, b: &Image) -> f32 {
+    let channels = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    channels.map(|(x, y)| (x - y).abs()).fold(0.0, f32::max)
+}
+
+/// Where every pixel holds the same fragments, any scale gives the image of the full resolution, for frames of odd sizes too. Compositing over
+/// black and then over `C_0` rounds a few times more than compositing over `C_0`.
+#[test]
+fn a_lower_resolution_keeps_what_does_not_vary() {
+    const ROUNDING: f32 = 1e-5;
+    let gpu = gpu();
+    let walls = walls(&worked_example(), [0.25, 0.5, 0.75]);
+    // Samples differ from pixel to pixel by design.
+    for spec in representatives().filter(|s| !s.promises().noisy) {
+        let full = frame(&gpu, &walls, &spec, [7, 5]).image;
+        for scale in ["0.5", "0.3", "1"] {
+            let low = spec.with("scale", scale).unwrap();
+            let low = frame(&gpu, &walls, &low, [7, 5]).image;
+            let apart = furthest(&full, &low);
+            assert!(apart <= ROUNDING, "{spec} at {scale}: {apart}");
+            assert!(scale != "1" || full == low, "{spec}");
+        }
+        for scale in ["0", "-1", "1.5", "nan", "half"] {
+            let e = spec.with("scale", scale).unwrap_err();
+            assert!(e.to_string().contains("scale"), "{e}");
+        }
+    }
+}
+
+/// A quarter of the pixels take a quarter of the bytes, and 36 for each of them: colour, the black behind it, and opaque depth.
+#[test]
+fn half_the_resolution_takes_a_quarter_of_the_bytes() {
+    let gpu = gpu();
+    let walls = walls(&worked_example(), [0.0; 3]);
+    for spec in representatives() {
+        // Blocks of 8 pixels fit into half of it.
+        let bytes = |spec| frame(&gpu, &walls, spec, [64, 48]).stats.bytes_per_pixel;
+        let (full, low) = (bytes(&spec), bytes(&spec.with("scale", "0.5").unwrap()));
+        let want = 0.25 * (full + 36.0);
+        // Sorted triangles keep their indices at any resolution: 12 bytes for each of eight.
+        let indices = 0.75 * 96.0 / (64.0 * 48.0);
+        let apart = low - want;
+        let same = apart.abs() < 1e-9 || (apart - indices).abs() < 1e-9;
+        assert!(same, "{spec}: {low}, not {want}");
+    }
+}
+
+/// An opaque post before a transparent wall: no transparency leaks onto the post, and none is missing beside it.
+#[test]
+fn a_lower_resolution_keeps_opaque_edges() {
+    let gpu = gpu();
+    let z = 2.0;
+    let v = |x: f32, y: f32| Vec3::new(x * z, y * z, -z);
+    let (a, b, c, d) = (v(-0.35, -2.0), v(0.4, -2.0), v(0.4, 2.0), v(-0.35, 2.0));
+    let post = Object::of_triangles(
+        "post",
+        &[[a, b, c], [a, c, d]],
+        Material::unlit([0.0; 3], 1.0),
+    );
+    let glass = wall(6.0, Material::unlit([1.0; 3], 0.5));
+    let scene = scene("post", [0.0; 3], vec![post, glass]);
+    let size = [33, 29];
+    let full = draw(&gpu, &scene, "abuffer", size);
+    let low = draw(&gpu, &scene, "abuffer:scale=0.5", size);
+    // Depths of 2 and 6, or of 6 and the far plane, differ by 2 relative to the nearer: a wrong sample weighs at most
+    // (1 + 2^-10) / 4 against 2^-10 / 0.02^2 of one that is right.
+    let right = 2f32.powi(-10) / 4e-4;
+    let leak = 3.0 * 0.25 / right;
+    assert!(furthest(&full, &low) <= leak, "{}", furthest(&full, &low));
+    // Both are seen.
+    let row = |x: usize| full.pixels[14 * 33 + x][0];
+    assert_eq!((row(1), row(16)), (0.5, 0.0));
+}

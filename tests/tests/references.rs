@@ -1,0 +1,340 @@
+//! The GPU draws what the CPU references compute: every method, on lists of fragments from three sources.
+//!
+//! Closed forms and random lists are drawn side by side in one frame and compared with the reference that each method declares; hard cases are
+//! those of `peelnet stress`, judged by the properties that methods promise, and a known failure must keep failing. One representative of
+//! every method runs in `cargo xtask test`, every point of every method's curve in `cargo xtask test --all`.
+
+use glam::Vec3;
+use peelnet_core::{
+    fragment::{Fragment, worked_example},
+    random::Random,
+};
+use peelnet_eval::stress::{CASES, Outcome, Subject, stress};
+use peelnet_gpu::Gpu;
+use peelnet_render::{
+    METHODS, MethodOptions, MethodSpec, Renderer,
+    methods::{Pixel, Precision},
+};
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{gpu, half_sums, network_of, scene, window_depth};
+
+/// Bound for moments in 32 bits against 64. Of four, where layers are apart, they err by some roundings; of more, points are cosines and
+/// roots of cubics, good to 1e-5 each, and what lies at them is divided by pivots down to 1e-3.
+const MOMENTS: f32 = 2e-4;
+
+/// Bound for sums in 32 bits. Shaders may contract or reorder; divisions and pow are allowed 2.5 and 16 units: 1e-4 is 800 units.
+const FULL: f32 = 1e-4;
+
+/// The largest difference between a pixel of `n` layers and the reference; `None` where the error of 16-bit statistics has no simple
+/// bound, because roots of them are taken.
+fn bound(spec: &MethodSpec, n: usize) -> Option<f32> {
+    let promises = spec.promises();
+    match (promises.root, promises.statistics, promises.sums) {
+        _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
+        (Some(_), Precision::Half, _) => None,
+        (Some(_), Precision::Full, Precision::Full) => Some(MOMENTS),
+        (Some(_), Precision::Full, Precision::Half) => Some(MOMENTS + half_sums(n, 1.0)),
+        (None, _, Precision::Full) => Some(FULL),
+        // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
+        (None, _, Precision::Half) => Some(half_sums(n, 3.0)),
+    }
+}
+
+/// One method each, as people draw it first.
+fn representatives() -> Vec<MethodSpec> {
+    let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+    drawn.map(MethodSpec::representative).collect()
+}
+
+/// Every method with every point of its curve, in 32 bits where it has the choice, and the thesis's reference, which no benchmark draws
+/// unasked.
+fn all_specs() -> Vec<MethodSpec> {
+    let mut all = MethodSpec::curve();
+    for spec in MethodSpec::curve() {
+        if spec.method().has_targets() && spec.targets().is_none() {
+            all.push(spec.with("targets", "f32").unwrap());
+        }
+    }
+    all.push("dual-peel:passes=4,colors=f16".parse().unwrap());
+    all
+}
+
+/// Lists whose colours are known by hand, or that break formulas.
+fn closed_forms() -> Vec<Vec<Fragment>> {
+    let rainbow = |n: usize, alpha: f32| -> Vec<Fragment> {
+        let layer = |i: usize| {
+            let t = i as f32 / n as f32;
+            Fragment::new(1.0 + 3.0 * t, alpha, [t, 1.0 - t, (7.0 * t).fract()])
+        };
+        (0..n).map(layer).collect()
+    };
+    vec![
+        vec![],
+        vec![Fragment::new(3.0, 0.5, [0.2, 0.4, 0.8])],
+        worked_example().to_vec(),
+        worked_example().into_iter().rev().collect(),
+        vec![Fragment::new(2.0, 0.0, [1.0; 3])],
+        // Opaque in the middle.
+        vec![
+            Fragment::new(1.0, 0.25, [1.0, 0.0, 0.0]),
+            Fragment::new(2.0, 1.0, [0.0, 1.0, 0.0]),
+            Fragment::new(3.0, 0.5, [0.0, 0.0, 1.0]),
+        ],
+        rainbow(9, 0.3),
+        rainbow(40, 0.2),
+    ]
+}
+
+/// Lists of one to fourteen fragments anywhere in the depths, of all opacities, and such as have one on either side of what counts as opaque.
+fn random_lists() -> Vec<Vec<Fragment>> {
+    let mut random = Random::new(23, &[]);
+    let mut list = |n: usize, alpha: [f32; 2]| -> Vec<Fragment> {
+        let mut one = || {
+            let depth = random.log_between(1.0, 50.0);
+            Fragment::new(depth, random.between(alpha[0], alpha[1]), random.color())
+        };
+        (0..n).map(|_| one()).collect()
+    };
+    let mut all: Vec<_> = (0..30).map(|i| list(1 + i % 6, [0.05, 0.95])).collect();
+    all.extend((0..6).map(|_| list(4, [0.01, 0.2])));
+    all.extend((0..8).map(|i| list(7 + i, [0.02, 0.5])));
+    for alpha in [0.985, 0.995, 1.0] {
+        for depth in [2.0, 8.0] {
+            let mut fragments = list(3, [0.3, 0.6]);
+            fragments.push(Fragment::new(depth, alpha, [0.9, 0.1, 0.5]));
+            all.push(fragments);
+        }
+    }
+    all
+}
+
+/// Pixels that a list covers: three blocks of voxels wide, so that all that a method mixes with the pixels of the middle block is the same list.
+const REGION: [u32; 2] = [24, 8];
+
+/// Pixels of a region that are compared, in the middle block and the lower of the two triangles of its quads.
+const COMPARED: [[u32; 2]; 4] = [[9, 6], [10, 6], [13, 7], [15, 6]];
+
+/// One frame with a region for every list.
+struct Frame {
+    scene: Scene,
+    size: [u32; 2],
+    lists: Vec<Vec<Fragment>>,
+}
+
+impl Frame {
+    fn new(mut lists: Vec<Vec<Fragment>>) -> Self {
+        let size = [REGION[0] * lists.len() as u32, REGION[1]];
+        let [width, height] = size.map(|n| n as f32);
+        let mut objects = Vec::new();
+        for (list, i) in lists.iter_mut().zip(0..) {
+            let [left, right] = [i, i + 1].map(|k| 2.0 * (REGION[0] * k) as f32 / width - 1.0);
+            for f in list {
+                (f.triangle, f.window_depth) = (2 * objects.len() as u32, window_depth(f.depth));
+                // The frame is 90° high: half its height at depth z is z.
+                let v = |x: f32, y: f32| Vec3::new(x * width / height, y, -1.0) * f.depth;
+                let (a, b) = (v(left, -1.0), v(right, -1.0));
+                let (c, d) = (v(right, 1.0), v(left, 1.0));
+                let material = Material::unlit(f.color, f.alpha);
+                objects.push(Object::of_triangles(
+                    "fragment",
+                    &[[a, b, c], [a, c, d]],
+                    material,
+                ));
+            }
+        }
+        Self {
+            scene: scene("lists", [0.25, 0.5, 0.75], objects),
+            size,
+            lists,
+        }
+    }
+
+    /// What is wrong with a method's frame, a line each; empty where nothing is.
+    fn problems(&self, renderer: &Renderer, spec: &MethodSpec) -> Vec<String> {
+        let view = &self.scene.views[0];
+        let model = network_of(spec).map(|(_, model)| model);
+        let options = MethodOptions::sized(self.size);
+        let mut prepared = renderer.method(spec, options).unwrap();
+        let frame = renderer.image(&mut prepared, view).unwrap();
+        let mut problems = Vec::new();
+        // A peel that is capped counts what it leaves out.
+        if (spec.promises().exact || !spec.method().is_exact()) && frame.stats.lost > 0 {
+            problems.push(format!("{spec}: {} fragments are lost", frame.stats.lost));
+        }
+        for (fragments, region) in self.lists.iter().zip(0..) {
+            let bound = match bound(spec, fragments.len()) {
+                // Nothing is drawn, nothing is rounded.
+                _ if fragments.is_empty() => 0.0,
+                Some(bound) => bound,
+                None => continue,
+            };
+            for [x, y] in COMPARED {
+                let position = [x + region * REGION[0], y];
+                let want = spec.twin(&Pixel {
+                    fragments,
+                    background: self.scene.background,
+                    warp: renderer.depth_warp(view),
+                    position,
+                    model: model.as_ref(),
+                });
+                let Some(want) = want else { continue };
+                let p = frame.image.pixels[(position[1] * self.size[0] + position[0]) as usize];
+                // Written so that a NaN is a problem.
+                if !(0..3).all(|k| (p[k] - want[k]).abs() <= bound) {
+                    problems.push(format!(
+                        "{spec}, list {region} of {}: {p:?} instead of {want:?}, bound {bound:e}",
+                        fragments.len()
+                    ));
+                }
+            }
+        }
+        problems
+    }
+}
+
+fn compare(lists: Vec<Vec<Fragment>>, specs: &[MethodSpec]) {
+    let frame = Frame::new(lists);
+    let renderer = Renderer::new(&gpu(), &frame.scene).unwrap();
+    let problems = specs.iter().flat_map(|s| frame.problems(&renderer, s));
+    let problems: Vec<String> = problems.collect();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn closed_forms_of_representatives() {
+    compare(closed_forms(), &representatives());
+}
+
+#[test]
+fn random_lists_of_representatives() {
+    compare(random_lists(), &representatives());
+}
+
+#[test]
+#[ignore = "long: cargo xtask test --all"]
+fn closed_forms_of_all_methods() {
+    compare(closed_forms(), &all_specs());
+}
+
+#[test]
+#[ignore = "long: cargo xtask test --all"]
+fn random_lists_of_all_methods() {
+    compare(random_lists(), &all_specs());
+}
+
+/// Every method has a reference, and a bound on the difference in at least one precision: nothing above is skipped in silence.
+#[test]
+fn every_method_has_a_reference() {
+    let specs = all_specs();
+    for method in METHODS.iter().filter(|m| m.cpu_only.is_none()) {
+        let own = || specs.iter().filter(|s| s.name() == method.name);
+        assert!(own().any(|s| bound(s, 4).is_some()), "{}", method.name);
+        // A list has no boxes: `ranges` tests what depends on them.
+        let has_boxes = |s: &MethodSpec| s.to_string().contains("range=boxes");
+        for spec in own().filter(|s| !s.is_scaled() && !has_boxes(s)) {
+            let model = network_of(spec).map(|(_, model)| model);
+            let color = spec.twin(&Pixel {
+                fragments: &worked_example(),
+                background: [0.0; 3],
+                warp: peelnet_core::absorbance::DepthWarp::new(1.0, 8.0),
+                position: [0, 0],
+                model: model.as_ref(),
+            });
+            let finite = color.is_some_and(|c| c.iter().all(|x| x.is_finite()));
+            assert!(finite, "{spec}");
+        }
+    }
+}
+
+fn stress_case(gpu: &Gpu, id: &str, methods: Vec<MethodSpec>) {
+    let case = CASES.iter().find(|c| c.id == id).unwrap();
+    let subject = |method: MethodSpec| {
+        let network = network_of(&method);
+        Subject::new(method, network)
+    };
+    let subjects: Vec<Subject> = methods.into_iter().map(subject).collect();
+    let rows = stress(gpu, case, &subjects, true, None, &mut |_| Ok(())).unwrap();
+    let failed: Vec<String> = rows
+        .iter()
+        .filter(|r| r.result == Outcome::Fail)
+        .map(|r| {
+            let reason = r.reason.as_deref().unwrap_or_default();
+            format!(
+                "{} {}: {:?} > {:.3e} at {} {reason}",
+                r.method, r.property, r.value, r.limit, r.place
+            )
+        })
+        .collect();
+    assert!(
+        failed.is_empty(),
+        "{} of {} rows fail:\n{}",
+        failed.len(),
+        rows.len(),
+        failed.join("\n")
+    );
+    for s in subjects.iter().filter(|s| case.judges(&s.method)) {
+        let method = s.method.to_string();
+        assert!(rows.iter().any(|r| r.method == method), "{method}");
+    }
+}
+
+/// A test for every case, so that they run side by side: with representatives, and with all methods in every precision. `slow` ones are long
+/// with representatives, too.
+macro_rules! cases {
+    (quick: $($quick:ident = $quick_id:literal),*; slow: $($slow:ident = $slow_id:literal),*) => {
+        mod representatives_in { $(
+            #[test]
+            fn $quick() { super::stress_case(&super::gpu(), $quick_id, super::representatives()); }
+        )* }
+        mod all_methods_in { $(
+            #[test]
+            #[ignore = "long: cargo xtask test --all"]
+            fn $quick() {
+                super::stress_case(&super::gpu(), $quick_id, super::Subject::all_methods());
+            }
+        )* $(
+            #[test]
+            #[ignore = "long: cargo xtask test --all"]
+            fn $slow() {
+                super::stress_case(&super::gpu(), $slow_id, super::Subject::all_methods());
+            }
+        )* }
+
+        #[test]
+        fn every_case_has_its_test() {
+            let tested = [$($quick_id,)* $($slow_id),*];
+            assert_eq!(CASES.len(), tested.len());
+            assert!(CASES.iter().all(|c| tested.contains(&c.id)));
+        }
+    };
+}
+
+cases! {
+    quick:
+        alpha_zero = "alpha-zero", alpha_tiny = "alpha-tiny", alpha_one = "alpha-one",
+        alpha_near_one = "alpha-near-one", near_overflow = "near-overflow", far = "far",
+        wide_range = "wide-range", coplanar = "coplanar", thin_slab = "thin-slab",
+        isolated = "isolated", two_layers = "two-layers", intersecting = "intersecting",
+        grazing = "grazing", emissive = "emissive", opaque_mix = "opaque-mix", empty = "empty",
+        half_float = "half-float", hostile_inputs = "hostile-inputs", passing = "passing",
+        moving_camera = "moving-camera", deep_2000 = "deep-2000";
+    slow:
+        high_alpha = "high-alpha", deep = "deep", deep_20000 = "deep-20000",
+        deep_100000 = "deep-100000"
+}
+
+/// Blending in every format stays within the bound that docs/numerics.md derives, on this adapter.
+#[test]
+fn formats_stay_within_their_bounds() {
+    let all = peelnet_eval::numerics::blended(&gpu()).unwrap();
+    assert!(all.len() >= 21);
+    for b in &all {
+        assert!(b.error() <= b.bound, "{b:?}");
+    }
+    // What a format is known to lose is seen, or nothing was measured.
+    let lost = |format: &str| {
+        let of_format = all.iter().filter(|b| b.format == format);
+        of_format.map(|b| b.error()).fold(0.0, f64::max)
+    };
+    assert!(lost("R8") > 0.1 && lost("RGBA16F") > 1000.0);
+}
