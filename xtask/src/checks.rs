@@ -19,7 +19,7 @@ const SHORT: [Step; 3] = [
 ];
 
 /// Everything else, the quickest first.
-const LONG: [Step; 17] = [
+const LONG: [Step; 16] = [
     ("long tests", || {
         ensure_browser()?;
         linted("nextest run --workspace --no-fail-fast --run-ignored only")
@@ -46,9 +46,6 @@ const LONG: [Step; 17] = [
     ("bevy", suites::bevy),
     ("view-test", || suites::view(&[])),
     ("cluster", || suites::cluster(&[])),
-    ("results", || {
-        run("cargo run --quiet --package peelnet_tests --example check_results")
-    }),
 ];
 
 /// What every change may break; ends with the first step that fails.

@@ -30,7 +30,6 @@ cargo xtask <command>
   measure [--binary PEELNET] [--only STEP,…] [--name NAME] [--into DIR]
                   every result in docs/results, of this machine and under its name (up to 40 minutes); with a program that was built
                   elsewhere neither a compiler nor a network is needed
-  results --check whether the tables in docs/results have rows for every method, hard case and effect: before a release
   bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
                   minutes to compile)
   wasm            check the crates that run in a browser for wasm32
@@ -69,9 +68,6 @@ fn main() -> ExitCode {
         ["test", "--all"] => checks::test_all(),
         ["ci"] => checks::test().and_then(|()| checks::deny()),
         ["measure", ref rest @ ..] => measure::measure(rest),
-        ["results", "--check"] => {
-            run("cargo run --quiet --package peelnet_tests --example check_results")
-        }
         ["bevy"] => suites::bevy(),
         ["wasm"] => suites::wasm(),
         ["web"] => web::web(),

@@ -3,7 +3,7 @@
 use crate::{
     Outcome,
     product::{Program, held_out_scenes, scene_file},
-    root,
+    root, run,
 };
 use std::{
     fs,
@@ -32,42 +32,42 @@ const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-ra
 const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large";
 
 const STEPS: [Step; 11] = [
-    step("stress", "stress", "stress.csv stress.md"),
+    step("stress", "stress", "stress.csv.xz stress.md"),
     step(
         "held-out",
         "bench <held-out> --size 512x384 --views 2 --frames 3",
-        "results.json results.csv table.md pareto.svg pareto-mean.svg",
+        "results.json.xz table.md pareto.svg pareto-mean.svg",
     ),
     step(
         "validation",
         "bench <validation> --size 512x384 --views 1 --frames 3",
-        "results.json table.md",
+        "results.json.xz table.md",
     ),
     step(
         "path",
         "bench sixteen-held smoke-held --path --size 256x192 --methods <path>",
-        "path.json path.csv path.md path-error.svg path-change.svg",
+        "path.csv path.md path-error.svg path-change.svg",
     ),
     step(
         "samples",
         "bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path>",
-        "results.json table.md",
+        "table.md",
     ),
     step(
         "effects",
         "bench --effects --size 512x384 --frames 9",
-        "effects.json effects.md effects-layers.svg",
+        "effects.md effects-layers.svg",
     ),
     step(
         "scaling",
         "bench --scaling --frames 3",
-        "scaling.json scaling.csv scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg",
+        "scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg",
     ),
     // At a quarter of its pixels, with as many rows: the whole takes twenty minutes.
     step(
         "thesis-full",
         "run --full --size 512x384",
-        "results.json table.md",
+        "results.json.xz table.md",
     ),
     step("extract-sbuffer", "<extract>", ""),
     step("extract-dual", "<extract> --peel dual", ""),
@@ -191,7 +191,15 @@ fn keep(step: &Step, into: &Path) -> Outcome {
     for (from, to) in files {
         let folder = to.parent().unwrap_or(into);
         fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        fs::copy(&from, &to).map_err(|e| format!("{}: {e}", from.display()))?;
+        // Rows are kept packed: a name of that kind stands for the file that was written.
+        let [from, plain] = [from, to.clone()].map(|path| match path.extension() {
+            Some(end) if end == "xz" => path.with_extension(""),
+            _ => path,
+        });
+        fs::copy(&from, &plain).map_err(|e| format!("{}: {e}", from.display()))?;
+        if plain != to {
+            run(&format!("xz -9 --force {}", plain.display()))?;
+        }
     }
     Ok(())
 }
@@ -199,8 +207,9 @@ fn keep(step: &Step, into: &Path) -> Outcome {
 /// A name for this machine, from the first result that says what it was measured on.
 fn machine_name() -> Result<String, String> {
     for step in &STEPS {
-        let json = step.keep.split(' ').filter(|f| f.ends_with(".json"));
-        for file in json.map(|file| root().join(measured(step)).join(file)) {
+        let written = fs::read_dir(root().join(measured(step))).into_iter();
+        let paths = written.flatten().flatten().map(|entry| entry.path());
+        for file in paths.filter(|path| path.extension().is_some_and(|e| e == "json")) {
             if let Some(name) = fs::read_to_string(file).ok().as_deref().and_then(name_of) {
                 return Ok(name);
             }
