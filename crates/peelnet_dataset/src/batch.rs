@@ -1,42 +1,10 @@
 //! A run of rows, column by column.
 
 use std::ops::Range;
+use std::path::Path;
 
-use crate::column::{Column, ColumnMut, ColumnSlice};
+use crate::column::{Column, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-
-/// Some rows of the dataset as fourteen vectors of equal length. See [`Column`] for meanings and units.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FragmentBatch {
-    /// 1 − α_i.
-    pub one_minus_alpha: Vec<f32>,
-    /// z_i, scene units.
-    pub linear_depth: Vec<f32>,
-    /// Σ α of the pixel.
-    pub alpha_sum: Vec<f32>,
-    /// n of the pixel.
-    pub fragment_count: Vec<u32>,
-    /// T_i.
-    pub transmittance: Vec<f32>,
-    /// Index of the work item.
-    pub view: Vec<u32>,
-    /// Pixel column.
-    pub x: Vec<u32>,
-    /// Pixel row.
-    pub y: Vec<u32>,
-    /// Rank from the front.
-    pub layer: Vec<u32>,
-    /// Red radiance.
-    pub r: Vec<f32>,
-    /// Green radiance.
-    pub g: Vec<f32>,
-    /// Blue radiance.
-    pub b: Vec<f32>,
-    /// Near clip distance.
-    pub near: Vec<f32>,
-    /// Far clip distance.
-    pub far: Vec<f32>,
-}
 
 impl FragmentBatch {
     /// An empty batch with room for `rows` rows.
@@ -63,51 +31,7 @@ impl FragmentBatch {
 
     /// Removes all rows and keeps the memory.
     pub fn clear(&mut self) {
-        for column in Column::ALL {
-            match self.column_mut(column) {
-                ColumnMut::F32(v) => v.clear(),
-                ColumnMut::U32(v) => v.clear(),
-            }
-        }
-    }
-
-    /// The values of a column.
-    pub fn column(&self, column: Column) -> ColumnSlice<'_> {
-        match column {
-            Column::OneMinusAlpha => ColumnSlice::F32(&self.one_minus_alpha),
-            Column::LinearDepth => ColumnSlice::F32(&self.linear_depth),
-            Column::AlphaSum => ColumnSlice::F32(&self.alpha_sum),
-            Column::FragmentCount => ColumnSlice::U32(&self.fragment_count),
-            Column::Transmittance => ColumnSlice::F32(&self.transmittance),
-            Column::View => ColumnSlice::U32(&self.view),
-            Column::X => ColumnSlice::U32(&self.x),
-            Column::Y => ColumnSlice::U32(&self.y),
-            Column::Layer => ColumnSlice::U32(&self.layer),
-            Column::R => ColumnSlice::F32(&self.r),
-            Column::G => ColumnSlice::F32(&self.g),
-            Column::B => ColumnSlice::F32(&self.b),
-            Column::Near => ColumnSlice::F32(&self.near),
-            Column::Far => ColumnSlice::F32(&self.far),
-        }
-    }
-
-    pub(crate) fn column_mut(&mut self, column: Column) -> ColumnMut<'_> {
-        match column {
-            Column::OneMinusAlpha => ColumnMut::F32(&mut self.one_minus_alpha),
-            Column::LinearDepth => ColumnMut::F32(&mut self.linear_depth),
-            Column::AlphaSum => ColumnMut::F32(&mut self.alpha_sum),
-            Column::FragmentCount => ColumnMut::U32(&mut self.fragment_count),
-            Column::Transmittance => ColumnMut::F32(&mut self.transmittance),
-            Column::View => ColumnMut::U32(&mut self.view),
-            Column::X => ColumnMut::U32(&mut self.x),
-            Column::Y => ColumnMut::U32(&mut self.y),
-            Column::Layer => ColumnMut::U32(&mut self.layer),
-            Column::R => ColumnMut::F32(&mut self.r),
-            Column::G => ColumnMut::F32(&mut self.g),
-            Column::B => ColumnMut::F32(&mut self.b),
-            Column::Near => ColumnMut::F32(&mut self.near),
-            Column::Far => ColumnMut::F32(&mut self.far),
-        }
+        self.truncate(0);
     }
 
     /// Appends some rows of another batch.
@@ -180,16 +104,42 @@ impl FragmentBatch {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ragged_batches_are_named() {
-        let mut batch = FragmentBatch::with_capacity(2);
-        assert!(batch.check().is_ok() && batch.is_empty());
-        batch.one_minus_alpha.push(0.5);
-        let message = batch.check().expect_err("ragged").to_string();
-        assert!(message.contains("linear_depth"), "{message}");
-    }
+/// Finds the first value of a column that is not allowed. `first_row` is the number of the first value's row in its
+/// part, counted from 0; `view` is the part's index, which the `view` column must repeat.
+pub(crate) fn check_column(
+    path: &Path,
+    column: Column,
+    values: ColumnSlice<'_>,
+    first_row: u64,
+    view: u32,
+) -> Result<(), DatasetError> {
+    let (bad, allowed) = match (values, column) {
+        (ColumnSlice::F32(values), _) => {
+            let (least, most, allowed) = column.float_range();
+            let good = |v: f32| v >= least && v <= most;
+            // Without leaving early, so that it becomes vector instructions; only a failure searches.
+            let all_good = values.iter().fold(true, |all, &v| all & good(v));
+            let bad = || values.iter().position(|&v| !good(v));
+            (if all_good { None } else { bad() }, allowed)
+        }
+        (ColumnSlice::U32(values), Column::View) => (
+            values.iter().position(|&v| v != view),
+            "it must be the index of the part",
+        ),
+        (ColumnSlice::U32(values), Column::FragmentCount) => {
+            (values.iter().position(|&v| v == 0), "it must be at least 1")
+        }
+        (ColumnSlice::U32(_), _) => return Ok(()),
+    };
+    let Some(i) = bad else { return Ok(()) };
+    Err(DatasetError::Value {
+        path: path.to_owned(),
+        row: first_row + i as u64 + 1,
+        column,
+        value: match values {
+            ColumnSlice::F32(v) => v[i].to_string(),
+            ColumnSlice::U32(v) => v[i].to_string(),
+        },
+        allowed,
+    })
 }

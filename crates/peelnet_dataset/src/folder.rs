@@ -5,33 +5,25 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use peelnet_files::Unfinished;
-use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
-use crate::hashed_file::hash_file;
-use crate::layout::{self, FRAGMENTS, META, OLD_MANIFEST};
-use crate::manifest::Manifest;
-use crate::plan::Plan;
-use crate::record::PartRecord;
-use crate::shard::Shard;
-use crate::store::{Folder, Place, Store as _};
-use crate::worker::host;
+use crate::formats::hash_file;
+use crate::manifest::{FileEntry, Manifest};
+use crate::plan::{Plan, host};
+use crate::record::{self, PartRecord};
+use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PLAN, Place};
 
-/// Prefix of the hidden folder of a writer, and of what it creates in passing.
+/// Prefix of the hidden folder of a writer.
 const PARTIAL: &str = ".partial-";
 /// Prefix of small files that are being written.
-const PUT: &str = ".put-";
+pub(crate) const PUT: &str = ".put-";
 /// A file in the hidden folder that its writer holds locked, with its machine's name. It is created first and removed last.
 const LOCK: &str = "lock";
-/// The files of the older dataset, in the hidden folder while they are replaced.
-const REPLACED: &str = "replaced.json";
-/// The manifest of a dataset that replaces an older one, in the hidden folder.
-const MANIFEST: &str = "manifest.json";
 
 /// After so long without a change, a hidden folder of another machine is no living writer's: no part takes longer, and no clock is off
 /// by more.
@@ -40,30 +32,23 @@ const ABANDONED_AFTER: Duration = Duration::from_hours(48);
 /// So long, an empty hidden folder may be one whose writer is about to lock it.
 const JUST_MADE: Duration = Duration::from_mins(1);
 
-/// Files of a dataset and their lengths.
-#[derive(Serialize, Deserialize)]
-struct Lengths {
-    files: BTreeMap<String, u64>,
-}
-
-/// The hidden folder of a writer that is alive. Dropping it removes the folder.
+/// Where a writer that is alive has parts until they are finished. Dropping it removes the folder.
 #[derive(Debug)]
 pub(crate) struct Partial {
     path: PathBuf,
-    _lock: Option<File>,
+    /// Of a folder inside the dataset's.
+    lock: Option<File>,
     _unfinished: Unfinished,
 }
 
 impl Partial {
     /// Creates and locks a hidden folder in a dataset's.
-    pub(crate) fn create(folder: &Path) -> Result<Self, DatasetError> {
+    pub(crate) fn hidden(folder: &Path) -> Result<Self, DatasetError> {
         let meta = folder.join(META);
         fs::create_dir_all(&meta).map_err(DatasetError::io(&meta, "create the folder"))?;
-        let hidden = tempfile::Builder::new()
-            .prefix(PARTIAL)
-            .tempdir_in(&meta)
-            .map_err(DatasetError::io(folder, "write into"))?;
-        let unfinished = Unfinished::new(hidden.path());
+        let builder = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(&meta);
+        let hidden = builder.map_err(DatasetError::io(folder, "write into"))?;
+        let _unfinished = Unfinished::new(hidden.path());
         let lock_path = hidden.path().join(LOCK);
         // Locked before it has its name: nobody sees the folder of a living writer with a lock that is free.
         let lock = || -> std::io::Result<File> {
@@ -72,12 +57,25 @@ impl Partial {
             lock.write_all(host().as_bytes())?;
             lock.persist(&lock_path).map_err(|e| e.error)
         };
-        let lock = lock().map_err(DatasetError::io(&lock_path, "lock"))?;
+        let lock = Some(lock().map_err(DatasetError::io(&lock_path, "lock"))?);
         Ok(Self {
             // From here on it is removed in an order of ours.
             path: hidden.keep(),
-            _lock: Some(lock),
-            _unfinished: unfinished,
+            lock,
+            _unfinished,
+        })
+    }
+
+    /// Creates a folder on this machine, for a dataset on another one.
+    pub(crate) fn local() -> Result<Self, DatasetError> {
+        let folder = tempfile::tempdir().map_err(DatasetError::io(
+            &std::env::temp_dir(),
+            "create a temporary folder",
+        ))?;
+        Ok(Self {
+            _unfinished: Unfinished::new(folder.path()),
+            path: folder.keep(),
+            lock: None,
         })
     }
 
@@ -85,61 +83,15 @@ impl Partial {
         &self.path
     }
 
-    /// Moves every part from here into the folder, in place of an older dataset, and the manifest last.
-    ///
-    /// The folder has no manifest until everything is in place: whoever opens it meanwhile, or after a crash, learns that it is
-    /// incomplete. After a crash the lists in the hidden folder say which files are a dataset's.
-    pub(crate) fn replace(
-        self,
-        folder: &Path,
-        plan: &Plan,
-        worker: &str,
-        new: &Manifest,
-    ) -> Result<(), DatasetError> {
-        let write = |name: &str, text: &str| {
-            let path = self.path.join(name);
-            fs::write(&path, text).map_err(DatasetError::io(&path, "write"))
-        };
-        write(MANIFEST, &new.to_json())?;
-        let older = older_files(folder)?;
-        let lengths = Lengths {
-            files: older.data.clone(),
-        };
-        write(
-            REPLACED,
-            &serde_json::to_string(&lengths).expect("names and numbers"),
-        )?;
-        let data = older.data.keys().map(|name| folder.join(name));
-        for path in older.control.iter().cloned().chain(data) {
-            fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
-        }
-        let store = Folder::new(folder, &self.path);
-        let mut moved = Vec::new();
-        for name in new.lengths().keys() {
-            let target = folder.join(name);
-            if let Err(error) = fs::rename(self.path.join(name), &target) {
-                for path in &moved {
-                    // The first error is the one to report.
-                    let _ = fs::remove_file(path);
-                }
-                return Err(DatasetError::io(&target, "move into place")(error));
-            }
-            moved.push(target);
-        }
-        plan.agree(&store)?;
-        for part in &new.parts {
-            PartRecord::new(plan, worker, part.clone()).commit(&store, plan)?;
-        }
-        store
-            .put_if_absent(layout::MANIFEST, new.to_json().as_bytes())
-            .map(drop)
+    pub(crate) fn is_hidden(&self) -> bool {
+        self.lock.is_some()
     }
 }
 
 impl Drop for Partial {
     fn drop(&mut self) {
         // Windows removes no file that is open.
-        drop(self._lock.take());
+        drop(self.lock.take());
         // Where it cannot be removed, the next writer does it.
         let _ = remove_partial(&self.path);
     }
@@ -154,116 +106,67 @@ fn remove_partial(path: &Path) -> std::io::Result<()> {
         }
     }
     match fs::remove_file(path.join(LOCK)) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e),
+        Err(e) if e.kind() != ErrorKind::NotFound => return Err(e),
         _ => {}
     }
     fs::remove_dir(path)
 }
 
-/// What a folder holds of a dataset. Files that it lists and that are gone are left out.
-#[derive(Debug, Default)]
-struct Older {
-    /// Files of rows, and their lengths.
-    data: BTreeMap<String, u64>,
-    /// Manifest, plan and records, in the order of their removal.
-    control: Vec<PathBuf>,
-}
-
-impl Older {
-    fn is_empty(&self) -> bool {
-        self.control.is_empty() && self.data.is_empty()
-    }
-}
-
-/// The files of the dataset in a folder.
+/// The files of the dataset in a folder, in an order in which they can be removed: those that list others last.
 ///
 /// # Errors
 /// The first file in the folder that is not a dataset's.
-fn older_files(folder: &Path) -> Result<Older, DatasetError> {
-    let names = names_in(folder)?;
-    let mut older = Older::default();
-    let mut listed = BTreeMap::new();
-    if names.iter().any(|n| n == OLD_MANIFEST) {
-        let manifest =
-            Manifest::read_old(folder).map_err(|e| not_ours(folder, OLD_MANIFEST, Some(e)))?;
-        listed = manifest.lengths();
-        older.control.push(folder.join(OLD_MANIFEST));
-    }
-    if names.iter().any(|n| n == META) {
-        listed.extend(older_control(folder, &mut older.control)?);
-    }
-    for name in names {
-        // Hidden folders: see `remove_abandoned`.
-        if name == OLD_MANIFEST || name == META || name.starts_with(PARTIAL) {
-            continue;
-        }
-        if !is_listed(folder, &name, &listed)? {
+fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
+    let mut control = Vec::new();
+    let mut listed: BTreeMap<String, u64> = BTreeMap::new();
+    let mut list =
+        |files: Vec<FileEntry>| listed.extend(files.into_iter().map(|f| (f.name, f.bytes)));
+    let store = Folder::new(folder, folder);
+    for name in control_names(folder)? {
+        let refuse = |e| not_ours(folder, &name, Some(e));
+        if name == PLAN {
+            Plan::read(&store).map_err(refuse)?;
+        } else if name == MANIFEST {
+            let manifest = Manifest::read(&store).map_err(refuse)?;
+            let parts = manifest.into_iter().flat_map(|m| m.parts);
+            parts.for_each(|part| list(part.files));
+        } else if let Some(index) = record::index(&name) {
+            let record = PartRecord::read(&store, index, None).map_err(refuse)?;
+            record.into_iter().for_each(|r| list(r.part.files));
+        } else {
             return Err(not_ours(folder, &name, None));
         }
-        let bytes = listed[&name];
-        older.data.insert(name, bytes);
+        control.push(folder.join(name));
     }
-    Ok(older)
-}
-
-/// Manifest, plan and records of a folder of schema 2, and the lengths of what they list.
-fn older_control(
-    folder: &Path,
-    control: &mut Vec<PathBuf>,
-) -> Result<BTreeMap<String, u64>, DatasetError> {
-    let store = Folder::new(folder, folder);
-    let meta = folder.join(META);
-    if !fs::symlink_metadata(&meta).is_ok_and(|m| m.is_dir()) {
-        return Err(not_ours(folder, META, None));
-    }
-    let refuse = |name: &str, e| not_ours(folder, name, Some(e));
-    let mut listed = BTreeMap::new();
-    if let Some(manifest) =
-        Manifest::read_sealed(&store).map_err(|e| refuse(layout::MANIFEST, e))?
-    {
-        listed.extend(manifest.lengths());
-        control.push(folder.join(layout::MANIFEST));
-    }
-    if meta.join("parts").exists() {
-        for name in names_in(&meta.join("parts"))? {
-            let name_in = format!("{}{name}", layout::PARTS);
-            let Some(index) = layout::record_index(&name) else {
-                return Err(not_ours(folder, &name_in, None));
-            };
-            if let Some(record) =
-                PartRecord::read(&store, index, None).map_err(|e| refuse(&name_in, e))?
-            {
-                let files = record.part.files.into_iter();
-                listed.extend(files.map(|f| (f.name, f.bytes)));
-                control.push(folder.join(name_in));
-            }
+    let mut files = Vec::new();
+    for name in names_in(folder)?.into_iter().filter(|n| n != META) {
+        let path = folder.join(&name);
+        let found = fs::symlink_metadata(&path).map_err(DatasetError::io(&path, "look at"))?;
+        if !found.is_file() || listed.get(&name) != Some(&found.len()) {
+            return Err(not_ours(folder, &name, None));
         }
+        files.push(path);
     }
-    if Plan::read(&store)
-        .map_err(|e| refuse(layout::PLAN, e))?
-        .is_some()
-    {
-        control.push(folder.join(layout::PLAN));
-    }
-    let known = ["plan.json", MANIFEST, "parts"];
-    match names_in(&meta)?
-        .iter()
-        .find(|n| !known.contains(&n.as_str()) && !n.starts_with(PARTIAL) && !n.starts_with(PUT))
-    {
-        Some(name) => Err(not_ours(folder, &format!("{META}/{name}"), None)),
-        None => Ok(listed),
-    }
+    files.extend(control.into_iter().rev());
+    Ok(files)
 }
 
-/// Whether a name is a regular file of the listed length.
-fn is_listed(
-    folder: &Path,
-    name: &str,
-    listed: &BTreeMap<String, u64>,
-) -> Result<bool, DatasetError> {
-    let path = folder.join(name);
-    let found = fs::symlink_metadata(&path).map_err(DatasetError::io(&path, "look at"))?;
-    Ok(found.is_file() && listed.get(name) == Some(&found.len()))
+/// Names of what lies in `_peelnet/`, sorted, without what living writers have there.
+fn control_names(folder: &Path) -> Result<Vec<String>, DatasetError> {
+    let mut names = Vec::new();
+    for meta in [META.to_owned(), format!("{META}/parts")] {
+        match fs::symlink_metadata(folder.join(&meta)) {
+            Err(e) if e.kind() == ErrorKind::NotFound => continue,
+            Ok(found) if found.is_dir() => {}
+            _ => return Err(not_ours(folder, &meta, None)),
+        }
+        let inside = names_in(&folder.join(&meta))?.into_iter();
+        let inside = inside.filter(|n| !n.starts_with(PARTIAL) && !n.starts_with(PUT));
+        names.extend(inside.map(|n| format!("{meta}/{n}")));
+    }
+    names.retain(|n| *n != format!("{META}/parts"));
+    names.sort();
+    Ok(names)
 }
 
 fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetError {
@@ -281,18 +184,14 @@ fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetErr
 /// Those of [`DatasetWriter::create`](crate::DatasetWriter::create) for the folder.
 pub fn replaces(folder: &Path, join: bool) -> Result<bool, DatasetError> {
     // An object store's dataset is never replaced.
-    let Place::Folder(_) = Place::of(folder)? else {
+    let Place::Folder(folder) = Place::of(folder)? else {
         return Ok(false);
     };
-    check_not_mixed(folder, join)?;
-    if !folder.is_dir() || join {
-        return Ok(false);
-    }
     // What a writer that died left behind is for the next writer to sort out.
-    if !hidden_folders(folder)?.is_empty() {
+    if !folder.is_dir() || join || !hidden_folders(&folder)?.is_empty() {
         return Ok(false);
     }
-    Ok(!older_files(folder)?.is_empty())
+    Ok(!older_files(&folder)?.is_empty())
 }
 
 /// Prepares a folder for a whole dataset: removes what writers that died left in it. Returns whether there is an older dataset.
@@ -308,6 +207,17 @@ pub(crate) fn prepare(folder: &Path) -> Result<bool, DatasetError> {
     Ok(!older_files(folder)?.is_empty())
 }
 
+/// Removes the older dataset.
+///
+/// # Errors
+/// A file that came meanwhile and is foreign, before anything is removed.
+pub(crate) fn remove_older(folder: &Path) -> Result<(), DatasetError> {
+    for path in older_files(folder)? {
+        fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
+    }
+    Ok(())
+}
+
 /// Prepares a folder for one of several writers of a dataset.
 ///
 /// # Errors
@@ -319,28 +229,21 @@ pub(crate) fn prepare_to_join(folder: &Path) -> Result<(), DatasetError> {
     if Plan::read(&Folder::new(folder, folder))?.is_some() {
         return Ok(());
     }
-    match names.iter().find(|n| *n != META && !n.starts_with(PARTIAL)) {
+    match names.iter().find(|n| *n != META) {
         Some(found) => Err(not_ours(folder, found, None)),
         None => Ok(()),
     }
 }
 
-/// Removes what writers that died left in the folder of a dataset that is whole.
-pub(crate) fn clean_dead(folder: &Path) -> Result<(), DatasetError> {
-    remove_abandoned(folder).map(drop)
-}
-
-/// The hidden folders of writers, alive or not, also of earlier versions.
+/// The hidden folders of writers, alive or not.
 fn hidden_folders(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
-    let mut all = Vec::new();
-    for within in [folder.to_owned(), folder.join(META)] {
-        if within.is_dir() {
-            let names = names_in(&within)?.into_iter();
-            let names = names.filter(|n| n.starts_with(PARTIAL));
-            all.extend(names.map(|n| within.join(n)));
-        }
+    let meta = folder.join(META);
+    if !meta.is_dir() {
+        return Ok(Vec::new());
     }
-    Ok(all)
+    let names = names_in(&meta)?.into_iter();
+    let names = names.filter(|n| n.starts_with(PARTIAL));
+    Ok(names.map(|n| meta.join(n)).collect())
 }
 
 /// Whether a hidden folder's writer may be alive.
@@ -363,9 +266,9 @@ fn is_younger(path: &Path, than: Duration) -> bool {
     changed.is_some_and(|t| t.elapsed().map_or(true, |past| past < than))
 }
 
-/// Removes the hidden folders of writers that died, and what they had moved into place without coming to their end. Returns whether another
-/// writer is alive.
-fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
+/// Removes the hidden folders of writers that died, and what they had moved into place without a record. Returns whether another writer is
+/// alive.
+pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
     let mut dead = Vec::new();
     let mut any_alive = false;
     for hidden in hidden_folders(folder)? {
@@ -376,14 +279,9 @@ fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
         if inside.is_empty() && is_younger(&hidden, JUST_MADE) {
             continue;
         }
-        let is_ours = inside.is_empty()
-            || inside.iter().any(|n| n == LOCK)
-                && inside.iter().all(|n| {
-                    [LOCK, REPLACED, MANIFEST].contains(&n.as_str())
-                        || n.starts_with(FRAGMENTS)
-                        || n.starts_with(PUT)
-                });
-        if !is_ours {
+        let is_known = |n: &String| n == LOCK || n.starts_with(FRAGMENTS) || n.starts_with(PUT);
+        let has_lock = inside.is_empty() || inside.iter().any(|n| n == LOCK);
+        if !has_lock || !inside.iter().all(is_known) {
             let name = hidden.strip_prefix(folder).unwrap_or(&hidden);
             return Err(not_ours(folder, &name.to_string_lossy(), None));
         }
@@ -395,16 +293,13 @@ fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
     }
     remove_old_puts(folder)?;
     for (hidden, inside) in dead {
-        if inside.iter().any(|n| n == MANIFEST || n == REPLACED) {
-            undo_replacing(folder, &hidden)?;
-        }
         // Beside a living writer, a file without a record may be that one's.
         if !any_alive {
             remove_unrecorded(folder, &hidden, &inside)?;
         }
         match remove_partial(&hidden) {
             // Two writers cleaned up at once.
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
+            Err(e) if e.kind() == ErrorKind::NotFound => {}
             other => other.map_err(DatasetError::io(&hidden, "remove"))?,
         }
     }
@@ -427,52 +322,18 @@ fn remove_old_puts(folder: &Path) -> Result<(), DatasetError> {
     Ok(())
 }
 
-/// Removes what a writer that died had moved into place of an older dataset, and what it had left of that, unless it came to its end.
-fn undo_replacing(folder: &Path, hidden: &Path) -> Result<(), DatasetError> {
-    let is_whole = folder.join(OLD_MANIFEST).exists() || folder.join(layout::MANIFEST).exists();
-    let replaced = hidden.join(REPLACED);
-    // Before it wrote this list, it had changed nothing.
-    if is_whole || !replaced.exists() {
-        return Ok(());
-    }
-    let old: Option<Lengths> = fs::read(&replaced)
-        .ok()
-        .and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    let old = match old {
-        Some(lengths) => Some(lengths.files),
-        None => Manifest::read_file(&replaced).ok().map(|m| m.lengths()),
-    };
-    let new = Manifest::read_file(&hidden.join(MANIFEST)).ok();
-    for listed in [old, new.map(|m| m.lengths())].into_iter().flatten() {
-        for name in listed.keys().filter(|n| layout::is_part_name(n)) {
-            let path = folder.join(name);
-            if path.exists() && is_listed(folder, name, &listed)? {
-                fs::remove_file(&path).map_err(DatasetError::io(&path, "remove"))?;
-            }
-        }
-    }
-    let mut control = Vec::new();
-    if folder.join(META).exists() {
-        older_control(folder, &mut control)?;
-    }
-    for path in control {
-        fs::remove_file(&path).map_err(DatasetError::io(&path, "remove"))?;
-    }
-    Ok(())
-}
-
 /// Removes the files of a part that a writer had moved into place without a record. They are still in its hidden folder, so they are known
 /// by their contents.
 fn remove_unrecorded(folder: &Path, hidden: &Path, inside: &[String]) -> Result<(), DatasetError> {
-    if folder.join(OLD_MANIFEST).exists() || folder.join(layout::MANIFEST).exists() {
+    if folder.join(MANIFEST).exists() {
         return Ok(());
     }
     for name in inside {
-        let Some(index) = layout::part_index(name) else {
+        let Some(index) = record::part_index(name) else {
             continue;
         };
         let (path, copy) = (folder.join(name), hidden.join(name));
-        if !path.is_file() || folder.join(layout::record(index)).exists() {
+        if !path.is_file() || folder.join(record::name(index)).exists() {
             continue;
         }
         let hash = |path: &Path| hash_file(path).map_err(DatasetError::io(path, "read"));
@@ -483,57 +344,34 @@ fn remove_unrecorded(folder: &Path, hidden: &Path, inside: &[String]) -> Result<
     Ok(())
 }
 
-/// Refuses folders that an earlier version wrote and that cannot be continued: shards in folders of their own, and a manifest at the top.
-pub(crate) fn check_not_mixed(folder: &Path, join: bool) -> Result<(), DatasetError> {
-    if !folder.is_dir() {
-        return Ok(());
-    }
-    let mixed = |reason| {
-        Err(DatasetError::Mixed {
-            path: folder.to_owned(),
-            reason,
-        })
-    };
-    let names = names_in(folder)?;
-    if names.iter().any(|n| Shard::from_folder(n).is_some()) {
-        mixed("it holds the shards of a dataset, as an earlier version wrote them")
-    } else if join && names.iter().any(|n| n == OLD_MANIFEST) {
-        mixed("it holds a whole dataset of an earlier version, which cannot be continued")
-    } else {
-        Ok(())
+/// A dataset's folder with those around it that a writer made: dropping it removes what is still empty of them.
+#[derive(Debug)]
+pub(crate) struct MadeFolders {
+    /// Outermost first.
+    folders: Vec<PathBuf>,
+}
+
+impl MadeFolders {
+    /// Creates a folder, and what is missing of those around it.
+    pub(crate) fn create(folder: &Path) -> Result<Self, DatasetError> {
+        let is_new = |a: &&Path| !a.as_os_str().is_empty() && !a.exists();
+        let new = folder.ancestors().take_while(is_new);
+        let mut folders: Vec<PathBuf> = new.map(Path::to_owned).collect();
+        folders.reverse();
+        folders.extend([folder.join(META), folder.join(META).join("parts")]);
+        let made = Self { folders };
+        fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))?;
+        Ok(made)
     }
 }
 
-/// Creates a folder and says which of its ancestors and itself are new, outermost first.
-pub(crate) fn create_folders(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
-    let mut new: Vec<PathBuf> = folder
-        .ancestors()
-        .take_while(|a| !a.as_os_str().is_empty() && !a.exists())
-        .map(Path::to_owned)
-        .collect();
-    new.reverse();
-    fs::create_dir_all(folder).map_err(|source| {
-        remove_empty(&new);
-        DatasetError::io(folder, "create the folder")(source)
-    })?;
-    Ok(new)
-}
-
-/// Removes folders, innermost first, as long as they are empty.
-pub(crate) fn remove_empty(outermost_first: &[PathBuf]) {
-    for folder in outermost_first.iter().rev() {
-        // Not empty or gone: both are as they should be.
-        if fs::remove_dir(folder).is_err() {
-            break;
+impl Drop for MadeFolders {
+    fn drop(&mut self) {
+        for folder in self.folders.iter().rev() {
+            // Not empty or gone: both are as they should be.
+            let _ = fs::remove_dir(folder);
         }
     }
-}
-
-/// Removes the folders inside a dataset's folder, as long as they are empty.
-pub(crate) fn remove_empty_meta(folder: &Path) {
-    let meta = folder.join(META);
-    remove_empty(&[meta.clone(), meta.join("parts")]);
-    remove_empty(&[meta]);
 }
 
 fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {

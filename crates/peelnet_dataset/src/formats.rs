@@ -1,18 +1,76 @@
-//! What a dataset format must do; each format is one file of this folder.
+//! The formats that a dataset may have; each is one file of this folder.
 
 mod csv;
 mod npy;
 mod parquet;
 
-use std::path::{Path, PathBuf};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read as _, Write};
+use std::path::Path;
+use std::str::FromStr;
 
-use crate::batch::FragmentBatch;
-use crate::column::Column;
+use peelnet_files::hex;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
-use crate::format::Format;
 use crate::manifest::FileEntry;
+use crate::store::Fetched;
+
+/// Rows of a full row group of Parquet.
+pub const ROW_GROUP_ROWS: usize = 1 << 20;
+
+/// The file format of a dataset's parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// Text with a header row; numbers as the shortest text that reads back to the same value.
+    Csv,
+    /// Apache Parquet, snappy, row groups of 2²⁰ rows. Small, fast, and read by column.
+    #[default]
+    Parquet,
+    /// One one-dimensional NumPy array for each column.
+    Npy,
+}
 
 impl Format {
+    /// All formats.
+    pub const ALL: [Self; 3] = [Self::Csv, Self::Parquet, Self::Npy];
+
+    /// The name, which is also the files' ending.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+            Self::Npy => "npy",
+        }
+    }
+
+    /// Bytes that a row takes at least in each file of a part; 0 where rows are compressed.
+    pub(crate) const fn least_row_bytes(self) -> u64 {
+        match self {
+            // A digit and a separator for each column.
+            Self::Csv => 2 * Column::ALL.len() as u64,
+            Self::Parquet => 0,
+            Self::Npy => 4,
+        }
+    }
+
+    /// The files of a part that columns lie in, in the columns' order.
+    pub(crate) fn files_of(self, columns: &[Column]) -> Vec<usize> {
+        match self {
+            Self::Csv | Self::Parquet => vec![0],
+            Self::Npy => columns.iter().map(|c| c.index()).collect(),
+        }
+    }
+
+    /// How many files a part has.
+    pub(crate) fn files_of_a_part(self) -> usize {
+        self.files_of(&Column::ALL).len()
+    }
+
     /// Starts a part of which the files' names begin with `stem`.
     pub(crate) fn sink(
         self,
@@ -27,16 +85,33 @@ impl Format {
         })
     }
 
-    /// Opens a part for reading the given columns, in the columns' order.
+    /// Opens a part for reading the given columns, from [`Format::files_of`] them.
     pub(crate) fn source(
         self,
-        files: &[PathBuf],
+        files: &[Fetched],
         columns: &[Column],
     ) -> Result<Box<dyn PartSource>, DatasetError> {
         Ok(match self {
-            Self::Csv => Box::new(csv::CsvSource::open(files, columns)?),
-            Self::Parquet => Box::new(parquet::ParquetSource::open(files, columns)?),
+            Self::Csv => Box::new(csv::CsvSource::open(&files[0], columns)?),
+            Self::Parquet => Box::new(parquet::ParquetSource::open(&files[0], columns)?),
             Self::Npy => Box::new(npy::NpySource::open(files, columns)?),
+        })
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Format {
+    type Err = DatasetError;
+
+    fn from_str(text: &str) -> Result<Self, DatasetError> {
+        let found = Self::ALL.into_iter().find(|f| f.name() == text);
+        found.ok_or_else(|| DatasetError::UnknownFormat {
+            text: text.to_owned(),
         })
     }
 }
@@ -56,10 +131,89 @@ pub(crate) trait PartSource: Send {
     fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError>;
 }
 
-/// Cuts `0..len` into at most `threads` ranges of nearly equal length.
-fn split_range(len: usize, threads: usize) -> Vec<std::ops::Range<usize>> {
-    let pieces = threads.clamp(1, len.max(1));
-    (0..pieces)
-        .map(|k| len * k / pieces..len * (k + 1) / pieces)
-        .collect()
+/// Compares a file's column names with the schema's.
+fn check_names(path: &Path, place: &str, found: &[String]) -> Result<(), DatasetError> {
+    let expected = Column::ALL.map(Column::name);
+    if let Some(missing) = expected.iter().find(|c| !found.iter().any(|n| n == *c)) {
+        return Err(DatasetError::format(
+            path,
+            format!(
+                "{place}: column {missing} is missing; the columns must be {}",
+                expected.join(", ")
+            ),
+        ));
+    }
+    for (k, name) in found.iter().enumerate() {
+        let wanted = expected.get(k).copied().unwrap_or("no column");
+        if name != wanted {
+            return Err(DatasetError::format(
+                path,
+                format!(
+                    "{place}: column {} is {name:?} where {wanted} is expected; the columns must be {}, in this order",
+                    k + 1,
+                    expected.join(", ")
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Writes to a file and hashes the bytes on the way. Give it large slices: it does not buffer.
+struct HashedFile {
+    file: File,
+    hasher: Sha256,
+    bytes: u64,
+}
+
+impl HashedFile {
+    fn create(path: &Path) -> Result<Self, DatasetError> {
+        Ok(Self {
+            file: File::create_new(path).map_err(DatasetError::io(path, "create"))?,
+            hasher: Sha256::new(),
+            bytes: 0,
+        })
+    }
+
+    fn finish(self, name: String) -> FileEntry {
+        FileEntry {
+            name,
+            bytes: self.bytes,
+            sha256: hex(&self.hasher.finalize()),
+        }
+    }
+}
+
+impl Write for HashedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let n = self.file.write(bytes)?;
+        self.hasher.update(&bytes[..n]);
+        self.bytes += n as u64;
+        Ok(n)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Hexadecimal sha256 of some bytes.
+pub fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+/// Length and hexadecimal sha256 of an existing file.
+pub(crate) fn hash_file(path: &Path) -> io::Result<(u64, String)> {
+    let mut file = peelnet_files::open(path)?;
+    let mut hasher = Sha256::new();
+    let mut buffer = vec![0; 1 << 18];
+    let mut bytes = 0;
+    loop {
+        let n = file.read(&mut buffer)?;
+        if n == 0 {
+            return Ok((bytes, hex(&hasher.finalize())));
+        }
+        hasher.update(&buffer[..n]);
+        bytes += n as u64;
+    }
 }

@@ -26,13 +26,14 @@
 //!
 //! **Many writers.** Writers need no coordinator, no lock and no clock: a record is created only where there is none, by one operation of
 //! the file system or the object store. A second writer of a part compares the hashes: equal ones are no error, and different ones name the
-//! part and both workers. [`Plan`] has a hash over everything that shapes the rows: scenes by their contents, the frame size, seed, flags,
+//! part and both workers. The plan has a hash over everything that shapes the rows: scenes by their contents, the frame size, seed, flags,
 //! format, cameras, peelnet's version and the class of the adapter. A writer with another plan is refused before its first row.
 //! [`Header::shard`] takes every N-th work item, [`Header::resume`] whatever is missing. Whoever finishes the last part seals the dataset,
 //! and [`seal`](fn@seal) does it afterwards; the manifest's bytes do not depend on who does.
 //!
-//! **Replacing.** A writer of a whole dataset that finds an older one keeps all parts aside and moves them into place at the end. It
-//! replaces no file that neither a manifest nor a record lists. Datasets in object stores are never replaced.
+//! **Replacing.** A writer of a whole dataset that finds an older one keeps all parts aside until its end; then it removes the older one's
+//! files and puts its own where nothing is. It removes no file that neither a manifest nor a record lists. Datasets in object stores are
+//! never replaced.
 //!
 //! **Formats.** Each is one file in `formats/` behind the traits `PartSink` and `PartSource`: CSV with a header
 //! row, Parquet (PLAIN pages, snappy), and NPY as one one-dimensional array per column
@@ -47,50 +48,36 @@
 //! `file:///…` does always. Settings and credentials come from the environment (`AWS_…`, `GOOGLE_…`, `AZURE_…`). A part is written on this
 //! machine and sent by one conditional request for each file; a part that is read is fetched whole.
 //!
-//! **Schema 1**, with `manifest.json` at the top and shards in folders `shard-I-of-N/`, still reads; it is written no more. The
-//! [`Dataset::hash`] covers (part index, sha256) pairs and nothing of the way they were made: it is the same function in both, and the same
-//! value for a dataset written in one run, by shards, or with interruptions.
-//!
-//! [`summary`] recomputes what the rows claim about one another, and [`split`] says which pixels train and which
-//! judge.
+//! The [`Dataset::hash`] covers (part index, sha256) pairs and nothing of the way they were made: it is the same for a dataset written in
+//! one run, by shards, or with interruptions. [`summary`] recomputes what the rows claim about one another, and [`split`] says which pixels
+//! train and which judge.
 
 mod batch;
 mod column;
 mod error;
 mod folder;
-mod format;
 mod formats;
-mod hashed_file;
-mod layout;
 mod manifest;
-mod old_shards;
 mod plan;
 mod reader;
 mod record;
 mod seal;
-mod shard;
 pub mod split;
 mod store;
 pub mod summary;
-mod validate;
-mod worker;
 mod writer;
 
-pub use batch::FragmentBatch;
-pub use column::{Column, ColumnData, ColumnKind, ColumnSlice};
+pub use column::{Column, ColumnData, ColumnKind, ColumnSlice, FragmentBatch};
 pub use error::DatasetError;
 pub use folder::replaces;
-pub use format::{Format, ROW_GROUP_ROWS};
-pub use hashed_file::sha256;
+pub use formats::{Format, ROW_GROUP_ROWS, sha256};
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
-pub use plan::Plan;
+pub use plan::{Header, Shard, worker_name};
 pub use reader::{Batches, Dataset};
 pub use seal::{seal, unsealed_parts};
-pub use shard::Shard;
 pub use split::{Split, SplitBy, Subset};
 pub use store::{create_object, is_remote, read_object};
 pub use summary::Summary;
-pub use worker::worker_name;
-pub use writer::{DatasetWriter, Header, PartCounts, PartInfo, PartWriter};
+pub use writer::{DatasetWriter, PartCounts, PartInfo, PartWriter};

@@ -1,35 +1,33 @@
-//! `_peelnet/manifest.json`: what a dataset is made of and where it comes from. In schema 1 it lies at the top.
+//! `_peelnet/manifest.json`: what a dataset is made of and where it comes from. And what its JSON files have in common.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use peelnet_files::hex;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::column::{Column, ColumnKind};
 use crate::error::DatasetError;
-use crate::format::Format;
-use crate::layout::{self, FRAGMENTS, is_part_name};
-use crate::shard::Shard;
-use crate::store::Store;
+use crate::formats::Format;
+use crate::store::{FRAGMENTS, MANIFEST, Store};
 
-/// The version of the layout that this crate writes. It reads this one and all before.
+/// The version of the layout that this crate writes and reads.
 pub const SCHEMA_VERSION: u32 = 2;
 
 /// Work items (scene × copy × view) of one dataset.
 pub const MAX_WORK_ITEMS: u32 = 1 << 16;
 
-/// Bytes of a manifest that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
-const MAX_BYTES: u64 = 1 << 28;
+/// Bytes of a manifest or plan that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
+pub(crate) const MAX_BYTES: u64 = 1 << 28;
 
 /// The whole manifest. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// [`SCHEMA_VERSION`] of the writer.
     pub schema: u32,
-    /// Hash of the plan that all writers followed; empty in schema 1.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    /// Hash of the plan that all writers followed.
     pub plan: String,
     /// Version of the program that wrote it.
     pub tool_version: String,
@@ -49,16 +47,13 @@ pub struct Manifest {
     pub pixels_fraction: f64,
     /// Number of varied copies of each scene beside the scene itself.
     pub augment: u32,
-    /// Everything else that shapes the rows, by name; empty in schema 1.
+    /// Everything else that shapes the rows, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
-    /// The scenes of the whole dataset, also when this is a shard.
+    /// The scenes.
     pub scenes: Vec<SceneEntry>,
-    /// Number of work items of the whole dataset.
+    /// Number of work items.
     pub work_items: u32,
-    /// Which shard's parts these are; absent in a whole dataset.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shard: Option<Shard>,
     /// Total rows.
     pub rows: u64,
     /// Total pixels that hold at least one row.
@@ -95,7 +90,7 @@ pub struct SceneEntry {
     pub sha256: String,
     /// Whether the scene must not be trained on.
     pub held_out: bool,
-    /// Its census: the effects that it needs, by name. Datasets of earlier versions have none.
+    /// The effects that it needs, by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<String>,
 }
@@ -160,46 +155,16 @@ pub struct FileEntry {
 }
 
 impl Manifest {
-    /// Reads and checks the manifest of a folder of schema 1.
-    pub(crate) fn read_old(folder: &Path) -> Result<Self, DatasetError> {
-        Self::read_file(&folder.join(layout::OLD_MANIFEST)).map_err(|error| match error {
-            DatasetError::Io { source, .. }
-                if source.kind() == std::io::ErrorKind::NotFound && folder.is_dir() =>
-            {
-                DatasetError::NoManifest {
-                    path: folder.to_owned(),
-                }
-            }
-            other => other,
-        })
-    }
-
     /// Reads and checks the manifest of a sealed dataset; `None` where there is none.
-    pub(crate) fn read_sealed(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let bytes = store.get(layout::MANIFEST, MAX_BYTES)?;
-        bytes
-            .map(|bytes| Self::parse(&store.shown(layout::MANIFEST), &bytes))
-            .transpose()
-    }
-
-    /// Reads and checks a manifest.
-    pub(crate) fn read_file(path: &Path) -> Result<Self, DatasetError> {
-        let bytes = peelnet_files::read(path, MAX_BYTES).map_err(DatasetError::io(path, "read"))?;
-        Self::parse(path, &bytes)
-    }
-
-    /// Checks a manifest that was read.
-    fn parse(path: &Path, bytes: &[u8]) -> Result<Self, DatasetError> {
-        check_schema(path, bytes)?;
-        let wrong = |reason: String| DatasetError::Manifest {
-            path: path.to_owned(),
-            reason,
+    pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
+        let Some(bytes) = store.get(MANIFEST, MAX_BYTES)? else {
+            return Ok(None);
         };
-        // From the text again, so that the message has the line.
-        let manifest: Self =
-            serde_json::from_slice(bytes).map_err(|e| wrong(format!("wrong manifest: {e}")))?;
-        manifest.check().map_err(wrong)?;
-        Ok(manifest)
+        let path = store.shown(MANIFEST);
+        let manifest: Self = from_json(&path, "manifest", &bytes)?;
+        let checked = manifest.check();
+        checked.map_err(|reason| DatasetError::manifest(&path, reason))?;
+        Ok(Some(manifest))
     }
 
     /// What the types cannot say.
@@ -217,75 +182,76 @@ impl Manifest {
                 self.work_items
             ));
         }
-        if let Some(shard) = self.shard {
-            Shard::new(shard.index, shard.of).map_err(|e| e.to_string())?;
+        if self.parts.len() != self.work_items as usize {
+            return Err(format!(
+                "{} work items, but {} parts",
+                self.work_items,
+                self.parts.len()
+            ));
         }
-        let files_expected = self.format.files_of_a_part();
         let mut rows = 0u64;
         let mut names = BTreeSet::new();
         for (k, part) in self.parts.iter().enumerate() {
-            if k > 0 && self.parts[k - 1].index >= part.index {
-                return Err(format!("parts[{k}]: the indices do not ascend"));
-            }
-            if part.index >= self.work_items {
-                return Err(format!(
-                    "parts[{k}]: index {} but there are {} work items",
-                    part.index, self.work_items
-                ));
-            }
-            if part.scene as usize >= self.scenes.len() {
-                return Err(format!("parts[{k}]: scene {} is not listed", part.scene));
-            }
-            if part.files.len() != files_expected {
-                return Err(format!(
-                    "parts[{k}]: {} files, a part in format {} has {files_expected}",
-                    part.files.len(),
-                    self.format
-                ));
-            }
-            for file in &part.files {
-                if !is_part_name(&file.name) {
-                    return Err(format!(
-                        "parts[{k}]: {:?} is not a plain file name that begins with {FRAGMENTS}",
-                        file.name
-                    ));
-                }
-                if !names.insert(file.name.as_str()) {
-                    return Err(format!("parts[{k}]: {:?} is listed twice", file.name));
-                }
-                // Of Parquet's compressed rows, only the file itself can say it.
-                let least = self.format.least_row_bytes().saturating_mul(part.rows);
-                if file.bytes < least {
-                    return Err(format!(
-                        "parts[{k}]: {} rows cannot be in {} bytes of {:?}",
-                        part.rows, file.bytes, file.name
-                    ));
-                }
-            }
-            let grouped = part
-                .row_groups
-                .iter()
-                .try_fold(0u64, |a, &g| a.checked_add(g));
-            if grouped != Some(part.rows) {
-                return Err(format!(
-                    "parts[{k}]: the row groups do not add up to {} rows",
-                    part.rows
-                ));
-            }
+            let checked = self.check_part(k, part, &mut names);
+            checked.map_err(|reason| format!("parts[{k}]: {reason}"))?;
             rows = rows.saturating_add(part.rows);
         }
         if rows != self.rows {
             return Err(format!("`rows` is {} but the parts hold {rows}", self.rows));
         }
-        let missing = self.missing_items();
-        if let Some(first) = missing.first() {
-            return Err(format!(
-                "{} work items have no part, the first is {first}",
-                missing.len()
-            ));
-        }
         if self.hash != hash_of_parts(&self.parts) {
             return Err("`hash` does not fit the files' hashes".to_owned());
+        }
+        Ok(())
+    }
+
+    fn check_part<'a>(
+        &self,
+        k: usize,
+        part: &'a Part,
+        names: &mut BTreeSet<&'a str>,
+    ) -> Result<(), String> {
+        if part.index as usize != k {
+            return Err(format!("index {} where {k} is expected", part.index));
+        }
+        if part.scene as usize >= self.scenes.len() {
+            return Err(format!("scene {} is not listed", part.scene));
+        }
+        let expected = self.format.files_of_a_part();
+        if part.files.len() != expected {
+            return Err(format!(
+                "{} files, a part in format {} has {expected}",
+                part.files.len(),
+                self.format
+            ));
+        }
+        for file in &part.files {
+            // Names come from outside: they must not lead out of the folder on any system.
+            let leads_out = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
+            if !file.name.starts_with(FRAGMENTS) || file.name.contains(leads_out) {
+                return Err(format!(
+                    "{:?} is not a plain file name that begins with {FRAGMENTS}",
+                    file.name
+                ));
+            }
+            if !names.insert(file.name.as_str()) {
+                return Err(format!("{:?} is listed twice", file.name));
+            }
+            // Of Parquet's compressed rows, only the file itself can say it.
+            if file.bytes < self.format.least_row_bytes().saturating_mul(part.rows) {
+                return Err(format!(
+                    "{} rows cannot be in {} bytes of {:?}",
+                    part.rows, file.bytes, file.name
+                ));
+            }
+        }
+        let mut groups = part.row_groups.iter();
+        let grouped = groups.try_fold(0u64, |a, &g| a.checked_add(g));
+        if grouped != Some(part.rows) {
+            return Err(format!(
+                "the row groups do not add up to {} rows",
+                part.rows
+            ));
         }
         Ok(())
     }
@@ -295,18 +261,10 @@ impl Manifest {
         self.parts.len() == self.work_items as usize
     }
 
-    /// Work items that should have a part here but have none.
-    pub(crate) fn missing_items(&self) -> Vec<u32> {
-        let present: BTreeSet<u32> = self.parts.iter().map(|p| p.index).collect();
-        (0..self.work_items)
-            .filter(|&k| self.shard.is_none_or(|s| s.contains(k)) && !present.contains(&k))
-            .collect()
-    }
-
     /// Recomputes the totals and the hash from the parts.
     pub(crate) fn total(&mut self) {
         self.parts.sort_by_key(|p| p.index);
-        // Manifests of shards come from outside, with any numbers in them.
+        // Records come from outside, with any numbers in them.
         let sum = |of: fn(&Part) -> u64| self.parts.iter().map(of).fold(0, u64::saturating_add);
         self.rows = sum(|p| p.rows);
         self.pixels = sum(|p| p.pixels);
@@ -315,67 +273,56 @@ impl Manifest {
         self.hash = hash_of_parts(&self.parts);
     }
 
-    /// The length of each file, by name.
-    pub(crate) fn lengths(&self) -> BTreeMap<String, u64> {
-        let files = self.parts.iter().flat_map(|p| &p.files);
-        files.map(|f| (f.name.clone(), f.bytes)).collect()
-    }
-
-    /// The JSON text of the file.
-    pub(crate) fn to_json(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self)
-            .expect("a manifest has string keys and finite numbers only");
-        text.push('\n');
-        text
-    }
-
     /// Rows of each scene, by name: for a training run's provenance.
     pub fn rows_by_scene(&self) -> BTreeMap<&str, u64> {
         let mut rows = BTreeMap::new();
         for part in &self.parts {
-            *rows
-                .entry(self.scenes[part.scene as usize].name.as_str())
-                .or_default() += part.rows;
+            let scene = self.scenes[part.scene as usize].name.as_str();
+            *rows.entry(scene).or_default() += part.rows;
         }
         rows
     }
 }
 
-/// The schema version first: another version's fields are bound to look wrong.
-pub(crate) fn check_schema(path: &Path, bytes: &[u8]) -> Result<(), DatasetError> {
+/// Reads a manifest, plan or record: the schema version first, because another version's fields are bound to look wrong.
+pub(crate) fn from_json<T: DeserializeOwned>(
+    path: &Path,
+    what: &str,
+    bytes: &[u8],
+) -> Result<T, DatasetError> {
     /// The version alone; everything else is skipped.
     #[derive(Deserialize)]
     struct Version {
         #[serde(default)]
         schema: serde_json::Value,
     }
-    let wrong = |reason: String| DatasetError::Manifest {
-        path: path.to_owned(),
-        reason,
-    };
+    let wrong = |reason: String| DatasetError::manifest(path, reason);
     let version: Version =
         serde_json::from_slice(bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
     match version.schema.as_u64() {
         None => Err(wrong("the field `schema` is missing".to_owned())),
-        Some(found) if !(1..=u64::from(SCHEMA_VERSION)).contains(&found) => {
-            Err(DatasetError::Schema {
-                path: path.to_owned(),
-                found,
-            })
-        }
-        Some(_) => Ok(()),
+        Some(found) if found != u64::from(SCHEMA_VERSION) => Err(DatasetError::Schema {
+            path: path.to_owned(),
+            found,
+        }),
+        // From the text again, so that the message has the line.
+        Some(_) => serde_json::from_slice(bytes).map_err(|e| wrong(format!("wrong {what}: {e}"))),
     }
 }
 
-/// The columns of every dataset of this schema.
+/// The text of a manifest, plan or record.
+pub(crate) fn to_json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(value);
+    text.expect("string keys and finite numbers only") + "\n"
+}
+
+/// The columns of every dataset.
 pub(crate) fn columns() -> Vec<ColumnEntry> {
-    Column::ALL
-        .iter()
-        .map(|c| ColumnEntry {
-            name: c.name().to_owned(),
-            kind: c.kind(),
-        })
-        .collect()
+    let entry = |column: Column| ColumnEntry {
+        name: column.name().to_owned(),
+        kind: column.kind(),
+    };
+    Column::ALL.map(entry).to_vec()
 }
 
 /// The dataset's hash: sha256 over one line `index sha256` for each file, by part and then by column.

@@ -4,75 +4,98 @@
 //! command line. Who would write other rows is refused before the first one.
 
 use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
 
-use peelnet_files::hex;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::error::DatasetError;
-use crate::format::Format;
-use crate::layout;
-use crate::manifest::{self, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry};
-use crate::store::Store;
-use crate::writer::Header;
+use crate::formats::{Format, sha256};
+use crate::manifest::{
+    MAX_BYTES, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns, from_json,
+    to_json,
+};
+use crate::store::{PLAN, Store};
 
-/// Bytes of a plan that are read.
-const MAX_BYTES: u64 = 1 << 28;
-
-/// What all writers of a dataset agree on. The file is its JSON, with these names.
+/// What is known about a dataset before its first row: what all its writers agree on, and who this one is. The plan's file is its JSON,
+/// with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
-    /// [`SCHEMA_VERSION`] of the first writer.
-    pub schema: u32,
-    /// Hash over everything that shapes the rows.
-    pub hash: String,
+pub struct Header {
     /// Version of the program.
     pub tool_version: String,
     /// Format of all parts.
     pub format: Format,
     /// Seed of sampling and augmentation.
     pub seed: u64,
-    /// Adapters that are expected to give the same bytes.
+    /// Adapters that are expected to give the same bytes: writers of another class are refused.
     pub adapter_class: String,
-    /// How it peels: `sbuffer`, `dual` or `single`.
+    /// `sbuffer`, `dual` or `single`.
     pub peel: String,
-    /// Fraction of the pixels that is kept, 0 … 1.
+    /// Fraction of the pixels that is kept.
     pub pixels_fraction: f64,
     /// Varied copies of each scene beside the scene itself.
     pub augment: u32,
-    /// Everything else that shapes the rows, by name: the frame size, the cameras, limits.
+    /// Everything else that shapes the rows, by name: the frame size, the cameras, limits. Writers must agree on it.
     pub settings: BTreeMap<String, String>,
-    /// Number of work items.
+    /// Number of work items (scene × copy × view) of the whole dataset.
     pub work_items: u32,
-    /// The scenes. Their paths are the first writer's and not in the hash.
+    /// All scenes of the whole dataset, also when a shard is written. Their paths are not in the plan's hash.
     pub scenes: Vec<SceneEntry>,
-    /// The first writer's adapter; not in the hash.
+    /// Name of the GPU adapter; not in the hash.
     pub adapter: String,
-    /// The first writer's command line; not in the hash.
+    /// The command line, for provenance; not in the hash.
     pub command: String,
-    /// The first writer's name; not in the hash.
+    /// This writer's name, for records and errors: see [`worker_name`]; not in the hash.
     pub worker: String,
+    /// The shard to write; `None` writes the whole dataset.
+    #[serde(skip)]
+    pub shard: Option<Shard>,
+    /// Writes only what is missing of the dataset that is there. Shards always do.
+    #[serde(skip)]
+    pub resume: bool,
+}
+
+impl Header {
+    /// Whether the writer adds to a dataset that may be there.
+    pub(crate) const fn joins(&self) -> bool {
+        self.resume || self.shard.is_some()
+    }
+
+    /// Refuses what no dataset has.
+    pub(crate) fn check(&self, folder: &Path) -> Result<(), DatasetError> {
+        if self.work_items > MAX_WORK_ITEMS {
+            return Err(DatasetError::TooManyItems {
+                items: self.work_items.into(),
+            });
+        }
+        if self.scenes.is_empty() || self.work_items == 0 {
+            let reason = "a dataset needs at least one scene and one view";
+            return Err(DatasetError::usage(folder, reason));
+        }
+        if !(self.pixels_fraction > 0.0 && self.pixels_fraction <= 1.0) {
+            let reason = "the fraction of pixels must be above 0 and at most 1";
+            return Err(DatasetError::usage(folder, reason));
+        }
+        Ok(())
+    }
+}
+
+/// The header of a dataset's first writer, and the hash over everything in it that shapes the rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Plan {
+    pub schema: u32,
+    pub hash: String,
+    #[serde(flatten)]
+    pub header: Header,
 }
 
 impl Plan {
-    /// The plan of a header.
-    pub(crate) fn of(header: &Header) -> Self {
+    pub(crate) fn new(header: &Header) -> Self {
         let mut plan = Self {
             schema: SCHEMA_VERSION,
             hash: String::new(),
-            tool_version: header.tool_version.clone(),
-            format: header.format,
-            seed: header.seed,
-            adapter_class: header.adapter_class.clone(),
-            peel: header.peel.clone(),
-            pixels_fraction: header.pixels_fraction,
-            augment: header.augment,
-            settings: header.settings.clone(),
-            work_items: header.work_items,
-            scenes: header.scenes.clone(),
-            adapter: header.adapter.clone(),
-            command: header.command.clone(),
-            worker: header.worker.clone(),
+            header: header.clone(),
         };
         plan.hash = plan.computed_hash();
         plan
@@ -80,53 +103,48 @@ impl Plan {
 
     /// Everything that shapes the rows, by name.
     fn fields(&self) -> Vec<(String, String)> {
+        let header = &self.header;
         let named = |name: &str, value: String| (name.to_owned(), value);
         let mut fields = vec![
             named("schema version", self.schema.to_string()),
-            named("peelnet version", self.tool_version.clone()),
-            named("adapter class", self.adapter_class.clone()),
-            named("format", self.format.to_string()),
-            named("seed", self.seed.to_string()),
-            named("peeling method", self.peel.clone()),
-            named("fraction of pixels", self.pixels_fraction.to_string()),
-            named("number of copies", self.augment.to_string()),
-            named("number of scenes", self.scenes.len().to_string()),
+            named("peelnet version", header.tool_version.clone()),
+            named("adapter class", header.adapter_class.clone()),
+            named("format", header.format.to_string()),
+            named("seed", header.seed.to_string()),
+            named("peeling method", header.peel.clone()),
+            named("fraction of pixels", header.pixels_fraction.to_string()),
+            named("number of copies", header.augment.to_string()),
+            named("number of scenes", header.scenes.len().to_string()),
         ];
-        for (k, scene) in self.scenes.iter().enumerate() {
+        for (k, scene) in header.scenes.iter().enumerate() {
             let held_out = if scene.held_out { ", held out" } else { "" };
             let value = format!("{} with sha256 {}{held_out}", scene.name, scene.sha256);
             fields.push((format!("scene {k}"), value));
         }
         // Behind the scenes: when these differ, the cameras do as well.
-        let settings = self.settings.iter();
+        let settings = header.settings.iter();
         fields.extend(settings.map(|(k, v)| (k.clone(), v.clone())));
-        fields.push(named("number of work items", self.work_items.to_string()));
+        fields.push(named("number of work items", header.work_items.to_string()));
         fields
     }
 
     fn computed_hash(&self) -> String {
-        let mut hasher = Sha256::new();
-        for (name, value) in self.fields() {
-            // Quoted: no value can look like the next line.
-            hasher.update(format!("{name:?} {value:?}\n"));
-        }
-        hex(&hasher.finalize())
+        let fields = self.fields().into_iter();
+        // Quoted: no value can look like the next line.
+        let lines: String = fields.map(|(k, v)| format!("{k:?} {v:?}\n")).collect();
+        sha256(lines.as_bytes())
     }
 
     /// The first field in which two plans differ, with both values.
     fn difference(&self, other: &Self) -> Option<(String, String, String)> {
         let (mine, others) = (self.fields(), other.fields());
-        for (name, value) in &mine {
-            match others.iter().find(|(n, _)| n == name) {
-                Some((_, theirs)) if theirs == value => {}
-                Some((_, theirs)) => return Some((name.clone(), value.clone(), theirs.clone())),
-                None => return Some((name.clone(), value.clone(), "nothing".to_owned())),
-            }
-        }
-        let more = others
-            .iter()
-            .find(|(n, _)| mine.iter().all(|(m, _)| m != n));
-        more.map(|(name, value)| (name.clone(), "nothing".to_owned(), value.clone()))
+        let value = |fields: &[(String, String)], name: &str| {
+            let found = fields.iter().find(|(n, _)| n == name);
+            found.map_or("nothing".to_owned(), |(_, value)| value.clone())
+        };
+        let names = mine.iter().chain(&others).map(|(name, _)| name);
+        let mut values = names.map(|n| (n.clone(), value(&mine, n), value(&others, n)));
+        values.find(|(_, mine, others)| mine != others)
     }
 
     /// Reads and checks a dataset's plan; `None` where there is none.
@@ -134,27 +152,19 @@ impl Plan {
     /// # Errors
     /// A plan that cannot be read or was edited.
     pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let Some(bytes) = store.get(layout::PLAN, MAX_BYTES)? else {
+        let Some(bytes) = store.get(PLAN, MAX_BYTES)? else {
             return Ok(None);
         };
-        let path = store.shown(layout::PLAN);
-        manifest::check_schema(&path, &bytes)?;
-        let wrong = |reason: String| DatasetError::Manifest {
-            path: path.clone(),
-            reason,
-        };
-        let plan: Self =
-            serde_json::from_slice(&bytes).map_err(|e| wrong(format!("wrong plan: {e}")))?;
-        if plan.work_items == 0 || plan.work_items > MAX_WORK_ITEMS {
-            return Err(wrong(format!(
-                "{} work items, and from 1 to {MAX_WORK_ITEMS} are read",
-                plan.work_items
-            )));
+        let path = store.shown(PLAN);
+        let plan: Self = from_json(&path, "plan", &bytes)?;
+        let items = plan.header.work_items;
+        if items == 0 || items > MAX_WORK_ITEMS {
+            let reason = format!("{items} work items, and from 1 to {MAX_WORK_ITEMS} are read");
+            return Err(DatasetError::manifest(&path, reason));
         }
         if plan.hash != plan.computed_hash() {
-            return Err(wrong(
-                "`hash` does not fit the plan: it was edited".to_owned(),
-            ));
+            let reason = "`hash` does not fit the plan: it was edited";
+            return Err(DatasetError::manifest(&path, reason));
         }
         Ok(Some(plan))
     }
@@ -164,12 +174,9 @@ impl Plan {
     /// # Errors
     /// A plan that differs, which names the first difference.
     pub(crate) fn agree(&self, store: &dyn Store) -> Result<(Self, bool), DatasetError> {
-        let mut text = serde_json::to_string_pretty(self)
-            .expect("a plan has string keys and finite numbers only");
-        text.push('\n');
         // The plan that is there first: one request less for all writers but the first.
         let there = match Self::read(store)? {
-            None if store.put_if_absent(layout::PLAN, text.as_bytes())? => {
+            None if store.put_if_absent(PLAN, to_json(self).as_bytes())? => {
                 return Ok((self.clone(), true));
             }
             None => Self::read(store)?,
@@ -186,7 +193,7 @@ impl Plan {
                 path: store.path().to_owned(),
                 difference: format!(
                     "its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}",
-                    there.worker, self.worker
+                    there.header.worker, self.header.worker
                 ),
             }),
         }
@@ -194,22 +201,22 @@ impl Plan {
 
     /// The manifest of these parts.
     pub(crate) fn manifest(&self, parts: Vec<Part>) -> Manifest {
+        let header = self.header.clone();
         let mut manifest = Manifest {
             schema: self.schema,
             plan: self.hash.clone(),
-            tool_version: self.tool_version.clone(),
-            command: self.command.clone(),
-            format: self.format,
-            columns: manifest::columns(),
-            seed: self.seed,
-            adapter: self.adapter.clone(),
-            peel: self.peel.clone(),
-            pixels_fraction: self.pixels_fraction,
-            augment: self.augment,
-            settings: self.settings.clone(),
-            scenes: self.scenes.clone(),
-            work_items: self.work_items,
-            shard: None,
+            tool_version: header.tool_version,
+            command: header.command,
+            format: header.format,
+            columns: columns(),
+            seed: header.seed,
+            adapter: header.adapter,
+            peel: header.peel,
+            pixels_fraction: header.pixels_fraction,
+            augment: header.augment,
+            settings: header.settings,
+            scenes: header.scenes,
+            work_items: header.work_items,
             rows: 0,
             pixels: 0,
             lost_fragments: 0,
@@ -219,5 +226,78 @@ impl Plan {
         };
         manifest.total();
         manifest
+    }
+}
+
+/// One of N independent pieces of a dataset: the work items k with k ≡ I (mod N).
+///
+/// Shards count from 1 to N: a scheduler that counts from 0 would write the last one twice with `0` for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Shard {
+    /// I, from 1 to `of`.
+    pub index: u32,
+    /// N.
+    pub of: u32,
+}
+
+impl Shard {
+    /// Shard `index` of `of`.
+    ///
+    /// # Errors
+    /// [`DatasetError::Shard`] if `index` is not from 1 to `of`, or `of` is above [`MAX_WORK_ITEMS`].
+    pub fn new(index: u32, of: u32) -> Result<Self, DatasetError> {
+        if !(1..=of).contains(&index) || of > MAX_WORK_ITEMS {
+            return Err(DatasetError::Shard {
+                text: format!("{index}/{of}"),
+            });
+        }
+        Ok(Self { index, of })
+    }
+
+    /// Whether this shard writes work item `item`.
+    pub const fn contains(self, item: u32) -> bool {
+        item % self.of == self.index % self.of
+    }
+}
+
+impl FromStr for Shard {
+    type Err = DatasetError;
+
+    fn from_str(text: &str) -> Result<Self, DatasetError> {
+        let numbers = text.split_once('/');
+        let numbers = numbers.and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        let shard = numbers.and_then(|(index, of)| Self::new(index, of).ok());
+        shard.ok_or_else(|| DatasetError::Shard {
+            text: text.to_owned(),
+        })
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.of)
+    }
+}
+
+/// The machine's name, as the system says it.
+pub(crate) fn host() -> String {
+    let file = || std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let variable = || {
+        ["HOSTNAME", "COMPUTERNAME"]
+            .iter()
+            .find_map(|name| std::env::var(name).ok())
+    };
+    let name = file().or_else(variable).unwrap_or_default();
+    match peelnet_files::printable(name.trim()) {
+        name if name.is_empty() => "host".to_owned(),
+        name => name.into_owned(),
+    }
+}
+
+/// The name of this process as a writer: what the variable `PEELNET_WORKER` says, or the machine's name and the process's number.
+pub fn worker_name() -> String {
+    match std::env::var("PEELNET_WORKER") {
+        Ok(name) if !name.trim().is_empty() => peelnet_files::printable(name.trim()).into_owned(),
+        _ => format!("{}:{}", host(), std::process::id()),
     }
 }

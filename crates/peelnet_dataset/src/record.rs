@@ -3,13 +3,30 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
-use crate::layout;
-use crate::manifest::{self, Part, SCHEMA_VERSION};
+use crate::manifest::{Part, SCHEMA_VERSION, from_json, to_json};
 use crate::plan::Plan;
-use crate::store::Store;
+use crate::store::{FRAGMENTS, PARTS, Store};
 
 /// Bytes of a record that are read.
 const MAX_BYTES: u64 = 1 << 24;
+
+/// The name of a part's record.
+pub(crate) fn name(index: u32) -> String {
+    format!("{PARTS}{index:05}.json")
+}
+
+/// The part whose record has this name.
+pub(crate) fn index(name: &str) -> Option<u32> {
+    let digits = name.strip_prefix(PARTS)?.strip_suffix(".json")?;
+    digits.parse().ok().filter(|&k| self::name(k) == name)
+}
+
+/// The part that a file of rows belongs to, by its name.
+pub(crate) fn part_index(name: &str) -> Option<u32> {
+    let (digits, _) = name.strip_prefix(FRAGMENTS)?.split_once('-')?;
+    let index = digits.parse().ok();
+    index.filter(|k| format!("{k:05}") == digits)
+}
 
 /// A finished part. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,19 +60,20 @@ impl PartRecord {
         index: u32,
         plan: Option<&Plan>,
     ) -> Result<Option<Self>, DatasetError> {
-        let name = layout::record(index);
+        let name = name(index);
         let Some(bytes) = store.get(&name, MAX_BYTES)? else {
             return Ok(None);
         };
         let path = store.shown(&name);
-        manifest::check_schema(&path, &bytes)?;
         let wrong = |reason: String| DatasetError::Record {
             path: path.clone(),
             index,
             reason,
         };
-        let record: Self =
-            serde_json::from_slice(&bytes).map_err(|e| wrong(format!("wrong record: {e}")))?;
+        let record: Self = from_json(&path, "record", &bytes).map_err(|e| match e {
+            DatasetError::Manifest { reason, .. } => wrong(reason),
+            other => other,
+        })?;
         let worker = peelnet_files::printable(&record.worker);
         if record.part.index != index {
             return Err(wrong(format!(
@@ -64,10 +82,14 @@ impl PartRecord {
             )));
         }
         if let Some(plan) = plan.filter(|p| p.hash != record.plan) {
+            let start = |hash: &str| -> String {
+                let hash = peelnet_files::printable(hash);
+                hash.chars().take(12).collect()
+            };
             return Err(wrong(format!(
                 "worker {worker} wrote it by another plan ({}) than the dataset's ({}): another version, size, seed, flag or adapter",
-                short(&record.plan),
-                short(&plan.hash)
+                start(&record.plan),
+                start(&plan.hash)
             )));
         }
         Ok(Some(record))
@@ -79,23 +101,20 @@ impl PartRecord {
     /// A record of other bytes, which names both workers.
     pub(crate) fn commit(&self, store: &dyn Store, plan: &Plan) -> Result<(), DatasetError> {
         let index = self.part.index;
-        let mut text = serde_json::to_string_pretty(self)
-            .expect("a record has string keys and finite numbers only");
-        text.push('\n');
-        if store.put_if_absent(&layout::record(index), text.as_bytes())? {
+        if store.put_if_absent(&name(index), to_json(self).as_bytes())? {
             return Ok(());
         }
-        // Gone again: somebody removes records while this works.
-        let Some(there) = Self::read(store, index, Some(plan))? else {
-            return Err(DatasetError::Busy {
+        match Self::read(store, index, Some(plan))? {
+            Some(there) => self.check_same(store, &there),
+            // Gone again: somebody removes records while this works.
+            None => Err(DatasetError::Busy {
                 path: store.path().to_owned(),
-            });
-        };
-        self.same_bytes(store, &there)
+            }),
+        }
     }
 
     /// An error if another record of this part is of other bytes.
-    pub(crate) fn same_bytes(&self, store: &dyn Store, there: &Self) -> Result<(), DatasetError> {
+    pub(crate) fn check_same(&self, store: &dyn Store, there: &Self) -> Result<(), DatasetError> {
         if there.part.files == self.part.files {
             return Ok(());
         }
@@ -106,9 +125,4 @@ impl PartRecord {
             other: there.worker.clone(),
         })
     }
-}
-
-/// The start of a hash, for messages.
-fn short(hash: &str) -> String {
-    peelnet_files::printable(hash).chars().take(12).collect()
 }

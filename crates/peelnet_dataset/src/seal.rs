@@ -5,11 +5,10 @@ use std::path::Path;
 
 use crate::error::DatasetError;
 use crate::folder;
-use crate::layout::{self, FRAGMENTS};
-use crate::manifest::Manifest;
+use crate::manifest::{Manifest, to_json};
 use crate::plan::Plan;
-use crate::record::PartRecord;
-use crate::store::{Place, Store};
+use crate::record::{self, PartRecord};
+use crate::store::{FRAGMENTS, MANIFEST, PARTS, Place, Store};
 
 /// Records that are read at a time.
 const READERS: usize = 32;
@@ -23,42 +22,29 @@ const READERS: usize = 32;
 pub fn seal(path: impl AsRef<Path>) -> Result<Manifest, DatasetError> {
     let path = path.as_ref();
     let place = Place::of(path)?;
-    if let Place::Folder(folder) = &place {
-        if !folder.is_dir() {
-            // The error of the system says why.
-            std::fs::read_dir(folder)
-                .map_err(DatasetError::io(folder, "open the dataset's folder"))?;
-        }
-        if folder.join(layout::OLD_MANIFEST).exists() {
-            return Err(DatasetError::Usage {
-                path: folder.clone(),
-                reason:
-                    "a dataset of schema 1 is whole once it is there, so there is nothing to seal"
-                        .to_owned(),
-            });
-        }
-    }
-    let store = place.store();
+    let store = place.open()?;
     let plan = Plan::read(&*store)?.ok_or_else(|| DatasetError::NoManifest {
         path: path.to_owned(),
     })?;
-    let manifest = match whole(&*store, &plan)? {
-        Ok(manifest) => manifest,
-        Err(missing) => return Err(unsealed(path, &plan, &missing)),
+    let Some(manifest) = whole(&*store, &plan)? else {
+        return Err(unsealed(&*store, &plan));
     };
     if let Place::Folder(folder) = &place {
-        folder::clean_dead(folder)?;
+        folder::remove_abandoned(folder)?;
     }
     Ok(manifest)
 }
 
 /// The error of a dataset that lacks parts, or lacks its seal alone.
-pub(crate) fn unsealed(path: &Path, plan: &Plan, missing: &[u32]) -> DatasetError {
-    DatasetError::Unsealed {
-        path: path.to_owned(),
-        missing: missing.len(),
-        of: plan.work_items,
-        first: missing.first().copied(),
+pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> DatasetError {
+    match missing(store, plan) {
+        Ok(missing) => DatasetError::Unsealed {
+            path: store.path().to_owned(),
+            missing: missing.len(),
+            of: plan.header.work_items,
+            first: missing.first().copied(),
+        },
+        Err(error) => error,
     }
 }
 
@@ -71,139 +57,122 @@ pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, Data
     let Some(plan) = Plan::read(&*store)? else {
         return Ok(None);
     };
-    if Manifest::read_sealed(&*store)?.is_some() {
+    if Manifest::read(&*store)?.is_some() {
         return Ok(None);
     }
-    let missing = missing(&*store, &plan)?.len() as u32;
-    Ok(Some((plan.work_items - missing, plan.work_items)))
+    let of = plan.header.work_items;
+    Ok(Some((of - missing(&*store, &plan)?.len() as u32, of)))
 }
 
 /// The work items that have a record.
 pub(crate) fn recorded(store: &dyn Store) -> Result<BTreeSet<u32>, DatasetError> {
-    let records = store.list(layout::PARTS)?;
-    Ok(records
-        .iter()
-        .filter_map(|e| layout::record_index(&e.name))
+    let names = store.list(PARTS)?.into_keys();
+    Ok(names
+        .filter_map(|name| record::index(&format!("{PARTS}{name}")))
         .collect())
 }
 
 /// The work items of a plan that lack a record.
-pub(crate) fn missing(store: &dyn Store, plan: &Plan) -> Result<Vec<u32>, DatasetError> {
+fn missing(store: &dyn Store, plan: &Plan) -> Result<Vec<u32>, DatasetError> {
     let recorded = recorded(store)?;
-    Ok((0..plan.work_items)
-        .filter(|k| !recorded.contains(k))
-        .collect())
+    let all = 0..plan.header.work_items;
+    Ok(all.filter(|k| !recorded.contains(k)).collect())
 }
 
 /// The records of all parts, read by several threads: an object store answers each after tens of milliseconds.
-fn records(store: &dyn Store, plan: &Plan) -> Result<Vec<(u32, Option<PartRecord>)>, DatasetError> {
-    let parts: Vec<u32> = (0..plan.work_items).collect();
-    let share = parts.len().div_ceil(READERS).max(1);
+fn records(store: &dyn Store, plan: &Plan) -> Result<Vec<Option<PartRecord>>, DatasetError> {
+    let parts: Vec<u32> = (0..plan.header.work_items).collect();
     let read = |parts: &[u32]| -> Result<Vec<_>, DatasetError> {
         let records = parts.iter();
         records
-            .map(|&index| Ok((index, PartRecord::read(store, index, Some(plan))?)))
+            .map(|&index| PartRecord::read(store, index, Some(plan)))
             .collect()
     };
     let mut all = Vec::with_capacity(parts.len());
     std::thread::scope(|scope| {
-        let shares = parts.chunks(share);
-        let readers: Vec<_> = shares.map(|parts| scope.spawn(|| read(parts))).collect();
+        let pieces = parts.chunks(parts.len().div_ceil(READERS).max(1));
+        let readers: Vec<_> = pieces.map(|parts| scope.spawn(|| read(parts))).collect();
         for reader in readers {
             // In the order of the parts, so that the error is that of the first wrong one.
-            let records = reader
-                .join()
-                .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            all.extend(records?);
+            let records = reader.join();
+            all.extend(records.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
         }
         Ok(all)
     })
 }
 
-/// Writes the manifest if every part is there, and returns it; otherwise the missing parts.
-pub(crate) fn whole(
-    store: &dyn Store,
-    plan: &Plan,
-) -> Result<Result<Manifest, Vec<u32>>, DatasetError> {
-    if let Some(manifest) = Manifest::read_sealed(store)? {
+/// Writes the manifest if every part is there and it is not, and returns it; `None` if parts are missing.
+pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, DatasetError> {
+    let wrong = |reason: &str| DatasetError::manifest(&store.shown(MANIFEST), reason);
+    if let Some(manifest) = Manifest::read(store)? {
         if manifest.plan != plan.hash {
-            return Err(DatasetError::Manifest {
-                path: store.shown(layout::MANIFEST),
-                reason: "the manifest is of another plan than plan.json".to_owned(),
-            });
+            return Err(wrong("the manifest is of another plan than plan.json"));
         }
-        check_files(store, &manifest, &BTreeMap::new())?;
-        return Ok(Ok(manifest));
+        check_files(store, &manifest, true)?;
+        return Ok(Some(manifest));
     }
-    let missing = missing(store, plan)?;
-    if !missing.is_empty() {
-        return Ok(Err(missing));
+    if !missing(store, plan)?.is_empty() {
+        return Ok(None);
     }
-    let mut workers = BTreeMap::new();
-    let mut parts = Vec::new();
-    for (index, record) in records(store, plan)? {
-        let Some(record) = record else {
-            return Ok(Err(vec![index]));
-        };
-        workers.insert(index, record.worker);
-        parts.push(record.part);
-    }
-    let manifest = plan.manifest(parts);
-    check_files(store, &manifest, &workers)?;
-    manifest.check().map_err(|reason| DatasetError::Manifest {
-        path: store.shown(layout::PARTS),
-        reason,
-    })?;
-    if !store.put_if_absent(layout::MANIFEST, manifest.to_json().as_bytes())? {
+    let Some(records) = records(store, plan)?
+        .into_iter()
+        .collect::<Option<Vec<_>>>()
+    else {
+        return Ok(None);
+    };
+    let manifest = plan.manifest(records.into_iter().map(|r| r.part).collect());
+    check_files(store, &manifest, true)?;
+    let checked = manifest.check();
+    checked.map_err(|reason| DatasetError::manifest(&store.shown(PARTS), reason))?;
+    if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())? {
         // Another writer came to its end at the same time.
-        let there = Manifest::read_sealed(store)?;
-        if there.as_ref() != Some(&manifest) {
-            return Err(DatasetError::Manifest {
-                path: store.shown(layout::MANIFEST),
-                reason: "the manifest that is there is of other parts".to_owned(),
-            });
+        if Manifest::read(store)?.as_ref() != Some(&manifest) {
+            return Err(wrong("the manifest that is there is of other parts"));
         }
     }
-    Ok(Ok(manifest))
+    Ok(Some(manifest))
 }
 
-/// Every file of the parts must be there with its length, and no other file of rows beside them.
-fn check_files(
+/// Every file of the parts must be there with its length. For a seal, no other file of rows may lie beside them.
+pub(crate) fn check_files(
     store: &dyn Store,
     manifest: &Manifest,
-    workers: &BTreeMap<u32, String>,
+    alone: bool,
 ) -> Result<(), DatasetError> {
-    let found: BTreeMap<String, u64> = store
-        .list("")?
-        .into_iter()
-        .map(|e| (e.name, e.bytes))
-        .collect();
-    let mut listed = BTreeSet::new();
+    let mut found: BTreeMap<String, u64> = store.list("")?;
     for part in &manifest.parts {
         for file in &part.files {
-            listed.insert(file.name.as_str());
-            let reason = match found.get(&file.name) {
-                Some(&bytes) if bytes == file.bytes => continue,
+            let reason = match found.remove(&file.name) {
+                Some(bytes) if bytes == file.bytes => continue,
                 Some(bytes) => format!("has {bytes} bytes where {} were written", file.bytes),
                 None => "is missing".to_owned(),
             };
-            let worker = match workers.get(&part.index) {
-                Some(worker) => Some(worker.clone()),
-                None => PartRecord::read(store, part.index, None)?.map(|r| r.worker),
-            };
-            return Err(DatasetError::PartDamaged {
-                path: store.shown(&file.name),
-                index: part.index,
-                worker: worker.unwrap_or_else(|| "unknown".to_owned()),
-                reason,
-            });
+            return Err(damaged(store, part.index, &file.name, reason));
         }
     }
-    let is_extra = |name: &&String| name.starts_with(FRAGMENTS) && !listed.contains(name.as_str());
-    match found.keys().find(is_extra) {
+    match found
+        .keys()
+        .find(|name| alone && name.starts_with(FRAGMENTS))
+    {
         None => Ok(()),
         Some(name) => Err(DatasetError::Doubled {
             path: store.shown(name),
         }),
+    }
+}
+
+/// The error of a part's file, with the worker that wrote it.
+pub(crate) fn damaged(
+    store: &dyn Store,
+    index: u32,
+    name: &str,
+    reason: impl Into<String>,
+) -> DatasetError {
+    let record = PartRecord::read(store, index, None).ok().flatten();
+    DatasetError::PartDamaged {
+        path: store.shown(name),
+        index,
+        worker: record.map_or_else(|| "unknown".to_owned(), |r| r.worker),
+        reason: reason.into(),
     }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use peelnet_core::hash::{pcg, pixel_hash};
 use serde::{Deserialize, Serialize};
 
-use crate::batch::FragmentBatch;
+use crate::column::FragmentBatch;
 use crate::error::DatasetError;
 
 /// What a pixel is for.

@@ -1,47 +1,53 @@
 //! Where a dataset lies that several writers share: a few operations that folders and object stores both have.
 //!
 //! Nothing here needs a lock or a clock: whoever creates a name first has it, and everyone else learns that it is taken.
+//!
+//! Folders are done with the standard library. `object_store`'s `LocalFileSystem` would bring a runtime into every build, take a part
+//! through memory to create its file where here a name is linked, leave files without an owner beside the rows when its process is
+//! killed, and fail where there are no hard links.
 
 #[cfg(feature = "object-store")]
 mod remote;
 
+use std::collections::BTreeMap;
 use std::fmt;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::error::DatasetError;
-use crate::hashed_file::hash_file;
-use crate::layout::META;
+use crate::folder::PUT;
+use crate::formats::hash_file;
 
-/// A name directly under a prefix, and its length.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Entry {
-    /// The name, without the prefix.
-    pub name: String,
-    /// Length in bytes.
-    pub bytes: u64,
-}
+/// The folder of everything that is not rows. Its name begins with `_`: readers of whole folders skip it.
+pub(crate) const META: &str = "_peelnet";
+/// What all writers agree on.
+pub(crate) const PLAN: &str = "_peelnet/plan.json";
+/// The manifest of a sealed dataset.
+pub(crate) const MANIFEST: &str = "_peelnet/manifest.json";
+/// The records of finished parts.
+pub(crate) const PARTS: &str = "_peelnet/parts/";
+/// Prefix of all parts' file names.
+pub(crate) const FRAGMENTS: &str = "fragments-";
 
 /// A file on this machine with a store's contents: removed when it is dropped, if it is a copy.
 #[derive(Debug)]
 pub(crate) struct Fetched {
-    pub path: PathBuf,
-    #[allow(dead_code, reason = "removes the copy")]
-    copy: Option<tempfile::TempPath>,
-    #[allow(dead_code, reason = "has the copy removed when the process must end")]
-    unfinished: Option<peelnet_files::Unfinished>,
+    path: PathBuf,
+    /// The name in the store, for messages.
+    pub shown: PathBuf,
+    _copy: Option<(tempfile::TempPath, peelnet_files::Unfinished)>,
 }
 
 impl Fetched {
-    /// A file that is no copy.
-    pub(crate) fn in_place(path: PathBuf) -> Self {
-        Self {
-            path,
-            copy: None,
-            unfinished: None,
-        }
+    pub(crate) fn open(&self) -> Result<File, DatasetError> {
+        peelnet_files::open(&self.path).map_err(DatasetError::io(&self.shown, "open"))
+    }
+
+    /// Length and sha256.
+    pub(crate) fn hash(&self) -> Result<(u64, String), DatasetError> {
+        hash_file(&self.path).map_err(DatasetError::io(&self.shown, "read"))
     }
 }
 
@@ -50,8 +56,8 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     /// The dataset's path, for messages.
     fn path(&self) -> &Path;
 
-    /// The files directly under a prefix, which is empty or ends with `/`, sorted by name. None where there is no such prefix.
-    fn list(&self, prefix: &str) -> Result<Vec<Entry>, DatasetError>;
+    /// Names and lengths of the files directly under a prefix, which is empty or ends with `/`. None where there is no such prefix.
+    fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError>;
 
     /// A small file's contents; `None` where it does not exist.
     fn get(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, DatasetError>;
@@ -72,12 +78,6 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     fn shown(&self, name: &str) -> PathBuf {
         self.path().join(name)
     }
-
-    /// Length and sha256 of a file.
-    fn hash(&self, name: &str) -> Result<(u64, String), DatasetError> {
-        let file = self.fetch(name)?;
-        hash_file(&file.path).map_err(DatasetError::io(&self.shown(name), "read"))
-    }
 }
 
 /// A folder.
@@ -96,12 +96,6 @@ impl Folder {
             scratch: scratch.to_owned(),
         }
     }
-
-    /// Makes the folder that a file lies in.
-    fn make_room(target: &Path) -> Result<(), DatasetError> {
-        let folder = peelnet_files::folder_of(target);
-        fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))
-    }
 }
 
 impl Store for Folder {
@@ -109,29 +103,28 @@ impl Store for Folder {
         &self.path
     }
 
-    fn list(&self, prefix: &str) -> Result<Vec<Entry>, DatasetError> {
+    fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
         let folder = self.path.join(prefix);
         let io = || DatasetError::io(&folder, "list");
         let entries = match fs::read_dir(&folder) {
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(BTreeMap::new()),
             other => other.map_err(io())?,
         };
-        let mut all = Vec::new();
+        let mut all = BTreeMap::new();
         for entry in entries {
             let entry = entry.map_err(io())?;
             // Links are followed: parts may lie on another disk.
             match fs::metadata(entry.path()) {
                 Ok(metadata) if metadata.is_dir() => {}
-                Ok(metadata) => all.push(Entry {
-                    name: entry.file_name().to_string_lossy().into_owned(),
-                    bytes: metadata.len(),
-                }),
+                Ok(metadata) => {
+                    let name = entry.file_name().to_string_lossy().into_owned();
+                    all.insert(name, metadata.len());
+                }
                 // Another writer's, gone between the two looks.
                 Err(e) if e.kind() == ErrorKind::NotFound => {}
                 Err(e) => return Err(io()(e)),
             }
         }
-        all.sort_by(|a, b| a.name.cmp(&b.name));
         Ok(all)
     }
 
@@ -146,13 +139,14 @@ impl Store for Folder {
 
     fn put_if_absent(&self, name: &str, bytes: &[u8]) -> Result<bool, DatasetError> {
         let target = self.path.join(name);
-        Self::make_room(&target)?;
+        let folder = peelnet_files::folder_of(&target);
+        fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))?;
         let write = || -> std::io::Result<bool> {
             let mut builder = tempfile::Builder::new();
             // Temporary files are private by default; a dataset has the permissions of any new file.
             #[cfg(unix)]
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-            let mut file = builder.prefix(".put-").tempfile_in(&self.scratch)?;
+            let mut file = builder.prefix(PUT).tempfile_in(&self.scratch)?;
             let _unfinished = peelnet_files::Unfinished::new(file.path());
             file.write_all(bytes)?;
             match file.persist_noclobber(&target) {
@@ -177,7 +171,11 @@ impl Store for Folder {
     }
 
     fn fetch(&self, name: &str) -> Result<Fetched, DatasetError> {
-        Ok(Fetched::in_place(self.path.join(name)))
+        Ok(Fetched {
+            path: self.path.join(name),
+            shown: self.path.join(name),
+            _copy: None,
+        })
     }
 
     fn remove(&self, name: &str) -> Result<(), DatasetError> {
@@ -205,13 +203,22 @@ impl Place {
             None => Ok(Self::Folder(path.to_owned())),
             Some(url) => match url.strip_prefix("file://") {
                 Some(folder) if folder.starts_with('/') => Ok(Self::Folder(PathBuf::from(folder))),
-                Some(_) => Err(DatasetError::Usage {
-                    path: path.to_owned(),
-                    reason: "an address of a folder is file:///path".to_owned(),
-                }),
+                Some(_) => {
+                    let reason = "an address of a folder is file:///path";
+                    Err(DatasetError::usage(path, reason))
+                }
                 None => remote(url).map(Self::Remote),
             },
         }
+    }
+
+    /// The store of a dataset that should be there.
+    pub(crate) fn open(&self) -> Result<Arc<dyn Store>, DatasetError> {
+        if let Self::Folder(folder) = self {
+            // The error of the system says what is wrong with it.
+            fs::read_dir(folder).map_err(DatasetError::io(folder, "open the dataset's folder"))?;
+        }
+        Ok(self.store())
     }
 
     /// The store, to read.
@@ -259,11 +266,10 @@ fn object(path: &Path) -> Result<(Arc<dyn Store>, String), DatasetError> {
     let (prefix, name) = text.rsplit_once('/').unwrap_or_default();
     let place = Place::of(Path::new(prefix))?;
     if name.is_empty() || !is_remote(Path::new(prefix)) || prefix.ends_with('/') {
-        return Err(DatasetError::Usage {
-            // An address may have a password in it.
-            path: PathBuf::from(text.split_once("://").map_or("", |(scheme, _)| scheme)),
-            reason: "the address of a file is scheme://bucket/prefix/name".to_owned(),
-        });
+        // An address may have a password in it.
+        let scheme = text.split_once("://").map_or("", |(scheme, _)| scheme);
+        let reason = "the address of a file is scheme://bucket/prefix/name";
+        return Err(DatasetError::usage(Path::new(scheme), reason));
     }
     let store: Arc<dyn Store> = match place {
         Place::Folder(folder) => Arc::new(Folder::new(&folder, &folder)),
@@ -282,11 +288,9 @@ fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
 #[cfg(not(feature = "object-store"))]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
     let scheme = url.split_once("://").map_or("", |(scheme, _)| scheme);
-    Err(DatasetError::Usage {
+    Err(DatasetError::usage(
         // An address may have a password in it.
-        path: PathBuf::from(format!("{scheme}://…")),
-        reason:
-            "this build reads and writes folders only; build peelnet with `--features object-store`"
-                .to_owned(),
-    })
+        Path::new(&format!("{scheme}://…")),
+        "this build reads and writes folders only; build peelnet with `--features object-store`",
+    ))
 }

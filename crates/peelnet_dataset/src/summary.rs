@@ -3,8 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::batch::FragmentBatch;
-use crate::column::{Column, ColumnSlice};
+use crate::column::{Column, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
 use crate::reader::Dataset;

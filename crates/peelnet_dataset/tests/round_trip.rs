@@ -77,51 +77,35 @@ fn large_parts_are_the_same_with_any_threads() {
     let rows = view(0, 200_000, 3);
     assert!(rows.len() > ROW_GROUP_ROWS);
     for format in Format::ALL {
-        let hashes: Vec<Manifest> = [(1, rows.len()), (2, 100_001), (4, rows.len())]
-            .into_iter()
-            .map(|(threads, batch_rows)| {
-                let folder = tempfile::tempdir().unwrap();
-                let mut header = header(format, None);
-                header.work_items = 1;
-                let writer = DatasetWriter::create(folder.path(), header)
-                    .unwrap()
-                    .with_threads(threads);
-                let mut part = writer.begin(info(0)).unwrap();
-                for start in (0..rows.len()).step_by(batch_rows) {
-                    let mut piece = FragmentBatch::default();
-                    piece.extend_from(&rows, start..rows.len().min(start + batch_rows));
-                    part.write(&piece).unwrap();
-                }
-                part.finish(PartCounts::default()).unwrap();
-                let manifest = writer.finish().unwrap();
-                let dataset = Dataset::open(folder.path()).unwrap();
-                let depth = dataset.read_columns(&[Column::LinearDepth]).unwrap();
-                assert!(depth[0].as_f32().unwrap() == rows.linear_depth);
-                if format == Format::Parquet {
-                    let first = ROW_GROUP_ROWS as u64;
-                    let groups = vec![first, rows.len() as u64 - first];
-                    assert_eq!(manifest.parts[0].row_groups, groups);
-                }
-                manifest
-            })
-            .collect();
-        assert_eq!(hashes[0], hashes[1]);
-        assert_eq!(hashes[0], hashes[2]);
+        let write = |threads, batch_rows| {
+            let folder = tempfile::tempdir().unwrap();
+            let header = Header {
+                work_items: 1,
+                ..header(format, None)
+            };
+            let writer = DatasetWriter::create(folder.path(), header).unwrap();
+            let writer = writer.with_threads(threads);
+            part(&writer, 0, &rows, batch_rows).unwrap();
+            let manifest = writer.finish().unwrap();
+            let dataset = Dataset::open(folder.path()).unwrap();
+            let depth = dataset.read_columns(&[Column::LinearDepth]).unwrap();
+            assert!(depth[0].as_f32().unwrap() == rows.linear_depth);
+            manifest
+        };
+        let one = write(1, rows.len());
+        if format == Format::Parquet {
+            let first = ROW_GROUP_ROWS as u64;
+            let groups = [first, rows.len() as u64 - first];
+            assert_eq!(one.parts[0].row_groups, groups);
+        }
+        assert_eq!(one, write(2, 100_001));
+        assert_eq!(one, write(4, rows.len()));
     }
 }
 
 #[test]
 fn csv_is_the_shortest_text() {
     let folder = tempfile::tempdir().unwrap();
-    let writer = DatasetWriter::create(
-        folder.path(),
-        Header {
-            work_items: 1,
-            ..header(Format::Csv, None)
-        },
-    )
-    .unwrap();
-    let mut part = writer.begin(info(0)).unwrap();
     let mut rows = view(0, 1, 1);
     rows.truncate(1);
     rows.one_minus_alpha[0] = 0.1;
@@ -131,18 +115,12 @@ fn csv_is_the_shortest_text() {
     rows.r[0] = 1e-7;
     rows.g[0] = -0.0;
     rows.b[0] = 1.0 / 3.0;
-    part.write(&rows).unwrap();
-    part.finish(PartCounts::default()).unwrap();
-    let manifest = writer.finish().unwrap();
-    let text = std::fs::read_to_string(folder.path().join(&manifest.parts[0].files[0].name));
+    write_one(folder.path(), Format::Csv, &rows);
+    let text = std::fs::read_to_string(folder.path().join("fragments-00000-cups-v0.csv"));
     assert_eq!(
         text.unwrap(),
         "one_minus_alpha,linear_depth,alpha_sum,fragment_count,transmittance,view,x,y,layer,r,g,b,near,far\n\
          0.1,16777216.0,0.9,1,1.0,0,0,0,0,1e-7,-0.0,0.33333334,0.1,100.0\n"
-    );
-    assert_eq!(
-        manifest.parts[0].files[0].name,
-        "fragments-00000-cups-v0.csv"
     );
 }
 
@@ -190,18 +168,12 @@ fn sums_are_checked() {
     ];
     for (name, spoil) in spoils {
         let folder = tempfile::tempdir().unwrap();
-        let mut header = header(Format::Npy, None);
-        header.work_items = 1;
-        let writer = DatasetWriter::create(folder.path(), header).unwrap();
-        let mut part = writer.begin(info(0)).unwrap();
         let mut rows = view(0, 50, 1);
         let i = (0..rows.len())
             .find(|&i| rows.layer[i] == 1 && rows.transmittance[i] > 0.1)
             .unwrap();
         spoil(&mut rows, i);
-        part.write(&rows).unwrap();
-        part.finish(PartCounts::default()).unwrap();
-        writer.finish().unwrap();
+        write_one(folder.path(), Format::Npy, &rows);
         let summary = Summary::of(&Dataset::open(folder.path()).unwrap()).unwrap();
         let found: Vec<_> = summary
             .violations
@@ -222,11 +194,8 @@ fn statistics_say_which_view_is_where() {
     let mut header = header(Format::Parquet, None);
     header.work_items = 2;
     let writer = DatasetWriter::create(folder.path(), header).unwrap();
-    for (index, rows) in [(0, view(0, 50, 3)), (1, rows.clone())] {
-        let mut part = writer.begin(info(index)).unwrap();
-        part.write(&rows).unwrap();
-        part.finish(PartCounts::default()).unwrap();
-    }
+    part(&writer, 0, &view(0, 50, 3), 100).unwrap();
+    part(&writer, 1, &rows, rows.len()).unwrap();
     let manifest = writer.finish().unwrap();
     for part in &manifest.parts {
         let file = std::fs::File::open(folder.path().join(&part.files[0].name)).unwrap();

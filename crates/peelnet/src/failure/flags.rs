@@ -66,7 +66,6 @@ fn peel(error: &PeelError) -> Option<&'static str> {
 
 fn dataset(error: &DatasetError) -> Option<&'static str> {
     match error {
-        DatasetError::MissingShards { .. } => Some("peelnet extract with these --shard values"),
         DatasetError::TooManyItems { .. } => Some("lower --augment or --views"),
         _ => None,
     }

@@ -2,52 +2,39 @@
 //!
 //! The columns have two types, and a record array would make every reader skip over columns that it does not want.
 //! One array each can be loaded or mapped into memory as it is: `numpy.load("….linear_depth.npy")`. The number of
-//! rows stands in the header but is known only at the end, so the header is written again when the part is finished: padded to a
-//! multiple of 64 bytes, it has one length for all numbers of rows.
+//! rows stands in the header but is known only at the end, so the header is written again when the part is finished.
 
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{BufReader, BufWriter, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use ndarray_npy::npy::header::{Header, Layout};
-use py_literal::Value;
-
-use super::{PartSink, PartSource, split_range};
-use crate::batch::FragmentBatch;
-use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice};
+use super::{PartSink, PartSource, hash_file};
+use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-use crate::hashed_file::hash_file;
 use crate::manifest::FileEntry;
+use crate::store::Fetched;
 
-/// Bytes that are gathered before they are written.
+/// Bytes that are gathered before they are written, or read at once.
 const BUFFER: usize = 1 << 18;
 
-/// Bytes of a header that are read. NumPy's and ours have 128.
-const MAX_HEADER: u32 = 1 << 12;
+/// Bytes of a header: of NumPy's for one dimension, and of ours for any number of rows.
+const HEADER: usize = 128;
 
-/// The type descriptor of a column: little-endian on every machine, so that the bytes are the same.
-const fn descriptor(kind: ColumnKind) -> &'static str {
-    match kind {
+/// The header of version 1.0: magic string, version, length, and a dictionary that spaces pad. Little-endian on every
+/// machine, so that the bytes are the same.
+fn header(kind: ColumnKind, rows: u64) -> Vec<u8> {
+    let descriptor = match kind {
         ColumnKind::F32 => "<f4",
         ColumnKind::U32 => "<u4",
-    }
-}
-
-/// The header for so many rows.
-fn header(kind: ColumnKind, rows: u64) -> Vec<u8> {
-    let header = Header {
-        type_descriptor: Value::String(descriptor(kind).to_owned()),
-        layout: Layout::Standard,
-        shape: vec![rows as usize],
     };
+    let mut header = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    header.extend_from_slice(
+        format!("{{'descr': '{descriptor}', 'fortran_order': False, 'shape': ({rows},)}}")
+            .as_bytes(),
+    );
+    header.resize(HEADER - 1, b' ');
+    header.push(b'\n');
     header
-        .to_bytes()
-        .expect("a type and one number are short and ASCII")
-}
-
-/// Name of a column's file.
-fn file_name(stem: &str, column: Column) -> String {
-    format!("{stem}.{column}.npy")
 }
 
 /// Writes a part as NPY arrays.
@@ -61,102 +48,51 @@ struct ColumnFile {
     column: Column,
     name: String,
     path: PathBuf,
-    file: File,
-    buffer: Vec<u8>,
+    file: BufWriter<File>,
 }
 
 impl NpySink {
     pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
-        let columns = Column::ALL
-            .into_iter()
-            .map(|column| {
-                let name = file_name(stem, column);
-                let path = folder.join(&name);
-                let file = File::create_new(&path).map_err(DatasetError::io(&path, "create"))?;
-                Ok(ColumnFile {
-                    column,
-                    name,
-                    path,
-                    file,
-                    buffer: header(column.kind(), 0),
-                })
+        let create = |column: Column| {
+            let name = format!("{stem}.{column}.npy");
+            let path = folder.join(&name);
+            let file = File::create_new(&path).map_err(DatasetError::io(&path, "create"))?;
+            let mut file = BufWriter::with_capacity(BUFFER, file);
+            file.write_all(&header(column.kind(), 0))
+                .map_err(DatasetError::io(&path, "write"))?;
+            Ok(ColumnFile {
+                column,
+                name,
+                path,
+                file,
             })
-            .collect::<Result<_, _>>()?;
+        };
         Ok(Self {
             rows: 0,
-            threads,
-            columns,
+            threads: threads.max(1),
+            columns: Column::ALL
+                .into_iter()
+                .map(create)
+                .collect::<Result<_, DatasetError>>()?,
         })
-    }
-
-    /// Does something to every column, on some threads.
-    fn for_each<T: Send>(
-        &mut self,
-        work: impl Fn(&mut ColumnFile) -> Result<T, DatasetError> + Sync,
-    ) -> Result<Vec<T>, DatasetError> {
-        let work = &work;
-        let mut rest = self.columns.as_mut_slice();
-        let results: Vec<Result<Vec<T>, DatasetError>> = std::thread::scope(|scope| {
-            let threads: Vec<_> = split_range(rest.len(), self.threads)
-                .into_iter()
-                .map(|piece| {
-                    let (mine, others) = std::mem::take(&mut rest).split_at_mut(piece.len());
-                    rest = others;
-                    scope.spawn(move || mine.iter_mut().map(work).collect())
-                })
-                .collect();
-            threads
-                .into_iter()
-                .map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
-                .collect()
-        });
-        let mut all = Vec::with_capacity(self.columns.len());
-        for result in results {
-            all.extend(result?);
-        }
-        Ok(all)
     }
 }
 
 impl ColumnFile {
-    fn append(&mut self, values: ColumnSlice<'_>) -> Result<(), DatasetError> {
+    fn append(&mut self, values: ColumnSlice<'_>) -> std::io::Result<()> {
+        let file = &mut self.file;
         match values {
-            ColumnSlice::F32(v) => self.append_words(v, |x| x.to_le_bytes()),
-            ColumnSlice::U32(v) => self.append_words(v, |x| x.to_le_bytes()),
+            ColumnSlice::F32(v) => v.iter().try_for_each(|x| file.write_all(&x.to_le_bytes())),
+            ColumnSlice::U32(v) => v.iter().try_for_each(|x| file.write_all(&x.to_le_bytes())),
         }
-    }
-
-    fn append_words<T: Copy>(
-        &mut self,
-        values: &[T],
-        bytes: impl Fn(T) -> [u8; 4],
-    ) -> Result<(), DatasetError> {
-        for chunk in values.chunks(BUFFER / 4) {
-            let start = self.buffer.len();
-            self.buffer.resize(start + 4 * chunk.len(), 0);
-            for (to, &value) in self.buffer[start..].chunks_exact_mut(4).zip(chunk) {
-                to.copy_from_slice(&bytes(value));
-            }
-            if self.buffer.len() >= BUFFER {
-                self.flush()?;
-            }
-        }
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<(), DatasetError> {
-        self.file
-            .write_all(&self.buffer)
-            .map_err(DatasetError::io(&self.path, "write"))?;
-        self.buffer.clear();
-        Ok(())
     }
 
     fn finish(&mut self, rows: u64) -> Result<FileEntry, DatasetError> {
-        self.flush()?;
-        self.file
-            .seek(SeekFrom::Start(0))
-            .and_then(|_| self.file.write_all(&header(self.column.kind(), rows)))
+        let file = &mut self.file;
+        let write = file.rewind();
+        write
+            .and_then(|()| file.write_all(&header(self.column.kind(), rows)))
+            .and_then(|()| file.flush())
             .map_err(DatasetError::io(&self.path, "write"))?;
         // The header comes first in the hash but last in time, so the file is read once more, mostly from memory.
         let (bytes, sha256) =
@@ -171,17 +107,34 @@ impl ColumnFile {
 
 impl PartSink for NpySink {
     fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
-        // Copying is as fast as the memory: one thread does it, two only share the hashing below.
         for file in &mut self.columns {
-            file.append(rows.column(file.column))?;
+            file.append(rows.column(file.column))
+                .map_err(DatasetError::io(&file.path, "write"))?;
         }
         self.rows += rows.len() as u64;
         Ok(())
     }
 
+    /// Hashing takes the time, on as many threads as there may be.
     fn finish(mut self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
         let rows = self.rows;
-        let files = self.for_each(|column| column.finish(rows))?;
+        let share = self.columns.len().div_ceil(self.threads);
+        let files = std::thread::scope(|scope| {
+            let threads: Vec<_> = self
+                .columns
+                .chunks_mut(share)
+                .map(|files| {
+                    scope.spawn(move || {
+                        let files = files.iter_mut().map(|file| file.finish(rows));
+                        files.collect::<Vec<_>>()
+                    })
+                })
+                .collect();
+            let threads = threads.into_iter();
+            threads
+                .flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
+                .collect::<Result<_, _>>()
+        })?;
         Ok((vec![rows], files))
     }
 }
@@ -199,87 +152,61 @@ struct OpenColumn {
 }
 
 impl NpySource {
-    pub(super) fn open(files: &[PathBuf], columns: &[Column]) -> Result<Self, DatasetError> {
-        let mut open: Vec<OpenColumn> = Vec::with_capacity(columns.len());
-        for &column in columns {
-            let next = OpenColumn::open(&files[column.index()], column)?;
-            if let Some(first) = open.first().filter(|f| f.left != next.left) {
-                return Err(DatasetError::format(
-                    &next.path,
-                    format!(
-                        "{} rows, but column {} of the same part has {}; write the dataset again",
-                        next.left, first.column, first.left
-                    ),
-                ));
-            }
-            open.push(next);
+    pub(super) fn open(files: &[Fetched], columns: &[Column]) -> Result<Self, DatasetError> {
+        let open = files
+            .iter()
+            .zip(columns)
+            .map(|(f, &c)| OpenColumn::open(f, c));
+        let columns: Vec<OpenColumn> = open.collect::<Result<_, _>>()?;
+        if let Some((first, other)) = columns
+            .first()
+            .zip(columns.iter().find(|c| c.left != columns[0].left))
+        {
+            return Err(DatasetError::format(
+                &other.path,
+                format!(
+                    "{} rows, but column {} of the same part has {}; write the dataset again",
+                    other.left, first.column, first.left
+                ),
+            ));
         }
-        Ok(Self { columns: open })
+        Ok(Self { columns })
     }
-}
-
-/// Refuses a header of an absurd length before memory is taken for it.
-fn check_header(path: &Path, file: &mut BufReader<File>) -> Result<(), DatasetError> {
-    let start = file.fill_buf().map_err(DatasetError::io(path, "read"))?;
-    let length = match start {
-        // Magic string, version, length: of 16 bits in version 1, of 32 in later ones.
-        [_, _, _, _, _, _, 1, _, a, b, ..] => u32::from(u16::from_le_bytes([*a, *b])),
-        [_, _, _, _, _, _, _, _, a, b, c, d, ..] => u32::from_le_bytes([*a, *b, *c, *d]),
-        _ => 0,
-    };
-    if length > MAX_HEADER {
-        return Err(DatasetError::format(
-            path,
-            format!(
-                "not an NPY file: a header of {length} bytes, and at most {MAX_HEADER} are read"
-            ),
-        ));
-    }
-    Ok(())
 }
 
 impl OpenColumn {
-    fn open(path: &Path, column: Column) -> Result<Self, DatasetError> {
-        let file = peelnet_files::open(path).map_err(DatasetError::io(path, "open"))?;
-        let length = file
-            .metadata()
-            .map_err(DatasetError::io(path, "read"))?
-            .len();
+    /// The length of the file says how many rows there are, and so what its header must be.
+    fn open(file: &Fetched, column: Column) -> Result<Self, DatasetError> {
+        let path = file.shown.clone();
+        let file = file.open()?;
+        let length = file.metadata().map_err(DatasetError::io(&path, "read"))?;
+        let length = length.len();
+        let rows = length.saturating_sub(HEADER as u64) / 4;
         let mut file = BufReader::with_capacity(BUFFER, file);
-        check_header(path, &mut file)?;
-        let header = Header::from_reader(&mut file)
-            .map_err(|e| DatasetError::format(path, format!("not an NPY file: {e}")))?;
-        let found = header.type_descriptor.to_string();
-        let expected = descriptor(column.kind());
-        if found.trim_matches('\'') != expected {
-            return Err(DatasetError::format(
-                path,
-                format!("column {column} has type {found}, expected '{expected}'"),
-            ));
-        }
-        let [rows] = header.shape[..] else {
-            return Err(DatasetError::format(
-                path,
-                format!(
-                    "column {column} has shape {:?}, expected one dimension",
-                    header.shape
-                ),
-            ));
+        let mut found = Vec::new();
+        let head = file.by_ref().take(HEADER as u64).read_to_end(&mut found);
+        head.map_err(DatasetError::io(&path, "read"))?;
+        // NumPy ends the dictionary with a comma and a space.
+        let expected = header(column.kind(), rows);
+        let text = |header: &[u8]| {
+            let text = String::from_utf8_lossy(header);
+            text.replace(", }", "}").trim_end().to_owned()
         };
-        let promised = (rows as u64).checked_mul(4);
-        if promised.is_none_or(|bytes| bytes > length) {
+        if text(&found) != text(&expected) || !length.is_multiple_of(4) {
             return Err(DatasetError::format(
-                path,
+                &path,
                 format!(
-                    "the header says {rows} rows, which {length} bytes cannot hold; write the dataset again"
+                    "not an NPY file of column {column}: {length} bytes need the header {:?}, and it is {:?}; write the dataset again",
+                    text(&expected[10..]),
+                    peelnet_files::printable(&text(found.get(10..).unwrap_or_default())),
                 ),
             ));
         }
         Ok(Self {
             column,
-            path: path.to_owned(),
+            path,
             file,
-            left: rows as u64,
+            left: rows,
         })
     }
 
@@ -309,23 +236,5 @@ impl PartSource for NpySource {
             column.read(count, rows.column_mut(column.column))?;
         }
         Ok(count)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-    use super::*;
-
-    /// Headers of all numbers of rows have one length, and read back.
-    #[test]
-    fn headers_have_one_length() {
-        for rows in [0, 1, 999, u64::MAX >> 1, u64::MAX] {
-            let bytes = header(ColumnKind::U32, rows);
-            assert_eq!(bytes.len(), 128);
-            let parsed = Header::from_reader(&mut bytes.as_slice()).unwrap();
-            assert_eq!(parsed.shape, [rows as usize]);
-            assert_eq!(parsed.type_descriptor.to_string(), "'<u4'");
-        }
     }
 }

@@ -9,9 +9,9 @@
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
@@ -26,14 +26,11 @@ use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
-use super::csv::check_names;
-use super::{PartSink, PartSource};
-use crate::batch::FragmentBatch;
-use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice};
+use super::{HashedFile, PartSink, PartSource, ROW_GROUP_ROWS, check_names};
+use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-use crate::format::ROW_GROUP_ROWS;
-use crate::hashed_file::HashedFile;
 use crate::manifest::FileEntry;
+use crate::store::Fetched;
 
 /// Rows of a page: 512 KiB of values, small enough for the caches.
 const PAGE_ROWS: usize = 1 << 17;
@@ -93,7 +90,7 @@ impl ParquetSink {
     pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
         let name = format!("{stem}.parquet");
         let path = folder.join(&name);
-        let file = HashedFile::create(&path).map_err(DatasetError::io(&path, "create"))?;
+        let file = HashedFile::create(&path)?;
         let writer = SerializedFileWriter::new(file, schema(), properties())
             .map_err(|e| write_error(&path, e))?;
         Ok(Self {
@@ -106,38 +103,31 @@ impl ParquetSink {
         })
     }
 
-    /// Encodes and appends one row group.
-    fn row_group(&mut self, rows: &FragmentBatch, range: Range<usize>) -> Result<(), DatasetError> {
+    /// Encodes and appends the pending rows as one row group.
+    fn row_group(&mut self) -> Result<(), DatasetError> {
+        let mut rows = std::mem::take(&mut self.pending);
         let descriptors = self.writer.schema_descr().columns().to_vec();
         let properties = self.writer.properties().clone();
-        let next = std::sync::atomic::AtomicUsize::new(0);
+        let next = AtomicUsize::new(0);
         // Columns are taken from a common counter: they cost very different times.
         let encode_some = || {
             let mut done = Vec::new();
-            loop {
-                let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                let Some(&column) = Column::ALL.get(k) else {
-                    return done;
-                };
-                let values = rows.column(column).range(range.clone());
-                done.push((k, encode(&descriptors[k], &properties, values)));
+            while let Some(&column) = Column::ALL.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let descriptor = &descriptors[column.index()];
+                done.push((column, encode(descriptor, &properties, rows.column(column))));
             }
+            done
         };
         let mut encoded: Vec<_> = std::thread::scope(|scope| {
-            let others: Vec<_> = (1..self.threads)
+            let threads: Vec<_> = (0..self.threads)
                 .map(|_| scope.spawn(encode_some))
                 .collect();
-            let mut encoded = encode_some();
-            for other in others {
-                encoded.extend(
-                    other
-                        .join()
-                        .unwrap_or_else(|e| std::panic::resume_unwind(e)),
-                );
-            }
-            encoded
+            let threads = threads.into_iter();
+            threads
+                .flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
+                .collect()
         });
-        encoded.sort_by_key(|(k, _)| *k);
+        encoded.sort_by_key(|(column, _)| *column);
         let append = || -> Result<(), ParquetError> {
             let mut group = self.writer.next_row_group()?;
             for (_, column) in encoded {
@@ -147,7 +137,9 @@ impl ParquetSink {
             group.close().map(|_| ())
         };
         append().map_err(|e| write_error(&self.path, e))?;
-        self.row_groups.push(range.len() as u64);
+        self.row_groups.push(rows.len() as u64);
+        rows.clear();
+        self.pending = rows;
         Ok(())
     }
 }
@@ -181,33 +173,26 @@ fn encode(
 }
 
 fn write_error(path: &Path, error: ParquetError) -> DatasetError {
-    match error {
+    let source = match error {
         ParquetError::External(inner) => match inner.downcast::<std::io::Error>() {
-            Ok(source) => DatasetError::io(path, "write")(*source),
-            Err(other) => DatasetError::io(path, "write")(std::io::Error::other(other)),
+            Ok(source) => *source,
+            Err(other) => std::io::Error::other(other),
         },
-        other => DatasetError::io(path, "write")(std::io::Error::other(other)),
-    }
+        other => std::io::Error::other(other),
+    };
+    DatasetError::io(path, "write")(source)
 }
 
 impl PartSink for ParquetSink {
     fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
-        // Row groups always have the same number of rows, however the rows come; full ones are encoded from where
-        // they lie.
+        // Row groups always have the same number of rows, however the rows come.
         let mut start = 0;
         while start < rows.len() {
             let wanted = ROW_GROUP_ROWS - self.pending.len();
             let count = wanted.min(rows.len() - start);
-            if count == ROW_GROUP_ROWS {
-                self.row_group(rows, start..start + count)?;
-            } else {
-                self.pending.extend_from(rows, start..start + count);
-                if self.pending.len() == ROW_GROUP_ROWS {
-                    let mut full = std::mem::take(&mut self.pending);
-                    self.row_group(&full, 0..ROW_GROUP_ROWS)?;
-                    full.clear();
-                    self.pending = full;
-                }
+            self.pending.extend_from(rows, start..start + count);
+            if self.pending.len() == ROW_GROUP_ROWS {
+                self.row_group()?;
             }
             start += count;
         }
@@ -215,23 +200,15 @@ impl PartSink for ParquetSink {
     }
 
     fn finish(mut self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
-        let rest = std::mem::take(&mut self.pending);
-        if !rest.is_empty() {
-            self.row_group(&rest, 0..rest.len())?;
+        if !self.pending.is_empty() {
+            self.row_group()?;
         }
-        drop(rest);
         // Writes the footer and empties the buffers.
         let file = self
             .writer
             .into_inner()
             .map_err(|e| write_error(&self.path, e))?;
-        let (bytes, sha256) = file.finish();
-        let file = FileEntry {
-            name: self.name,
-            bytes,
-            sha256,
-        };
-        Ok((self.row_groups, vec![file]))
+        Ok((self.row_groups, vec![file.finish(self.name)]))
     }
 }
 
@@ -249,10 +226,10 @@ pub(super) struct ParquetSource {
 }
 
 impl ParquetSource {
-    pub(super) fn open(files: &[PathBuf], columns: &[Column]) -> Result<Self, DatasetError> {
-        let path = files[0].clone();
-        let mut file = peelnet_files::open(&path).map_err(DatasetError::io(&path, "open"))?;
-        check_footer(&path, &mut file)?;
+    pub(super) fn open(file: &Fetched, columns: &[Column]) -> Result<Self, DatasetError> {
+        let path = file.shown.clone();
+        let mut file = file.open()?;
+        let length = check_footer(&path, &mut file)?;
         let file = SerializedFileReader::new(file).map_err(|e| read_error(&path, &e))?;
         let found = file.metadata().file_metadata().schema_descr().columns();
         let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
@@ -273,7 +250,7 @@ impl ParquetSource {
                 ));
             }
         }
-        check_places(&path, &file)?;
+        check_places(&path, length, &file)?;
         Ok(Self {
             path,
             file,
@@ -311,8 +288,9 @@ impl ParquetSource {
 /// Bytes of a footer that are read: enough for 10¹⁰ rows. Its lists take a hundred times that in memory.
 const MAX_FOOTER: u32 = 1 << 24;
 
-/// Refuses a footer of an absurd length before memory is taken for it.
-fn check_footer(path: &Path, file: &mut File) -> Result<(), DatasetError> {
+/// Refuses a footer of an absurd length before memory is taken for it; returns the file's length.
+fn check_footer(path: &Path, file: &mut File) -> Result<u64, DatasetError> {
+    let whole = file.metadata().map_err(DatasetError::io(path, "read"))?;
     let mut end = [0; 8];
     let read = file
         .seek(SeekFrom::End(-8))
@@ -328,14 +306,15 @@ fn check_footer(path: &Path, file: &mut File) -> Result<(), DatasetError> {
             ),
         ));
     }
-    Ok(())
+    Ok(whole.len())
 }
 
 /// Every column's pages must lie inside the file: the reader takes their places from the footer, and panics where they are negative.
-fn check_places(path: &Path, file: &SerializedFileReader<File>) -> Result<(), DatasetError> {
-    let length = std::fs::metadata(path)
-        .map_err(DatasetError::io(path, "read"))?
-        .len();
+fn check_places(
+    path: &Path,
+    length: u64,
+    file: &SerializedFileReader<File>,
+) -> Result<(), DatasetError> {
     for group in file.metadata().row_groups() {
         for column in group.columns() {
             let first = column

@@ -3,6 +3,7 @@
 //! Settings come from the environment, under the names that the services' own tools read: `AWS_…`, `GOOGLE_…`, `AZURE_…`. Every object is
 //! created by one conditional request. No error has a text of the server in it but its error code, because such texts quote credentials.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use object_store::{
 };
 use tokio::runtime::Runtime;
 
-use super::{Entry, Fetched, Store};
+use super::{Fetched, Store};
 use crate::error::DatasetError;
 
 /// Bytes of one object that one request may create.
@@ -41,11 +42,9 @@ impl Remote {
     pub(crate) fn open(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
         let (scheme, rest) = url.split_once("://").unwrap_or_default();
         let (bucket, prefix) = rest.split_once('/').unwrap_or((rest, ""));
-        let refused = |reason: &str| DatasetError::Usage {
-            // Without what could be a password.
-            path: PathBuf::from(format!("{scheme}://…")),
-            reason: reason.to_owned(),
-        };
+        // Without what could be a password.
+        let shown = PathBuf::from(format!("{scheme}://…"));
+        let refused = |reason: &str| DatasetError::usage(&shown, reason);
         if bucket.is_empty() {
             return Err(refused(
                 "the address has no bucket; write scheme://bucket/prefix",
@@ -144,24 +143,16 @@ impl Store for Remote {
         &self.path
     }
 
-    fn list(&self, prefix: &str) -> Result<Vec<Entry>, DatasetError> {
+    fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
         let key = self.key(prefix);
         let list = async || self.store.list_with_delimiter(Some(&key)).await;
         let found = self
             .retried(list)
             .map_err(|e| fault(&self.shown(prefix), "list", &e))?;
-        let mut all: Vec<Entry> = found
-            .objects
-            .into_iter()
-            .filter_map(|o| {
-                Some(Entry {
-                    name: o.location.filename()?.to_owned(),
-                    bytes: o.size,
-                })
-            })
-            .collect();
-        all.sort_by(|a, b| a.name.cmp(&b.name));
-        Ok(all)
+        let objects = found.objects.iter();
+        Ok(objects
+            .filter_map(|o| Some((o.location.filename()?.to_owned(), o.size)))
+            .collect())
     }
 
     fn get(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, DatasetError> {
@@ -210,8 +201,11 @@ impl Store for Remote {
             let copy = file.into_temp_path();
             Ok(Fetched {
                 path: copy.to_path_buf(),
-                unfinished: Some(peelnet_files::Unfinished::new(&copy)),
-                copy: Some(copy),
+                shown: self.shown(name),
+                _copy: Some({
+                    let unfinished = peelnet_files::Unfinished::new(&copy);
+                    (copy, unfinished)
+                }),
             })
         };
         write().map_err(DatasetError::io(&self.shown(name), "keep a copy of"))

@@ -122,14 +122,7 @@ pub fn write_by(
     let writer = DatasetWriter::create(folder, header)?.with_threads(threads);
     // Backwards: the order of the parts is by index, not by time.
     for index in (0..4).rev().filter(|&k| writer.needs(k)) {
-        let mut part = writer.begin(info(index))?;
-        let rows = view(index, pixels(index), 1);
-        for start in (0..rows.len()).step_by(batch_rows) {
-            let mut piece = FragmentBatch::default();
-            piece.extend_from(&rows, start..rows.len().min(start + batch_rows));
-            part.write(&piece)?;
-        }
-        part.finish(PartCounts::default())?;
+        part(&writer, index, &view(index, pixels(index), 1), batch_rows)?;
     }
     writer.finish()
 }
@@ -165,41 +158,37 @@ pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// Turns a dataset into one of schema 1, with so many shards or whole.
-pub fn make_old(folder: &Path, shards: Option<u32>) {
-    let path = folder.join("_peelnet/manifest.json");
-    let whole: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
-    std::fs::remove_dir_all(folder.join("_peelnet")).unwrap();
-    for index in 1..=shards.unwrap_or(1) {
-        let mut manifest = whole.clone();
-        let fields = manifest.as_object_mut().unwrap();
-        fields.insert("schema".into(), 1.into());
-        fields.remove("plan");
-        fields.remove("settings");
-        let mut into = folder.to_owned();
-        if let Some(of) = shards {
-            let shard = Shard::new(index, of).unwrap();
-            fields.insert("shard".into(), serde_json::to_value(shard).unwrap());
-            let parts = fields["parts"].as_array_mut().unwrap();
-            parts.retain(|p| shard.contains(p["index"].as_u64().unwrap() as u32));
-            let rows: u64 = parts.iter().map(|p| p["rows"].as_u64().unwrap()).sum();
-            let mut lines = String::new();
-            into = folder.join(shard.folder());
-            std::fs::create_dir(&into).unwrap();
-            for part in parts.iter() {
-                for file in part["files"].as_array().unwrap() {
-                    let name = file["name"].as_str().unwrap();
-                    std::fs::rename(folder.join(name), into.join(name)).unwrap();
-                    let sha256 = file["sha256"].as_str().unwrap();
-                    lines += &format!("{} {sha256}\n", part["index"]);
-                }
-            }
-            fields.insert("rows".into(), rows.into());
-            fields.insert("hash".into(), sha256(lines.as_bytes()).into());
-        }
-        let text = serde_json::to_string_pretty(&manifest).unwrap();
-        std::fs::write(into.join("manifest.json"), text).unwrap();
+pub fn has(message: &str, words: &[&str]) {
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in: {message}");
     }
+}
+
+/// Writes one part, in batches of so many rows.
+pub fn part(
+    writer: &DatasetWriter,
+    index: u32,
+    rows: &FragmentBatch,
+    batch_rows: usize,
+) -> Result<(), DatasetError> {
+    let mut part = writer.begin(info(index))?;
+    for start in (0..rows.len()).step_by(batch_rows) {
+        let mut piece = FragmentBatch::default();
+        piece.extend_from(rows, start..rows.len().min(start + batch_rows));
+        part.write(&piece)?;
+    }
+    part.finish(PartCounts::default())
+}
+
+/// Writes a dataset of one part.
+pub fn write_one(folder: &Path, format: Format, rows: &FragmentBatch) -> Manifest {
+    let header = Header {
+        work_items: 1,
+        ..header(format, None)
+    };
+    let writer = DatasetWriter::create(folder, header).unwrap();
+    part(&writer, 0, rows, usize::MAX / 2).unwrap();
+    writer.finish().unwrap()
 }
 
 /// Bit patterns, so that −0 and 0 differ.
