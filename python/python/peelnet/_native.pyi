@@ -14,7 +14,9 @@ _SceneLike: TypeAlias = Scene | _Path
 _Scenes: TypeAlias = _SceneLike | Iterable[_SceneLike]
 _Vec3: TypeAlias = tuple[float, float, float]
 _Size: TypeAlias = tuple[int, int]
-_Recipe: TypeAlias = Literal["thesis", "small", "medium", "large", "nmt", "dfaoit"]
+_Recipe: TypeAlias = Literal[
+    "thesis", "small", "medium", "large", "anchored-small", "anchored-medium", "nmt", "dfaoit"
+]
 
 class _Bar(Protocol):
     total: Any
