@@ -1,7 +1,6 @@
 //! Effects of materials and lights: they cost nothing in a scene without them, and neutral values change nothing.
 
 use glam::Vec3;
-use peelnet_eval::effects::{Settings, parts};
 use peelnet_render::{MethodOptions, Renderer};
 use peelnet_scene::{Census, Effect, Light, Lighting, Maps, Material, Scene, Source, Texture};
 use peelnet_tests::{draw, even, gpu, light, scene, wall};
@@ -80,28 +79,26 @@ fn what_is_not_called_for_is_not_there() {
     let plain = Renderer::new(&gpu, &scene_with(None)).unwrap();
     assert_eq!(plain.bindings(), ["camera", "materials"]);
     assert_eq!(plain.vertex_attributes(), ["position", "material"]);
-    let bytes = |s: &Scene| {
+    // Bytes of a pixel, and passes.
+    let costs = |s: &Scene| {
         let renderer = Renderer::new(&gpu, s).unwrap();
-        let blended = "blended".parse().unwrap();
+        let options = MethodOptions::sized([8, 6]);
         let mut prepared = renderer
-            .method(&blended, MethodOptions::sized([8, 6]))
-            .unwrap();
-        let frame = renderer.image(&mut prepared, &s.views[0]).unwrap();
-        frame.stats.bytes_per_pixel
-    };
-    let passes = |s: &Scene| {
-        let renderer = Renderer::new(&gpu, s).unwrap();
-        let mut prepared = renderer
-            .method(&"blended".parse().unwrap(), MethodOptions::sized([8, 6]))
+            .method(&"blended".parse().unwrap(), options)
             .unwrap();
         let frame = renderer.profile(&mut prepared, &s.views[0]).unwrap();
-        frame.times.len()
+        (frame.stats.bytes_per_pixel, frame.times.len())
     };
-    let fewest = passes(&scene_with(None));
+    let (least, fewest) = costs(&scene_with(None));
+    let plain = Census::of(&scene_with(None)).variants;
+    assert_eq!(plain.len(), 1);
     for effect in Effect::ALL {
         let with = scene_with(Some(effect));
         let census = Census::of(&with);
         assert!(census.has(effect), "{effect}");
+        // One plain object keeps the text of its shader, whatever another one needs.
+        assert!(census.variants.contains(&plain[0]), "{effect}");
+        assert!(census.variants.len() <= 2, "{effect}");
         let renderer = Renderer::new(&gpu, &with).unwrap();
         let (bindings, attributes) = (renderer.bindings(), renderer.vertex_attributes());
         let lit = matches!(
@@ -125,18 +122,14 @@ fn what_is_not_called_for_is_not_there() {
         assert_eq!(attributes.contains(&"tangent"), tangents, "{effect}");
         let colors = effect == Effect::VertexColors;
         assert_eq!(attributes.contains(&"color"), colors, "{effect}");
+        let (bytes, passes) = costs(&with);
         // Without a scale every frame of this method has the same targets, but for grey, which has one less.
         if effect != Effect::LowResolution {
-            let fewer = bytes(&with) < bytes(&scene_with(None));
-            assert_eq!(fewer, effect == Effect::Monochrome, "{effect}");
+            assert_eq!(bytes < least, effect == Effect::Monochrome, "{effect}");
         }
         let opaque = matches!(effect, Effect::Opaque | Effect::Cutout);
         assert_eq!(bindings.contains(&"opaque depth"), opaque, "{effect}");
-        assert_eq!(
-            passes(&with) > fewest,
-            effect == Effect::LowResolution,
-            "{effect}"
-        );
+        assert_eq!(passes > fewest, effect == Effect::LowResolution, "{effect}");
         // The text that only this effect links.
         let words: &[&str] = match effect {
             Effect::Lighting => &["lights", "halfway", "world"],
@@ -170,18 +163,6 @@ fn what_is_not_called_for_is_not_there() {
             assert!(with.contains(word), "{effect}: {word}");
             assert!(!without.contains(word), "{effect}: {word}");
         }
-    }
-}
-
-/// One plain object keeps the text of its shader, whatever another one needs.
-#[test]
-fn an_effect_changes_only_what_it_names() {
-    let plain = Census::of(&scene_with(None)).variants;
-    assert_eq!(plain.len(), 1);
-    for effect in Effect::ALL {
-        let variants = Census::of(&scene_with(Some(effect))).variants;
-        assert!(variants.contains(&plain[0]), "{effect}");
-        assert!(variants.len() <= 2, "{effect}");
     }
 }
 
@@ -277,7 +258,7 @@ fn neutral_values_change_nothing() {
 }
 
 /// Shading alone has every effect of the surfaces and nothing transparent; transparency alone has the same transparent surfaces and no
-/// lighting. Both are timed where a scene has both.
+/// lighting.
 #[test]
 fn shading_and_transparency_come_apart() {
     let lit = [Effect::Lighting, Effect::Pbr];
@@ -298,17 +279,4 @@ fn shading_and_transparency_come_apart() {
         }
         assert!(lit.iter().all(|e| !on(&unlit, e)), "{name}");
     }
-    let gpu = gpu();
-    let settings = Settings {
-        method: "wboit-eq9".parse().unwrap(),
-        size: [4, 3],
-        frames: 1,
-    };
-    let times = |scene: &Scene| parts(&gpu, scene, &settings).unwrap();
-    let both = scene_with(Some(Effect::Lighting));
-    let found = times(&both).unwrap();
-    let all = [found.ms_both, found.ms_shading, found.ms_transparency];
-    assert!(all.iter().all(|ms| *ms > 0.0), "{found:?}");
-    assert_eq!(times(&both.opaque()), None);
-    assert_eq!(times(&both.unlit()), None);
 }

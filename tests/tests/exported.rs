@@ -259,22 +259,3 @@ fn glsl_texts_answer_what_the_network_answers() {
         }
     }
 }
-
-/// The functions keep their names in every language, and so do the names by which a description calls targets and values.
-#[test]
-fn names_survive() {
-    for recipe in Recipe::ALL {
-        let model = shipped(recipe);
-        for language in Language::ALL {
-            let text = peelnet_export::text(&model, &of(language)).unwrap();
-            let code: Vec<&str> = text.lines().filter(|l| !l.starts_with("//")).collect();
-            let code = code.join("\n");
-            for name in ["peelnet_statistics(", "peelnet_resolve("] {
-                assert!(code.contains(name), "{recipe}, {language}: {name}");
-            }
-            assert!(!code.contains("void main"), "{recipe}, {language}");
-            assert!(!code.contains("peelnet_entry"), "{recipe}, {language}");
-            assert!(!code.contains("#version"), "{recipe}, {language}");
-        }
-    }
-}

@@ -103,37 +103,13 @@ fn peak_memory() -> Option<u64> {
     Some(kilobytes << 10)
 }
 
-#[test]
-fn scene_files() {
-    search("scene");
+macro_rules! readers {
+    ($($test:ident = $name:literal),*) => {
+        $(#[test] fn $test() { search($name); })*
+    };
 }
 
-#[test]
-fn meshes() {
-    search("obj");
-}
-
-#[test]
-fn scans() {
-    search("ply");
-}
-
-#[test]
-fn parts_of_machines() {
-    search("stl");
-}
-
-#[test]
-fn datasets() {
-    search("dataset");
-}
-
-#[test]
-fn models() {
-    search("model");
-}
-
-#[test]
-fn gltf_files() {
-    search("gltf");
+readers! {
+    scene_files = "scene", meshes = "obj", scans = "ply", parts_of_machines = "stl",
+    datasets = "dataset", models = "model", gltf_files = "gltf"
 }

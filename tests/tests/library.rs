@@ -269,31 +269,6 @@ fn formats_keep_the_picture() {
     }
 }
 
-/// Nothing happens before the caller submits.
-#[test]
-fn drawing_only_encodes() {
-    let gpu = gpu();
-    let scene = walls(&worked_example(), [0.0; 3]);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
-    let format = wgpu::TextureFormat::Rgba32Float;
-    for name in ["wboit-eq9", "abuffer", "depth-peel", "linked-list"] {
-        let spec = name.parse().expect("a name");
-        let options = MethodOptions::sized([4, 4]);
-        let mut method = renderer.method(&spec, options).expect("a method");
-        let view = target(&gpu, format, [4, 4], 1, [0.5; 3]);
-        let mut encoder = gpu.encoder();
-        let over = Target::over(&view);
-        renderer
-            .draw(&mut encoder, &mut method, &scene.views[0], &over)
-            .expect("draws");
-        let before = gpu.read_rgba32f(&view).expect("reads");
-        assert!(before.iter().all(|p| *p == [0.5, 0.5, 0.5, 1.0]), "{name}");
-        gpu.queue.submit([encoder.finish()]);
-        let after = gpu.read_rgba32f(&view).expect("reads");
-        assert_ne!(before, after, "{name}");
-    }
-}
-
 /// A frame of more fragments than the first guess says so one frame later, and is whole in that one.
 #[test]
 fn frames_that_were_too_small_grow() {

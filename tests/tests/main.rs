@@ -12,6 +12,7 @@ mod gpu_faults;
 mod library;
 mod methods;
 mod peeling;
+mod pictures;
 mod pipeline;
 mod random_lists;
 mod ranges;

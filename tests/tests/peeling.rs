@@ -221,115 +221,99 @@ fn random_depths(n: usize, seed: u64) -> Vec<f32> {
     (0..n).map(|_| 2.0 + 4.0 * random.unit()).collect()
 }
 
-/// What `with_altered` makes of a shader ends the extraction and the exact image with an error that says what is wrong and where.
+/// A shader's module, what of its text is changed to what, and what the error then says.
+type Broken = (&'static str, &'static str, &'static str, &'static str);
+
+const LOST_TRIANGLE: &str = "if surface.triangle == 6u { discard; }\n    let pixel =";
+const LIST: &str = "methods::linked_list::composite";
+
+/// Of storage that is sorted in passes of its own.
+const BROKEN_STORAGE: [Broken; 6] = [
+    (
+        "peel::sort",
+        "if next < depth",
+        "if next <= depth + 1.0",
+        "out of order",
+    ),
+    (
+        "peel::long_chunks",
+        "depth < own",
+        "depth < own * 0.5",
+        "out of order",
+    ),
+    (
+        "peel::long_merge",
+        "near.depth < far.depth",
+        "near.depth > far.depth",
+        "out of order",
+    ),
+    (
+        "peel::long_merge",
+        "least = half + 1u",
+        "least = half + 2u",
+        "out of order",
+    ),
+    ("peel::store", "let pixel =", LOST_TRIANGLE, "1 lost"),
+    ("peel::count", "let pixel =", LOST_TRIANGLE, "1 found twice"),
+];
+
+const BROKEN_LISTS: [Broken; 3] = [
+    (
+        LIST,
+        "return near < far",
+        "return near > far",
+        "out of order",
+    ),
+    (
+        LIST,
+        "let following = next[node - 1u];",
+        "let following = next[next[node - 1u] - 1u];",
+        "lost",
+    ),
+    (
+        LIST,
+        "left_count > 0u && (right_empty || before(left, right))",
+        "left_count > 0u",
+        "out of order",
+    ),
+];
+
+/// What is wrong in a sort or loses fragments ends the extraction and the exact image with an error that says what and where.
 #[test]
 fn broken_sorts_and_lost_fragments_are_errors() {
     let gpu = gpu();
-    let (scene, size) = deep_pixels(&[random_depths(40, 1), random_depths(3000, 2)]);
-    let broken: [(&str, &str, &str, &str); 6] = [
-        (
-            "peel::sort",
-            "if next < depth",
-            "if next <= depth + 1.0",
-            "out of order",
-        ),
-        (
-            "peel::long_chunks",
-            "depth < own",
-            "depth < own * 0.5",
-            "out of order",
-        ),
-        (
-            "peel::long_merge",
-            "near.depth < far.depth",
-            "near.depth > far.depth",
-            "out of order",
-        ),
-        (
-            "peel::long_merge",
-            "least = half + 1u",
-            "least = half + 2u",
-            "out of order",
-        ),
-        (
-            "peel::store",
-            "let pixel =",
-            "if surface.triangle == 6u { discard; }\n    let pixel =",
-            "1 lost",
-        ),
-        (
-            "peel::count",
-            "let pixel =",
-            "if surface.triangle == 6u { discard; }\n    let pixel =",
-            "1 found twice",
-        ),
-    ];
-    for (module, from, to, expected) in broken {
+    let drawn = |(module, from, to, expected): Broken, lists: &[Vec<f32>], method: &str| {
+        let (scene, size) = deep_pixels(lists);
         let text = peelnet_shaders::source(module).unwrap();
         assert!(text.contains(from), "{module}: {from}");
         let altered = text.replacen(from, to, 1);
         peelnet_shaders::with_altered(module, &altered, || {
-            let mut harvester =
-                Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None).unwrap();
-            let ignored = |_| Ok(());
-            let harvested = harvester.harvest(
-                &scene.views[0],
-                PixelSample::ALL,
-                None,
-                RawTile::default,
-                ignored,
-            );
-            let message = harvested.unwrap_err().to_string();
-            assert!(
-                message.contains(expected) && message.contains("pixel ("),
-                "{message}"
-            );
+            if method == "abuffer" {
+                let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None);
+                let (view, all) = (&scene.views[0], PixelSample::ALL);
+                let ignored = |_| Ok(());
+                let harvested =
+                    harvester
+                        .unwrap()
+                        .harvest(view, all, None, RawTile::default, ignored);
+                let message = harvested.unwrap_err().to_string();
+                let says = message.contains(expected) && message.contains("pixel (");
+                assert!(says, "{message}");
+            }
             let renderer = Renderer::new(&gpu, &scene).unwrap();
-            let mut abuffer = renderer
-                .method(&"abuffer".parse().unwrap(), MethodOptions::sized(size))
-                .unwrap();
-            let message = renderer
-                .image(&mut abuffer, &scene.views[0])
-                .unwrap_err()
-                .to_string();
+            let options = MethodOptions::sized(size);
+            let mut prepared = renderer.method(&method.parse().unwrap(), options).unwrap();
+            let message = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
+            let message = message.to_string();
             assert!(message.contains(expected), "{message}");
         });
+    };
+    for broken in BROKEN_STORAGE {
+        let lists = [random_depths(40, 1), random_depths(3000, 2)];
+        drawn(broken, &lists, "abuffer");
     }
-}
-
-/// The same of linked lists.
-#[test]
-fn broken_lists_are_errors() {
-    let gpu = gpu();
-    let text = peelnet_shaders::source("methods::linked_list::composite").unwrap();
-    let (short, size) = deep_pixels(&[random_depths(40, 1)]);
-    for (from, to, expected) in [
-        ("return near < far", "return near > far", "out of order"),
-        (
-            "let following = next[node - 1u];",
-            "let following = next[next[node - 1u] - 1u];",
-            "lost",
-        ),
-        (
-            "left_count > 0u && (right_empty || before(left, right))",
-            "left_count > 0u",
-            "out of order",
-        ),
-    ] {
-        assert!(text.contains(from), "{from}");
-        peelnet_shaders::with_altered(
-            "methods::linked_list::composite",
-            &text.replacen(from, to, 1),
-            || {
-                let renderer = Renderer::new(&gpu, &short).unwrap();
-                let mut list = renderer
-                    .method(&"linked-list".parse().unwrap(), MethodOptions::sized(size))
-                    .unwrap();
-                let drawn = renderer.image(&mut list, &short.views[0]);
-                let message = drawn.unwrap_err().to_string();
-                assert!(message.contains(expected), "{message}");
-            },
-        );
+    for broken in BROKEN_LISTS {
+        drawn(broken, &[random_depths(40, 1)], "linked-list");
     }
 }
 
@@ -453,26 +437,6 @@ fn the_judge_finds_the_same_fragments() {
             fragments > 3 * judged,
             "{fragments} fragments in {judged} pixels"
         );
-    }
-}
-
-/// Depth is the distance along the view axis, whatever the perspective: a wall has one depth everywhere.
-#[test]
-fn depth_is_linear() {
-    let gpu = gpu();
-    let scene = peelnet_tests::walls(
-        &[0.02, 1.0, 777.0, 1.5e4].map(|z| peelnet_core::fragment::Fragment::new(z, 0.5, [1.0; 3])),
-        [0.0; 3],
-    );
-    let (pixels, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
-    for p in &pixels {
-        for ((z, _), want) in p.iter().zip([0.02f32, 1.0, 777.0, 1.5e4]) {
-            // A dozen roundings lie between the scene's length and the interpolated one.
-            assert!(
-                (f64::from(*z) / f64::from(want) - 1.0).abs() < 16.0 * UNIT_ROUNDOFF,
-                "{z} {want}"
-            );
-        }
     }
 }
 

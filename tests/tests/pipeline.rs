@@ -1,16 +1,9 @@
-//! Extraction to datasets, and drawing with an exported network: the ends of the pipeline against the CPU.
+//! Extraction to datasets: what they hold, in every format and by every way to peel, and what is refused.
 
-use peelnet_core::{
-    fragment::{Fragment, worked_example},
-    methods::deep,
-    mlp::{Activation, Layer, Mlp},
-    random::Random,
-};
+use peelnet_core::{fragment::worked_example, random::Random};
 use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
 use peelnet_gpu::Gpu;
-use peelnet_model::{FORMAT_VERSION, Input, Losses, Metadata, Model, Output, Recipe};
 use peelnet_peel::{ExtractOptions, Peel, Views, extract};
-use peelnet_render::{LearnedWeight, MethodOptions, Renderer};
 use peelnet_scene::{Material, Object, Scene};
 use peelnet_tests::{gpu, scene, walls};
 use std::{path::Path, sync::atomic::AtomicBool};
@@ -246,91 +239,6 @@ fn requests_that_make_no_sense_are_refused() {
     stained.objects[0].materials[0].transmission = [0.9, 0.1, 0.2];
     assert!(refused(&[stained], &options(&out)).contains("transmission_color"));
     assert!(!out.exists());
-}
-
-/// A small network with a known shape, random weights and the thesis's inputs.
-fn model() -> Model {
-    let mut stream = Random::new(11, &[]);
-    let mut random = move || stream.between(-0.3, 0.3);
-    let layers = [(3, 10), (10, 8), (8, 1)]
-        .into_iter()
-        .map(|(inputs, outputs)| Layer {
-            inputs,
-            outputs,
-            weights: (0..inputs * outputs).map(|_| random()).collect(),
-            bias: vec![if outputs == 1 { 0.5 } else { 0.1 }; outputs],
-        })
-        .collect();
-    let input = |name: &str, offset, scale| Input {
-        name: name.into(),
-        unit: "1".into(),
-        offset,
-        scale,
-        min: 0.0,
-        max: 10.0,
-    };
-    Model {
-        mlp: Mlp::new(layers, Activation::Relu, Activation::Identity).unwrap(),
-        meta: Metadata {
-            format_version: FORMAT_VERSION,
-            tool_version: "test".into(),
-            recipe: Recipe::THESIS,
-            inputs: vec![
-                input("linear_depth", 4.0, 0.4),
-                input("alpha_sum", 2.0, 0.5),
-                input("fragment_count", 4.0, 0.3),
-            ],
-            output: Output::Transmittance,
-            seed: 0,
-            dataset: None,
-            epochs: 0,
-            losses: Losses::default(),
-            held_out: Default::default(),
-            config: serde_json::Value::Null,
-        },
-    }
-}
-
-/// `deep-thesis`, drawn with the exported text, is eq 6 with the model's weight.
-#[test]
-fn the_exported_network_draws_what_the_model_says() {
-    let gpu = gpu();
-    let model = model();
-    let wgsl = peelnet_export::wgsl(&model).unwrap();
-    let learned = LearnedWeight {
-        recipe: Recipe::THESIS,
-        wgsl,
-    };
-    let c0 = [0.3, 0.2, 0.1];
-    let spec = "deep-thesis:targets=f32".parse().unwrap();
-    let cases: [Vec<Fragment>; 3] = [
-        vec![],
-        worked_example().to_vec(),
-        (1..9)
-            .map(|i| Fragment::new(i as f32, 0.1 * i as f32, [0.1 * i as f32, 0.5, 0.9]))
-            .collect(),
-    ];
-    for fragments in cases {
-        let scene = walls(&fragments, c0);
-        let renderer = Renderer::new(&gpu, &scene).unwrap();
-        // Without a network of one's own it is the shipped one.
-        assert!(renderer.method(&spec, MethodOptions::sized([2, 2])).is_ok());
-        let mut prepared = renderer
-            .method(&spec, MethodOptions::sized([2, 2]).with(Some(&learned)))
-            .unwrap();
-        let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
-        let want = deep::composite(&fragments, c0, |f| {
-            let row = deep::Row::of(f, &fragments);
-            model.forward_raw(&[row.linear_depth, row.alpha_sum, row.fragment_count])[0]
-        });
-        for p in &frame.image.pixels {
-            for k in 0..3 {
-                // The export's own bound, and a dozen roundings of the composite.
-                let bound = peelnet_core::tolerance::EXPORT_F32 as f32 * 4.0;
-                assert!((p[k] - want[k]).abs() <= bound, "{p:?} {want:?}");
-            }
-        }
-    }
 }
 
 /// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.

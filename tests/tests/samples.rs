@@ -155,25 +155,6 @@ fn a_pixel_is_the_mean_of_its_samples() {
     assert!(judged > 15, "{judged}");
 }
 
-/// Inside of surfaces all samples hold the same fragments: the image is that of one sample.
-#[test]
-fn samples_change_nothing_away_from_edges() {
-    let gpu = gpu();
-    let wall = half_plane(2.0, 1.0, Material::unlit([0.9, 0.2, 0.1], 0.5));
-    let scene = scene("edge", BACKGROUND, vec![wall]);
-    for spec in MethodSpec::all() {
-        if spec.promises().noisy {
-            continue;
-        }
-        let [one, four] = [1, 4].map(|samples| image(&gpu, &scene, &spec, samples));
-        for (a, b) in one.pixels.iter().zip(&four.pixels) {
-            for (a, b) in a.iter().zip(b) {
-                assert!((a - b).abs() <= 1e-5, "{spec}: {a} and {b}");
-            }
-        }
-    }
-}
-
 /// What samples cost is reported: four times the passes, the pass that averages them in a timed frame, and the target of the mean.
 #[test]
 fn samples_have_their_cost() {

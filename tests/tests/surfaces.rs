@@ -13,8 +13,15 @@ use peelnet_render::{
     Image, LayerFormula, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision,
 };
 use peelnet_scene::{Light, Lighting, Maps, Material, Scene, Source, Texture};
-use peelnet_tests::{draw, even, gpu, light, scene, wall};
+use peelnet_tests::{HALF, draw, even, gpu, light, scene, wall};
 use std::sync::Arc;
+
+fn assert_all(image: &Image, want: [f32; 3], bound: f32, what: &dyn std::fmt::Display) {
+    for p in &image.pixels {
+        let near = (0..3).all(|k| (p[k] - want[k]).abs() <= bound);
+        assert!(near, "{what}: {p:?} for {want:?}");
+    }
+}
 
 /// Lit surfaces against the 64-bit twin, pixel by pixel: 1e-4 of the brightest. With and without a directional light; with and
 /// without textures, whose values multiply the material's, and tilted normals.
@@ -204,32 +211,22 @@ fn stained_glass_tints_what_is_behind_it() {
         let color = [0.2, 0.1, 0.3];
         [0, 1, 2].map(|k| alpha * color[k] + behind[k] * (1.0 - alpha * (1.0 - passing[k])))
     };
-    let check = |image: &Image, want: [f32; 3], bound: f32, what: &str| {
-        for (p, k) in image.pixels.iter().flat_map(|p| [0, 1, 2].map(|k| (p, k))) {
-            assert!(
-                (p[k] - want[k]).abs() <= bound,
-                "{what}: {p:?} for {want:?}"
-            );
-        }
-    };
     for alpha in [0.3, 1.0] {
         let one = scene("pane", c0, vec![wall(3.0, pane(first, alpha))]);
         let want = through(c0, first, alpha);
         for spec in MethodSpec::all() {
-            let method = spec.to_string();
             if spec.promises().tinted {
                 let bound = if spec.promises().exact {
                     1e-6
                 } else {
-                    6.0 / 2048.0
+                    6.0 * HALF
                 };
-                check(&draw(&gpu, &one, &method, [4, 3]), want, bound, &method);
+                let image = draw(&gpu, &one, &spec.to_string(), [4, 3]);
+                assert_all(&image, want, bound, &spec);
             } else {
                 let renderer = Renderer::new(&gpu, &one).unwrap();
-                let e = renderer
-                    .method(&spec, MethodOptions::sized([4, 3]))
-                    .unwrap_err()
-                    .to_string();
+                let refused = renderer.method(&spec, MethodOptions::sized([4, 3]));
+                let e = refused.unwrap_err().to_string();
                 assert!(
                     e.contains("abuffer") && e.contains("transmission_color"),
                     "{e}"
@@ -240,30 +237,17 @@ fn stained_glass_tints_what_is_behind_it() {
         let grey = scene("grey", c0, vec![wall(3.0, pane([0.5; 3], alpha))]);
         let want = through(c0, [0.5; 3], alpha);
         for method in ["abuffer", "dual-peel", "painter-object", "wboit-eq9"] {
-            check(
-                &draw(&gpu, &grey, method, [4, 3]),
-                want,
-                6.0 / 2048.0,
-                method,
-            );
+            let image = draw(&gpu, &grey, method, [4, 3]);
+            assert_all(&image, want, 6.0 * HALF, &method);
         }
     }
     let both = vec![wall(3.0, pane(first, 0.6)), wall(5.0, pane(second, 0.9))];
     let want = through(through(c0, second, 0.9), first, 0.6);
     let two = scene("panes", c0, both);
-    check(
-        &draw(&gpu, &two, "abuffer", [4, 3]),
-        want,
-        1e-6,
-        "two panes",
-    );
     // Also where storage is sorted and tiled.
-    check(
-        &draw(&gpu, &two, "abuffer:budget=6", [4, 3]),
-        want,
-        1e-6,
-        "tiles",
-    );
+    for method in ["abuffer", "abuffer:budget=6"] {
+        assert_all(&draw(&gpu, &two, method, [4, 3]), want, 1e-6, &method);
+    }
 }
 
 /// Colours of three layers.
@@ -279,6 +263,79 @@ fn layered(layers: &[u32]) -> Scene {
     scene("layers", [0.5; 3], walls.collect())
 }
 
+/// What is highlighted among walls, by which formula, whether only increasing layers count, and the parts of the layers' colours that are seen.
+type LayerCase = (
+    &'static [u32],
+    u32,
+    LayerFormula,
+    bool,
+    &'static [(usize, f32)],
+);
+
+const SIXTH: f32 = 1.0 / 6.0;
+
+const LAYER_CASES: [LayerCase; 10] = {
+    use LayerFormula::{Front, Printed};
+    [
+        // The highlighted layer takes half, those in front of it the other half in equal parts, what lies behind is gone.
+        (
+            &[0, 1, 2],
+            2,
+            Front,
+            false,
+            &[(0, 0.25), (1, 0.25), (2, 0.5)],
+        ),
+        (&[0, 1, 2], 0, Front, false, &[(0, 1.0)]),
+        (&[0, 1, 2], 1, Front, false, &[(0, 0.5), (1, 0.5)]),
+        // A ray that leaves again meets the outer layers once more, unless only new layers count.
+        (
+            &[0, 1, 0, 2],
+            2,
+            Front,
+            false,
+            &[(0, 2.0 * SIXTH), (1, SIXTH), (2, 0.5)],
+        ),
+        (
+            &[0, 1, 0, 2],
+            2,
+            Front,
+            true,
+            &[(0, 0.25), (1, 0.25), (2, 0.5)],
+        ),
+        // As printed: the nearest fragment of the layer weighs a half, each other one a half over the number of all, in front or behind.
+        (
+            &[0, 1, 2],
+            1,
+            Printed,
+            false,
+            &[(0, SIXTH), (1, 0.5), (2, SIXTH)],
+        ),
+        (
+            &[0, 1, 2],
+            0,
+            Printed,
+            false,
+            &[(0, 0.5), (1, SIXTH), (2, SIXTH)],
+        ),
+        (&[2], 2, Printed, false, &[(2, 0.5)]),
+        // A second fragment of the layer is one of the others; unless only new layers count, then it is none.
+        (
+            &[0, 1, 0, 2],
+            0,
+            Printed,
+            false,
+            &[(0, 0.625), (1, 0.125), (2, 0.125)],
+        ),
+        (
+            &[0, 1, 0, 2],
+            0,
+            Printed,
+            true,
+            &[(0, 0.5), (1, SIXTH), (2, SIXTH)],
+        ),
+    ]
+};
+
 /// The view of the layers shows these parts of their colours.
 fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: &[(usize, f32)]) {
     let scene = scene.layer_view(view.highlight, false).unwrap();
@@ -293,68 +350,20 @@ fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: &[(usize, f32)
     }
 }
 
-/// A layer, the number of which need not increase behind others.
-fn highlighted(highlight: u32, formula: LayerFormula) -> LayerView {
-    LayerView {
+/// Layers seen one by one. Through a hole in a layer the next one is seen; where the highlighted layer itself has the hole, the others share the
+/// pixel, and as printed a half of them is left.
+#[test]
+fn layers_are_highlighted() {
+    let gpu = gpu();
+    let view = |highlight, formula, increasing| LayerView {
         highlight,
-        increasing: false,
+        increasing,
         formula,
+    };
+    for (layers, highlight, formula, increasing, parts) in LAYER_CASES {
+        let view = view(highlight, formula, increasing);
+        check_layers(&gpu, &layered(layers), view, parts);
     }
-}
-
-/// Layers seen one by one: the highlighted one takes half, those in front of it the other half in equal parts, what lies behind is gone.
-#[test]
-fn a_layer_is_highlighted() {
-    let gpu = gpu();
-    let of = |highlight| highlighted(highlight, LayerFormula::Front);
-    let check = |layers: &[u32], view: LayerView, parts: &[(usize, f32)]| {
-        check_layers(&gpu, &layered(layers), view, parts);
-    };
-    // Two in front share the other half.
-    check(&[0, 1, 2], of(2), &[(0, 0.25), (1, 0.25), (2, 0.5)]);
-    // What is behind is not seen; nothing in front: all of it.
-    check(&[0, 1, 2], of(0), &[(0, 1.0)]);
-    check(&[0, 1, 2], of(1), &[(0, 0.5), (1, 0.5)]);
-    // A ray that leaves again meets the outer layers once more, unless only new layers count.
-    let again = [0, 1, 0, 2];
-    check(&again, of(2), &[(0, 1.0 / 3.0), (1, 1.0 / 6.0), (2, 0.5)]);
-    let increasing = LayerView {
-        increasing: true,
-        ..of(2)
-    };
-    check(&again, increasing, &[(0, 0.25), (1, 0.25), (2, 0.5)]);
-    let e = layered(&[0, 1]).layer_view(7, false).unwrap_err();
-    let e = e.to_string();
-    assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
-}
-
-/// As printed: the nearest fragment of the layer weighs a half, each other one a half over the number of all, in front or behind.
-#[test]
-fn layers_composite_as_printed() {
-    let gpu = gpu();
-    let of = |highlight| highlighted(highlight, LayerFormula::Printed);
-    let check = |layers: &[u32], view: LayerView, parts: &[(usize, f32)]| {
-        check_layers(&gpu, &layered(layers), view, parts);
-    };
-    let sixth = 1.0 / 6.0;
-    check(&[0, 1, 2], of(1), &[(0, sixth), (1, 0.5), (2, sixth)]);
-    check(&[0, 1, 2], of(0), &[(0, 0.5), (1, sixth), (2, sixth)]);
-    check(&[2], of(2), &[(2, 0.5)]);
-    // A second fragment of the layer is one of the others; unless only new layers count, then it is none.
-    let again = [0, 1, 0, 2];
-    check(&again, of(0), &[(0, 0.625), (1, 0.125), (2, 0.125)]);
-    let increasing = LayerView {
-        increasing: true,
-        ..of(0)
-    };
-    check(&again, increasing, &[(0, 0.5), (1, sixth), (2, sixth)]);
-}
-
-/// Through a hole in a layer the next one is seen. Where the highlighted layer itself has the hole, the others share the pixel; as
-/// printed, a half of them is left.
-#[test]
-fn layers_have_holes() {
-    let gpu = gpu();
     let mut holed = layered(&[0, 1]);
     let front = &mut holed.objects[0].materials[0];
     front.maps.color = even([255, 255, 255, 90]);
@@ -364,9 +373,11 @@ fn layers_have_holes() {
         (0, LayerFormula::Front, 1.0),
         (0, LayerFormula::Printed, 0.5),
     ] {
-        let view = highlighted(highlight, formula);
-        check_layers(&gpu, &holed, view, &[(1, share)]);
+        check_layers(&gpu, &holed, view(highlight, formula, false), &[(1, share)]);
     }
+    let e = layered(&[0, 1]).layer_view(7, false).unwrap_err();
+    let e = e.to_string();
+    assert!(e.contains('7') && e.contains("[0, 1]"), "{e}");
 }
 
 /// What is emitted comes beyond what is covered, for every method: a single surface is exact, down to an opacity of 0, where it
@@ -401,16 +412,9 @@ fn emission_is_exact_on_a_single_surface() {
             let bound = if spec.promises().exact {
                 1e-5
             } else {
-                4.0 * 4.0 / 2048.0
+                16.0 * HALF
             };
-            for p in &image.pixels {
-                for k in 0..3 {
-                    assert!(
-                        (p[k] - want[k]).abs() <= bound,
-                        "{spec}, alpha {alpha}: {p:?} for {want:?}"
-                    );
-                }
-            }
+            assert_all(&image, want, bound, &format!("{spec}, alpha {alpha}"));
         }
     }
 }
@@ -433,10 +437,8 @@ fn cut_outs_are_holes_or_opaque() {
             [0.1, 0.1, 0.6]
         };
         for method in ["abuffer", "wboit-eq9", "kbuffer-4"] {
-            let p = draw(&gpu, &scene, method, [4, 3]).pixels[5];
-            for k in 0..3 {
-                assert!((p[k] - want[k]).abs() < 1e-3, "{method} {alpha}: {p:?}");
-            }
+            let image = draw(&gpu, &scene, method, [4, 3]);
+            assert_all(&image, want, 1e-3, &format!("{method} {alpha}"));
         }
     }
 }

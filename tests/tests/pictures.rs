@@ -1,0 +1,71 @@
+//! A few small pictures, by which people see what a change did: drawn again and compared. `PEELNET_UPDATE=1` makes them again, which a change
+//! of what is drawn on purpose needs; look at them before they are committed.
+
+use peelnet_render::Image;
+use peelnet_scene::suite;
+use peelnet_tests::{draw, gpu};
+use std::{env, fs, path::Path};
+
+/// Scene and method of each, the file's name.
+const PICTURES: [(&str, &str); 6] = [
+    ("still-life", "abuffer"),
+    ("panes", "dual-peel"),
+    ("sixteen-050", "wboit-eq9"),
+    ("smoke-held", "mboit4"),
+    ("foliage-held", "deep-medium"),
+    ("mist", "avboit"),
+];
+
+const SIZE: [u32; 2] = [96, 72];
+
+/// A channel's difference that nobody sees, of 255: two roundings to bytes, and as much for how an adapter filters textures and adds half floats.
+const STEPS: u8 = 4;
+
+/// The fraction of pixels that may differ by more: those at silhouettes, where adapters snap vertices to other sub-pixels.
+const SILHOUETTES: f64 = 0.02;
+
+fn picture(image: &Image) -> image::RgbImage {
+    image::RgbImage::from_raw(image.width, image.height, image.to_srgb8()).unwrap()
+}
+
+#[test]
+fn pictures_are_the_committed_ones() {
+    let gpu = gpu();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut problems = Vec::new();
+    for (scene, method) in PICTURES {
+        let name = format!("{scene}-{method}");
+        let file = root.join("pictures").join(format!("{name}.png"));
+        let found = picture(&draw(&gpu, &suite::load(scene).unwrap(), method, SIZE));
+        if env::var_os("PEELNET_UPDATE").is_some() {
+            found.save(&file).unwrap();
+            continue;
+        }
+        let want = image::open(&file).unwrap().to_rgb8();
+        assert_eq!(found.dimensions(), want.dimensions(), "{name}");
+        let differences = image::RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
+            let (a, b) = (found.get_pixel(x, y).0, want.get_pixel(x, y).0);
+            image::Rgb([0, 1, 2].map(|k| a[k].abs_diff(b[k])))
+        });
+        let differs = differences
+            .pixels()
+            .filter(|p| p.0.iter().any(|d| *d > STEPS));
+        let fraction = differs.count() as f64 / f64::from(SIZE[0] * SIZE[1]);
+        if fraction > SILHOUETTES {
+            let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
+            fs::create_dir_all(&folder).unwrap();
+            let [actual, difference] =
+                ["actual", "difference"].map(|what| folder.join(format!("{name}-{what}.png")));
+            found.save(&actual).unwrap();
+            differences.save(&difference).unwrap();
+            problems.push(format!(
+                "{name}: {:.1} % of the pixels differ from {}: see {} and {}",
+                100.0 * fraction,
+                file.display(),
+                actual.display(),
+                difference.display()
+            ));
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
