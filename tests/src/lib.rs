@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
-use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Renderer};
+use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, Renderer};
 use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
 use std::sync::Arc;
 
@@ -34,12 +34,19 @@ pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
 
 /// Draws a scene's first view; a learned method with its shipped network.
 pub fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
-    let drawn = || {
-        let renderer = Renderer::new(gpu, scene)?;
-        let mut prepared = renderer.method(&method.parse()?, MethodOptions::sized(size))?;
-        renderer.image(&mut prepared, &scene.views[0])
-    };
-    drawn().unwrap_or_else(|e| panic!("{e}")).image
+    let renderer = Renderer::new(gpu, scene).unwrap_or_else(|e| panic!("{e}"));
+    let mut prepared = prepare(&renderer, method, size);
+    let frame = renderer.image(&mut prepared, &scene.views[0]);
+    frame.unwrap_or_else(|e| panic!("{method}: {e}")).image
+}
+
+/// A method, or its name, made ready for a scene.
+pub fn prepare(renderer: &Renderer, method: &(impl ToString + ?Sized), size: [u32; 2]) -> Prepared {
+    let name = method.to_string();
+    let prepared = name
+        .parse()
+        .and_then(|method| renderer.method(&method, MethodOptions::sized(size)));
+    prepared.unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 /// Runs a compute shader on buffers of inputs and of `count` answers.

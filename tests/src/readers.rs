@@ -24,44 +24,32 @@ pub struct Reader {
     pub seeds: fn() -> Vec<Vec<u8>>,
 }
 
+const fn reader(name: &'static str, read: fn(&[u8]), seeds: fn() -> Vec<Vec<u8>>) -> Reader {
+    Reader { name, read, seeds }
+}
+
 /// All of them.
 pub const READERS: [Reader; 7] = [
-    Reader {
-        name: "scene",
-        read: scene,
-        seeds: scene_seeds,
-    },
-    Reader {
-        name: "obj",
-        read: obj,
-        seeds: obj_seeds,
-    },
-    Reader {
-        name: "dataset",
-        read: dataset,
-        seeds: dataset_seeds,
-    },
-    Reader {
-        name: "model",
-        read: model,
-        seeds: model_seeds,
-    },
-    Reader {
-        name: "gltf",
-        read: gltf,
-        seeds: gltf_seeds,
-    },
-    Reader {
-        name: "ply",
-        read: ply,
-        seeds: ply_seeds,
-    },
-    Reader {
-        name: "stl",
-        read: stl,
-        seeds: stl_seeds,
-    },
+    reader("scene", scene, || committed("scene")),
+    reader("obj", obj, || committed("obj")),
+    reader("dataset", dataset, dataset_seeds),
+    reader("model", model, model_seeds),
+    reader("gltf", gltf, || committed("gltf")),
+    reader("ply", ply, || committed("ply")),
+    reader("stl", stl, || committed("stl")),
 ];
+
+/// The files in `tests/seeds`, each with what its reader knows: polygons and strips, colours, textures, lights, timelines, sparse accessors.
+fn committed(name: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("seeds")
+        .join(name);
+    let files = fs::read_dir(folder).expect("is committed").flatten();
+    let mut paths: Vec<PathBuf> = files.map(|file| file.path()).collect();
+    paths.sort();
+    let read = |path| fs::read(path).expect("is committed");
+    paths.into_iter().map(read).collect()
+}
 
 /// A folder of this process that is removed with it.
 fn folder() -> &'static Path {
@@ -76,9 +64,6 @@ fn put(name: &str, bytes: &[u8]) -> PathBuf {
     fs::write(&path, bytes).expect("the temporary folder can be written");
     path
 }
-
-/// An image of two texels, half transparent red and green: PNG, in base 64.
-const IMAGE: &str = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR4nGP4z8DQwPCf4T8ADn0Dfur2k8AAAAAASUVORK5CYII=";
 
 /// The image as a file's bytes.
 fn image() -> Vec<u8> {
@@ -137,96 +122,6 @@ fn gltf(bytes: &[u8]) {
     }
 }
 
-/// A triangle with its buffer as a data URI: nine zeros but for two vertices, in base 64.
-fn gltf_seeds() -> Vec<Vec<u8>> {
-    let buffer = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
-    let text = format!(
-        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],
-"nodes":[{{"mesh":0,"children":[1],"scale":[1,2,1]}},{{"mesh":0,"translation":[0,0,1],"rotation":[0,0,0,1]}}],
-"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"mode":4,"material":0}}]}}],
-"materials":[{{"alphaMode":"BLEND","doubleSided":true,"emissiveFactor":[0,1,0],"pbrMetallicRoughness":{{"baseColorFactor":[1,0,0,0.5],"metallicFactor":0.1}}}}],
-"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
-"bufferViews":[{{"buffer":0,"byteLength":36}}],
-"buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{buffer}"}}]}}"#
-    );
-    // The same with UVs, vertex colours and a texture.
-    let mapped = text
-        .replace(r#""POSITION":0"#, r#""POSITION":0,"COLOR_0":0,"TEXCOORD_0":1"#)
-        .replace(
-            r#""metallicFactor":0.1"#,
-            r#""baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[2,1],"rotation":1}}},"metallicRoughnessTexture":{"index":0}"#,
-        )
-        .replace(
-            r#""alphaMode""#,
-            r#""normalTexture":{"index":0,"scale":0.5},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.5}},"alphaMode""#,
-        )
-        .replace(
-            r#"],
-"bufferViews""#,
-            r#",{"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"}],
-"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":"data:image/png;base64,IMAGE"}],
-"bufferViews""#,
-        )
-        .replace("IMAGE", IMAGE);
-    let specular = mapped.replace(
-        r#""KHR_materials_transmission":{"transmissionFactor":0.5}"#,
-        r#""KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.5,0,0,1],"specularGlossinessTexture":{"index":0}}"#,
-    );
-    // Nodes that share a child, an accessor without data and a sparse one, a byte order mark, no scene, data without base 64.
-    let shared = text.replace(r#""children":[1],"#, r#""children":[1,1],"#);
-    let sparse = text.replace(
-        r#"}],
-"bufferViews""#,
-        r#"},{"componentType":5126,"count":3,"type":"VEC3"},
-{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5123},"values":{"bufferView":0,"byteOffset":12}}}],
-"bufferViews""#,
-    );
-    let sparse = sparse.replace(r#""POSITION":0"#, r#""POSITION":2,"NORMAL":1"#);
-    let rootless = text.replace(r#""scene":0,"scenes":[{"nodes":[0]}],"#, "");
-    let zeros = "%00".repeat(36);
-    let encoded = text.replace(&format!(";base64,{buffer}"), &format!(",{zeros}"));
-    [
-        text,
-        mapped,
-        specular,
-        shared,
-        sparse,
-        format!("\u{feff}{rootless}"),
-        encoded,
-    ]
-    .map(String::into_bytes)
-    .to_vec()
-}
-
-fn scene_seeds() -> Vec<Vec<u8>> {
-    let camera = "name = 's'\nbackground = [0.1, 1, 1.0]\n[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y = 45.0\nnear = 0.1\nfar = 100\n";
-    let object = "[[object]]\nmesh = 'a.obj'\nfit = 1.0\nscale = 2.0\nrotate = [0, 90, 0]\ntranslate = [1, 0, 0]\nlayer = 1\n[object.material]\ncolor = [1, 0, 0]\nalpha = 0.5\nlighting = 'phong'\n";
-    let scatter = "[[scatter]]\ncount = 9\nseed = 4\nmesh = { shape = 'torus' }\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nscale = [0.1, 0.3]\nalpha = [0.2, 0.8]\n";
-    let grid = "[[scatter]]\ncount = 4\nmeshes = ['a.obj', { shape = 'sphere', triangles = 60 }]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\ngrid = [2, 2, 1]\njitter = 0.2\n";
-    let light =
-        "[orbit]\nviews = 3\n[[light]]\nposition = [1, 2, 3]\ncolor = [1, 1, 1]\nintensity = 2\n";
-    [
-        format!("{camera}{object}"),
-        format!("{camera}{light}{scatter}"),
-        format!("{camera}{grid}"),
-        format!("{camera}[[object]]\nmesh = {{ shape = 'box', size = [1, 2, 3] }}\n"),
-        camera.to_owned(),
-        format!(
-            "{camera}[[light]]\ndirection = [0, -1, 0]\n{}",
-            object.replace("'phong'", "'pbr'\ncolor_map = 'a.png'\nmetallic_roughness_map = { pattern = 'cracks', size = 8 }\nnormal_map = { pattern = 'noise', size = 8, height = 0.2 }\ntransmission_color = [1, 0, 0]\ndisplacement_map = 'a.png'\ndisplacement_scale = 0.1\ndisplacement_level = 1")
-        ),
-        format!(
-            "{camera}[[light]]\nposition = [1, 2, 3]\n{}",
-            object.replace("'phong'", "'pbr'\nspecular_color = [1, 0.5, 0.25]\nglossiness_map = 'a.png'\nspecular_color_map = { pattern = 'noise', size = 8 }")
-        ),
-        format!(
-            "{camera}[[object]]\nname = 'a'\nvertex_colors = [[0, 0, 0, 0], [1, 1, 1, 1]]\nmesh = {{ shape = 'lathe', triangles = 60, offset = 0.1, profile = [[0, -1], [1, 0], [0, 1]] }}\n[[timeline]]\ntime = 0\n[[timeline]]\ntime = 1\nlabel = 'b'\n[[timeline.object]]\nname = 'a'\nmaterial = {{ alpha = 0.5 }}\n"
-        ),
-    ]
-    .map(String::into_bytes)
-    .to_vec()
-}
-
 /// An OBJ file, and behind the first zero byte the MTL file that it may name as `m.mtl`.
 fn obj(bytes: &[u8]) {
     let (mesh, materials) = match bytes.iter().position(|b| *b == 0) {
@@ -240,16 +135,6 @@ fn obj(bytes: &[u8]) {
     }
 }
 
-fn obj_seeds() -> Vec<Vec<u8>> {
-    let mesh = "mtllib m.mtl\no part\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvn 0 0 1\ng side\nusemtl red\ns 1\nf 1/1/1 2/2/1 3//1\nf -4 -2 -1\nf 1 2 3 4\n";
-    let materials = "newmtl red\nKd 1 0 0\nKs 0.1 0.1 0.1\nNs 30\nd 0.5\nTr 0.5\nillum 2\nmap_Kd a.png\nmap_d -clamp on a.png\nmap_Bump -bm 0.5 a.png\nmap_Ke a.png\ndisp -mm 0 0.5 a.png\n";
-    vec![
-        format!("{mesh}\0{materials}").into_bytes(),
-        b"v 0 0 0\nv 1 0 0 \\\n\nv 0 1 0 0.5 0.5 0.5\nf 1 2 3\n# end \xe9".to_vec(),
-        mesh.replace('\n', "\r\n").into_bytes(),
-    ]
-}
-
 /// A PLY file, as a scene.
 fn ply(bytes: &[u8]) {
     if let Ok(scene) = Scene::load(put("f.ply", bytes)) {
@@ -257,66 +142,11 @@ fn ply(bytes: &[u8]) {
     }
 }
 
-/// Text, and both orders of bytes: polygons, colours, normals, texture coordinates, a strip, and elements of other kinds.
-fn ply_seeds() -> Vec<Vec<u8>> {
-    let vertex = "property float x\nproperty float y\nproperty float z\n";
-    let color =
-        "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float alpha\n";
-    let face = "property list uchar int vertex_indices\n";
-    let text = format!(
-        "ply\r\nformat ascii 1.0\ncomment by hand\nelement vertex 4\n{vertex}{color}property float s\nproperty float t\n\
-         element face 2\n{face}property list uchar float texcoord\nelement edge 1\nproperty int v\nend_header\n\
-         0 0 0 255 0 0 1 0 0\n1 0 0 9 9 9 .5 1 0\n1 1 0 0 0 0 1 1 1\n0 1 0 0 0 0 1 0 1\n4 0 1 2 3 0\n3 0 1 2 6 0 0 1 0 1 1\n7\n"
-    );
-    let binary = |is_big: bool| {
-        let order = if is_big { "big" } else { "little" };
-        let number = |bytes: [u8; 4]| {
-            let mut bytes = bytes;
-            if is_big {
-                bytes.reverse();
-            }
-            bytes
-        };
-        let head = format!(
-            "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\n{vertex}property float nx\nelement face 1\n{face}\
-             element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-        );
-        let mut bytes = head.into_bytes();
-        for k in 0..16u8 {
-            let x = f32::from(k * 7 % 5);
-            bytes.extend(number(x.to_le_bytes()));
-        }
-        bytes.push(3);
-        for i in [0i32, 1, 2, 6, 0, 1, 2, -1, 1, 3] {
-            bytes.extend(number(i.to_le_bytes()));
-        }
-        bytes
-    };
-    vec![text.into_bytes(), binary(false), binary(true)]
-}
-
 /// An STL file, as a scene.
 fn stl(bytes: &[u8]) {
     if let Ok(scene) = Scene::load(put("f.stl", bytes)) {
         is_sound(&scene);
     }
-}
-
-fn stl_seeds() -> Vec<Vec<u8>> {
-    let facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
-    let text = format!(
-        "solid a part\n{facet}{}endsolid a part\n",
-        facet.replace('0', "2")
-    );
-    let mut binary = b"solid by a program".to_vec();
-    binary.resize(80, 0);
-    binary.extend(2u32.to_le_bytes());
-    for k in 0..2u8 {
-        let numbers = (0..12u8).map(|i| f32::from((i * i + k) % 7));
-        binary.extend(numbers.flat_map(f32::to_le_bytes));
-        binary.extend([0, 0]);
-    }
-    vec![text.into_bytes(), binary]
 }
 
 /// Where a dataset's manifest lies.

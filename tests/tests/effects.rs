@@ -1,9 +1,9 @@
 //! Effects of materials and lights: they cost nothing in a scene without them, and neutral values change nothing.
 
 use glam::Vec3;
-use peelnet_render::{MethodOptions, Renderer};
+use peelnet_render::Renderer;
 use peelnet_scene::{Census, Effect, Light, Lighting, Maps, Material, Scene, Source, Texture};
-use peelnet_tests::{draw, even, gpu, light, scene, wall};
+use peelnet_tests::{draw, even, gpu, light, prepare, scene, wall};
 use std::sync::Arc;
 
 /// The place of a map's effect in a material.
@@ -82,10 +82,7 @@ fn what_is_not_called_for_is_not_there() {
     // Bytes of a pixel, and passes.
     let costs = |s: &Scene| {
         let renderer = Renderer::new(&gpu, s).unwrap();
-        let options = MethodOptions::sized([8, 6]);
-        let mut prepared = renderer
-            .method(&"blended".parse().unwrap(), options)
-            .unwrap();
+        let mut prepared = prepare(&renderer, "blended", [8, 6]);
         let frame = renderer.profile(&mut prepared, &s.views[0]).unwrap();
         (frame.stats.bytes_per_pixel, frame.times.len())
     };

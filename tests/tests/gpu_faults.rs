@@ -4,7 +4,7 @@ use peelnet_core::fragment::Fragment;
 use peelnet_gpu::GpuError;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{MethodOptions, MethodSpec, PixelSample, RenderError, Renderer};
-use peelnet_tests::{gpu, walls};
+use peelnet_tests::{gpu, prepare, walls};
 
 fn stack() -> Vec<Fragment> {
     (0..20)
@@ -21,9 +21,7 @@ fn full_memory_makes_smaller_tiles() {
     let method: MethodSpec = "abuffer".parse().unwrap();
     let draw = |gpu: &peelnet_gpu::Gpu| {
         let renderer = Renderer::new(gpu, &scene).unwrap();
-        let mut prepared = renderer
-            .method(&method, MethodOptions::sized(size))
-            .unwrap();
+        let mut prepared = prepare(&renderer, &method, size);
         renderer.image(&mut prepared, &scene.views[0]).unwrap()
     };
     let whole = draw(&gpu);
@@ -73,9 +71,7 @@ fn what_cannot_be_made_smaller_is_an_error() {
     // Fragments of one pixel of colour take 320 bytes.
     gpu.pretend_memory(300);
     let renderer = Renderer::new(&gpu, &scene).unwrap();
-    let mut prepared = renderer
-        .method(&method, MethodOptions::sized([4, 3]))
-        .unwrap();
+    let mut prepared = prepare(&renderer, &method, [4, 3]);
     let error = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
     assert!(error.to_string().contains("20"), "{error}");
 }
@@ -96,9 +92,7 @@ fn a_lost_device_is_one_clear_error() {
         let gpu = gpu();
         let method: MethodSpec = name.parse().unwrap();
         let renderer = Renderer::new(&gpu, &scene).unwrap();
-        let mut prepared = renderer
-            .method(&method, MethodOptions::sized([16, 12]))
-            .unwrap();
+        let mut prepared = prepare(&renderer, &method, [16, 12]);
         renderer.image(&mut prepared, &scene.views[0]).unwrap();
         gpu.device.destroy();
         let error = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();

@@ -9,7 +9,7 @@ use peelnet_render::{
     FrameStatus, METHODS, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
 };
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source};
-use peelnet_tests::{gpu, network_of, scene, wall, walls};
+use peelnet_tests::{gpu, network_of, prepare, scene, wall, walls};
 
 /// A texture to draw onto, cleared to a colour.
 fn target(
@@ -205,10 +205,7 @@ fn all_that_is_touched_is_resolved() {
         let camera = scene.views[0];
         let renderer = Renderer::new(&gpu, &scene).expect("uploads");
         for name in ["wboit-eq9:targets=f32", "dual-peel", "linked-list"] {
-            let spec = name.parse().expect("a name");
-            let mut method = renderer
-                .method(&spec, MethodOptions::sized(size))
-                .expect("a method");
+            let mut method = prepare(&renderer, name, size);
             let image = renderer.image(&mut method, &camera).expect("draws").image;
             let mut found = Vec::new();
             for _ in 0..2 {
@@ -231,12 +228,7 @@ fn formats_keep_the_picture() {
     let behind = [0.25, 0.5, 0.75];
     let scene = walls(&worked_example(), behind);
     let renderer = Renderer::new(&gpu, &scene).expect("uploads");
-    let mut method = renderer
-        .method(
-            &"abuffer".parse().expect("a name"),
-            MethodOptions::sized(size),
-        )
-        .expect("a method");
+    let mut method = prepare(&renderer, "abuffer", size);
     let image = renderer
         .image(&mut method, &scene.views[0])
         .expect("draws")
@@ -288,10 +280,7 @@ fn frames_that_were_too_small_grow() {
         "depth-peel",
         "dual-peel",
     ] {
-        let spec = name.parse().expect("a name");
-        let mut method = renderer
-            .method(&spec, MethodOptions::sized(size))
-            .expect("a method");
+        let mut method = prepare(&renderer, name, size);
         let exact = renderer.image(&mut method, &camera).expect("draws").image;
         let format = wgpu::TextureFormat::Rgba32Float;
         let mut frames = Vec::new();
@@ -416,22 +405,13 @@ fn scenes_change_in_place() {
     let scene = lit_scene();
     let mut renderer = Renderer::new(&gpu, &scene).expect("uploads");
     let specs = ["mboit4", "abuffer", "painter-triangle", "blended"];
-    let mut prepared: Vec<Prepared> = specs
-        .map(|name| {
-            let spec = name.parse().expect("a name");
-            renderer
-                .method(&spec, MethodOptions::sized([9, 6]))
-                .expect("a method")
-        })
-        .into();
+    let mut prepared: Vec<Prepared> = specs.map(|name| prepare(&renderer, name, [9, 6])).into();
     let mut check = |renderer: &Renderer, what: &str| {
         let fresh = Renderer::new(&gpu, renderer.scene()).expect("uploads");
         for (name, method) in specs.iter().zip(&mut prepared) {
             let camera = scene.views[0];
             let found = renderer.image(method, &camera).expect("draws").image;
-            let mut other = fresh
-                .method(&name.parse().expect("a name"), MethodOptions::sized([9, 6]))
-                .expect("a method");
+            let mut other = prepare(&fresh, name, [9, 6]);
             let expected = fresh.image(&mut other, &camera).expect("draws").image;
             assert_eq!(found.pixels, expected.pixels, "{name}, {what}");
         }

@@ -3,7 +3,6 @@
 
 use glam::Vec3;
 use peelnet_core::{
-    absorbance::DepthWarp,
     fragment::{Fragment, worked_example},
     methods::over,
     tolerance,
@@ -12,7 +11,7 @@ use peelnet_gpu::Gpu;
 use peelnet_model::Recipe;
 use peelnet_render::{Frame, Image, METHODS, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{HALF, draw, gpu, half_sums, scene, shipped, wall, walls};
+use peelnet_tests::{HALF, draw, gpu, half_sums, prepare, scene, shipped, wall, walls};
 
 fn frame(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, size: [u32; 2]) -> Frame {
     let renderer = Renderer::new(gpu, scene).unwrap();
@@ -103,24 +102,6 @@ fn a_silhouette_in_smoke_is_exact() {
     }
 }
 
-/// Opaque walls hide what is behind them, for every method.
-#[test]
-fn opaque_walls_hide() {
-    let gpu = gpu();
-    let mut opaque = Material::unlit([0.1, 0.6, 0.3], 1.0);
-    opaque.blend = false;
-    let front = [Fragment::new(1.0, 0.5, [1.0, 0.0, 0.0])];
-    let mut scene = walls(&front, [0.0; 3]);
-    scene.objects.push(wall(2.0, opaque));
-    let hidden = Material::unlit([0.0, 0.0, 1.0], 0.9);
-    scene.objects.push(wall(3.0, hidden));
-    let want = over::composite(&front, [0.1, 0.6, 0.3]);
-    for spec in representatives() {
-        let image = frame(&gpu, &scene, &spec, [3, 3]).image;
-        assert_near(image.pixels[4], want, half_sums(1, 1.0), &spec);
-    }
-}
-
 /// A capped run leaves out what it did not reach, and counts it.
 #[test]
 fn a_capped_peel_counts_what_it_left_out() {
@@ -154,8 +135,7 @@ fn bounded_storage_loses_nothing() {
         ("kbuffer-40", [2, 2]),
         ("hybrid-64", [2, 2]),
     ] {
-        let options = MethodOptions::sized([5, 4]);
-        let mut prepared = renderer.method(&name.parse().unwrap(), options).unwrap();
+        let mut prepared = prepare(&renderer, name, [5, 4]);
         for passes in passes {
             let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
             assert_eq!(frame.stats.geometry_passes, passes, "{name}");
@@ -163,68 +143,6 @@ fn bounded_storage_loses_nothing() {
                 assert_near(*p, want, tolerance::EXACT as f32, &name);
             }
         }
-    }
-}
-
-/// Sorting by object fails where one object reaches through another, sorting by triangle does not; the scene's order fails at once.
-#[test]
-fn painters_have_their_known_flaw() {
-    let gpu = gpu();
-    let front = Fragment::new(2.0, 0.5, [1.0, 0.0, 0.0]);
-    let back = Fragment::new(3.0, 0.5, [0.0, 0.0, 1.0]);
-    let scene = walls(&[front, back], [0.0; 3]);
-    let middle = |scene: &Scene, name: &str| draw(&gpu, scene, name, [4, 4]).pixels[5];
-    // Nearest first is the wrong order for over-blending: the back wall lies on top.
-    let unsorted = middle(&scene, "painter-object:sort=off");
-    assert_near(unsorted, [0.25, 0.0, 0.5], 1e-3, &"unsorted");
-    let sorted = middle(&scene, "painter-object");
-    assert_near(sorted, [0.5, 0.0, 0.25], 1e-3, &"sorted");
-    // One object with a red wall before and one far behind the blue one: its centre lies behind it.
-    let mut joined = scene.clone();
-    let far = wall(5.0, Material::unlit(front.color, 0.5));
-    let mut both = (*joined.objects[0].mesh).clone();
-    let first = both.positions.len() as u32;
-    both.positions.extend(&far.mesh.positions);
-    both.normals.extend(&far.mesh.normals);
-    both.uvs.extend(&far.mesh.uvs);
-    let more = far.mesh.triangles.iter().map(|t| t.map(|i| i + first));
-    both.triangles.extend(more);
-    both.parts[0].triangles.end = both.triangles.len();
-    joined.objects[0].mesh = both.into();
-    let exact = middle(&joined, "abuffer")[0];
-    // Blue over red instead of red over blue over red: 0.375 instead of 0.625 of red.
-    let error = |name: &str| (middle(&joined, name)[0] - exact).abs();
-    assert!((error("painter-object") - 0.25).abs() < 1e-3);
-    assert!(error("painter-triangle") < 1e-3);
-}
-
-/// The biases that go with the precision of the moments, as the paper and `peelnet_core` state them.
-#[test]
-fn biases_go_with_the_precision() {
-    let points = [(0.5, 0.3), (2.0, 0.6), (2.01, 0.4), (7.0, 0.5)];
-    let warp = DepthWarp::new(0.5, 10.0);
-    let estimate = |name: &str| {
-        let spec: MethodSpec = name.parse().unwrap();
-        spec.transmittances(&points, &warp, None).unwrap()
-    };
-    for (method, targets, bias) in [
-        ("mboit4", "f32", 5e-7),
-        ("mboit4", "f16", 6e-5),
-        ("mboit6", "f32", 5e-6),
-        ("mboit6", "f16", 6e-4),
-        ("mboit8", "f32", 5e-5),
-        ("mboit8", "f16", 2.5e-3),
-        ("mboit-trig-2", "f32", 1e-4),
-        ("mboit-trig-2", "f16", 1e-3),
-    ] {
-        let with = |bias: f64| {
-            estimate(&format!(
-                "{method}:targets={targets},bias={bias},overestimation=0.25"
-            ))
-        };
-        let default = estimate(&format!("{method}:targets={targets}"));
-        assert_eq!(default, with(bias), "{method} in {targets}");
-        assert_ne!(default, with(1.1 * bias), "{method} in {targets}");
     }
 }
 

@@ -1,20 +1,13 @@
 //! The three ways to peel against one another and against the 64-bit scan-line judge.
 
 use glam::Vec3;
-use peelnet_core::{
-    fragment::Fragment,
-    hash,
-    methods::over,
-    random::Random,
-    scanline,
-    tolerance::{self, UNIT_ROUNDOFF},
-};
+use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
 use peelnet_eval::stress::judge::clip_triangles;
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::{MethodOptions, PixelSample, Renderer};
+use peelnet_render::{PixelSample, Renderer};
 use peelnet_scene::{Light, Lighting, Material, Object, Scene, Source, Texture};
-use peelnet_tests::{gpu, scene, wall};
+use peelnet_tests::{gpu, prepare, scene, wall};
 use std::sync::Arc;
 
 const SIZE: [u32; 2] = [61, 47];
@@ -301,8 +294,7 @@ fn broken_sorts_and_lost_fragments_are_errors() {
                 assert!(says, "{message}");
             }
             let renderer = Renderer::new(&gpu, &scene).unwrap();
-            let options = MethodOptions::sized(size);
-            let mut prepared = renderer.method(&method.parse().unwrap(), options).unwrap();
+            let mut prepared = prepare(&renderer, method, size);
             let message = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
             let message = message.to_string();
             assert!(message.contains(expected), "{message}");
@@ -314,45 +306,6 @@ fn broken_sorts_and_lost_fragments_are_errors() {
     }
     for broken in BROKEN_LISTS {
         drawn(broken, &[random_depths(40, 1)], "linked-list");
-    }
-}
-
-/// Images of pixels of any depth: within the bound of compensated sums, which does not grow with the number of layers.
-#[test]
-fn deep_pixels_are_composited_within_the_bound() {
-    let gpu = gpu();
-    for n in [2_000, 100_000] {
-        let depths = (0..n)
-            .map(|i| 2.0 + 4.0 * (i * 7_919 % n) as f32 / n as f32)
-            .collect();
-        let (mut scene, size) = deep_pixels(&[depths]);
-        let mut fragments = Vec::new();
-        for (i, object) in scene.objects.iter_mut().enumerate() {
-            let material = &mut object.materials[0];
-            material.alpha = 3.0 / n as f32;
-            let layers = (i..n).step_by(32);
-            fragments.extend(layers.map(|k| {
-                let depth = 2.0 + 4.0 * (k * 7_919 % n) as f32 / n as f32;
-                Fragment::new(depth, material.alpha, material.color)
-            }));
-        }
-        let expected = over::composite_f64(&fragments, scene.background);
-        let renderer = Renderer::new(&gpu, &scene).unwrap();
-        for method in ["abuffer", "linked-list"] {
-            let options = MethodOptions::sized(size);
-            let mut prepared = renderer.method(&method.parse().unwrap(), options).unwrap();
-            let image = renderer
-                .image(&mut prepared, &scene.views[0])
-                .unwrap()
-                .image;
-            for (k, expected) in expected.iter().enumerate() {
-                let error = (f64::from(image.pixels[0][k]) - expected).abs();
-                assert!(
-                    error <= tolerance::compensated(1.0),
-                    "{method}, {n} layers: {error:e}"
-                );
-            }
-        }
     }
 }
 

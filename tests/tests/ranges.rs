@@ -2,9 +2,9 @@
 
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::{fragment::Fragment, methods::over};
-use peelnet_render::{MethodOptions, Renderer};
+use peelnet_render::Renderer;
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{draw, gpu, scene};
+use peelnet_tests::{draw, gpu, prepare, scene};
 
 /// Where the layers of the middle pixel lie in its range of depth on a logarithmic scale. The slabs of `slabs` end at 0.12, 0.4 and 0.75: each
 /// has two layers, which are its nearest and its farthest, so that all are known. The range is found to one of 42 levels.
@@ -83,10 +83,7 @@ fn boxes_of_flat_objects_are_as_good_as_their_surfaces() {
         object.world_from_object = Mat4::from_translation(Vec3::new(0.0, 0.0, -100.0));
     }
     let mut renderer = Renderer::new(&gpu, &scattered).unwrap();
-    let method = "slabs:range=boxes".parse().unwrap();
-    let mut prepared = renderer
-        .method(&method, MethodOptions::sized(SIZE))
-        .unwrap();
+    let mut prepared = prepare(&renderer, "slabs:range=boxes", SIZE);
     let drawn = |renderer: &Renderer, prepared: &mut _| {
         let image = renderer.image(prepared, &all.views[0]).unwrap().image;
         error(image.pixels[MIDDLE])

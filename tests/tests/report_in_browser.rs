@@ -1,76 +1,31 @@
 //! The bench's page in a real browser: headless Chromium, which `cargo xtask test --all` installs where it is missing.
 
-use peelnet_eval::{Machine, Row, bench::Bench, compare::EXACT, front::BASE};
+use peelnet_core::fragment::worked_example;
+use peelnet_eval::{Machine, bench, bench::Bench, compare::Plan};
+use peelnet_render::MethodSpec;
 use peelnet_report::Results;
+use peelnet_tests::{gpu, walls};
 use std::{path::Path, process::Command};
 
-fn row(method: &str, scene: &str, mse: f64, ms: f64) -> Row {
-    Row {
-        method: method.to_owned(),
-        scene: scene.to_owned(),
-        view: 0,
-        width: 8,
-        height: 8,
-        samples: 1,
-        fragments: Some(128),
-        max_layers: Some(4),
-        lost: None,
-        mse_linear: mse,
-        mse_linear_covered: Some(mse),
-        mse255: mse * 65025.0,
-        mse255_covered: None,
-        psnr: None,
-        ssim: Some(1.0 - mse),
-        flip: Some(mse),
-        transmittance_error: None,
-        contour_pairs: None,
-        p99_error: 0.0,
-        max_error: 0.0,
-        covered_pixels: 64,
-        dark_pixels: 0,
-        non_finite_pixels: 0,
-        time_ms: Some(ms),
-        time_ms_min: Some(ms),
-        time_ms_p90: Some(ms),
-        wall_ms: None,
-        time_by_pass: format!("gather={ms}"),
-        passes: 2,
-        bytes_per_pixel: Some(24.0),
-        adapter: "test".to_owned(),
-    }
-}
-
-fn bench() -> Results<Bench> {
-    let methods = [
-        (EXACT, 0.0, 90.0),
-        (BASE, 1e-2, 9.0),
-        ("mboit4", 1e-4, 20.0),
-        ("wboit-eq9", 1e-3, 10.0),
-    ];
-    let rows = ["first", "second"]
-        .into_iter()
-        .flat_map(|scene| methods.map(|(method, mse, ms)| row(method, scene, mse, ms)))
-        .collect();
-    let machine = Machine {
-        os: "linux".into(),
-        arch: "x86_64".into(),
-        cpu: "test".into(),
-        cores: 2,
-        memory: 0,
-        adapter: "test".into(),
-        adapter_kind: "software".into(),
-        backend: "vulkan".into(),
-        driver: "test".into(),
-        peelnet: "0".into(),
-        build: "debug".into(),
-    };
+/// Writes the report of a small bench of two scenes.
+fn write_report(folder: &Path) {
+    let gpu = gpu();
+    let methods = ["painter-object:sort=off", "mboit4", "wboit-eq9"];
+    let methods: Vec<MethodSpec> = methods.map(|m| m.parse().unwrap()).to_vec();
+    let scenes = ["first", "second"].map(|name| {
+        let mut scene = walls(&worked_example(), [0.0; 3]);
+        scene.name = name.to_owned();
+        scene
+    });
+    let rows = bench(&gpu, &scenes, &Plan::new([8, 8], &methods)).unwrap();
     let bench = Bench {
         load: [None; 2],
         settings: None,
         trained_on: Vec::new(),
         rows,
     };
-    Results::new(machine, "peelnet bench", bench)
+    let results = Results::new(Machine::of(&gpu), "peelnet bench", bench);
+    results.write(folder).unwrap();
 }
 
 fn chromium() -> &'static str {
@@ -107,21 +62,22 @@ fn the_page_works() {
 const found = [];
 const table = document.querySelector('table.sortable');
 const column = [...table.querySelectorAll('th')].findIndex(h => h.textContent.startsWith('ms'));
-const values = () => [...table.tBodies[0].rows].map(r => r.cells[column].textContent).join(' ');
+const values = () => [...table.tBodies[0].rows].map(r => Number(r.cells[column].textContent));
 found.push('bubbles ' + document.querySelectorAll('circle.point title').length);
 const box = document.querySelector('.chart svg').getBoundingClientRect();
 found.push('drawn ' + (box.width > 300 && box.height > 100));
 table.querySelectorAll('th')[column].click();
-found.push('up ' + values());
+const up = values();
 table.querySelectorAll('th')[column].click();
-found.push('down ' + values());
+const down = values();
+found.push('sorted ' + (up.length === 4 && up.every((x, i) => i === 0 || up[i - 1] <= x) && down.join() === up.reverse().join()));
 const name = [...table.querySelectorAll('th')][0];
 name.click();
 found.push('names ' + [...table.tBodies[0].rows].map(r => r.cells[0].textContent).join(' '));
 document.body.dataset.found = found.join('; ');
 </script>";
     let dir = tempfile::tempdir().unwrap();
-    bench().write(dir.path()).unwrap();
+    write_report(dir.path());
     let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
     let watched = page.replace(
         "<meta charset=\"utf-8\">",
@@ -148,7 +104,6 @@ document.body.dataset.found = found.join('; ');
     // Four charts: all scenes in two means, and one a scene.
     assert_eq!(
         found,
-        "bubbles 16; drawn true; up 9.00 10.00 20.00 90.00; down 90.00 20.00 10.00 9.00; \
-         names abuffer mboit4 painter-object:sort=off wboit-eq9"
+        "bubbles 16; drawn true; sorted true; names abuffer mboit4 painter-object:sort=off wboit-eq9"
     );
 }

@@ -263,14 +263,9 @@ fn layered(layers: &[u32]) -> Scene {
     scene("layers", [0.5; 3], walls.collect())
 }
 
-/// What is highlighted among walls, by which formula, whether only increasing layers count, and the parts of the layers' colours that are seen.
-type LayerCase = (
-    &'static [u32],
-    u32,
-    LayerFormula,
-    bool,
-    &'static [(usize, f32)],
-);
+/// Walls of these layers, which one is highlighted by which formula, whether only increasing layers count, and how much of each layer's colour
+/// is seen.
+type LayerCase = (&'static [u32], u32, LayerFormula, bool, [f32; 3]);
 
 const SIXTH: f32 = 1.0 / 6.0;
 
@@ -278,73 +273,30 @@ const LAYER_CASES: [LayerCase; 10] = {
     use LayerFormula::{Front, Printed};
     [
         // The highlighted layer takes half, those in front of it the other half in equal parts, what lies behind is gone.
-        (
-            &[0, 1, 2],
-            2,
-            Front,
-            false,
-            &[(0, 0.25), (1, 0.25), (2, 0.5)],
-        ),
-        (&[0, 1, 2], 0, Front, false, &[(0, 1.0)]),
-        (&[0, 1, 2], 1, Front, false, &[(0, 0.5), (1, 0.5)]),
+        (&[0, 1, 2], 2, Front, false, [0.25, 0.25, 0.5]),
+        (&[0, 1, 2], 0, Front, false, [1.0, 0.0, 0.0]),
+        (&[0, 1, 2], 1, Front, false, [0.5, 0.5, 0.0]),
         // A ray that leaves again meets the outer layers once more, unless only new layers count.
-        (
-            &[0, 1, 0, 2],
-            2,
-            Front,
-            false,
-            &[(0, 2.0 * SIXTH), (1, SIXTH), (2, 0.5)],
-        ),
-        (
-            &[0, 1, 0, 2],
-            2,
-            Front,
-            true,
-            &[(0, 0.25), (1, 0.25), (2, 0.5)],
-        ),
+        (&[0, 1, 0, 2], 2, Front, false, [2.0 * SIXTH, SIXTH, 0.5]),
+        (&[0, 1, 0, 2], 2, Front, true, [0.25, 0.25, 0.5]),
         // As printed: the nearest fragment of the layer weighs a half, each other one a half over the number of all, in front or behind.
-        (
-            &[0, 1, 2],
-            1,
-            Printed,
-            false,
-            &[(0, SIXTH), (1, 0.5), (2, SIXTH)],
-        ),
-        (
-            &[0, 1, 2],
-            0,
-            Printed,
-            false,
-            &[(0, 0.5), (1, SIXTH), (2, SIXTH)],
-        ),
-        (&[2], 2, Printed, false, &[(2, 0.5)]),
+        (&[0, 1, 2], 1, Printed, false, [SIXTH, 0.5, SIXTH]),
+        (&[0, 1, 2], 0, Printed, false, [0.5, SIXTH, SIXTH]),
+        (&[2], 2, Printed, false, [0.0, 0.0, 0.5]),
         // A second fragment of the layer is one of the others; unless only new layers count, then it is none.
-        (
-            &[0, 1, 0, 2],
-            0,
-            Printed,
-            false,
-            &[(0, 0.625), (1, 0.125), (2, 0.125)],
-        ),
-        (
-            &[0, 1, 0, 2],
-            0,
-            Printed,
-            true,
-            &[(0, 0.5), (1, SIXTH), (2, SIXTH)],
-        ),
+        (&[0, 1, 0, 2], 0, Printed, false, [0.625, 0.125, 0.125]),
+        (&[0, 1, 0, 2], 0, Printed, true, [0.5, SIXTH, SIXTH]),
     ]
 };
 
 /// The view of the layers shows these parts of their colours.
-fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: &[(usize, f32)]) {
+fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: [f32; 3]) {
     let scene = scene.layer_view(view.highlight, false).unwrap();
     let renderer = Renderer::new(gpu, &scene).unwrap();
     let mut prepared = renderer.layers(view, [4, 3]).unwrap();
     let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
     for (k, found) in frame.image.pixels[5][..3].iter().enumerate() {
-        let parts = parts.iter().map(|(layer, share)| LAYERS[*layer][k] * share);
-        let want = parts.sum::<f32>();
+        let want: f32 = (0..3).map(|layer| LAYERS[layer][k] * parts[layer]).sum();
         // Roundings of a handful of products of numbers up to 1.
         assert!((found - want).abs() < 1e-6, "{view:?}: {found} for {want}");
     }
@@ -373,7 +325,12 @@ fn layers_are_highlighted() {
         (0, LayerFormula::Front, 1.0),
         (0, LayerFormula::Printed, 0.5),
     ] {
-        check_layers(&gpu, &holed, view(highlight, formula, false), &[(1, share)]);
+        check_layers(
+            &gpu,
+            &holed,
+            view(highlight, formula, false),
+            [0.0, share, 0.0],
+        );
     }
     let e = layered(&[0, 1]).layer_view(7, false).unwrap_err();
     let e = e.to_string();
