@@ -22,18 +22,22 @@ use peelnet_tests::{gpu, half_sums, network_of, scene, window_depth};
 /// roots of cubics, good to 1e-5 each, and what lies at them is divided by pivots down to 1e-3.
 const MOMENTS: f32 = 2e-4;
 
+/// The same for random lists. Of few layers more than four moments are nearly singular, pivots are the bias itself, 5e-6 to 1e-4, and roundings of
+/// 6e-8 show as up to 1e-3 (seen on llvmpipe): twice that.
+const MOMENTS_OF_RANDOM_LISTS: f32 = 2e-3;
+
 /// Bound for sums in 32 bits. Shaders may contract or reorder; divisions and pow are allowed 2.5 and 16 units: 1e-4 is 800 units.
 const FULL: f32 = 1e-4;
 
-/// The largest difference between a pixel of `n` layers and the reference; `None` where the error of 16-bit statistics has no simple
+/// The largest difference between a pixel of `n` layers and the reference, where moments may err by `moments`; `None` where the error of 16-bit statistics has no simple
 /// bound, because roots of them are taken.
-fn bound(spec: &MethodSpec, n: usize) -> Option<f32> {
+fn bound(spec: &MethodSpec, n: usize, moments: f32) -> Option<f32> {
     let promises = spec.promises();
     match (promises.root, promises.statistics, promises.sums) {
         _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
         (Some(_), Precision::Half, _) => None,
-        (Some(_), Precision::Full, Precision::Full) => Some(MOMENTS),
-        (Some(_), Precision::Full, Precision::Half) => Some(MOMENTS + half_sums(n, 1.0)),
+        (Some(_), Precision::Full, Precision::Full) => Some(moments),
+        (Some(_), Precision::Full, Precision::Half) => Some(moments + half_sums(n, 1.0)),
         (None, _, Precision::Full) => Some(FULL),
         // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
         (None, _, Precision::Half) => Some(half_sums(n, 3.0)),
@@ -160,7 +164,7 @@ impl Frame {
     }
 
     /// What is wrong with a method's frame, a line each; empty where nothing is.
-    fn problems(&self, renderer: &Renderer, spec: &MethodSpec) -> Vec<String> {
+    fn problems(&self, renderer: &Renderer, spec: &MethodSpec, moments: f32) -> Vec<String> {
         let view = &self.scene.views[0];
         let model = network_of(spec).map(|(_, model)| model);
         let options = MethodOptions::sized(self.size);
@@ -172,7 +176,7 @@ impl Frame {
             problems.push(format!("{spec}: {} fragments are lost", frame.stats.lost));
         }
         for (fragments, region) in self.lists.iter().zip(0..) {
-            let bound = match bound(spec, fragments.len()) {
+            let bound = match bound(spec, fragments.len(), moments) {
                 // Nothing is drawn, nothing is rounded.
                 _ if fragments.is_empty() => 0.0,
                 Some(bound) => bound,
@@ -202,34 +206,36 @@ impl Frame {
     }
 }
 
-fn compare(lists: Vec<Vec<Fragment>>, specs: &[MethodSpec]) {
+fn compare(lists: Vec<Vec<Fragment>>, moments: f32, specs: &[MethodSpec]) {
     let frame = Frame::new(lists);
     let renderer = Renderer::new(&gpu(), &frame.scene).unwrap();
-    let problems = specs.iter().flat_map(|s| frame.problems(&renderer, s));
-    let problems: Vec<String> = problems.collect();
+    let problems = specs.iter();
+    let problems: Vec<String> = problems
+        .flat_map(|spec| frame.problems(&renderer, spec, moments))
+        .collect();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
 #[test]
 fn closed_forms_of_representatives() {
-    compare(closed_forms(), &representatives());
+    compare(closed_forms(), MOMENTS, &representatives());
 }
 
 #[test]
 fn random_lists_of_representatives() {
-    compare(random_lists(), &representatives());
+    compare(random_lists(), MOMENTS_OF_RANDOM_LISTS, &representatives());
 }
 
 #[test]
 #[ignore = "long: cargo xtask test --all"]
 fn closed_forms_of_all_methods() {
-    compare(closed_forms(), &all_specs());
+    compare(closed_forms(), MOMENTS, &all_specs());
 }
 
 #[test]
 #[ignore = "long: cargo xtask test --all"]
 fn random_lists_of_all_methods() {
-    compare(random_lists(), &all_specs());
+    compare(random_lists(), MOMENTS_OF_RANDOM_LISTS, &all_specs());
 }
 
 /// Every method has a reference, and a bound on the difference in at least one precision: nothing above is skipped in silence.
@@ -238,7 +244,11 @@ fn every_method_has_a_reference() {
     let specs = all_specs();
     for method in METHODS.iter().filter(|m| m.cpu_only.is_none()) {
         let own = || specs.iter().filter(|s| s.name() == method.name);
-        assert!(own().any(|s| bound(s, 4).is_some()), "{}", method.name);
+        assert!(
+            own().any(|s| bound(s, 4, MOMENTS).is_some()),
+            "{}",
+            method.name
+        );
         // A list has no boxes: `ranges` tests what depends on them.
         let has_boxes = |s: &MethodSpec| s.to_string().contains("range=boxes");
         for spec in own().filter(|s| !s.is_scaled() && !has_boxes(s)) {
