@@ -169,23 +169,6 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
-    /// Those among the scenes that a model names, in the order of the scenes; of several models those that any of them names.
-    #[test]
-    fn scenes_that_a_model_was_trained_on_are_found() {
-        let load = |name| peelnet_scene::suite::load(name).unwrap();
-        let scenes = ["panes-held", "panes", "cups-held", "cups"].map(load);
-        let model = |names: &[&str]| {
-            let mut model = Model::shipped(peelnet_model::Recipe::SMALL).unwrap();
-            let dataset = model.meta.dataset.as_mut().unwrap();
-            dataset.scenes = names.iter().map(|&n| n.to_owned()).collect();
-            model
-        };
-        let (one, other) = (model(&["cups", "smoke-30"]), model(&["panes"]));
-        assert_eq!(trained_on(&scenes, [&one]), ["cups"]);
-        assert_eq!(trained_on(&scenes, [&one, &other]), ["panes", "cups"]);
-        assert!(trained_on(&scenes, []).is_empty());
-    }
-
     /// Rows are found by their scene's name: the second of two would pass for done.
     #[test]
     fn two_scenes_of_one_name_are_refused_with_both_files() {

@@ -2,7 +2,7 @@
 
 use crate::{Row, geometric_mean, methods_of, scenes_of};
 use peelnet_render::MethodSpec;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Figures of one scene, means over its views.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,31 +55,25 @@ impl ByScene {
         let scenes: Vec<SceneErrors> = scenes_of(rows)
             .into_iter()
             .map(|scene| {
-                let of = |pick: &dyn Fn(&Row) -> Option<f64>| {
-                    let mut sums: BTreeMap<String, (f64, u32)> = BTreeMap::new();
-                    for row in rows.iter().filter(|r| r.scene == scene) {
-                        if let Some(value) = pick(row) {
-                            let entry = sums.entry(row.method.clone()).or_default();
-                            entry.0 += value;
-                            entry.1 += 1;
-                        }
+                let own: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
+                let of = |pick: fn(&Row) -> Option<f64>| {
+                    let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+                    for row in &own {
+                        let values = pick(row).into_iter();
+                        all.entry(row.method.clone()).or_default().extend(values);
                     }
-                    sums.into_iter()
-                        .map(|(m, (sum, n))| (m, sum / f64::from(n)))
-                        .collect::<BTreeMap<_, _>>()
+                    all.retain(|_, values| !values.is_empty());
+                    let means = all.into_iter();
+                    means
+                        .map(|(m, v)| (m, v.iter().sum::<f64>() / v.len() as f64))
+                        .collect()
                 };
-                let mut views: Vec<u32> = rows
-                    .iter()
-                    .filter(|r| r.scene == scene)
-                    .map(|r| r.view)
-                    .collect();
-                views.sort_unstable();
-                views.dedup();
+                let views: BTreeSet<u32> = own.iter().map(|r| r.view).collect();
                 SceneErrors {
                     views: views.len(),
-                    mse255: of(&|r| Some(r.mse255)),
-                    mse_linear: of(&|r| Some(r.mse_linear)),
-                    mse255_covered: of(&|r| r.mse255_covered),
+                    mse255: of(|r| Some(r.mse255)),
+                    mse_linear: of(|r| Some(r.mse_linear)),
+                    mse255_covered: of(|r| r.mse255_covered),
                     scene: scene.to_owned(),
                 }
             })

@@ -1,7 +1,10 @@
 //! Draws every view of a scene exactly and with each method, and measures the differences.
 
 use crate::transmittance::Sample;
-use crate::{EvalError, Row, contours::Pairs, metrics, perceptual::Displayed, settings_hash};
+use crate::{
+    EvalError, Row, check_stop, contours::Pairs, each_once, metrics, perceptual::Displayed,
+    settings_hash,
+};
 use peelnet_gpu::{Gpu, GpuError, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
@@ -10,7 +13,7 @@ use peelnet_render::{
 };
 use peelnet_scene::Scene;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// The method that judges all others.
 pub const EXACT: &str = Role::Reference.method();
@@ -55,14 +58,6 @@ impl<'a> Plan<'a> {
             frames: 5,
             images: None,
         }
-    }
-
-    /// Whether a row can be of this plan on these scenes.
-    pub fn has(&self, scenes: &[Scene], row: &Row) -> bool {
-        let is_drawn = |s: &Scene| s.name == row.scene && (row.view as usize) < self.views_of(s);
-        scenes.iter().any(is_drawn)
-            && ([row.width, row.height], row.samples) == (self.size, self.samples)
-            && (row.method == EXACT || self.methods.iter().any(|m| m.to_string() == row.method))
     }
 
     /// Frames of each method and view: the compared one, and where any are timed one more to warm up.
@@ -185,13 +180,6 @@ impl<'a> Stage<'a> {
         EvalError::render(&self.scene.name, method)
     }
 
-    fn check_stop(&self) -> Result<(), EvalError> {
-        if self.stop.load(Ordering::Relaxed) {
-            return Err(EvalError::Interrupted);
-        }
-        Ok(())
-    }
-
     /// The exact method first, so that its image is there for all others.
     fn prepare(
         &self,
@@ -203,16 +191,13 @@ impl<'a> Stage<'a> {
         let mut entries = Vec::new();
         for method in std::iter::once(&exact).chain(others) {
             let name = method.to_string();
-            let learned = plan
-                .learned
-                .iter()
-                .find(|l| l.recipe.method == method.name());
-            let models = plan.models.iter();
-            let mut models = models.filter(|m| m.meta.recipe.method == method.name());
+            let mut learned = plan.learned.iter();
+            let learned = learned.find(|l| l.recipe.method == method.name());
+            let mut models = plan.models.iter();
             let mut entry = Entry {
                 name,
                 method: method.clone(),
-                model: models.next(),
+                model: models.find(|m| m.meta.recipe.method == method.name()),
                 prepared: None,
             };
             if method.method().cpu_only.is_some() {
@@ -261,7 +246,7 @@ impl<'a> Stage<'a> {
         let mut exact: Option<(Image, Displayed)> = None;
         let mut rows: Vec<Row> = Vec::new();
         while let Some(entry) = entries.get_mut(rows.len()) {
-            self.check_stop()?;
+            check_stop(self.stop)?;
             let name = &entry.name;
             let drawn = if let Some(prepared) = &mut entry.prepared {
                 self.renderer.image(prepared, camera)
@@ -323,7 +308,7 @@ impl<'a> Stage<'a> {
         }
         for number in 0..=self.plan.frames {
             for (entry, frames) in entries.iter_mut().zip(&mut frames) {
-                self.check_stop()?;
+                check_stop(self.stop)?;
                 let Some(prepared) = &mut entry.prepared else {
                     continue;
                 };
@@ -386,12 +371,7 @@ pub(crate) fn method_ms(frame: &Profile) -> f64 {
 
 /// Median over frames of each pass's time: `name=ms`, by first appearance, passes of one name summed in each frame.
 fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    for pass in frames.iter().flatten() {
-        if !names.contains(&pass.label.as_str()) {
-            names.push(&pass.label);
-        }
-    }
+    let names = each_once(frames.iter().flatten().map(|pass| pass.label.as_str()));
     let median = |name: &str| {
         let mut sums: Vec<f64> = frames
             .iter()
@@ -426,7 +406,6 @@ fn row(
         view: u32::try_from(view).unwrap_or(u32::MAX),
         width: frame.image.width,
         height: frame.image.height,
-        samples: 1,
         fragments: frame.stats.fragments,
         max_layers: frame.stats.max_layers,
         lost: frame.stats.fragments.map(|_| frame.stats.lost),
@@ -435,23 +414,18 @@ fn row(
         mse255: d.mse255,
         mse255_covered: d.mse255_covered,
         psnr: d.psnr,
-        ssim: None,
-        flip: None,
-        transmittance_error: None,
-        contour_pairs: None,
         p99_error: d.p99_error,
         max_error: d.max_error,
         covered_pixels: d.covered_pixels,
         dark_pixels: d.dark_pixels,
         non_finite_pixels: d.non_finite_pixels,
         time_ms: milliseconds(&of_method(&frame.times)),
-        time_ms_min: None,
-        time_ms_p90: None,
         wall_ms: drawn.then_some(frame.wall_micros / 1e3),
         time_by_pass: medians_by_pass(&[of_method(&frame.times)]),
         passes: frame.stats.geometry_passes + frame.stats.fullscreen_passes,
         bytes_per_pixel: drawn.then_some(frame.stats.bytes_per_pixel),
         adapter: gpu.info.name.clone(),
+        ..Row::default()
     }
 }
 
@@ -460,15 +434,6 @@ mod tests {
     use super::image_name;
     use peelnet_render::{METHODS, MethodSpec};
     use std::collections::BTreeSet;
-
-    #[test]
-    fn picture_names_are_plain() {
-        assert_eq!(
-            image_name("cups", "wboit-eq9:targets=f32"),
-            "cups-wboit-eq9_3atargets_3df32.png"
-        );
-        assert_eq!(image_name("../x", "a"), ".._2fx-a.png");
-    }
 
     /// Names that differ have files that differ, also where case is ignored.
     #[test]

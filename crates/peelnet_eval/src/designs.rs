@@ -5,14 +5,12 @@
 //! targets round them; colours are not rounded. The errors are ratios to those of two references on the same fragments ([`MOMENTS`] and
 //! [`KBUFFER`]), composited by their CPU twins.
 
-mod codes;
 mod file;
 mod ranges;
 #[cfg(test)]
 mod tests;
 mod views;
 
-pub use codes::{CODES, composite as coded};
 pub use file::{parse, read, shipped};
 pub use ranges::{REACH, Source};
 pub use views::{Measured, Stacked, View, peel, score};
@@ -88,21 +86,18 @@ impl Entry {
 }
 
 /// All designs.
+#[allow(
+    missing_docs,
+    reason = "docs/results-files.md says what each field is, and its unit"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Designs {
-    /// The file of designs.
     pub file: String,
-    /// Names of the scenes that were trained on.
     pub trained_on: Vec<String>,
-    /// Names of the scenes that judge.
     pub judged_on: Vec<String>,
-    /// Peak of the learning rate.
     pub learning_rate: f64,
-    /// Passes over the training examples.
     pub epochs: u32,
-    /// The methods that errors are compared with.
     pub references: Vec<Reference>,
-    /// A row for each design, in the order of the file.
     pub rows: Vec<Row>,
 }
 
@@ -117,57 +112,43 @@ pub struct Reference {
 }
 
 /// Errors over all views.
+#[allow(
+    missing_docs,
+    reason = "docs/results-files.md says what each field is, and its unit"
+)]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Score {
-    /// Mean squared error of the whole frame over that of [`MOMENTS`], geometric mean over scenes and views.
     pub to_moments: Option<f64>,
-    /// The same over that of [`KBUFFER`].
     pub to_kbuffer: Option<f64>,
-    /// The scene with the largest ratio of mean error to that of [`MOMENTS`].
     pub worst_scene: Option<String>,
-    /// That ratio.
     pub worst: Option<f64>,
-    /// Share of contour pairs, mean over the views that have pairs; see [`crate::contours`].
     pub contour_pairs: Option<f64>,
-    /// Share of pixels whose error changes by more than [`crate::contours::THRESHOLD`] with each of [`MOTIONS`], mean over the views.
     #[serde(default)]
     pub flicker: [Option<f64>; MOTIONS.len()],
 }
 
 /// A measured design.
+#[allow(
+    missing_docs,
+    reason = "docs/results-files.md says what each field is, and its unit"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Its name.
     pub design: String,
-    /// The slabs, nearest first.
     pub slabs: Vec<Kept>,
-    /// Bins of depth and levels of opacity of a nearest or farthest fragment, such as `1920x32`.
     pub records: String,
-    /// What is cut into slabs, such as `pixel`.
     pub range: String,
-    /// Whether the colours of known fragments have a sum of their own.
     pub apart: bool,
-    /// The same of the training examples.
     pub trained_apart: bool,
-    /// Bytes a pixel of all targets, colours included.
     pub bytes: u32,
-    /// Names of the inputs.
     pub inputs: Vec<String>,
-    /// Layers, such as `9-12-1`.
     pub topology: String,
-    /// Weights and biases.
     pub parameters: u64,
-    /// What was minimised.
     pub loss: PixelLoss,
-    /// Decides initial weights and the order of examples.
     pub seed: u64,
-    /// Pixels that were trained on.
     pub examples: u64,
-    /// Seconds of training.
     pub seconds: f64,
-    /// With the network.
     pub network: Score,
-    /// Without a network: the middle of the bounds.
     pub middle: Score,
 }
 

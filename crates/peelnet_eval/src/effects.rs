@@ -1,20 +1,17 @@
 //! What effects cost: each effect of a scene with and without it, shading and transparency each alone, shading of one layer against all,
 //! and how the view of layers grows with triangles and with the part of the frame that it fills.
 
-use crate::{EvalError, compare};
+use crate::{EvalError, check_stop, compare};
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
 use peelnet_render::{
-    Image, LayerFormula, LayerView, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
+    LayerFormula, LayerView, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
 };
 use peelnet_scene::{Camera, Census, Effect, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
     path::Path,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, atomic::AtomicBool},
 };
 
 /// What an effect costs in a scene.
@@ -127,38 +124,35 @@ pub fn costs(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Vec<Cost>,
     let census = Census::of(scene);
     let called = Effect::ALL.into_iter().filter(|e| census.has(*e));
     called
-        .map(|effect| cost(gpu, scene, effect, settings))
+        .map(|effect| cost(gpu, scene, effect, settings, None))
         .collect()
 }
 
-fn cost(gpu: &Gpu, scene: &Scene, effect: Effect, settings: &Settings) -> Result<Cost, EvalError> {
-    let failed = || EvalError::render(&scene.name, &format!("{} ({effect})", settings.method));
+/// Pictures with and without the effect go to the folder.
+fn cost(
+    gpu: &Gpu,
+    scene: &Scene,
+    effect: Effect,
+    settings: &Settings,
+    folder: Option<&Path>,
+) -> Result<Cost, EvalError> {
     let plain = scene.without(effect);
-    let renderers = [
-        Renderer::new(gpu, scene).map_err(failed())?,
-        Renderer::new(gpu, &plain).map_err(failed())?,
-    ];
-    let prepare = |renderer: &Renderer| {
-        renderer.method(&settings.method, MethodOptions::sized(settings.size))
-    };
-    let [mut with, mut without] = [
-        prepare(&renderers[0]).map_err(failed())?,
-        prepare(&renderers[1]).map_err(failed())?,
-    ];
     let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
-    for (k, prepared) in [&mut with, &mut without].into_iter().enumerate() {
-        let drawn = renderers[k]
-            .image(prepared, &scene.views[0])
-            .map_err(failed())?;
-        bytes[k] = drawn.stats.bytes_per_pixel;
-        passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
-    }
-    let [ms_with, ms_without] = in_turn(
-        [(&renderers[0], &mut with), (&renderers[1], &mut without)],
-        &scene.views[0],
-        settings.frames,
-    )
-    .map_err(failed())?;
+    let mut draw = || {
+        let mut stages = settings.stages(gpu, [scene, &plain])?;
+        for (k, (renderer, prepared)) in stages.iter_mut().enumerate() {
+            let drawn = renderer.image(prepared, &scene.views[0])?;
+            bytes[k] = drawn.stats.bytes_per_pixel;
+            passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
+            if let Some(folder) = folder {
+                let file = picture_of(folder, &scene.name, effect.name(), k == 0);
+                drawn.image.save(&file)?;
+            }
+        }
+        in_turn(stages, &scene.views[0], settings.frames)
+    };
+    let method = format!("{} ({effect})", settings.method);
+    let [ms_with, ms_without] = draw().map_err(EvalError::render(&scene.name, &method))?;
     Ok(Cost {
         scene: scene.name.clone(),
         effect: effect.name().to_owned(),
@@ -182,23 +176,12 @@ pub fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Par
     if !lit || scene.transparent_bounds().is_none() {
         return Ok(None);
     }
-    let times = || {
-        let (opaque, unlit) = (scene.opaque(), scene.unlit());
-        let renderers = [
-            Renderer::new(gpu, scene)?,
-            Renderer::new(gpu, &opaque)?,
-            Renderer::new(gpu, &unlit)?,
-        ];
-        let prepare = |renderer: &Renderer| {
-            renderer.method(&settings.method, MethodOptions::sized(settings.size))
-        };
-        let [a, b, c] = &renderers;
-        let [mut both, mut shading, mut transparency] = [prepare(a)?, prepare(b)?, prepare(c)?];
-        let frames = [(a, &mut both), (b, &mut shading), (c, &mut transparency)];
-        in_turn(frames, &scene.views[0], settings.frames)
-    };
+    let (opaque, unlit) = (scene.opaque(), scene.unlit());
+    let times = settings
+        .stages(gpu, [scene, &opaque, &unlit])
+        .and_then(|stages| in_turn(stages, &scene.views[0], settings.frames));
     let method = settings.method.to_string();
-    let times = times().map_err(EvalError::render(&scene.name, &method))?;
+    let times = times.map_err(EvalError::render(&scene.name, &method))?;
     let [ms_both, ms_shading, ms_transparency] = times;
     Ok(Some(Parts {
         scene: scene.name.clone(),
@@ -208,21 +191,53 @@ pub fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Par
     }))
 }
 
+/// A scene on the GPU, and what draws it.
+type Stage = (Renderer, Prepared);
+
+impl Settings {
+    /// Scenes ready to be drawn with the method.
+    fn stages<const N: usize>(
+        &self,
+        gpu: &Gpu,
+        scenes: [&Scene; N],
+    ) -> Result<[Stage; N], RenderError> {
+        stages(gpu, scenes, |renderer| {
+            renderer.method(&self.method, MethodOptions::sized(self.size))
+        })
+    }
+}
+
+fn stages<const N: usize>(
+    gpu: &Gpu,
+    scenes: [&Scene; N],
+    prepare: impl Fn(&Renderer) -> Result<Prepared, RenderError>,
+) -> Result<[Stage; N], RenderError> {
+    let stage = |scene: &Scene| {
+        let renderer = Renderer::new(gpu, scene)?;
+        let prepared = prepare(&renderer)?;
+        Ok::<Stage, RenderError>((renderer, prepared))
+    };
+    let stages: Vec<Stage> = scenes.into_iter().map(stage).collect::<Result<_, _>>()?;
+    let Ok(stages) = stages.try_into() else {
+        unreachable!("there are as many stages as scenes")
+    };
+    Ok(stages)
+}
+
 /// Median times of frames that are drawn in turn, so that all see the same machine load; the first of each warms up.
 fn in_turn<const N: usize>(
-    mut frames: [(&Renderer, &mut Prepared); N],
+    mut stages: [Stage; N],
     camera: &Camera,
     count: u32,
 ) -> Result<[f64; N], RenderError> {
     let mut times: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
     for i in 0..=count {
-        for ((renderer, prepared), times) in frames.iter_mut().zip(&mut times) {
+        for ((renderer, prepared), times) in stages.iter_mut().zip(&mut times) {
             let frame = renderer.profile(prepared, camera)?;
             if i > 0 {
                 // The opaque surfaces have effects too.
-                times.push(
-                    peelnet_render::milliseconds(&frame.times).unwrap_or(frame.wall_micros / 1e3),
-                );
+                let measured = peelnet_render::milliseconds(&frame.times);
+                times.push(measured.unwrap_or(frame.wall_micros / 1e3));
             }
         }
     }
@@ -230,6 +245,14 @@ fn in_turn<const N: usize>(
         times.sort_by(f64::total_cmp);
         times[times.len() / 2]
     }))
+}
+
+const fn view_of(highlight: u32) -> LayerView {
+    LayerView {
+        highlight,
+        increasing: false,
+        formula: LayerFormula::Front,
+    }
 }
 
 /// Times of the view of layers from a camera: with one layer shaded, and with all.
@@ -241,27 +264,14 @@ fn layer_times(
 ) -> Result<[f64; 2], EvalError> {
     let layers = scene.layers();
     // Of the middle: with layers in front of it and behind.
-    let view = LayerView {
-        highlight: layers[layers.len() / 2],
-        increasing: false,
-        formula: LayerFormula::Front,
-    };
-    let scenes = [
-        scene.layer_view(view.highlight, false)?,
-        scene.layer_view(view.highlight, true)?,
-    ];
-    let times = || {
-        let [one, all] = [
-            Renderer::new(gpu, &scenes[0])?,
-            Renderer::new(gpu, &scenes[1])?,
-        ];
-        let [mut a, mut b] = [
-            one.layers(view, settings.size)?,
-            all.layers(view, settings.size)?,
-        ];
-        in_turn([(&one, &mut a), (&all, &mut b)], camera, settings.frames)
-    };
-    times().map_err(EvalError::render(&scene.name, "layers"))
+    let view = view_of(layers[layers.len() / 2]);
+    let one = scene.layer_view(view.highlight, false)?;
+    let all = scene.layer_view(view.highlight, true)?;
+    stages(gpu, [&one, &all], |renderer| {
+        renderer.layers(view, settings.size)
+    })
+    .and_then(|stages| in_turn(stages, camera, settings.frames))
+    .map_err(EvalError::render(&scene.name, "layers"))
 }
 
 /// The scene with its layers so many times over, each set around the one before.
@@ -289,12 +299,7 @@ fn filling(
     filled: f64,
     size: [u32; 2],
 ) -> Result<(Camera, f64), EvalError> {
-    let layers = scene.layers();
-    let view = LayerView {
-        highlight: layers[0],
-        increasing: false,
-        formula: LayerFormula::Front,
-    };
+    let view = view_of(scene.layers()[0]);
     let scene = scene.layer_view(view.highlight, false)?;
     let failed = || EvalError::render(&scene.name, "layers");
     let renderer = Renderer::new(gpu, &scene).map_err(failed())?;
@@ -306,7 +311,7 @@ fn filling(
             ..scene.views[0]
         };
         let frame = renderer.image(&mut prepared, &camera).map_err(failed())?;
-        let image: Image = frame.image;
+        let image = frame.image;
         let covered = image.pixels.iter().filter(|p| p[3] > 0.0).count();
         Ok(covered as f64 / image.pixels.len() as f64)
     };
@@ -348,40 +353,21 @@ pub fn measure(
         layers: Vec::new(),
         fills: Vec::new(),
     };
-    let go_on = || {
-        if stop.load(Ordering::Relaxed) {
-            Err(EvalError::Interrupted)
-        } else {
-            Ok(())
-        }
-    };
     for scene in scenes {
         let census = Census::of(scene);
         for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
-            go_on()?;
+            check_stop(stop)?;
             tick(&format!("{}: {effect}", scene.name));
-            found.costs.push(cost(gpu, scene, effect, settings)?);
-            picture(
-                gpu,
-                scene,
-                settings,
-                &picture_of(folder, &scene.name, effect.name(), true),
-            )?;
-            let plain = scene.without(effect);
-            picture(
-                gpu,
-                &plain,
-                settings,
-                &picture_of(folder, &scene.name, effect.name(), false),
-            )?;
+            let cost = cost(gpu, scene, effect, settings, Some(folder))?;
+            found.costs.push(cost);
         }
-        go_on()?;
+        check_stop(stop)?;
         tick(&format!("{}: shading and transparency", scene.name));
         found.parts.extend(parts(gpu, scene, settings)?);
     }
     for scene in scenes.iter().filter(|s| s.layers().len() > 1) {
         for times in 1..=3 {
-            go_on()?;
+            check_stop(stop)?;
             let many = nested(scene, times);
             let layers = many.layers().len() as u32;
             tick(&format!("{}: {layers} layers", scene.name));
@@ -402,7 +388,7 @@ pub fn measure(
                 }
             }
             for part in FILLED {
-                go_on()?;
+                check_stop(stop)?;
                 tick(&format!("{}: {} triangles", scene.name, finer.triangles()));
                 let (camera, filled) = filling(gpu, scene, part, settings.size)?;
                 let [ms_one, ms_all] = layer_times(gpu, &finer, &camera, settings)?;
@@ -425,17 +411,6 @@ pub fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> std::pa
     folder
         .join("images")
         .join(compare::image_name(scene, &format!("{effect}-{state}")))
-}
-
-fn picture(gpu: &Gpu, scene: &Scene, settings: &Settings, file: &Path) -> Result<(), EvalError> {
-    let draw = || {
-        let renderer = Renderer::new(gpu, scene)?;
-        let mut prepared =
-            renderer.method(&settings.method, MethodOptions::sized(settings.size))?;
-        let image = renderer.image(&mut prepared, &scene.views[0])?.image;
-        image.save(file)
-    };
-    draw().map_err(EvalError::render(&scene.name, &settings.method.to_string()))
 }
 
 #[cfg(test)]

@@ -1,36 +1,34 @@
 use peelnet_render::RenderError;
 use std::path::PathBuf;
+#[cfg(not(target_arch = "wasm32"))]
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 /// What can go wrong when methods are measured.
+#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum EvalError {
     /// The file system refused.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
-        /// The file or folder.
         path: PathBuf,
-        /// What was tried, as a verb: `write`, `create the folder`, …
         action: &'static str,
-        /// The system's reason.
         source: std::io::Error,
     },
     /// Drawing failed.
     #[error("scene '{scene}', method '{method}': {source}")]
     Render {
-        /// The scene's name.
         scene: String,
-        /// The method's name.
         method: String,
-        /// The renderer's reason.
         source: Box<RenderError>,
     },
     /// Peeling failed.
     #[cfg(not(target_arch = "wasm32"))]
     #[error("scene '{scene}': {source}")]
     Peel {
-        /// The scene's name.
         scene: String,
-        /// The peeler's reason.
         source: Box<peelnet_peel::PeelError>,
     },
     /// A scene of the suite could not be loaded.
@@ -39,34 +37,23 @@ pub enum EvalError {
     /// An exported function could not be run.
     #[error("the network of {method}: {source}")]
     Network {
-        /// The method that draws with it.
         method: String,
-        /// The exporter's reason.
         source: Box<peelnet_export::ExportError>,
     },
     /// Two images that should be compared differ in size: a bug of the caller.
     #[error(
         "an image of {approximate} pixels was compared with one of {exact} pixels; draw both with the same size"
     )]
-    Sizes {
-        /// Pixels of the exact image.
-        exact: usize,
-        /// Pixels of the other one.
-        approximate: usize,
-    },
+    Sizes { exact: usize, approximate: usize },
     /// A path whose frames would take too much memory.
     #[error(
         "a path of {frames} frames of {}x{} pixels keeps {needed} bytes, more than {most}; make --size smaller or --frames fewer",
         size[0], size[1]
     )]
     LongPath {
-        /// Frames of the path.
         frames: u32,
-        /// Width and height in pixels.
         size: [u32; 2],
-        /// Bytes.
         needed: u64,
-        /// The most bytes that are kept.
         most: u64,
     },
     /// The video metric refused what it was given.
@@ -75,30 +62,19 @@ pub enum EvalError {
     Video(#[from] colorvideovdp::Error),
     /// An interrupted run cannot be resumed.
     #[error("{}: cannot resume: {why}", path.display())]
-    Resume {
-        /// The file of the interrupted run.
-        path: PathBuf,
-        /// What does not fit.
-        why: String,
-    },
+    Resume { path: PathBuf, why: String },
     /// Rows and pictures could not be assigned to their scene.
     #[error("two scenes are named '{name}' ({} and {}): rename one, because rows and pictures name their scene", first.display(), second.display())]
     SameName {
-        /// The name of both.
         name: String,
-        /// Where one comes from.
         first: PathBuf,
-        /// Where the other comes from.
         second: PathBuf,
     },
     /// A file of designs that cannot be used.
     #[error("{}: {what}: {why}", path.display())]
     Designs {
-        /// The file.
         path: PathBuf,
-        /// The entry, or what else is wrong.
         what: String,
-        /// The problem, and how to fix it.
         why: String,
     },
     /// The user asked to stop.
@@ -106,14 +82,21 @@ pub enum EvalError {
     Interrupted,
 }
 
+impl EvalError {
+    /// Two images that should be compared differ in size.
+    pub(crate) const fn sizes(exact: usize, approximate: usize) -> Result<(), Self> {
+        if exact == approximate {
+            return Ok(());
+        }
+        Err(Self::Sizes { exact, approximate })
+    }
+}
+
 #[cfg(not(target_arch = "wasm32"))]
 impl EvalError {
     /// For `map_err` on file operations.
-    pub(crate) fn io(
-        path: impl Into<PathBuf>,
-        action: &'static str,
-    ) -> impl FnOnce(std::io::Error) -> Self {
-        let path = path.into();
+    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
         move |source| Self::Io {
             path,
             action,
@@ -139,4 +122,13 @@ impl EvalError {
             source: Box::new(source),
         }
     }
+}
+
+/// What a loop over frames asks before each.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn check_stop(stop: &AtomicBool) -> Result<(), EvalError> {
+    if stop.load(Ordering::Relaxed) {
+        return Err(EvalError::Interrupted);
+    }
+    Ok(())
 }

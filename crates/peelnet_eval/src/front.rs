@@ -254,19 +254,4 @@ mod tests {
         assert!((error(Mean::Geometric) - 2.0).abs() < 1e-12);
         assert!((error(Mean::Arithmetic) - 2.5).abs() < 1e-12);
     }
-
-    #[test]
-    fn one_scene_and_no_time() {
-        let mut all = rows(&[(BASE, 1.0, 2.0), ("x", 0.5, 3.0)]);
-        all[1].time_ms = None;
-        assert_eq!(points(&all, Some("a"), Mean::Geometric).len(), 1);
-        assert_eq!(points(&all, Some("b"), Mean::Geometric).len(), 2);
-        // A method that was not timed everywhere has no mean.
-        assert_eq!(points(&all, None, Mean::Geometric).len(), 1);
-        assert!(points(&[], None, Mean::Geometric).is_empty());
-        // That there is no time is no reason by itself.
-        all.push(row("a", 0, "mlab-4", 1.0));
-        let untimed = untimed(&all);
-        assert!(untimed.len() == 1 && untimed[0].0 == "mlab-4" && untimed[0].1.contains("order"));
-    }
 }

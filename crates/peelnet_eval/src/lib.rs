@@ -61,10 +61,12 @@ pub mod transmittance;
 pub use bench::bench;
 pub use error::EvalError;
 #[cfg(not(target_arch = "wasm32"))]
+pub(crate) use error::check_stop;
+#[cfg(not(target_arch = "wasm32"))]
 pub use machine::{Machine, load};
 #[cfg(not(target_arch = "wasm32"))]
 pub use mean::geometric_mean;
 #[cfg(not(target_arch = "wasm32"))]
 pub use partial::{Partial, settings_hash};
 #[cfg(not(target_arch = "wasm32"))]
-pub use row::{Row, methods_of, scenes_of};
+pub use row::{Row, each_once, methods_of, scenes_of};

@@ -3,30 +3,23 @@ use serde::{Deserialize, Serialize};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// What a result was measured on, and with which version.
+#[allow(
+    missing_docs,
+    reason = "docs/results-files.md says what each field is, and its unit"
+)]
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Operating system.
     pub os: String,
-    /// Processor architecture.
     pub arch: String,
-    /// Processor name; `unknown` where the system does not report it.
     pub cpu: String,
-    /// Logical cores that the process may use.
     pub cores: usize,
-    /// Main memory, bytes; 0 where it is not known.
     #[serde(default)]
     pub memory: u64,
-    /// GPU adapter.
     pub adapter: String,
-    /// `discrete`, `integrated`, `virtual`, `software` or `other`.
     pub adapter_kind: String,
-    /// `vulkan`, `metal`, …
     pub backend: String,
-    /// Driver name and version.
     pub driver: String,
-    /// Version of this program.
     pub peelnet: String,
-    /// `debug` or `release`.
     pub build: String,
 }
 

@@ -1,10 +1,9 @@
 //! What an interrupted comparison has measured so far.
 
 use crate::{EvalError, Row};
-use peelnet_files::{Kind, printable};
+use peelnet_files::Kind;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Bytes of the file that are read: a hundred thousand rows have half of it.
@@ -73,16 +72,11 @@ impl Partial {
         folder.join(Self::FILE).exists()
     }
 
-    /// Goes on with what a run of the same plan left in a folder; starts afresh where there is nothing. `belongs` says whether a row can
-    /// be of this plan.
+    /// Goes on with what a run of the same plan left in a folder; starts afresh where there is nothing.
     ///
     /// # Errors
     /// A file that cannot be read, that is of another plan, or whose rows are not those that were measured.
-    pub fn resume(
-        folder: &Path,
-        plan: serde_json::Value,
-        belongs: impl Fn(&Row) -> bool,
-    ) -> Result<Self, EvalError> {
+    pub fn resume(folder: &Path, plan: serde_json::Value) -> Result<Self, EvalError> {
         let path = folder.join(Self::FILE);
         if !Self::is_in(folder) {
             return Ok(Self::new(Some(folder), plan));
@@ -114,34 +108,17 @@ impl Partial {
                 "it was changed after it was written: its sha256 differs".to_owned(),
             ));
         }
-        let mut keys = BTreeSet::new();
-        for row in &found.rows {
-            let name = || {
-                let (method, scene) = (printable(&row.method), printable(&row.scene));
-                format!("{method} on view {} of {scene}", row.view)
-            };
-            if !belongs(row) {
-                return Err(refuse(format!("{} is not of these settings", name())));
-            }
-            if !keys.insert((&row.method, &row.scene, row.view)) {
-                return Err(refuse(format!("{} is in it twice", name())));
-            }
-        }
         Ok(Self {
             path: Some(path),
             kept: found,
         })
     }
 
-    /// All rows so far.
-    pub fn rows(&self) -> &[Row] {
-        &self.kept.rows
-    }
-
     /// Views of a scene that are done.
     pub fn done(&self, scene: &str) -> Vec<u32> {
         let mut views: Vec<u32> = self
-            .rows()
+            .kept
+            .rows
             .iter()
             .filter(|r| r.scene == scene)
             .map(|r| r.view)
@@ -190,67 +167,39 @@ mod tests {
     fn it_goes_on_where_it_stopped() {
         let dir = tempfile::tempdir().unwrap();
         let plan = json!({"size": [4, 4], "methods": ["a"]});
-        let mut first = Partial::resume(dir.path(), plan.clone(), |_| true).unwrap();
+        let mut first = Partial::resume(dir.path(), plan.clone()).unwrap();
         first
             .push(vec![row("s", 0, "a", 1.0), row("s", 0, "b", 2.0)])
             .unwrap();
         drop(first);
-        let mut second = Partial::resume(dir.path(), plan, |_| true).unwrap();
+        let mut second = Partial::resume(dir.path(), plan).unwrap();
         assert_eq!((second.done("s"), second.done("t")), (vec![0], vec![]));
         second.push(vec![row("s", 1, "a", 3.0)]).unwrap();
         assert_eq!(second.done("s"), [0, 1]);
         assert_eq!(second.finish().len(), 3);
-        let file = dir.path().join(Partial::FILE);
-        let standing = Partial::KIND.standing(&file).unwrap();
-        assert_eq!(standing, peelnet_files::Standing::Replaced);
         Partial::discard(dir.path());
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
     }
 
+    /// Rows of other settings, and rows that somebody changed.
     #[test]
-    fn another_plan_is_refused_and_named() {
+    fn what_was_not_measured_so_is_refused() {
         let dir = tempfile::tempdir().unwrap();
-        let mut first = Partial::new(Some(dir.path()), json!({"size": [4, 4], "methods": ["a"]}));
-        first.push(vec![row("s", 0, "a", 1.0)]).unwrap();
-        let other = json!({"size": [8, 4], "methods": ["a"]});
-        let e = Partial::resume(dir.path(), other, |_| true);
-        let e = e.unwrap_err().to_string();
+        let plan = json!({"size": [4, 4], "methods": ["a"]});
+        let mut first = Partial::new(Some(dir.path()), plan.clone());
+        first.push(vec![row("s", 0, "a", 2.0)]).unwrap();
+        let refused = |plan: &serde_json::Value| {
+            let resumed = Partial::resume(dir.path(), plan.clone());
+            resumed.unwrap_err().to_string()
+        };
+        let e = refused(&json!({"size": [8, 4], "methods": ["a"]}));
         assert!(
             e.contains("partial.json") && e.ends_with("settings: size"),
             "{e}"
         );
-        std::fs::write(dir.path().join("partial.json"), "{").unwrap();
-        assert!(Partial::resume(dir.path(), json!({}), |_| true).is_err());
-    }
-
-    /// An interrupted run is not believed where somebody changed it.
-    #[test]
-    fn edited_doubled_and_foreign_rows_are_refused() {
-        let dir = tempfile::tempdir().unwrap();
-        let plan = json!({"size": [4, 4]});
-        let refused = |rows: Vec<Row>, edit: [&str; 2]| {
-            let mut first = Partial::new(Some(dir.path()), plan.clone());
-            first.push(rows).unwrap();
-            let file = dir.path().join("partial.json");
-            let text = std::fs::read_to_string(&file).unwrap();
-            std::fs::write(&file, text.replacen(edit[0], edit[1], 1)).unwrap();
-            Partial::resume(dir.path(), plan.clone(), |r| r.scene == "s")
-                .map(drop)
-                .unwrap_err()
-                .to_string()
-        };
-        let (a, b) = (row("s", 0, "a", 1.0 / 3.0), row("s", 0, "b", 2.0));
-        let e = refused(
-            vec![a.clone(), b.clone()],
-            ["\"mse255\":2.0", "\"mse255\":0.5"],
-        );
-        assert!(e.contains("partial.json") && e.contains("sha256"), "{e}");
-        let e = refused(vec![a.clone(), b, a.clone()], ["", ""]);
-        assert!(e.contains("a on view 0 of s is in it twice"), "{e}");
-        let e = refused(vec![a, row("t", 3, "b", 2.0)], ["", ""]);
-        assert!(
-            e.contains("b on view 3 of t is not of these settings"),
-            "{e}"
-        );
+        let file = dir.path().join(Partial::FILE);
+        let text = std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, text.replace("\"mse255\":2.0", "\"mse255\":0.5")).unwrap();
+        assert!(refused(&plan).contains("sha256"));
     }
 }

@@ -132,22 +132,6 @@ mod tests {
         assert_eq!(Bytes::of(&[]), None);
     }
 
-    /// A method that is exact on one view is not an exact method.
-    #[test]
-    fn one_exact_view_makes_no_exact_method() {
-        let of = |errors: [f64; 2]| {
-            let rows = [0, 1].map(|view: u32| Row {
-                view,
-                mse_linear: errors[view as usize],
-                ..row("a", view, "x", 0.0)
-            });
-            ratios(&rows)[0].mse_linear
-        };
-        assert_eq!(of([0.0, 0.0]), None);
-        let found = of([0.0, 1e-4]).expect("an error");
-        assert!((found / 1e-7 - 1.0).abs() < 1e-9);
-    }
-
     /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.
     #[test]
     fn means_are_geometric_and_the_worst_scene_is_named() {

@@ -156,30 +156,6 @@ mod tests {
         assert_eq!(choose(Some(1.0), None, None), pair("fast", None));
     }
 
-    /// An exact method has no error at all: its point's error is the floor of logarithmic axes.
-    #[test]
-    fn exact_methods_are_within_every_limit_of_the_error() {
-        let points = points();
-        for error in [1e-11, 1e-300, 0.0] {
-            let budget = Budget {
-                error: Some(error),
-                ..Budget::default()
-            };
-            let chosen = budget.choose(&points).unwrap();
-            assert_eq!(
-                (chosen.best.method.as_str(), chosen.best.mse()),
-                ("exact", 0.0)
-            );
-        }
-        let budget = Budget {
-            ms: Some(0.1),
-            error: Some(1e-11),
-            bytes: Some(100.0),
-        };
-        let e = budget.choose(&points[3..]).unwrap_err();
-        assert!(e.contains("error 0.00e0"), "{e}");
-    }
-
     #[test]
     fn an_empty_budget_names_the_nearest() {
         let budget = Budget {

@@ -3,7 +3,7 @@
 //! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
 //! changes at a time.
 
-use crate::EvalError;
+use crate::{EvalError, check_stop};
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer};
@@ -11,29 +11,11 @@ use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
 use serde::{Deserialize, Serialize};
 use std::{
     fmt,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, atomic::AtomicBool},
 };
 
-/// How growth is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Timed frames of each step; one more warms up.
-    pub frames: u32,
-    /// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
-    pub patience_ms: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            frames: 5,
-            patience_ms: 3000.0,
-        }
-    }
-}
+/// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
+const PATIENCE_MS: f64 = 3000.0;
 
 /// What grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -157,7 +139,7 @@ pub struct Scaling {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Measures all steps. `report` is called for each frame with the frames so far, all frames at most, and the method.
+/// Measures all steps, so many timed frames of each after one that warms up. `report` is called for each frame with the frames so far, all frames at most, and the method.
 ///
 /// # Errors
 /// If a method cannot draw; [`EvalError::Interrupted`] once `stop` is set.
@@ -165,14 +147,10 @@ pub fn measure(
     gpu: &Gpu,
     methods: &[MethodSpec],
     learned: &[LearnedWeight],
-    settings: Settings,
+    frames: u32,
     stop: &AtomicBool,
     report: &mut dyn FnMut(u64, u64, &str),
 ) -> Result<(Vec<Growth>, Vec<LeftOut>), EvalError> {
-    let Settings {
-        frames,
-        patience_ms,
-    } = settings;
     let (mut rows, mut left_out): (Vec<Growth>, Vec<LeftOut>) = (Vec::new(), Vec::new());
     let steps = steps();
     let total = (steps.len() * methods.len() * (frames as usize + 1)) as u64;
@@ -187,7 +165,7 @@ pub fn measure(
             let name = method.to_string();
             let slow = rows
                 .iter()
-                .any(|r| r.method == name && r.series == step.series && r.time_ms > patience_ms);
+                .any(|r| r.method == name && r.series == step.series && r.time_ms > PATIENCE_MS);
             let mut leave_out = |why: String| {
                 left_out.push(LeftOut {
                     method: name.clone(),
@@ -198,10 +176,8 @@ pub fn measure(
             };
             if slow {
                 done += u64::from(frames) + 1;
-                leave_out(format!(
-                    "a frame took longer than {} s before",
-                    patience_ms / 1e3
-                ));
+                let seconds = PATIENCE_MS / 1e3;
+                leave_out(format!("a frame took longer than {seconds} s before"));
                 continue;
             }
             let weight = learned.iter().find(|l| l.recipe.method == method.name());
@@ -226,9 +202,7 @@ pub fn measure(
         }
         for _ in 0..frames.max(1) {
             for (name, prepared, _, times) in &mut ready {
-                if stop.load(Ordering::Relaxed) {
-                    return Err(EvalError::Interrupted);
-                }
+                check_stop(stop)?;
                 let frame = renderer.profile(prepared, camera).map_err(failed(name))?;
                 times.push(crate::compare::method_ms(&frame));
                 done += 1;

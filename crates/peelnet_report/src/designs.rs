@@ -10,39 +10,42 @@ impl Results<Designs> {
 
     /// A row for each design, in the order of their file, and one for each reference.
     pub fn table(&self) -> Table {
-        let headings = [
-            "design",
-            "ends",
-            "kept",
-            "records",
-            "range",
-            "sums",
-            "loss",
-            "bytes",
-            "network",
-            "parameters",
-            "seconds",
-            "/ mboit4",
-            "worst scene",
-            "/ kbuffer-4",
-            "contour pairs %",
-            "flicker % 0.1 px",
-            "1 px",
-            "no network: / mboit4",
-            "worst scene",
-            "/ kbuffer-4",
-            "contour pairs %",
-        ];
         let measured = &self.measured;
-        let references = measured.references.iter().map(|reference| {
-            let mut cells = vec![reference.method.clone()];
-            cells.resize(11, String::new());
-            cells.extend(score(&reference.score));
-            cells.extend(reference.score.flicker.map(percent));
-            cells.resize(headings.len(), String::new());
-            cells
-        });
-        Table::new(headings, measured.rows.iter().map(line).chain(references))
+        let rows = measured.rows.iter();
+        let rows = rows.map(|r| Line(&r.design, Some(r), &r.network));
+        let references = measured.references.iter();
+        let references = references.map(|r| Line(&r.method, None, &r.score));
+        let lines: Vec<Line<'_>> = rows.chain(references).collect();
+        Table::of(
+            &lines,
+            &[
+                ("design", &|line| line.0.to_owned()),
+                ("ends", &|l| l.row(|r| joined(r, |s| s.end.to_string()))),
+                ("kept", &|l| l.row(|r| joined(r, kept))),
+                ("records", &|l| l.row(|r| r.records.clone())),
+                ("range", &|l| l.row(|r| r.range.clone())),
+                ("sums", &|l| l.row(sums)),
+                ("loss", &|l| l.row(|r| r.loss.name().to_owned())),
+                ("bytes", &|l| l.row(|r| r.bytes.to_string())),
+                ("network", &|l| l.row(|r| r.topology.clone())),
+                ("parameters", &|l| l.row(|r| r.parameters.to_string())),
+                ("seconds", &|l| l.row(|r| format!("{:.1}", r.seconds))),
+                ("/ mboit4", &|l| ratio(l.2.to_moments)),
+                ("worst scene", &|l| worst(l.2)),
+                ("/ kbuffer-4", &|l| ratio(l.2.to_kbuffer)),
+                ("contour pairs %", &|l| percent(l.2.contour_pairs)),
+                ("flicker % 0.1 px", &|l| percent(l.2.flicker[0])),
+                ("1 px", &|l| percent(l.2.flicker[1])),
+                ("no network: / mboit4", &|l| {
+                    l.row(|r| ratio(r.middle.to_moments))
+                }),
+                ("worst scene", &|l| l.row(|r| worst(&r.middle))),
+                ("/ kbuffer-4", &|l| l.row(|r| ratio(r.middle.to_kbuffer))),
+                ("contour pairs %", &|l| {
+                    l.row(|r| percent(r.middle.contour_pairs))
+                }),
+            ],
+        )
     }
 
     /// Writes `designs.json` and `designs.md`.
@@ -72,31 +75,18 @@ impl Results<Designs> {
     }
 }
 
-fn line(row: &Row) -> Vec<String> {
-    let ends: Vec<String> = row.slabs.iter().map(|s| s.end.to_string()).collect();
-    let kept: Vec<String> = row.slabs.iter().map(kept).collect();
-    let sums = |apart| if apart { "apart" } else { "one" };
-    let mut sum = sums(row.apart).to_owned();
-    if row.trained_apart != row.apart {
-        sum = format!("{sum}, trained {}", sums(row.trained_apart));
+/// A line of the table: a design or a method that errors are compared with, and its errors.
+struct Line<'a>(&'a str, Option<&'a Row>, &'a Score);
+
+impl Line<'_> {
+    /// What only designs have.
+    fn row(&self, cell: impl Fn(&Row) -> String) -> String {
+        self.1.map_or_else(String::new, cell)
     }
-    let mut cells = vec![
-        row.design.clone(),
-        ends.join(" "),
-        kept.join(" "),
-        row.records.clone(),
-        row.range.clone(),
-        sum,
-        row.loss.name().to_owned(),
-        row.bytes.to_string(),
-        row.topology.clone(),
-        row.parameters.to_string(),
-        format!("{:.1}", row.seconds),
-    ];
-    cells.extend(score(&row.network));
-    cells.extend(row.network.flicker.map(percent));
-    cells.extend(score(&row.middle));
-    cells
+}
+
+fn joined(row: &Row, text: impl Fn(&Kept) -> String) -> String {
+    row.slabs.iter().map(text).collect::<Vec<_>>().join(" ")
 }
 
 fn kept(slab: &Kept) -> String {
@@ -109,18 +99,23 @@ fn kept(slab: &Kept) -> String {
     }
 }
 
-fn score(score: &Score) -> [String; 4] {
-    let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), significant);
-    let worst = match (&score.worst_scene, score.worst) {
+fn sums(row: &Row) -> String {
+    let sums = |apart| if apart { "apart" } else { "one" };
+    if row.trained_apart == row.apart {
+        return sums(row.apart).to_owned();
+    }
+    format!("{}, trained {}", sums(row.apart), sums(row.trained_apart))
+}
+
+fn worst(score: &Score) -> String {
+    match (&score.worst_scene, score.worst) {
         (Some(scene), Some(worst)) => format!("{} ({scene})", significant(worst)),
         _ => "–".to_owned(),
-    };
-    [
-        number(score.to_moments),
-        worst,
-        number(score.to_kbuffer),
-        percent(score.contour_pairs),
-    ]
+    }
+}
+
+fn ratio(x: Option<f64>) -> String {
+    x.map_or_else(|| "–".to_owned(), significant)
 }
 
 fn percent(share: Option<f64>) -> String {
@@ -141,18 +136,11 @@ fn significant(x: f64) -> String {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::testing::machine;
+    use crate::testing::{machine, written};
     use peelnet_eval::designs::Reference;
 
     #[test]
-    fn ratios_have_three_digits() {
-        let shown = [0.0, 0.000_912_34, 0.25, 1.0, 174.25].map(significant);
-        assert_eq!(shown, ["0", "0.000912", "0.250", "1.00", "174"]);
-    }
-
-    #[test]
     fn files_are_written() {
-        let dir = tempfile::tempdir().unwrap();
         let slab = |end, mean, farthest| Kept {
             end,
             mean,
@@ -198,12 +186,14 @@ mod tests {
             rows: vec![row],
         };
         let results = Results::new(machine(), "peelnet bench s --designs d", designs);
-        results.write(dir.path()).unwrap();
-        let text = std::fs::read_to_string(dir.path().join("designs.md")).unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        let text = written(
+            dir.path(),
+            &results,
+            Results::<Designs>::FILES,
+            Results::<Designs>::write,
+        );
         let line = "| medium | 0.5 1 | MNF N | 1920x32 | pixel | one, trained apart | image | 22 | 9-12-1 | 133 | 2.5 | 0.0100 | 0.500 (s) | 0.250 | 0.30 | 0.10 | – | – | – | – | – |";
         assert!(text.contains(line), "{text}");
-        let json = dir.path().join("designs.json");
-        assert_eq!(Results::<Designs>::read(&json).unwrap(), results);
-        crate::testing::assert_files(dir.path(), Results::<Designs>::FILES);
     }
 }

@@ -1,14 +1,9 @@
 //! The files of `peelnet bench --effects`: what effects cost, what they look like, and what shading one layer saves.
 
-use crate::{
-    ReportError, Results, Table,
-    files::write_file,
-    page,
-    picture::{data_uri, figure, read},
-};
+use crate::{ReportError, Results, Table, files::write_file, page, picture::figure_of};
 use maud::{Markup, html};
 use peelnet_chart::{Line, LineChart, Scale, Svg};
-use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
+use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, picture_of};
 use std::path::Path;
 
 /// Width of the pictures, pixels.
@@ -45,70 +40,50 @@ impl Results<Effects> {
 
     /// Costs of the effects.
     pub fn effects_table(&self) -> Table {
-        let line = |c: &Cost| {
-            let bytes = if c.bytes_with == c.bytes_without {
-                format!("{:.0}", c.bytes_with)
-            } else {
-                format!("{:.0}, without {:.0}", c.bytes_with, c.bytes_without)
-            };
-            vec![
-                c.scene.clone(),
-                c.effect.clone(),
-                format!("{:.2}", c.ms_with),
-                format!("{:.2}", c.ms_without),
-                format!("{:.2}", c.ratio),
-                bytes,
-            ]
+        let bytes = |c: &Cost| match (c.bytes_with, c.bytes_without) {
+            (with, without) if with == without => format!("{with:.0}"),
+            (with, without) => format!("{with:.0}, without {without:.0}"),
         };
-        let headings = [
-            "scene",
-            "effect",
-            "with, ms",
-            "without, ms",
-            "time with / without",
-            "bytes a pixel",
-        ];
-        Table::new(headings, self.measured.costs.iter().map(line))
+        Table::of(
+            &self.measured.costs,
+            &[
+                ("scene", &|c| c.scene.clone()),
+                ("effect", &|c| c.effect.clone()),
+                ("with, ms", &|c| two(c.ms_with)),
+                ("without, ms", &|c| two(c.ms_without)),
+                ("time with / without", &|c| two(c.ratio)),
+                ("bytes a pixel", &bytes),
+            ],
+        )
     }
 
     /// Shading and transparency, each alone, relative to both together.
     pub fn parts_table(&self) -> Table {
-        let line = |p: &Parts| {
-            vec![
-                p.scene.clone(),
-                format!("{:.2}", p.ms_both),
-                format!("{:.2}", p.ms_shading / p.ms_both),
-                format!("{:.2}", p.ms_transparency / p.ms_both),
-            ]
-        };
-        let headings = [
-            "scene",
-            "both, ms",
-            "shading alone / both",
-            "transparency alone / both",
-        ];
-        Table::new(headings, self.measured.parts.iter().map(line))
+        Table::of(
+            &self.measured.parts,
+            &[
+                ("scene", &|p| p.scene.clone()),
+                ("both, ms", &|p| two(p.ms_both)),
+                ("shading alone / both", &|p| two(p.ms_shading / p.ms_both)),
+                ("transparency alone / both", &|p| {
+                    two(p.ms_transparency / p.ms_both)
+                }),
+            ],
+        )
     }
 
     /// Shading one layer against all.
     pub fn layer_table(&self) -> Table {
-        let line = |l: &LayerCost| {
-            vec![
-                l.scene.clone(),
-                l.layers.to_string(),
-                format!("{:.2}", l.ms_one),
-                format!("{:.2}", l.ms_all),
-                format!("{:.2}", l.ratio),
-            ]
-        };
-        let headings = [
-            "scene",
-            "layers",
-            "one shaded, ms",
-            "all shaded, ms",
-            "one / all",
-        ];
-        Table::new(headings, self.measured.layers.iter().map(line))
+        Table::of(
+            &self.measured.layers,
+            &[
+                ("scene", &|l| l.scene.clone()),
+                ("layers", &|l| l.layers.to_string()),
+                ("one shaded, ms", &|l| two(l.ms_one)),
+                ("all shaded, ms", &|l| two(l.ms_all)),
+                ("one / all", &|l| two(l.ratio)),
+            ],
+        )
     }
 
     /// Triangles against the part of the frame filled: times relative to the scene's first cell.
@@ -121,8 +96,8 @@ impl Results<Effects> {
             let of_scene = |f: &&Fill| f.scene == row[0].scene;
             let first = fills.iter().find(of_scene).map_or(1.0, |f| f.ms_one);
             let mut cells = vec![row[0].scene.clone(), row[0].triangles.to_string()];
-            cells.extend(row.iter().map(|f| format!("{:.2}", f.ms_one / first)));
-            cells.extend(row.iter().map(|f| format!("{:.2}", f.ms_one / f.ms_all)));
+            cells.extend(row.iter().map(|f| two(f.ms_one / first)));
+            cells.extend(row.iter().map(|f| two(f.ms_one / f.ms_all)));
             cells
         };
         Table::new(headings, fills.chunks(FILLED.len()).map(line))
@@ -216,21 +191,21 @@ impl Results<Effects> {
     }
 }
 
+fn two(x: f64) -> String {
+    format!("{x:.2}")
+}
+
 /// The pictures of a scene with and without an effect.
 fn pair(cost: &Cost, folder: &Path) -> Result<Markup, ReportError> {
     let mut figures = Vec::new();
-    for on in [true, false] {
+    for (on, word) in [(true, "with"), (false, "without")] {
         let path = picture_of(folder, &cost.scene, &cost.effect, on);
-        if let Some(picture) = read(&path)? {
-            let uri = data_uri(&path, &picture, PICTURE_WIDTH)?;
-            let caption = format!("{} {}", if on { "with" } else { "without" }, cost.effect);
-            let description = format!("{} {caption}", cost.scene);
-            figures.push(figure(&uri, &description, &caption));
-        }
+        let caption = format!("{word} {}", cost.effect);
+        figures.extend(figure_of(&path, PICTURE_WIDTH, &caption)?);
     }
     Ok(html! {
         @if !figures.is_empty() {
-            h3 { (cost.scene) ": " (cost.effect) ", " (format!("{:.2}", cost.ratio)) " times the time" }
+            h3 { (cost.scene) ": " (cost.effect) ", " (two(cost.ratio)) " times the time" }
             div.gallery { @for figure in figures { (figure) } }
         }
     })
@@ -240,7 +215,8 @@ fn pair(cost: &Cost, folder: &Path) -> Result<Markup, ReportError> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::testing::machine;
+    use crate::testing::{machine, written};
+    use peelnet_eval::effects::Parts;
 
     fn layer(layers: u32, ms_one: f64, ms_all: f64) -> LayerCost {
         LayerCost {
@@ -302,15 +278,8 @@ mod tests {
             ["1.00", "1.50", "2.00", "0.50", "0.75", "1.00"]
         );
         let folder = tempfile::tempdir().unwrap();
-        results.write(folder.path()).unwrap();
-        let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
-        assert!(
-            page.contains("0.33") && page.contains("one layer shaded"),
-            "{page}"
-        );
-        assert!(folder.path().join("effects-layers.svg").exists());
-        let read: Results<Effects> = Results::read(&folder.path().join("effects.json")).unwrap();
-        assert_eq!(read, results);
-        crate::testing::assert_files(folder.path(), Results::<Effects>::FILES);
+        let files = Results::<Effects>::FILES;
+        let page = written(folder.path(), &results, files, Results::<Effects>::write);
+        assert!(page.contains("0.33") && page.contains("one layer shaded"));
     }
 }

@@ -38,14 +38,27 @@ pub(crate) fn data_uri(
 }
 
 /// A picture with its caption below.
-pub(crate) fn figure(uri: &str, description: &str, caption: &str) -> Markup {
+pub(crate) fn figure(uri: &str, caption: &str) -> Markup {
     html! {
         figure {
-            img loading="lazy" src=(uri) alt=(description);
+            img loading="lazy" src=(uri) alt=(caption);
             figcaption { (caption) }
         }
         "\n"
     }
+}
+
+/// A picture file with its caption; `None` where it does not exist.
+pub(crate) fn figure_of(
+    path: &Path,
+    width: u32,
+    caption: &str,
+) -> Result<Option<Markup>, ReportError> {
+    let Some(picture) = read(path)? else {
+        return Ok(None);
+    };
+    let uri = data_uri(path, &picture, width)?;
+    Ok(Some(figure(&uri, caption)))
 }
 
 fn failed(path: &Path, action: &'static str) -> impl FnOnce(image::ImageError) -> ReportError {

@@ -9,18 +9,6 @@ const MAX_BYTES: u64 = 1 << 28;
 /// A finished measurement: what was measured, with which command, and on which machine, which names the version of peelnet as well.
 ///
 /// Its JSON is one object: `machine`, `command`, and the fields of `measured` beside them.
-///
-/// ```
-/// # let machine = serde_json::json!({"os": "linux", "arch": "x86_64", "cpu": "c", "cores": 2, "adapter": "a", "adapter_kind": "software",
-/// #     "backend": "vulkan", "driver": "d", "peelnet": "0.1.0", "build": "release"});
-/// use peelnet_eval::stress::Stressed;
-/// use peelnet_report::Results;
-///
-/// let json = serde_json::json!({"machine": machine, "command": "peelnet stress", "rows": []});
-/// let results: Results<Stressed> = serde_json::from_value(json).unwrap();
-/// assert_eq!(results.machine.cores, 2);
-/// assert!(results.measured.rows.is_empty());
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results<T> {
     /// What it was measured on.

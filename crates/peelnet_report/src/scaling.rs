@@ -6,7 +6,10 @@ use crate::{
     table::number,
 };
 use peelnet_chart::{Line, LineChart, Scale, Svg};
-use peelnet_eval::scaling::{Exponent, Scaling, Series};
+use peelnet_eval::{
+    each_once,
+    scaling::{Exponent, Scaling, Series},
+};
 use std::path::Path;
 
 impl Results<Scaling> {
@@ -23,32 +26,21 @@ impl Results<Scaling> {
     /// The exponents.
     pub fn table(&self) -> Table {
         let exponents = &self.measured.exponents;
-        let headings = [
-            "method",
-            "time ~ fragments^",
-            "time ~ pixels^",
-            "time ~ triangles^",
-            "bytes ~ fragments^",
-            "bytes ~ pixels^",
-            "bytes ~ triangles^",
-        ];
-        let mut methods: Vec<&str> = Vec::new();
-        for e in exponents {
-            if !methods.contains(&e.method.as_str()) {
-                methods.push(&e.method);
-            }
-        }
+        let of = |method: &str, series: Series, pick: fn(&Exponent) -> Option<f64>| {
+            let mut own = exponents.iter();
+            let own = own.find(|e| e.method == method && e.series == series);
+            number(own.and_then(pick), 2)
+        };
         let line = |method: &str| {
-            let of = |series: Series, pick: fn(&Exponent) -> Option<f64>| {
-                let mut own = exponents.iter();
-                let own = own.find(|e| e.method == method && e.series == series);
-                number(own.and_then(pick), 2)
-            };
-            let times = Series::ALL.map(|s| of(s, |e| e.time));
-            let bytes = Series::ALL.map(|s| of(s, |e| e.bytes));
+            let times = Series::ALL.map(|s| of(method, s, |e| e.time));
+            let bytes = Series::ALL.map(|s| of(method, s, |e| e.bytes));
             let name = [method.to_owned()];
             name.into_iter().chain(times).chain(bytes).collect()
         };
+        let of = |what: &str| Series::ALL.map(|s| format!("{what} ~ {s}^"));
+        let headings = ["method".to_owned()].into_iter();
+        let headings = headings.chain(of("time")).chain(of("bytes"));
+        let methods = each_once(exponents.iter().map(|e| e.method.as_str()));
         Table::new(headings, methods.into_iter().map(line))
     }
 
@@ -104,7 +96,7 @@ impl Results<Scaling> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::testing::machine;
+    use crate::testing::{machine, written};
     use peelnet_eval::scaling::Growth;
 
     fn row(method: &str, series: Series, value: u64, time_ms: f64) -> Growth {
@@ -119,7 +111,6 @@ mod tests {
 
     #[test]
     fn files_are_written() {
-        let dir = tempfile::tempdir().unwrap();
         let rows = vec![
             row("a", Series::Fragments, 1, 1.0),
             row("a", Series::Fragments, 2, 2.0),
@@ -127,19 +118,13 @@ mod tests {
         ];
         let scaling = Scaling::new(rows, Vec::new());
         let results = Results::new(machine(), "peelnet bench --scaling", scaling);
-        results.write(dir.path()).unwrap();
-        let text = std::fs::read_to_string(dir.path().join("scaling.md")).unwrap();
-        assert!(text.contains("| b |") && text.contains("–"), "{text}");
-        let csv = std::fs::read_to_string(dir.path().join("scaling.csv")).unwrap();
-        assert!(csv.contains("a,fragments,2,2.0,8.0"), "{csv}");
-        assert!(
-            std::fs::metadata(dir.path().join("scaling-pixels.svg"))
-                .unwrap()
-                .len()
-                > 1000
+        let dir = tempfile::tempdir().unwrap();
+        let text = written(
+            dir.path(),
+            &results,
+            Results::<Scaling>::FILES,
+            Results::<Scaling>::write,
         );
-        let json = dir.path().join("scaling.json");
-        assert_eq!(Results::<Scaling>::read(&json).unwrap(), results);
-        crate::testing::assert_files(dir.path(), Results::<Scaling>::FILES);
+        assert!(text.contains("| b |") && text.contains("–"), "{text}");
     }
 }

@@ -6,7 +6,10 @@ use crate::{
     page,
 };
 use maud::html;
-use peelnet_eval::stress::{CASES, Outcome, Property, Row, Stressed};
+use peelnet_eval::{
+    each_once,
+    stress::{CASES, Outcome, Property, Row, Stressed},
+};
 use std::{collections::BTreeMap, path::Path};
 
 impl Results<Stressed> {
@@ -16,12 +19,7 @@ impl Results<Stressed> {
     /// A row for each method: passes, declared flaws (`d` and their number) and failures (`F`) in each case.
     pub fn matrix(&self) -> Table {
         let rows = &self.measured.rows;
-        let mut methods: Vec<&str> = Vec::new();
-        for row in rows {
-            if !methods.contains(&row.method.as_str()) {
-                methods.push(&row.method);
-            }
-        }
+        let methods = each_once(rows.iter().map(|r| r.method.as_str()));
         let ids = CASES.iter().map(|c| c.id);
         let ids: Vec<&str> = ids
             .filter(|id| rows.iter().any(|r| r.case == *id))
@@ -50,20 +48,23 @@ impl Results<Stressed> {
 
     /// The failures: method, case, property, value, limit, and where.
     pub fn failures(&self) -> Table {
-        let line = |r: &Row| {
-            let value = r.value;
-            let place = format!("{} {}", r.place, r.reason.as_deref().unwrap_or_default());
-            vec![
-                r.method.clone(),
-                r.case.clone(),
-                r.property.to_string(),
-                value.map_or_else(|| "not finite".to_owned(), |x| format!("{x:.3e}")),
-                format!("{:.3e}", r.limit),
-                place.trim().to_owned(),
-            ]
-        };
-        let headings = ["method", "case", "property", "value", "limit", "where"];
-        Table::new(headings, self.measured.of(Outcome::Fail).map(line))
+        Table::of(
+            self.measured.of(Outcome::Fail),
+            &[
+                ("method", &|r| r.method.clone()),
+                ("case", &|r| r.case.clone()),
+                ("property", &|r| r.property.to_string()),
+                ("value", &|r| {
+                    let value = r.value.map(|x| format!("{x:.3e}"));
+                    value.unwrap_or_else(|| "not finite".to_owned())
+                }),
+                ("limit", &|r| format!("{:.3e}", r.limit)),
+                ("where", &|r| {
+                    let place = format!("{} {}", r.place, r.reason.as_deref().unwrap_or_default());
+                    place.trim().to_owned()
+                }),
+            ],
+        )
     }
 
     /// The declared flaws, those of one reason together: property, methods, cases, worst value as a multiple of its limit.
@@ -73,15 +74,8 @@ impl Results<Stressed> {
             let reason = row.reason.as_deref().unwrap_or_default();
             groups.entry((row.property, reason)).or_default().push(row);
         }
-        let names = |rows: &[&Row], of: fn(&Row) -> &str| {
-            let mut all: Vec<&str> = Vec::new();
-            for row in rows {
-                if !all.contains(&of(row)) {
-                    all.push(of(row));
-                }
-            }
-            all.join(", ")
-        };
+        let names =
+            |rows: &[&Row], of: fn(&Row) -> &str| each_once(rows.iter().map(|r| of(r))).join(", ");
         let lines = groups.iter().map(|((property, reason), rows)| {
             let excess = rows
                 .iter()
@@ -161,7 +155,7 @@ impl Results<Stressed> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::testing::machine;
+    use crate::testing::{machine, written};
 
     /// What a row says of a method stands in all files; text is escaped in the page.
     #[test]
@@ -191,12 +185,9 @@ mod tests {
             [["hull", "a, b", "deep", "rounds", "2.0"]]
         );
         let dir = tempfile::tempdir().unwrap();
-        results.write(dir.path()).unwrap();
-        let page = std::fs::read_to_string(dir.path().join("stress.html")).unwrap();
+        let files = Results::<Stressed>::FILES;
+        let page = written(dir.path(), &results, files, Results::<Stressed>::write);
         assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));
         assert!(page.contains("1 property holds, 2 declared flaws, 1 failure"));
-        let json = dir.path().join("stress.json");
-        assert_eq!(Results::<Stressed>::read(&json).unwrap(), results);
-        crate::testing::assert_files(dir.path(), Results::<Stressed>::FILES);
     }
 }

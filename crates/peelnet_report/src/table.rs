@@ -3,6 +3,9 @@
 use maud::{Markup, html};
 use peelnet_files::one_line;
 
+/// A heading, and the cell of a row.
+pub(crate) type Column<'c, R> = (&'c str, &'c dyn Fn(&R) -> String);
+
 /// Headings, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
@@ -22,6 +25,16 @@ impl Table {
             headings: headings.into_iter().map(Into::into).collect(),
             rows: rows.into_iter().collect(),
         }
+    }
+
+    /// A table of these columns, a line for each row.
+    pub(crate) fn of<'r, R: 'r>(
+        rows: impl IntoIterator<Item = &'r R>,
+        columns: &[Column<'_, R>],
+    ) -> Self {
+        let line = |row: &R| columns.iter().map(|(_, cell)| cell(row)).collect();
+        let headings = columns.iter().map(|(heading, _)| *heading);
+        Self::new(headings, rows.into_iter().map(line))
     }
 
     /// As Markdown: the first column to the left, the others to the right.
@@ -139,14 +152,5 @@ mod tests {
     #[test]
     fn plain_text_is_aligned() {
         assert_eq!(table().plain(), "name   ms\n<a|b>   1\n");
-    }
-
-    #[test]
-    fn html_is_escaped() {
-        let html = table().html("text", |k| k == 0).0;
-        assert!(
-            html.contains("<tr class=\"front\"><td>&lt;a|b&gt;</td>"),
-            "{html}"
-        );
     }
 }

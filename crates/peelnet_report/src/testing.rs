@@ -1,6 +1,8 @@
 //! A machine and rows for tests.
 
+use crate::{ReportError, Results};
 use peelnet_eval::{Machine, Row, metrics};
+use std::path::Path;
 
 pub(crate) fn machine() -> Machine {
     Machine {
@@ -39,8 +41,22 @@ pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
     }
 }
 
-/// Every file in a folder is one of these, and is known again as its kind.
-pub(crate) fn assert_files(folder: &std::path::Path, files: &[&str]) {
+/// Writes results into a folder, which then holds these files and maybe folders, reads them again, and returns the page, or where there is
+/// none the table.
+pub(crate) fn written<T: PartialEq + std::fmt::Debug + serde::de::DeserializeOwned>(
+    folder: &Path,
+    results: &Results<T>,
+    files: &[&str],
+    write: impl Fn(&Results<T>, &Path) -> Result<(), ReportError>,
+) -> String {
+    write(results, folder).expect("writes");
+    let json = files.iter().find(|name| name.ends_with(".json"));
+    let read = Results::read(&folder.join(json.expect("results")));
+    assert_eq!(&read.expect("reads"), results);
+    let page = files.iter().find(|name| name.ends_with(".html"));
+    let page = page.or_else(|| files.iter().find(|name| name.ends_with(".md")));
+    let page = folder.join(page.expect("a page or a table"));
+    let text = std::fs::read_to_string(page).expect("reads");
     for entry in std::fs::read_dir(folder).expect("lists") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
@@ -55,4 +71,5 @@ pub(crate) fn assert_files(folder: &std::path::Path, files: &[&str]) {
         let standing = kind.standing(&path).expect("stands");
         assert_eq!(standing, peelnet_files::Standing::Foreign, "{name}");
     }
+    text
 }

@@ -81,13 +81,15 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         methods, learned, ..
     } = chosen(context, &gpu, &args.methods, &args.models, one_of_each)?;
     let bar = Bar::new(context.console, "scaling", 0);
-    let settings = scaling::Settings {
-        frames: args.frames,
-        ..Default::default()
-    };
     let mut show = |done, total, method: &str| bar.set(done, total, method.to_owned());
-    let (rows, left_out) =
-        scaling::measure(&gpu, &methods, &learned, settings, context.stop, &mut show)?;
+    let (rows, left_out) = scaling::measure(
+        &gpu,
+        &methods,
+        &learned,
+        args.frames,
+        context.stop,
+        &mut show,
+    )?;
     drop(bar);
     let scaling = Scaling::new(rows, left_out);
     let results = Results::new(Machine::of(&gpu), command_line(), scaling);
@@ -143,7 +145,7 @@ pub(super) fn measure(
             if let Some(finished) = finished(context, folder, &hash)? {
                 return Ok(finished);
             }
-            Partial::resume(folder, settings, |row| plan.has(scenes, row))?
+            Partial::resume(folder, settings)?
         }
         _ => Partial::new(out, settings),
     };

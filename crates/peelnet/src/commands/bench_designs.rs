@@ -10,8 +10,8 @@ use peelnet_dataset::{Dataset, SplitBy};
 use peelnet_eval::{
     Machine,
     designs::{
-        self, ANCHORED, CODES, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row,
-        Score, View,
+        self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
+        View,
     },
 };
 use peelnet_files::{Unfinished, printable};
@@ -152,7 +152,6 @@ struct Judge<'a> {
     moments: Vec<Measured>,
     kbuffer: Vec<Measured>,
     anchored: Vec<Measured>,
-    coded: Vec<Measured>,
 }
 
 impl<'a> Judge<'a> {
@@ -168,7 +167,6 @@ impl<'a> Judge<'a> {
             moments: of(MOMENTS, None)?,
             kbuffer: of(KBUFFER, None)?,
             anchored: of(ANCHORED, Some(&anchored))?,
-            coded: (views.iter().map(|view| view.measure_moving(designs::coded))).collect(),
         })
     }
 
@@ -185,7 +183,6 @@ impl<'a> Judge<'a> {
             of(MOMENTS, &self.moments),
             of(KBUFFER, &self.kbuffer),
             of(ANCHORED, &self.anchored),
-            of(CODES, &self.coded),
         ]
     }
 }

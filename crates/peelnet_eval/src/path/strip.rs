@@ -165,19 +165,4 @@ mod tests {
             assert!(even.iter().all(|&b| b == 24) && worst.iter().all(|&b| b == 32));
         }
     }
-
-    #[test]
-    fn fewer_frames_than_a_strip_holds() {
-        let mut strip = Strip::new([3, 1], 2);
-        for (number, level) in [(0, 0.0), (1, 1.0)] {
-            let image = Image {
-                width: 3,
-                height: 1,
-                pixels: vec![[level; 4]; 3],
-            };
-            strip.add_frame(number, &image);
-        }
-        let bytes = strip.image().to_srgb8();
-        assert_eq!(bytes, [[0u8; 9], [255; 9]].concat());
-    }
 }

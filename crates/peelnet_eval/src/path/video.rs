@@ -60,16 +60,6 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
-    /// The words are those of the model that is loaded.
-    #[test]
-    fn the_display_is_the_one_described() {
-        let judge = Judge::new().unwrap();
-        let display = judge.0.display();
-        assert_eq!(display.geometry.resolution(), [1920, 1080]);
-        let text = format!("{:?}", display.photometry);
-        assert!(text.contains("200") && text.contains("250"), "{text}");
-    }
-
     fn video(level: impl Fn(usize) -> u8) -> Vec<Image> {
         let frame = |k| {
             let image = peelnet_render::Image {
@@ -96,15 +86,5 @@ mod tests {
             flicker < steady - 1.0 && steady <= 10.0,
             "{flicker} {steady}"
         );
-    }
-
-    #[test]
-    fn a_frame_may_be_too_small() {
-        let image = peelnet_render::Image {
-            width: 3,
-            height: 9,
-            pixels: vec![[0.5; 4]; 27],
-        };
-        assert!(frame(&Displayed::new(&image)).unwrap().is_none());
     }
 }

@@ -11,6 +11,7 @@ use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
     front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
+    methods_of,
     ratios::{Bytes, Ratios, ratios},
     scenes_of,
 };
@@ -49,44 +50,36 @@ impl Results<Bench> {
 
     /// Every method as ratios to the reference methods.
     pub fn table(&self) -> Table {
-        let headings = [
-            "method",
-            "MSE (linear)",
-            "/ wboit-eq9",
-            "/ mboit4",
-            "worst scene / mboit4",
-            "time / hardware blending",
-            "time / mboit4",
-            "time / wboit-eq9",
-            "bytes a pixel (mean, median, most)",
-            "time / front at equal error",
-            "error / front at equal time",
-        ];
         let points = front::points(&self.measured.rows, None, Mean::Geometric);
-        let trained_on = &self.measured.trained_on;
-        let line = |r: Ratios| {
-            let point = points.iter().find(|p| p.method == r.method);
-            let worst = r
-                .worst
-                .as_ref()
-                .map(|(scene, x)| format!("{x:.2} ({})", scene_in_cell(scene, trained_on)));
-            vec![
-                r.method.clone(),
-                r.mse_linear
-                    .map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}")),
-                number(r.to_weighted, 3),
-                number(r.to_moments, 3),
-                worst.unwrap_or_else(|| "–".to_owned()),
-                number(r.time_to_base, 3),
-                number(r.time_to_moments, 3),
-                number(r.time_to_weighted, 3),
-                r.bytes_per_pixel
-                    .map_or_else(|| "–".to_owned(), |b| bytes(&b)),
-                number(point.map(|p| p.time_at_equal_error), 2),
-                number(point.map(|p| p.error_at_equal_time), 2),
-            ]
+        let point = |r: &Ratios| points.iter().find(|p| p.method == r.method);
+        let worst = |r: &Ratios| {
+            let (scene, x) = r.worst.as_ref()?;
+            let scene = scene_in_cell(scene, &self.measured.trained_on);
+            Some(format!("{x:.2} ({scene})"))
         };
-        Table::new(headings, ratios(&self.measured.rows).into_iter().map(line))
+        let dash = || "–".to_owned();
+        Table::of(
+            &ratios(&self.measured.rows),
+            &[
+                ("method", &|r| r.method.clone()),
+                ("MSE (linear)", &|r| mse(r.mse_linear)),
+                ("/ wboit-eq9", &|r| number(r.to_weighted, 3)),
+                ("/ mboit4", &|r| number(r.to_moments, 3)),
+                ("worst scene / mboit4", &|r| worst(r).unwrap_or_else(dash)),
+                ("time / hardware blending", &|r| number(r.time_to_base, 3)),
+                ("time / mboit4", &|r| number(r.time_to_moments, 3)),
+                ("time / wboit-eq9", &|r| number(r.time_to_weighted, 3)),
+                ("bytes a pixel (mean, median, most)", &|r| {
+                    r.bytes_per_pixel.map_or_else(dash, |b| bytes(&b))
+                }),
+                ("time / front at equal error", &|r| {
+                    number(point(r).map(|p| p.time_at_equal_error), 2)
+                }),
+                ("error / front at equal time", &|r| {
+                    number(point(r).map(|p| p.error_at_equal_time), 2)
+                }),
+            ],
+        )
     }
 
     /// Times on every scene as ratios to hardware blending, the fastest exact method first: whether it is the right answer depends on the
@@ -99,23 +92,17 @@ impl Results<Bench> {
         // Points come by time.
         let exact = points.iter().map(|all| {
             let first = all.iter().find(|p| p.is_exact());
-            first.map_or_else(
-                || "–".to_owned(),
-                |p| format!("{:.2} ({})", p.time, p.method),
-            )
+            let first = first.map(|p| format!("{:.2} ({})", p.time, p.method));
+            first.unwrap_or_else(|| "–".to_owned())
         });
-        let mut lines = vec![
-            std::iter::once("the fastest exact one".to_owned())
-                .chain(exact)
-                .collect(),
-        ];
-        lines.extend(ratios(rows).into_iter().map(|r| {
-            let time = |all: &Vec<Point>| {
-                let own = all.iter().find(|p| p.method == r.method);
+        let first = std::iter::once("the fastest exact one".to_owned());
+        let mut lines: Vec<Vec<String>> = vec![first.chain(exact).collect()];
+        lines.extend(methods_of(rows).into_iter().map(|method| {
+            let times = points.iter().map(|all| {
+                let own = all.iter().find(|p| p.method == method);
                 number(own.map(|p| p.time), 2)
-            };
-            let times: Vec<String> = points.iter().map(time).collect();
-            std::iter::once(r.method).chain(times).collect()
+            });
+            std::iter::once(method.to_owned()).chain(times).collect()
         }));
         let named = scenes
             .iter()
@@ -138,6 +125,11 @@ impl Results<Bench> {
             self.times_by_scene().markdown(),
         )
     }
+}
+
+/// A mean squared error; 0 of an exact method.
+fn mse(error: Option<f64>) -> String {
+    error.map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}"))
 }
 
 /// Bytes a pixel: one number, or mean, median and most over the views.
@@ -215,33 +207,5 @@ mod tests {
         };
         assert_eq!(worst(&["cups"]), "2.00 (cups, trained on)");
         assert_eq!(worst(&["panes"]), "2.00 (cups)");
-    }
-
-    #[test]
-    fn every_method_is_a_bubble_with_its_figures() {
-        let point = |method: &str, error, time| Point {
-            method: method.to_owned(),
-            error,
-            time,
-            time_ms: time,
-            bytes: Bytes {
-                mean: 24.0,
-                median: 24.0,
-                most: 24.0,
-            },
-            on_front: true,
-            time_at_equal_error: 1.0,
-            error_at_equal_time: 1.0,
-        };
-        let svg = chart(&[
-            point(BASE, 1e-2, 1.0),
-            point("a<b", 1e-4, 2.0),
-            point("exact", EXACT_MSE, 4.0),
-        ]);
-        let svg = svg.as_str();
-        assert_eq!(svg.matches("<circle class=\"point\"").count(), 3);
-        assert!(
-            svg.contains("a&lt;b: MSE 1.00e-4, 2.00 x") && svg.contains("exact: exact, 4.00 x")
-        );
     }
 }

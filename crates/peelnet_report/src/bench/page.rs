@@ -1,6 +1,6 @@
 //! The page of a bench: charts, tables that sort, pictures with difference maps.
 
-use super::{bytes, chart};
+use super::{bytes, chart, mse};
 use crate::{
     ReportError, Results, Table,
     page::{self, SORT_SCRIPT},
@@ -24,7 +24,11 @@ use std::path::Path;
 const PICTURE_WIDTH: u32 = 256;
 
 /// Factor of the difference maps.
-pub(crate) const MAGNIFIED: u16 = 8;
+const MAGNIFIED: u16 = 8;
+
+/// Headings of errors over those of [`WEIGHTED`] and [`MOMENTS`].
+const TO_WEIGHTED: &str = "/ wboit-eq9";
+const TO_MOMENTS: &str = "/ mboit4";
 
 /// The whole page. `images` is the folder with `<scene>-<method>.png`.
 pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, ReportError> {
@@ -94,6 +98,8 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
     let points = front::points(&own, None, Mean::Geometric);
     let first = own.iter().find(|r| r.method == EXACT);
     let (fragments, most) = first.map_or((None, None), |r| (r.fragments, r.max_layers));
+    let is_shown = |p: &&Point| p.on_front || p.method == WEIGHTED || p.method == MOMENTS;
+    let shown = points.iter().filter(is_shown);
     let count = |x: Option<u64>| x.map_or_else(|| "–".to_owned(), |x| x.to_string());
     Ok(html! {
         details {
@@ -104,7 +110,7 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
             }
             (page::chart("chart", &chart(&points)))
             (points_table(&own, &points))
-            (gallery(scene, &points, images)?)
+            (gallery(scene, shown, images, PICTURE_WIDTH)?)
         }
         "\n"
     })
@@ -116,64 +122,50 @@ fn mean_depth(row: &Row) -> f64 {
 }
 
 /// A line for every point, with all measures.
-fn points_table(rows: &[Row], points: &[Point]) -> Markup {
+pub(crate) fn points_table(rows: &[Row], points: &[Point]) -> Markup {
     let ratios = ratios::ratios(rows);
-    let to_weighted = format!("/ {WEIGHTED}");
-    let to_moments = format!("/ {MOMENTS}");
-    let headings = [
-        "method",
-        "time / hardware blending",
-        "ms",
-        "MSE (linear)",
-        &to_weighted,
-        &to_moments,
-        "MSE 0–255",
-        "covered",
-        "PSNR dB",
-        "SSIM",
-        "ꟻLIP",
-        "99 % error",
-        "T error",
-        "contour pairs",
-        "passes",
-        "bytes a pixel",
-        "time / front at equal error",
-        "error / front at equal time",
-    ];
-    let line = |p: &Point| {
-        let own: Vec<&Row> = rows.iter().filter(|r| r.method == p.method).collect();
-        let mean = |value: fn(&Row) -> Option<f64>| {
-            let values: Option<Vec<f64>> = own.iter().map(|r| value(r)).collect();
-            values.map(|v| v.iter().sum::<f64>() / v.len().max(1) as f64)
-        };
-        let ratio = ratios.iter().find(|r| r.method == p.method);
-        let error = if p.is_exact() {
-            "0".to_owned()
-        } else {
-            format!("{:.2e}", p.error)
-        };
-        vec![
-            p.method.clone(),
-            format!("{:.2}", p.time),
-            format!("{:.2}", p.time_ms),
-            error,
-            number(ratio.and_then(|r| r.to_weighted), 3),
-            number(ratio.and_then(|r| r.to_moments), 3),
-            number(mean(|r| Some(r.mse255)), 2),
-            number(mean(|r| r.mse255_covered), 2),
-            number(mean(|r| r.psnr), 1),
-            number(mean(|r| r.ssim), 4),
-            number(mean(|r| r.flip), 4),
-            number(mean(|r| Some(r.p99_error)), 1),
-            number(mean(|r| r.transmittance_error), 4),
-            number(mean(|r| r.contour_pairs), 5),
-            own.iter().map(|r| r.passes).max().unwrap_or(0).to_string(),
-            bytes(&p.bytes),
-            number(Some(p.time_at_equal_error), 2),
-            number(Some(p.error_at_equal_time), 2),
-        ]
+    let ratio = |p: &Point| ratios.iter().find(|r| r.method == p.method);
+    let own = |p: &Point| -> Vec<&Row> { rows.iter().filter(|r| r.method == p.method).collect() };
+    let mean = |p: &Point, value: fn(&Row) -> Option<f64>, digits| {
+        let values: Option<Vec<f64>> = own(p).into_iter().map(value).collect();
+        let mean = values.map(|v| v.iter().sum::<f64>() / v.len().max(1) as f64);
+        number(mean, digits)
     };
-    Table::new(headings, points.iter().map(line)).html("sortable", |k| points[k].on_front)
+    let table = Table::of(
+        points,
+        &[
+            ("method", &|p| p.method.clone()),
+            ("time / hardware blending", &|p| format!("{:.2}", p.time)),
+            ("ms", &|p| format!("{:.2}", p.time_ms)),
+            ("MSE (linear)", &|p| mse((!p.is_exact()).then_some(p.error))),
+            (TO_WEIGHTED, &|p| {
+                number(ratio(p).and_then(|r| r.to_weighted), 3)
+            }),
+            (TO_MOMENTS, &|p| {
+                number(ratio(p).and_then(|r| r.to_moments), 3)
+            }),
+            ("MSE 0–255", &|p| mean(p, |r| Some(r.mse255), 2)),
+            ("covered", &|p| mean(p, |r| r.mse255_covered, 2)),
+            ("PSNR dB", &|p| mean(p, |r| r.psnr, 1)),
+            ("SSIM", &|p| mean(p, |r| r.ssim, 4)),
+            ("ꟻLIP", &|p| mean(p, |r| r.flip, 4)),
+            ("99 % error", &|p| mean(p, |r| Some(r.p99_error), 1)),
+            ("T error", &|p| mean(p, |r| r.transmittance_error, 4)),
+            ("contour pairs", &|p| mean(p, |r| r.contour_pairs, 5)),
+            ("passes", &|p| {
+                let most = own(p).iter().map(|r| r.passes).max();
+                most.unwrap_or(0).to_string()
+            }),
+            ("bytes a pixel", &|p| bytes(&p.bytes)),
+            ("time / front at equal error", &|p| {
+                number(Some(p.time_at_equal_error), 2)
+            }),
+            ("error / front at equal time", &|p| {
+                number(Some(p.error_at_equal_time), 2)
+            }),
+        ],
+    );
+    table.html("sortable", |k| points[k].on_front)
 }
 
 /// Methods without a time, which no chart and no table of points has, and why.
@@ -183,29 +175,26 @@ fn untimed(rows: &[Row]) -> Markup {
         return Markup::default();
     }
     let ratios = ratios::ratios(rows);
-    let line = |(method, why): &(&str, &str)| {
-        let ratio = ratios.iter().find(|r| r.method == *method);
-        let error = ratio.and_then(|r| r.mse_linear);
-        vec![
-            (*method).to_owned(),
-            error.map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}")),
-            number(ratio.and_then(|r| r.to_weighted), 3),
-            number(ratio.and_then(|r| r.to_moments), 3),
-            (*why).to_owned(),
-        ]
-    };
-    let to_weighted = format!("/ {WEIGHTED}");
-    let to_moments = format!("/ {MOMENTS}");
-    let headings = [
-        "error only",
-        "MSE (linear)",
-        &to_weighted,
-        &to_moments,
-        "why there is no time",
-    ];
+    let ratio = |method: &str| ratios.iter().find(|r| r.method == method);
+    let table = Table::of(
+        &all,
+        &[
+            ("error only", &|m| m.0.to_owned()),
+            ("MSE (linear)", &|m| {
+                mse(ratio(m.0).and_then(|r| r.mse_linear))
+            }),
+            (TO_WEIGHTED, &|m| {
+                number(ratio(m.0).and_then(|r| r.to_weighted), 3)
+            }),
+            (TO_MOMENTS, &|m| {
+                number(ratio(m.0).and_then(|r| r.to_moments), 3)
+            }),
+            ("why there is no time", &|m| m.1.to_owned()),
+        ],
+    );
     html! {
         p.note { "Composited on the CPU from the scene's fragments: the error is the method's own, time and bytes are unknown." }
-        (Table::new(headings, all.iter().map(line)).html("text", |_| false))
+        (table.html("text", |_| false))
     }
 }
 
@@ -235,39 +224,46 @@ fn passes(rows: &[Row], points: &[Point]) -> Table {
     Table::new(["method", "passes"], points.iter().map(line))
 }
 
-/// The exact picture, then those of the front and of the references with their difference maps.
-fn gallery(scene: &str, points: &[Point], folder: &Path) -> Result<Markup, ReportError> {
+/// The exact picture, then those of methods with their difference maps below. Exact methods look like the first one.
+pub(crate) fn gallery<'a>(
+    scene: &str,
+    points: impl IntoIterator<Item = &'a Point>,
+    folder: &Path,
+    width: u32,
+) -> Result<Markup, ReportError> {
     let file = |method: &str| folder.join(image_name(scene, method));
     let Some(exact) = read(&file(EXACT))? else {
         return Ok(Markup::default());
     };
+    let uri = data_uri(&file(EXACT), &exact, width)?;
+    let mut all = vec![figure(&uri, &format!("{scene}, exact"))];
     let exact = exact.to_rgb8();
-    let show = |method: &str, picture: RgbImage, caption: &str| {
-        let picture = DynamicImage::ImageRgb8(picture);
-        let uri = data_uri(&file(method), &picture, PICTURE_WIDTH)?;
-        Ok(figure(&uri, caption, caption))
-    };
-    let mut figures = vec![show(EXACT, exact.clone(), &format!("{scene}, exact"))?];
-    for p in points {
-        let reference = p.method == WEIGHTED || p.method == MOMENTS;
-        // An exact method's picture looks like the first one.
-        if p.is_exact() || !(p.on_front || reference) {
-            continue;
-        }
-        let Some(picture) = read(&file(&p.method))? else {
+    for p in points.into_iter().filter(|p| !p.is_exact()) {
+        let path = file(&p.method);
+        let Some(picture) = read(&path)? else {
             continue;
         };
-        let picture = picture.to_rgb8();
-        let map = difference(&exact, &picture);
-        let caption = format!("{}: difference × {MAGNIFIED}", p.method);
-        figures.push(show(&p.method, picture, &p.method)?);
-        figures.push(show(&p.method, map, &caption)?);
+        let map = DynamicImage::ImageRgb8(difference(&exact, &picture.to_rgb8()));
+        let (picture, map) = (
+            data_uri(&path, &picture, width)?,
+            data_uri(&path, &map, width)?,
+        );
+        let caption = format!(
+            "{}: MSE {:.2e}, {:.2} × blending",
+            p.method, p.error, p.time
+        );
+        all.push(html! {
+            div {
+                (figure(&picture, &caption))
+                (figure(&map, &format!("{}: difference × {MAGNIFIED}", p.method)))
+            }
+        });
     }
-    Ok(html! { div.gallery { @for figure in figures { (figure) } } })
+    Ok(html! { div.gallery { @for figure in all { (figure) } } })
 }
 
 /// How far every channel is off, magnified.
-pub(crate) fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
+fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
     let mut map = other.clone();
     for (d, e) in map.pixels_mut().zip(exact.pixels()) {
         for (d, e) in d.0.iter_mut().zip(e.0) {
@@ -281,7 +277,7 @@ pub(crate) fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::testing::{machine, row};
+    use crate::testing::{machine, row, written};
 
     #[test]
     fn the_page_shows_what_the_rows_hold() {
@@ -310,8 +306,8 @@ mod tests {
             rows,
         };
         let results = Results::new(machine(), "peelnet bench \"a&b\"", bench);
-        results.write(dir.path()).unwrap();
-        let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
+        let files = Results::<Bench>::FILES;
+        let page = written(dir.path(), &results, files, Results::<Bench>::write);
         // All scenes in two means and one scene, three bubbles each; the difference of two pictures beside each.
         assert_eq!(page.matches("<circle class=\"point\"").count(), 9);
         assert_eq!(page.matches("data:image/png").count(), 5);
@@ -323,20 +319,5 @@ mod tests {
         assert!(!page.contains("s<1>") && !page.contains("a <fast> one"));
         assert!(page.contains("gather 2.00 · resolve 0.10"));
         assert!(!page.contains("http://www.w3.org/1999") && !page.contains("https:"));
-        assert!(
-            std::fs::read_to_string(dir.path().join("pareto.svg"))
-                .unwrap()
-                .contains("<svg")
-        );
-        let read: Results<Bench> = Results::read(&dir.path().join("results.json")).unwrap();
-        assert_eq!(read, results);
-        crate::testing::assert_files(dir.path(), Results::<Bench>::FILES);
-    }
-
-    #[test]
-    fn difference_maps_are_magnified_and_clamped() {
-        let a = RgbImage::from_pixel(1, 1, image::Rgb([10, 20, 30]));
-        let b = RgbImage::from_pixel(1, 1, image::Rgb([12, 10, 130]));
-        assert_eq!(difference(&a, &b).get_pixel(0, 0).0, [16, 80, 255]);
     }
 }

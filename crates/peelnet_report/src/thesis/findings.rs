@@ -147,11 +147,4 @@ mod tests {
         assert_eq!(bad.matches("is not kept:").count(), 2, "{bad}");
         assert!(bad.contains("sixteen-085 2.00"), "{bad}");
     }
-
-    #[test]
-    fn without_the_methods_nothing_is_claimed() {
-        let texts = findings(&[row("a", "blended", 1.0)]);
-        assert_eq!(texts.len(), 1);
-        assert!(texts[0].contains("nothing can be said"));
-    }
 }

@@ -2,7 +2,6 @@
 
 pub(crate) mod findings;
 mod page;
-mod showcase;
 mod table;
 
 use crate::{ReportError, Results, Table, files::write_file};

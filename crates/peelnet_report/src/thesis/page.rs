@@ -1,12 +1,19 @@
 //! The page of a run.
 
-use super::{Attachments, EXPLANATION, Stage, ThesisRun, showcase, table};
+use super::{Attachments, EXPLANATION, Stage, ThesisRun, table};
 use crate::{
-    ReportError, Results, Table, page,
+    ReportError, Results, Table, bench, page,
+    page::SORT_SCRIPT,
     picture::{data_uri, figure, read},
+    table::number,
 };
 use maud::{Markup, html};
-use peelnet_eval::{Row, by_scene::ByScene, compare::image_name};
+use peelnet_eval::{
+    Row,
+    by_scene::ByScene,
+    compare::image_name,
+    front::{self, BASE, Mean},
+};
 use std::path::Path;
 
 /// Largest sum of the pictures' text, bytes: with tables and curve the page stays under ten megabytes.
@@ -26,7 +33,7 @@ pub(super) fn page(
         None => Markup::default(),
     };
     let body = html! {
-        (showcase::section(&run.showcase, attachments.images)?)
+        (showcase(&run.showcase, attachments.images)?)
         h2 { "The thesis's promise" }
         ul { @for finding in &run.findings { li { (finding) } } }
         h3 { "The thesis's table" }
@@ -53,39 +60,83 @@ pub(super) fn page(
         }
     };
     let title = "Learned transparency against the exact image";
-    Ok(page::page(results, title, body, &run.settings, None))
+    Ok(page::page(
+        results,
+        title,
+        body,
+        &run.settings,
+        Some(SORT_SCRIPT),
+    ))
+}
+
+/// One scene with networks that were trained on none of its kind: pictures with their errors, and error against time. Nothing without rows.
+fn showcase(rows: &[Row], images: Option<&Path>) -> Result<Markup, ReportError> {
+    let Some(scene) = rows.first().map(|r| r.scene.as_str()) else {
+        return Ok(Markup::default());
+    };
+    let points = front::points(rows, None, Mean::Arithmetic);
+    // Blending without sorting is only the unit of time.
+    let shown = points.iter().filter(|p| p.method != BASE);
+    let pictures = match images {
+        Some(folder) => bench::page::gallery(scene, shown, folder, WIDTHS[1])?,
+        None => Markup::default(),
+    };
+    Ok(html! {
+        h2 { (scene) ", a scene that no network was trained on" }
+        p.note {
+            "Every method's picture, and below it how far each channel is from the exact picture. MSE: mean squared error in linear light over \
+             all views; × blending: frame time in times of hardware blending without sorting."
+        }
+        (pictures)
+        h3 { "Error against time" }
+        p.note { "The lower, the more accurate; the further left, the faster. Point at a bubble for its figures." }
+        (page::chart("chart", &bench::chart(&points)))
+        (bench::page::points_table(rows, &points))
+    })
 }
 
 fn stages(stages: &[Stage]) -> Table {
-    let lines = stages
-        .iter()
-        .map(|s| vec![s.name.clone(), format!("{:.1}", s.seconds), s.note.clone()]);
-    Table::new(["stage", "seconds", "what"], lines)
+    Table::of(
+        stages,
+        &[
+            ("stage", &|s| s.name.clone()),
+            ("seconds", &|s| format!("{:.1}", s.seconds)),
+            ("what", &|s| s.note.clone()),
+        ],
+    )
 }
 
 /// Passes, bytes and time of every method, over all scenes.
 fn costs(rows: &[Row], methods: &[String]) -> Table {
-    let line = |method: &String| {
-        let rows: Vec<_> = rows.iter().filter(|r| r.method == *method).collect();
-        let mut times: Vec<f64> = rows.iter().filter_map(|r| r.time_ms).collect();
-        times.sort_by(f64::total_cmp);
-        let most = rows.iter().map(|r| r.passes).max().unwrap_or(0);
-        let bytes = rows.iter().filter_map(|r| r.bytes_per_pixel);
-        let bytes = bytes.fold(0.0, f64::max);
-        vec![
-            method.clone(),
-            most.to_string(),
-            format!("{bytes:.0}"),
-            crate::table::number(times.get(times.len() / 2).copied(), 1),
-        ]
+    let own = |method: &String| -> Vec<&Row> {
+        let all = rows.iter();
+        all.filter(|r| r.method == *method).collect()
     };
-    let headings = [
-        "method",
-        "most passes",
-        "most bytes a pixel",
-        "GPU ms (median frame)",
-    ];
-    Table::new(headings, methods.iter().map(line))
+    let time = |method: &String| {
+        let mut times: Vec<f64> = own(method).into_iter().filter_map(|r| r.time_ms).collect();
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).copied()
+    };
+    let bytes = |method: &String| {
+        let all = own(method).into_iter().filter_map(|r| r.bytes_per_pixel);
+        all.fold(0.0, f64::max)
+    };
+    Table::of(
+        methods,
+        &[
+            ("method", &|m| m.clone()),
+            ("most passes", &|m| {
+                own(m)
+                    .iter()
+                    .map(|r| r.passes)
+                    .max()
+                    .unwrap_or(0)
+                    .to_string()
+            }),
+            ("most bytes a pixel", &|m| format!("{:.0}", bytes(m))),
+            ("GPU ms (median frame)", &|m| number(time(m), 1)),
+        ],
+    )
 }
 
 /// The pictures of every scene, as large as the budget allows.
@@ -121,7 +172,7 @@ fn gallery(errors: &ByScene, folder: &Path) -> Result<Markup, ReportError> {
                 div.gallery {
                     @for ((_, method, ..), uri) in of_scene(number) {
                         @let error = scene.mse255.get(*method).map_or_else(String::new, |e| format!(", MSE {e:.2}"));
-                        (figure(uri, &format!("{} drawn with {method}", scene.scene), &format!("{method}{error}")))
+                        (figure(uri, &format!("{method}{error}")))
                     }
                 }
             }
@@ -133,7 +184,7 @@ fn gallery(errors: &ByScene, folder: &Path) -> Result<Markup, ReportError> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::testing::{machine, row};
+    use crate::testing::{machine, row, written};
     use peelnet_chart::{Line, LineChart, Scale};
 
     #[test]
@@ -145,49 +196,38 @@ mod tests {
         picture
             .save(images.join(image_name("sixteen-025", "deep-thesis")))
             .unwrap();
-        let rows = vec![
+        let mut rows = vec![
             row("sixteen-025", "wboit-papakostas", 10.0),
             row("sixteen-025", "deep-thesis", 5.0),
         ];
-        let results = Results::of_rows(machine(), "peelnet run --out \"a&b\"", rows);
+        let mut results = Results::of_rows(machine(), "peelnet run --out \"a&b\"", rows.clone());
+        rows[1].time_ms = Some(3.0);
+        results.measured.showcase = rows.split_off(1);
         let loss = LineChart {
             lines: &[Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])],
             x: "epoch",
             y: "loss",
             x_scale: Scale::Linear,
+        }
+        .svg();
+        let attachments = Attachments {
+            images: Some(&images),
+            loss: Some(&loss),
+            dataset_summary: Some("rows <5>"),
         };
-        results
-            .write(
-                dir.path(),
-                &Attachments {
-                    images: Some(&images),
-                    loss: Some(&loss.svg()),
-                    dataset_summary: Some("rows <5>"),
-                },
-            )
-            .unwrap();
-        let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
+        let files = Results::<ThesisRun>::FILES;
+        let page = written(dir.path(), &results, files, |r, to| {
+            r.write(to, &attachments)
+        });
         assert!(page.contains("data:image/png;base64,iVBOR"));
+        assert_eq!(page.matches("<circle class=\"point\"").count(), 1);
         assert!(page.contains("a &lt;fast&gt; one") && page.contains("a&amp;b"));
-        assert!(page.contains("&lt;training&gt;") && page.contains("rows &lt;5&gt;"));
         assert!(!page.contains("<training>") && !page.contains("rows <5>"));
-        assert!(!page.contains("<?xml"));
         // The name of SVG's namespace is no address that is fetched.
-        assert!(
-            !page
-                .replace("http://www.w3.org/2000/svg", "")
-                .contains("http")
-        );
-        assert!(page.contains("prefers-color-scheme: dark"));
-        let json: serde_json::Value =
-            serde_json::from_slice(&std::fs::read(dir.path().join("results.json")).unwrap())
-                .unwrap();
-        assert_eq!(json["rows"][1]["method"], "deep-thesis");
-        assert_eq!(json["rows"][0]["time_ms"], serde_json::Value::Null);
-        assert_eq!(json["machine"]["cores"], 2);
-        let table = std::fs::read_to_string(dir.path().join("table.md")).unwrap();
+        let page = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!page.contains("http") && !page.contains("<?xml"));
+        let table = results.markdown();
         assert!(table.contains("| sixteen-025 | 10.00 |"), "{table}");
         assert!(table.contains("15.96 → 11.79"), "{table}");
-        crate::testing::assert_files(dir.path(), Results::<ThesisRun>::FILES);
     }
 }
