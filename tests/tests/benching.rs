@@ -163,13 +163,8 @@ fn memory_grows_as_it_is_allocated() {
         .map(|m| m.parse().unwrap())
         .to_vec();
     let stop = AtomicBool::new(false);
-    // Memory is what counts here, however slow the machine is.
-    let settings = scaling::Settings {
-        frames: 1,
-        patience_ms: f64::INFINITY,
-    };
     let (rows, left_out) =
-        scaling::measure(&gpu(), &methods, &[], settings, &stop, &mut |_, _, _| ()).unwrap();
+        scaling::measure(&gpu(), &methods, &[], 1, &stop, &mut |_, _, _| ()).unwrap();
     assert!(left_out.is_empty(), "{left_out:?}");
     let of = |method: &str, series: Series, value: u64| {
         let found = rows
