@@ -6,7 +6,9 @@ use glam::{Vec2, Vec3};
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
-use peelnet_render::{Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, Renderer};
+use peelnet_render::{
+    Image, LearnedWeight, METHODS, MethodOptions, MethodSpec, Prepared, Renderer,
+};
 use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
 use std::sync::Arc;
 
@@ -30,6 +32,12 @@ pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
     let wgsl = peelnet_export::wgsl(&model);
     let wgsl = wgsl.unwrap_or_else(|e| panic!("{method}: {e}"));
     Some((LearnedWeight { recipe, wgsl }, model))
+}
+
+/// One method each, as people draw it first.
+pub fn representatives() -> Vec<MethodSpec> {
+    let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+    drawn.map(MethodSpec::representative).collect()
 }
 
 /// Draws a scene's first view; a learned method with its shipped network.

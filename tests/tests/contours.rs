@@ -5,13 +5,12 @@ use peelnet_eval::{
     bench,
     compare::{EXACT, Plan},
     contours::Pairs,
-    path,
 };
 use peelnet_gpu::Gpu;
 use peelnet_render::{MethodSpec, Renderer};
 use peelnet_scene::{Material, Object, Scene};
 use peelnet_tests::{even, gpu, scene};
-use std::sync::{Arc, atomic::AtomicBool};
+use std::sync::Arc;
 
 /// Pixels of a side of the frame.
 const SIDE: u32 = 16;
@@ -145,7 +144,7 @@ fn bordered() -> Scene {
     scene("bordered", [0.0; 3], vec![near, far])
 }
 
-/// A bench and the first frame of a path count the border; exact methods have no contour.
+/// A bench counts the border; exact methods have no contour.
 #[test]
 fn benches_count_the_border_of_an_error() {
     let gpu = gpu();
@@ -172,19 +171,4 @@ fn benches_count_the_border_of_an_error() {
             ("weighted-average", Some(want))
         ]
     );
-    let settings = path::Settings {
-        size: [SIDE; 2],
-        samples: 1,
-        frames: 1,
-        methods: &methods,
-        learned: &[],
-        lenient: false,
-        images: None,
-    };
-    let stop = AtomicBool::new(false);
-    let along = path::measure(&gpu, &[scene], &settings, &stop, &mut |_| {}).unwrap();
-    let found: Vec<_> = along.rows.iter().map(|r| r.contour_pairs).collect();
-    assert_eq!(found, [exact, Some(want)]);
-    let frames: Vec<_> = along.by_frame.iter().map(|r| r.contour_pairs).collect();
-    assert_eq!(frames, found);
 }

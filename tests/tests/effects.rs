@@ -253,27 +253,3 @@ fn neutral_values_change_nothing() {
         }
     }
 }
-
-/// Shading alone has every effect of the surfaces and nothing transparent; transparency alone has the same transparent surfaces and no
-/// lighting.
-#[test]
-fn shading_and_transparency_come_apart() {
-    let lit = [Effect::Lighting, Effect::Pbr];
-    for scene in peelnet_scene::suite::EFFECTS {
-        let scene = peelnet_scene::suite::load(scene.name).unwrap();
-        let on = |scene: &Scene, effect: &Effect| Census::of(scene).has(*effect);
-        let (opaque, unlit) = (scene.opaque(), scene.unlit());
-        let name = &scene.name;
-        assert_eq!(opaque.transparent_bounds(), None, "{name}");
-        assert_eq!(
-            unlit.transparent_bounds(),
-            scene.transparent_bounds(),
-            "{name}"
-        );
-        for effect in lit.iter().chain(&Effect::MAPS) {
-            let read = on(&scene, effect);
-            assert_eq!(on(&opaque, effect), read, "{name}: {effect}");
-        }
-        assert!(lit.iter().all(|e| !on(&unlit, e)), "{name}");
-    }
-}

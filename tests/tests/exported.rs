@@ -11,7 +11,7 @@ use naga::{
 };
 use peelnet_core::random::Random;
 use peelnet_export::{Blend, Description, Drawn, Language, Options, SelfTest, Target};
-use peelnet_gpu::{Gpu, bind::Bind, wgpu};
+use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_tests::{gpu, run_text, shipped};
 use std::{fmt::Write as _, fs, path::Path};
@@ -216,19 +216,10 @@ fn evaluate(gpu: &Gpu, model: &Model, text: &str, rows: &[Vec<f32>]) -> Vec<f32>
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&module).unwrap();
     let read_back = wgsl::write_string(&module, &info, wgsl::WriterFlags::empty()).unwrap();
-    let flat: Vec<f32> = rows.iter().flatten().copied().collect();
-    let given = gpu.upload("inputs", &flat, wgpu::BufferUsages::STORAGE);
-    let bytes = (rows.len() * outputs * size_of::<f32>()) as u64;
-    let answers = gpu.storage("outputs", bytes).unwrap();
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let bound = gpu.bind(
-        "languages",
-        stages,
-        &[Bind::Read(&given), Bind::Write(&answers)],
-    );
-    let groups = (rows.len() as u32).div_ceil(64);
-    gpu.dispatch("languages", &read_back, &bound, groups);
-    gpu.read(&answers, 0..bytes).unwrap()
+    let mut flat: Vec<f32> = rows.iter().flatten().copied().collect();
+    flat.resize(flat.len().next_multiple_of(4), 0.0);
+    let (quads, _) = flat.as_chunks();
+    run_text(gpu, &read_back, quads, rows.len() * outputs)
 }
 
 #[test]

@@ -6,9 +6,8 @@ use peelnet_eval::stress::judge::clip_triangles;
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{PixelSample, Renderer};
-use peelnet_scene::{Light, Lighting, Material, Object, Scene, Source, Texture};
-use peelnet_tests::{gpu, prepare, scene, wall};
-use std::sync::Arc;
+use peelnet_scene::{Material, Object, Scene};
+use peelnet_tests::{gpu, prepare, scene};
 
 const SIZE: [u32; 2] = [61, 47];
 
@@ -390,65 +389,5 @@ fn the_judge_finds_the_same_fragments() {
             fragments > 3 * judged,
             "{fragments} fragments in {judged} pixels"
         );
-    }
-}
-
-/// What is peeled is what is seen: opacity and colour from a texture, vertex colours, light, and holes through which the rest shows.
-#[test]
-fn fragments_carry_what_surfaces_look_like() {
-    let gpu = gpu();
-    let halves = |left: [u8; 4], right: [u8; 4]| {
-        let image = Texture::of("halves", [2, 1], |x, _| if x == 0 { left } else { right });
-        Some(Arc::new(image))
-    };
-    // In front: its left half is a hole, its right half hides everything.
-    let mut fence = Material::unlit([0.5; 3], 1.0);
-    (fence.alpha_cutoff, fence.blend) = (Some(0.5), false);
-    fence.maps.color = halves([255, 255, 255, 0], [255; 4]);
-    fence.maps.nearest = true;
-    // Behind: opacity from a texture, and from its vertices.
-    let mut pane = Material::unlit([1.0, 0.5, 0.25], 0.5);
-    pane.maps.color = halves([255, 0, 255, 204], [255; 4]);
-    pane.maps.nearest = true;
-    let mut pane = wall(5.0, pane);
-    let mesh = Arc::make_mut(&mut pane.mesh);
-    mesh.colors = vec![[0.5, 1.0, 1.0, 0.75]; mesh.positions.len()];
-    // Last: lit from where the eye is, and facing it only in the middle; ambient light everywhere.
-    let mut lit = Material::unlit([0.8, 0.4, 0.2], 0.25);
-    lit.lighting = Lighting::Phong;
-    let mut scene = scene(
-        "looks",
-        [0.0; 3],
-        vec![wall(3.0, fence), pane, wall(7.0, lit)],
-    );
-    scene.lights.push(Light {
-        source: Source::Toward(Vec3::Z),
-        color: [1.0; 3],
-        intensity: 0.5,
-    });
-    let want = [
-        (5.0, [0.5, 0.0, 0.25, 0.5 * 0.8 * 0.75]),
-        // Facing the light: ambient and diffuse.
-        (7.0, [0.8 * 0.6, 0.4 * 0.6, 0.2 * 0.6, 0.25]),
-    ];
-    for peel in [Peel::SBuffer, Peel::Dual, Peel::Single] {
-        let (pixels, _) = harvest(&gpu, &scene, peel, None, None);
-        for (i, pixel) in pixels.iter().enumerate() {
-            // The middle column belongs to the right half.
-            if i as u32 % SIZE[0] >= SIZE[0] / 2 {
-                assert!(pixel.is_empty(), "{peel}: {pixel:?}");
-                continue;
-            }
-            assert_eq!(pixel.len(), 2, "{peel}: {pixel:?}");
-            for ((depth, color), (at, look)) in pixel.iter().zip(want) {
-                assert!((depth - at).abs() < 1e-5, "{peel}: {depth}");
-                for k in 0..4 {
-                    assert!(
-                        (color[k] - look[k]).abs() < 1e-5,
-                        "{peel}: {color:?} for {look:?}"
-                    );
-                }
-            }
-        }
     }
 }

@@ -194,23 +194,6 @@ fn a_dataset_records_its_census() {
     assert_eq!(effects, [vec![], vec!["culling", "emission"]]);
 }
 
-/// What is stopped leaves nothing behind.
-#[test]
-fn an_interrupted_extraction_leaves_nothing() {
-    let gpu = gpu();
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("d");
-    let result = extract(
-        &gpu,
-        &scenes(),
-        &options(&out),
-        &AtomicBool::new(true),
-        &mut |_| {},
-    );
-    assert!(matches!(result, Err(peelnet_peel::PeelError::Interrupted)));
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
 #[test]
 fn requests_that_make_no_sense_are_refused() {
     let gpu = gpu();

@@ -16,7 +16,7 @@ use peelnet_render::{
     methods::{Pixel, Precision},
 };
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{gpu, half_sums, network_of, scene, window_depth};
+use peelnet_tests::{gpu, half_sums, network_of, representatives, scene, window_depth};
 
 /// Bound for moments in 32 bits against 64. Of four, where layers are apart, they err by some roundings; of more, points are cosines and
 /// roots of cubics, good to 1e-5 each, and what lies at them is divided by pivots down to 1e-3.
@@ -42,12 +42,6 @@ fn bound(spec: &MethodSpec, n: usize, moments: f32) -> Option<f32> {
         // Weighted sums reach 3000 before they are divided by a sum of the same size: relative.
         (None, _, Precision::Half) => Some(half_sums(n, 3.0)),
     }
-}
-
-/// One method each, as people draw it first.
-fn representatives() -> Vec<MethodSpec> {
-    let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
-    drawn.map(MethodSpec::representative).collect()
 }
 
 /// Every method with every point of its curve, in 32 bits where it has the choice, and the thesis's reference, which no benchmark draws

@@ -1,16 +1,11 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
-use peelnet_core::{guards, hash, weights::Weight};
+use peelnet_core::{guards, weights::Weight};
 use peelnet_gpu::Gpu;
 use peelnet_tests::{gpu, run_text};
 
-/// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input.
-fn evaluate(gpu: &Gpu, imports: &str, body: &str, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    evaluate_with(gpu, &[], imports, body, inputs)
-}
-
-/// The same with features of the shaders.
-fn evaluate_with(
+/// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input, with features of the shaders.
+fn evaluate(
     gpu: &Gpu,
     features: &[&str],
     imports: &str,
@@ -57,7 +52,7 @@ fn weights() {
     for (call, weight) in calls {
         let name = call.split('(').next().unwrap();
         let imports = format!("import package::helpers::weights::{name};");
-        let got = evaluate(&gpu, &imports, &format!("y.x = {call};"), &inputs);
+        let got = evaluate(&gpu, &[], &imports, &format!("y.x = {call};"), &inputs);
         for (x, y) in inputs.iter().zip(&got) {
             let want = weight.eval(x[0], x[1], x[2]);
             // WGSL allows 2.5 units for each division; the sixth power multiplies its error by six.
@@ -72,29 +67,11 @@ fn weights() {
 }
 
 #[test]
-fn pixel_hash() {
-    let gpu = gpu();
-    let inputs: Vec<[f32; 4]> = (0..512u32)
-        .map(|i| [7, i % 3, i, i * i].map(f32::from_bits))
-        .collect();
-    let got = evaluate(
-        &gpu,
-        "import package::helpers::hash::pixel_hash;",
-        "let b = bitcast<vec4u>(x); let h = pixel_hash(b.x, b.y, b.z, b.w); y = vec4f(f32(h >> 16u), f32(h & 0xffffu), 0.0, 0.0);",
-        &inputs,
-    );
-    for (x, y) in inputs.iter().zip(&got) {
-        let [a, b, c, d] = x.map(f32::to_bits);
-        let h = hash::pixel_hash(a, b, c, d);
-        assert_eq!([y[0], y[1]], [(h >> 16) as f32, (h & 0xffff) as f32]);
-    }
-}
-
-#[test]
 fn guards_are_the_same_numbers() {
     let gpu = gpu();
     let got = evaluate(
         &gpu,
+        &[],
         "import package::helpers::guards::{SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX, EMISSIVE_ALPHA};",
         "y = vec4f(SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX);
         if x.x > 0.0 { y = vec4f(EMISSIVE_ALPHA); }",
@@ -130,7 +107,7 @@ fn stored_colors_come_back_within_half_a_step() {
     let beyond = inputs.len();
     inputs.push([1.5, 60_000.0, 1.25, 1.0]);
     let stored = |feature: &str| {
-        evaluate_with(
+        evaluate(
             &gpu,
             &[feature],
             "import package::helpers::stored::{Stored, restored, stored};",

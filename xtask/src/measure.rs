@@ -265,13 +265,4 @@ mod tests {
         assert_eq!(gpu.as_deref(), Some("nvidia-h100-80gb-hbm3"));
         assert_eq!(name_of("{}"), None);
     }
-
-    #[test]
-    fn options_are_read() {
-        let options = Options::parse(&["--binary", "p", "--only", "stress,effects"]);
-        assert_eq!(options.map(|o| o.only.len()), Ok(2));
-        for wrong in [&["--binary"][..], &["--fast", "1"], &["--only", "nothing"]] {
-            assert!(Options::parse(wrong).is_err(), "{wrong:?}");
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! The viewer's page: `cargo xtask web`.
 
-use crate::{Outcome, answers, captured, command, run, start, target_folder};
+use crate::{Outcome, captured, command, root, start, target_folder};
 use std::{env, fs, path::Path};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -25,7 +25,7 @@ pub fn web() -> Outcome {
         build.arg("-Zbuild-std=std,panic_abort");
     }
     start(&mut build)?;
-    let folder = crate::root().join("out/web");
+    let folder = root().join("out/web");
     fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     // The JavaScript beside the wasm file, which is packed, by a program of ours. Its profile and its lock file are its own.
     let target = target_folder();
@@ -33,19 +33,16 @@ pub fn web() -> Outcome {
     glue.arg(target.join("glue")).arg("--");
     glue.arg(target.join(TARGET).join("web/peelnet_view.wasm"));
     start(glue.arg("out/web"))?;
-    let index = crate::root().join("crates/peelnet_view/web/index.html");
+    let index = root().join("crates/peelnet_view/web/index.html");
     fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
     sizes(&folder)
 }
 
-/// Prints what each file weighs, and on the line where `gzip` is there to tell.
+/// Prints what each file weighs, and on the line.
 fn sizes(folder: &Path) -> Outcome {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).collect();
     paths.sort();
-    if !answers("gzip --version") {
-        return run("ls -l out/web");
-    }
     let mut all = 0;
     for path in paths.iter().filter(|p| p.is_file()) {
         let raw = fs::metadata(path).map_err(|e| format!("{}: {e}", path.display()))?;

@@ -6,25 +6,14 @@ use std::{
     fs::{self, File},
     io::BufWriter,
     path::Path,
-    process::ExitCode,
 };
 
-fn main() -> ExitCode {
+fn main() -> Result<(), Box<dyn Error>> {
     let paths: Vec<_> = env::args_os().skip(1).collect();
     let [wasm, folder] = paths.as_slice() else {
-        eprintln!("usage: glue FILE.wasm FOLDER");
-        return ExitCode::from(2);
+        return Err("usage: glue FILE.wasm FOLDER".into());
     };
-    match glue(Path::new(wasm), Path::new(folder)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(e) => {
-            eprintln!("error: {e}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-fn glue(wasm: &Path, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let (wasm, folder) = (Path::new(wasm), Path::new(folder));
     wasm_bindgen_cli_support::Bindgen::new()
         .input_path(wasm)
         .web(true)
