@@ -144,10 +144,7 @@ pub fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
     n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (sum + 1.0)
 }
 
-const TRANSMITTANCE: usize = 0;
-const ALPHA_SUM: usize = 1;
-const COUNT: usize = 2;
-const LAYER: usize = 3;
+/// The check of the order, behind those of columns that the rows of a pixel imply.
 const DEPTH: usize = 4;
 
 struct Work {
@@ -167,14 +164,12 @@ impl Work {
             worst_ratio: 0.0,
             violations: 0,
         };
-        let by_scene = |k: usize| {
-            manifest
-                .parts
-                .iter()
-                .filter(|p| p.scene as usize == k)
-                .map(|p| p.rows)
-                .sum()
-        };
+        let rows_by_scene = manifest.rows_by_scene();
+        let scenes = manifest.scenes.iter().map(|scene| SceneRows {
+            name: scene.name.clone(),
+            held_out: scene.held_out,
+            rows: rows_by_scene.get(scene.name.as_str()).copied().unwrap_or(0),
+        });
         Self {
             summary: Summary {
                 hash: manifest.hash.clone(),
@@ -182,16 +177,7 @@ impl Work {
                 pixels: 0,
                 lost_fragments: manifest.lost_fragments,
                 coplanar_ties: manifest.coplanar_ties,
-                scenes: manifest
-                    .scenes
-                    .iter()
-                    .enumerate()
-                    .map(|(k, s)| SceneRows {
-                        name: s.name.clone(),
-                        held_out: s.held_out,
-                        rows: by_scene(k),
-                    })
-                    .collect(),
+                scenes: scenes.collect(),
                 columns: Vec::new(),
                 fragments_per_pixel: Vec::new(),
                 alpha: Vec::new(),
@@ -256,43 +242,31 @@ impl Work {
             .iter()
             .map(|&v| 1.0 - f64::from(v))
             .sum();
+        let tolerances = [
+            peelnet_core::tolerance::transmittance(n),
+            alpha_sum_tolerance(n, alpha_sum),
+            0.0,
+            0.0,
+        ];
         let mut transmittance = 1.0f64;
         for (rank, i) in pixel.clone().enumerate() {
-            let row = first_row + i as u64;
+            let place = (file, first_row + i as u64);
+            let stored = [
+                f64::from(batch.transmittance[i]),
+                f64::from(batch.alpha_sum[i]),
+                f64::from(batch.fragment_count[i]),
+                f64::from(batch.layer[i]),
+            ];
+            let computed = [transmittance, alpha_sum, n as f64, rank as f64];
             if !lossy {
-                self.check(
-                    TRANSMITTANCE,
-                    (file, row),
-                    f64::from(batch.transmittance[i]),
-                    transmittance,
-                    peelnet_core::tolerance::transmittance(n),
-                );
-                self.check(
-                    ALPHA_SUM,
-                    (file, row),
-                    f64::from(batch.alpha_sum[i]),
-                    alpha_sum,
-                    alpha_sum_tolerance(n, alpha_sum),
-                );
-                self.check(
-                    COUNT,
-                    (file, row),
-                    f64::from(batch.fragment_count[i]),
-                    n as f64,
-                    0.0,
-                );
-                self.check(
-                    LAYER,
-                    (file, row),
-                    f64::from(batch.layer[i]),
-                    rank as f64,
-                    0.0,
-                );
+                for (check, (found, expected)) in stored.into_iter().zip(computed).enumerate() {
+                    self.check(check, place, found, expected, tolerances[check]);
+                }
             }
             if rank > 0 {
                 let before = f64::from(batch.linear_depth[i - 1]);
                 let depth = f64::from(batch.linear_depth[i]);
-                self.check(DEPTH, (file, row), depth, depth.max(before), 0.0);
+                self.check(DEPTH, place, depth, depth.max(before), 0.0);
             }
             transmittance *= f64::from(batch.one_minus_alpha[i]);
         }

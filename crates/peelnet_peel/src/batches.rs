@@ -2,31 +2,22 @@
 
 use crate::{
     ExtractOptions, PeelError,
-    extract::{Effort, Message, ROWS_AT_A_TIME, peel, work},
+    extract::{Inbox, Message, ROWS_AT_A_TIME, peel, work},
     rows::{ViewConstants, append_rows},
 };
 use peelnet_dataset::FragmentBatch;
 use peelnet_gpu::Gpu;
 use peelnet_scene::Scene;
-use std::{
-    collections::VecDeque,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::{Receiver, Sender, channel, sync_channel},
-    },
-    thread::JoinHandle,
-};
+use std::{collections::VecDeque, thread::JoinHandle};
 
 /// The rows of some scenes, batch by batch, while another thread peels. Dropping it ends the peeling.
 #[derive(Debug)]
 pub struct Batches {
-    receive: Receiver<Message>,
-    give_back: Sender<crate::rows::RawTile>,
+    /// `None` once there is nothing more to come.
+    inbox: Option<Inbox>,
     view: Option<ViewConstants>,
     ready: VecDeque<FragmentBatch>,
-    peeling: Option<JoinHandle<Result<(), PeelError>>>,
-    stop: Arc<AtomicBool>,
+    peeling: Option<JoinHandle<()>>,
 }
 
 /// Peels scenes and returns their rows in the order of views, pixels and layers. Batches hold whole pixels: columns are slices, or
@@ -52,86 +43,75 @@ pub fn batches(
 ) -> Result<Batches, PeelError> {
     let (_, mine) = work(scenes, options)?;
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
-    let stop = Arc::new(AtomicBool::new(false));
-    let (send, receive) = sync_channel(1);
-    let (give_back, take) = channel();
-    let stopped = Arc::clone(&stop);
-    let peeling = std::thread::spawn(move || {
-        let mut effort = Effort::default();
-        peel(
-            &gpu,
-            &scenes,
-            &options,
-            &mine,
-            &stopped,
-            &mut |_| (),
-            &send,
-            &take,
-            &mut effort,
-        )
-    });
+    let (outbox, inbox) = Inbox::new();
+    let peeling = std::thread::spawn(move || peel(&gpu, &scenes, &options, &mine, &outbox));
     Ok(Batches {
-        receive,
-        give_back,
+        inbox: Some(inbox),
         view: None,
         ready: VecDeque::new(),
         peeling: Some(peeling),
-        stop,
     })
+}
+
+impl Batches {
+    /// Takes messages until there are rows, or nothing more comes.
+    fn fill(&mut self) -> Result<(), PeelError> {
+        while self.ready.is_empty() {
+            let Some(message) = self.inbox.as_ref().and_then(Inbox::next) else {
+                return Ok(());
+            };
+            match message {
+                Message::Begin(info) => self.view = Some(ViewConstants::from(&info)),
+                Message::Tile(tile) => {
+                    // A tile comes behind the beginning of its view.
+                    let Some(view) = self.view else { continue };
+                    let mut rows = FragmentBatch::default();
+                    let ready = &mut self.ready;
+                    let counts = append_rows(&tile, view, &mut rows, ROWS_AT_A_TIME, |rows| {
+                        ready.push_back(rows.clone());
+                        Ok::<_, PeelError>(())
+                    })?;
+                    if let Some(inbox) = &self.inbox {
+                        inbox.give_back(tile);
+                    }
+                    counts.check()?;
+                }
+                Message::End(_) => {}
+                Message::Failed(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the peeling, which finds nobody to send to.
+    fn end(&mut self) -> std::thread::Result<()> {
+        self.inbox = None;
+        self.peeling.take().map_or(Ok(()), JoinHandle::join)
+    }
 }
 
 impl Iterator for Batches {
     type Item = Result<FragmentBatch, PeelError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            if let Some(batch) = self.ready.pop_front() {
-                return Some(Ok(batch));
-            }
-            match self.receive.recv() {
-                Ok(Message::Begin(_, view)) => self.view = Some(view),
-                Ok(Message::Tile(tile)) => {
-                    // A tile comes behind the beginning of its view.
-                    let view = self.view?;
-                    let ready = &mut self.ready;
-                    let mut rows = FragmentBatch::default();
-                    let kept = append_rows(&tile, view, &mut rows, ROWS_AT_A_TIME, |rows| {
-                        ready.push_back(rows.clone());
-                        Ok::<_, PeelError>(())
-                    });
-                    // The other side may have ended; then the tile is freed.
-                    let _ = self.give_back.send(tile);
-                    match kept {
-                        Ok(counts) if counts.unsorted > 0 => {
-                            return Some(Err(PeelError::Unsorted(counts.unsorted)));
-                        }
-                        Ok(_) => {}
-                        Err(e) => return Some(Err(e)),
-                    }
-                }
-                Ok(Message::End) => {}
-                // The thread has ended, well or not.
-                Err(_) => {
-                    let result = self.peeling.take()?.join();
-                    return match result {
-                        Ok(Ok(())) => None,
-                        Ok(Err(e)) => Some(Err(e)),
-                        Err(panic) => std::panic::resume_unwind(panic),
-                    };
-                }
-            }
+        if let Err(error) = self.fill() {
+            self.ready.clear();
+            self.inbox = None;
+            return Some(Err(error));
         }
+        let next = self.ready.pop_front();
+        if next.is_none()
+            && let Err(panic) = self.end()
+        {
+            std::panic::resume_unwind(panic);
+        }
+        next.map(Ok)
     }
 }
 
 impl Drop for Batches {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        // The thread may wait for room in the channel.
-        while self.receive.recv().is_ok() {}
-        if let Some(peeling) = self.peeling.take() {
-            // Whatever it came to, nobody asks any more.
-            let _ = peeling.join();
-        }
+        // Whatever it came to, nobody asks any more.
+        let _ = self.end();
     }
 }

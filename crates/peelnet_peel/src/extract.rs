@@ -7,8 +7,8 @@ use crate::{
     rows::{RawTile, RowCounts, ViewConstants, append_rows},
 };
 use peelnet_dataset::{
-    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, PartCounts, PartInfo,
-    SceneEntry, Shard, worker_name,
+    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, PartInfo, SceneEntry,
+    Shard, worker_name,
 };
 use peelnet_gpu::Gpu;
 use peelnet_raster::PixelSample;
@@ -115,18 +115,52 @@ pub struct ExtractReport {
     pub tiles: u64,
 }
 
-/// What the GPU's side spent.
-#[derive(Default)]
-pub(crate) struct Effort {
-    gpu_micros: f64,
-    tiles: u64,
+/// What the GPU's side sends, view by view.
+pub(crate) enum Message {
+    Begin(PartInfo),
+    Tile(RawTile),
+    End(Harvest),
+    /// The last one.
+    Failed(PeelError),
 }
 
-/// What the GPU's side sends.
-pub(crate) enum Message {
-    Begin(PartInfo, ViewConstants),
-    Tile(RawTile),
-    End,
+/// The GPU's end of the channels.
+pub(crate) struct Outbox {
+    send: SyncSender<Message>,
+    take: Receiver<RawTile>,
+}
+
+/// The other end. Once it is dropped, the GPU's side stops at its next tile.
+#[derive(Debug)]
+pub(crate) struct Inbox {
+    receive: Receiver<Message>,
+    give_back: Sender<RawTile>,
+}
+
+impl Inbox {
+    pub(crate) fn new() -> (Outbox, Self) {
+        let (send, receive) = sync_channel(1);
+        let (give_back, take) = channel();
+        (Outbox { send, take }, Self { receive, give_back })
+    }
+
+    /// What comes next; `None` at the end.
+    pub(crate) fn next(&self) -> Option<Message> {
+        self.receive.recv().ok()
+    }
+
+    /// Lets a tile's memory be used again.
+    pub(crate) fn give_back(&self, tile: RawTile) {
+        // The other side may have ended; then the tile is freed.
+        let _ = self.give_back.send(tile);
+    }
+}
+
+impl Outbox {
+    fn deliver(&self, message: Message) -> Result<(), PeelError> {
+        let sent = self.send.send(message);
+        sent.map_err(|_| PeelError::Interrupted)
+    }
 }
 
 /// The number of all work items, and those of the options' shard.
@@ -185,204 +219,168 @@ pub fn extract(
         },
     )?;
     mine.retain(|item| writer.needs(item.index));
-    let mut effort = Effort::default();
-    let counts = std::thread::scope(|scope| {
-        let (send, receive) = sync_channel(1);
-        let (give_back, take) = channel();
-        let writer = &writer;
-        let writing = scope.spawn(move || write(writer, &receive, &give_back));
-        let peeled = peel(
-            gpu,
-            scenes,
-            options,
-            &mine,
-            stop,
-            progress,
-            &send,
-            &take,
-            &mut effort,
-        );
-        // Without a sender the writer comes to its end.
-        drop(send);
-        let written = writing
-            .join()
-            .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        // Whichever side failed first made the other one stop with `Interrupted`: report the real reason.
-        match (written, peeled) {
-            (Err(PeelError::Interrupted) | Ok(_), Err(e)) | (Err(e), _) => Err(e),
-            (Ok(counts), Ok(())) => Ok(counts),
-        }
-    })?;
-    let manifest = writer.finish()?;
-    Ok(ExtractReport {
-        manifest,
-        parts: mine.len() as u32,
-        rows: counts.rows,
-        gpu_micros: effort.gpu_micros,
-        wall_micros: start.elapsed().as_secs_f64() * 1e6,
-        lost: counts.lost,
-        coplanar: counts.coplanar,
-        tiles: effort.tiles,
-    })
-}
-
-/// The GPU's side: every item's tiles into the channel.
-#[allow(
-    clippy::too_many_arguments,
-    reason = "one call site, and a struct of references would only rename them"
-)]
-pub(crate) fn peel(
-    gpu: &Gpu,
-    scenes: &[Scene],
-    options: &ExtractOptions,
-    mine: &[Item],
-    stop: &AtomicBool,
-    progress: &mut dyn FnMut(&Progress),
-    send: &SyncSender<Message>,
-    take: &Receiver<RawTile>,
-    effort: &mut Effort,
-) -> Result<(), PeelError> {
-    let start = Instant::now();
-    let deliver = |message| send.send(message).map_err(|_| PeelError::Interrupted);
-    let threshold = peelnet_core::hash::sample_threshold(options.pixels);
     let mut state = Progress {
         items: mine.len() as u32,
         ..Default::default()
     };
     progress(&state);
-    let mut current: Option<((u32, u32), Scene, Harvester)> = None;
-    for item in mine {
-        let key = (item.scene, item.copy);
-        if current.as_ref().is_none_or(|(k, ..)| *k != key) {
-            // The old scene's buffers go before the new one's come.
-            drop(current.take());
-            let scene = scenes[item.scene as usize].varied(options.seed, item.copy);
-            let harvester = Harvester::new(
-                gpu,
-                &scene,
-                options.size,
-                options.peel,
-                options.pixels < 1.0,
-                Some(options.budget.unwrap_or(DEFAULT_BUDGET)),
-            )
-            .map_err(|e| in_part(e, options, item, &scene.name))?;
-            current = Some((key, scene, harvester));
-        }
-        let Some((_, scene, harvester)) = &mut current else {
-            continue;
-        };
-        let camera = &scene.views[item.view as usize];
-        let info = PartInfo {
-            index: item.index,
-            scene: item.scene,
-            copy: item.copy,
-            view: item.view,
-            camera: camera_info(camera),
-            width: options.size[0],
-            height: options.size[1],
-        };
-        let constants = ViewConstants {
-            view: item.index,
-            width: options.size[0],
-            near: camera.near,
-            far: camera.far,
-        };
-        deliver(Message::Begin(info, constants))?;
-        // The hash takes 32 bits of seed; both halves count.
-        let sample = PixelSample {
-            seed: (options.seed ^ (options.seed >> 32)) as u32,
-            view: item.index,
-            threshold,
-        };
-        let Harvest {
-            fragments,
-            tiles,
-            gpu_micros,
-            ..
-        } = harvester
-            .harvest(
-                camera,
-                sample,
-                options.max_passes,
-                || take.try_recv().unwrap_or_default(),
-                |tile| {
-                    if stop.load(Ordering::Relaxed) {
-                        return Err(PeelError::Interrupted);
+    let (mut total, mut gpu_micros, mut tiles) = (RowCounts::default(), 0.0, 0);
+    std::thread::scope(|scope| {
+        let (outbox, inbox) = Inbox::new();
+        let mine = &mine;
+        scope.spawn(move || peel(gpu, scenes, options, mine, &outbox));
+        let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
+        while let Some(message) = inbox.next() {
+            let info = match message {
+                Message::Begin(info) => info,
+                Message::Failed(error) => return Err(error),
+                Message::Tile(_) | Message::End(_) => continue,
+            };
+            let view = ViewConstants::from(&info);
+            let mut part = writer.begin(info)?;
+            let mut counts = RowCounts::default();
+            let found = loop {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(PeelError::Interrupted);
+                }
+                match inbox.next() {
+                    Some(Message::Tile(tile)) => {
+                        let write = |rows: &FragmentBatch| part.write(rows);
+                        counts += append_rows(&tile, view, &mut batch, ROWS_AT_A_TIME, write)?;
+                        inbox.give_back(tile);
                     }
-                    deliver(Message::Tile(tile))
-                },
-            )
-            .map_err(|e| in_part(e, options, item, &scene.name))?;
-        deliver(Message::End)?;
-        effort.gpu_micros += gpu_micros;
-        effort.tiles += u64::from(tiles);
-        state.items_done += 1;
-        state.rows += fragments;
-        state.seconds = start.elapsed().as_secs_f64();
-        progress(&state);
-        if stop.load(Ordering::Relaxed) {
-            return Err(PeelError::Interrupted);
+                    Some(Message::End(found)) => break found,
+                    Some(Message::Failed(error)) => return Err(error),
+                    Some(Message::Begin(_)) | None => return Err(PeelError::Interrupted),
+                }
+            };
+            counts.check()?;
+            part.finish(counts.of_part())?;
+            total += counts;
+            gpu_micros += found.gpu_micros;
+            tiles += u64::from(found.tiles);
+            state.items_done += 1;
+            state.rows += found.fragments;
+            state.seconds = start.elapsed().as_secs_f64();
+            progress(&state);
+            if stop.load(Ordering::Relaxed) {
+                return Err(PeelError::Interrupted);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(ExtractReport {
+        manifest: writer.finish()?,
+        parts: mine.len() as u32,
+        rows: total.rows,
+        gpu_micros,
+        wall_micros: start.elapsed().as_secs_f64() * 1e6,
+        lost: total.lost,
+        coplanar: total.coplanar,
+        tiles,
+    })
+}
+
+/// The GPU's side: every item's tiles into the channel.
+pub(crate) fn peel(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+    items: &[Item],
+    outbox: &Outbox,
+) {
+    let mut current = None;
+    for item in items {
+        let peeled = peel_item(gpu, scenes, options, item, &mut current, outbox);
+        if let Err(error) = peeled {
+            // The other side may have stopped it.
+            let _ = outbox
+                .send
+                .send(Message::Failed(in_part(error, options, item, scenes)));
+            return;
         }
     }
-    Ok(())
+}
+
+/// A scene or a varied copy of one that is on the GPU.
+struct Current {
+    key: (u32, u32),
+    scene: Scene,
+    harvester: Harvester,
+}
+
+fn peel_item(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+    item: &Item,
+    current: &mut Option<Current>,
+    outbox: &Outbox,
+) -> Result<(), PeelError> {
+    let key = (item.scene, item.copy);
+    // The old scene's buffers go before the new one's come.
+    let kept = current.take().filter(|c| c.key == key);
+    let kept = if let Some(kept) = kept {
+        kept
+    } else {
+        let scene = scenes[item.scene as usize].varied(options.seed, item.copy);
+        let budget = options.budget.unwrap_or(DEFAULT_BUDGET);
+        let sampled = options.pixels < 1.0;
+        let harvester = Harvester::new(
+            gpu,
+            &scene,
+            options.size,
+            options.peel,
+            sampled,
+            Some(budget),
+        )?;
+        Current {
+            key,
+            scene,
+            harvester,
+        }
+    };
+    let Current {
+        scene, harvester, ..
+    } = current.insert(kept);
+    let camera = &scene.views[item.view as usize];
+    outbox.deliver(Message::Begin(PartInfo {
+        index: item.index,
+        scene: item.scene,
+        copy: item.copy,
+        view: item.view,
+        camera: camera_info(camera),
+        width: options.size[0],
+        height: options.size[1],
+    }))?;
+    // The hash takes 32 bits of seed; both halves count.
+    let sample = PixelSample {
+        seed: (options.seed ^ (options.seed >> 32)) as u32,
+        view: item.index,
+        threshold: peelnet_core::hash::sample_threshold(options.pixels),
+    };
+    let found = harvester.harvest(
+        camera,
+        sample,
+        options.max_passes,
+        || outbox.take.try_recv().unwrap_or_default(),
+        |tile| outbox.deliver(Message::Tile(tile)),
+    )?;
+    outbox.deliver(Message::End(found))
 }
 
 /// Of a shard, an error says which part and whose: it is read among those of other workers.
-fn in_part(error: PeelError, options: &ExtractOptions, item: &Item, scene: &str) -> PeelError {
+fn in_part(error: PeelError, options: &ExtractOptions, item: &Item, scenes: &[Scene]) -> PeelError {
     if options.shard.is_none() || matches!(error, PeelError::Interrupted) {
         return error;
     }
     PeelError::Part {
         index: item.index,
-        scene: scene.to_owned(),
+        scene: scenes[item.scene as usize].name.clone(),
         view: item.view,
         worker: worker_name(),
         source: Box::new(error),
     }
-}
-
-/// The files' side: tiles from the channel to rows of parts.
-fn write(
-    writer: &DatasetWriter,
-    receive: &Receiver<Message>,
-    give_back: &Sender<RawTile>,
-) -> Result<RowCounts, PeelError> {
-    let mut total = RowCounts::default();
-    let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
-    while let Ok(Message::Begin(info, constants)) = receive.recv() {
-        let mut part = writer.begin(info)?;
-        let mut counts = RowCounts::default();
-        loop {
-            match receive.recv() {
-                Ok(Message::Tile(tile)) => {
-                    let found =
-                        append_rows(&tile, constants, &mut batch, ROWS_AT_A_TIME, |rows| {
-                            part.write(rows)
-                        })?;
-                    counts.rows += found.rows;
-                    counts.lost += found.lost;
-                    counts.coplanar += found.coplanar;
-                    counts.unsorted += found.unsorted;
-                    // Nobody may be left to use it again; then it is freed.
-                    let _ = give_back.send(tile);
-                }
-                Ok(_) => break,
-                // The other side ended early: the part is abandoned with the whole dataset.
-                Err(_) => return Err(PeelError::Interrupted),
-            }
-        }
-        if counts.unsorted > 0 {
-            return Err(PeelError::Unsorted(counts.unsorted));
-        }
-        part.finish(PartCounts {
-            lost_fragments: counts.lost,
-            coplanar_ties: counts.coplanar,
-        })?;
-        total.rows += counts.rows;
-        total.lost += counts.lost;
-        total.coplanar += counts.coplanar;
-    }
-    Ok(total)
 }
 
 /// Adapters that are expected to give the same bytes: software, or GPUs of one name and back end.

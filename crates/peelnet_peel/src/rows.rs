@@ -1,6 +1,8 @@
 //! From a tile's runs of fragments to rows of the dataset.
 
-use peelnet_dataset::FragmentBatch;
+use crate::PeelError;
+use peelnet_dataset::{FragmentBatch, PartCounts, PartInfo};
+use std::ops::AddAssign;
 
 /// What a tile left in GPU storage, read back.
 #[derive(Debug, Default)]
@@ -31,6 +33,17 @@ pub struct ViewConstants {
     pub far: f32,
 }
 
+impl From<&PartInfo> for ViewConstants {
+    fn from(info: &PartInfo) -> Self {
+        Self {
+            view: info.index,
+            width: info.width,
+            near: info.camera.near,
+            far: info.camera.far,
+        }
+    }
+}
+
 /// What was noticed on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RowCounts {
@@ -42,6 +55,34 @@ pub struct RowCounts {
     pub coplanar: u64,
     /// Rows that are nearer than the one before in their pixel.
     pub unsorted: u64,
+}
+
+impl RowCounts {
+    /// # Errors
+    /// Rows out of order, which the GPU should have sorted.
+    pub fn check(&self) -> Result<(), PeelError> {
+        match self.unsorted {
+            0 => Ok(()),
+            rows => Err(PeelError::Unsorted(rows)),
+        }
+    }
+
+    /// What the dataset says of a part.
+    pub fn of_part(&self) -> PartCounts {
+        PartCounts {
+            lost_fragments: self.lost,
+            coplanar_ties: self.coplanar,
+        }
+    }
+}
+
+impl AddAssign for RowCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.rows += other.rows;
+        self.lost += other.lost;
+        self.coplanar += other.coplanar;
+        self.unsorted += other.unsorted;
+    }
 }
 
 /// Fragments of a pixel beyond which sums and products are formed in 64 bits: `n` factors formed in 32 bits err by up to `2n` roundings

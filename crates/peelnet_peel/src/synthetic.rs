@@ -12,8 +12,8 @@ use crate::{
 };
 use peelnet_core::random::Random;
 use peelnet_dataset::{
-    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, MAX_WORK_ITEMS, PartCounts, PartInfo,
-    SceneEntry, worker_name,
+    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, MAX_WORK_ITEMS, PartInfo, SceneEntry,
+    worker_name,
 };
 use std::{
     path::PathBuf,
@@ -248,18 +248,10 @@ pub fn synthetic(
             width: 32,
             height: 32,
         };
-        let constants = ViewConstants {
-            view: index,
-            width: 32,
-            near: range[0],
-            far: range[1],
-        };
+        let view = ViewConstants::from(&info);
         let mut part = writer.begin(info)?;
-        let counts = append_rows(&tile, constants, &mut batch, usize::MAX, |b| part.write(b))?;
-        part.finish(PartCounts {
-            lost_fragments: 0,
-            coplanar_ties: counts.coplanar,
-        })?;
+        let counts = append_rows(&tile, view, &mut batch, usize::MAX, |b| part.write(b))?;
+        part.finish(counts.of_part())?;
         parts += 1;
         rows += counts.rows;
         coplanar += counts.coplanar;
