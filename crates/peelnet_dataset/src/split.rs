@@ -202,17 +202,11 @@ mod tests {
         let rows: BTreeMap<&str, u64> = names.iter().map(|n| (n.as_str(), 50)).collect();
         let count =
             |subsets: &BTreeMap<&str, Subset>, s| subsets.values().filter(|t| **t == s).count();
-        let third = Split::new(3, 0.25, 1.0 / 3.0)
-            .unwrap()
-            .scenes(&rows)
-            .unwrap();
+        let split = |seed| Split::new(seed, 0.25, 1.0 / 3.0).unwrap();
+        let third = split(3).scenes(&rows).unwrap();
         let counts = [Subset::Test, Subset::Validation, Subset::Train].map(|s| count(&third, s));
         assert_eq!(counts, [4, 3, 5]);
-        let other = Split::new(4, 0.25, 1.0 / 3.0)
-            .unwrap()
-            .scenes(&rows)
-            .unwrap();
-        assert_ne!(third, other);
+        assert_ne!(third, split(4).scenes(&rows).unwrap());
         // The smallest shares take a scene, and the largest leave one.
         for (validation, test) in [(1e-6, 1e-6), (0.49, 0.5), (0.0, 0.999), (0.999, 0.0)] {
             for scenes in 2..12 {

@@ -12,6 +12,8 @@ use crate::reader::Dataset;
 const LISTED: usize = 20;
 /// Bins of the histogram of α.
 const ALPHA_BINS: usize = 20;
+/// The check of the order, behind those of columns that the rows of a pixel imply.
+const DEPTH: usize = 4;
 
 /// A dataset in figures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,49 +116,32 @@ impl Summary {
     /// If a file cannot be read or a value is out of range. Rows that contradict one another are no error but
     /// [`Summary::violations`].
     pub fn of(dataset: &Dataset) -> Result<Self, DatasetError> {
-        let mut work = Work::new(dataset.manifest());
+        let mut summary = Self::empty(dataset.manifest());
         for part in &dataset.manifest().parts {
             let mut row = 1;
             let lossy = part.lost_fragments > 0;
-            work.summary.parts_not_checked += u64::from(lossy);
+            summary.parts_not_checked += u64::from(lossy);
             for batch in dataset.batches_where(1 << 16, |p| p.index == part.index) {
                 let batch = batch?;
-                work.add_ranges(&batch);
+                summary.add_ranges(&batch);
                 for pixel in batch.pixels() {
-                    work.add_pixel(&batch, pixel, &part.files[0].name, row, lossy);
+                    summary.add_pixel(&batch, pixel, &part.files[0].name, row, lossy);
                 }
                 row += batch.len() as u64;
             }
         }
-        Ok(work.finish())
+        if summary.rows == 0 {
+            summary.columns.clear();
+        }
+        Ok(summary)
     }
 
     /// Whether no check was violated.
     pub fn passes(&self) -> bool {
         self.checks.iter().all(|c| c.violations == 0)
     }
-}
 
-/// Tolerance of Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err
-/// by at most one unit roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit
-/// roundoff of 1.
-pub fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
-    n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (sum + 1.0)
-}
-
-/// The check of the order, behind those of columns that the rows of a pixel imply.
-const DEPTH: usize = 4;
-
-struct Work {
-    summary: Summary,
-    ranges: Vec<(f64, f64)>,
-    alpha: [u64; ALPHA_BINS],
-    /// Pixels with up to 2^k fragments.
-    counts: Vec<u64>,
-}
-
-impl Work {
-    fn new(manifest: &Manifest) -> Self {
+    fn empty(manifest: &Manifest) -> Self {
         let check = |name: &str, formula: &str| Check {
             name: name.to_owned(),
             formula: formula.to_owned(),
@@ -170,53 +155,52 @@ impl Work {
             held_out: scene.held_out,
             rows: rows_by_scene.get(scene.name.as_str()).copied().unwrap_or(0),
         });
+        let columns = Column::ALL.map(|column| ColumnRange {
+            name: column.name().to_owned(),
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+        });
+        let alpha = (0..ALPHA_BINS).map(|k| Bin {
+            from: k as f64 / ALPHA_BINS as f64,
+            to: (k + 1) as f64 / ALPHA_BINS as f64,
+            count: 0,
+        });
         Self {
-            summary: Summary {
-                hash: manifest.hash.clone(),
-                rows: 0,
-                pixels: 0,
-                lost_fragments: manifest.lost_fragments,
-                coplanar_ties: manifest.coplanar_ties,
-                scenes: scenes.collect(),
-                columns: Vec::new(),
-                fragments_per_pixel: Vec::new(),
-                alpha: Vec::new(),
-                checks: vec![
-                    check("transmittance", "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
-                    check("alpha_sum", "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
-                    check("fragment_count", "fragment_count = rows of the pixel"),
-                    check("layer", "layer = 0, 1, … n − 1"),
-                    check("linear_depth", "z_i ≥ z_{i−1}"),
-                ],
-                violations: Vec::new(),
-                parts_not_checked: 0,
-            },
-            ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); Column::ALL.len()],
-            alpha: [0; ALPHA_BINS],
-            counts: Vec::new(),
+            hash: manifest.hash.clone(),
+            rows: 0,
+            pixels: 0,
+            lost_fragments: manifest.lost_fragments,
+            coplanar_ties: manifest.coplanar_ties,
+            scenes: scenes.collect(),
+            columns: columns.into(),
+            fragments_per_pixel: Vec::new(),
+            alpha: alpha.collect(),
+            checks: vec![
+                check("transmittance", "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
+                check("alpha_sum", "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
+                check("fragment_count", "fragment_count = rows of the pixel"),
+                check("layer", "layer = 0, 1, … n − 1"),
+                check("linear_depth", "z_i ≥ z_{i−1}"),
+            ],
+            violations: Vec::new(),
+            parts_not_checked: 0,
         }
     }
 
     fn add_ranges(&mut self, batch: &FragmentBatch) {
-        for (column, range) in Column::ALL.into_iter().zip(&mut self.ranges) {
-            let (low, high) = match batch.column(column) {
-                ColumnSlice::F32(v) => {
-                    let empty = (f32::INFINITY, f32::NEG_INFINITY);
-                    let (a, b) = v.iter().fold(empty, |(a, b), &x| (a.min(x), b.max(x)));
-                    (f64::from(a), f64::from(b))
-                }
-                ColumnSlice::U32(v) => {
-                    let (a, b) = v
-                        .iter()
-                        .fold((u32::MAX, 0), |(a, b), &x| (a.min(x), b.max(x)));
-                    (f64::from(a), f64::from(b))
-                }
+        for (column, range) in Column::ALL.into_iter().zip(&mut self.columns) {
+            let mut add = |value: f64| {
+                range.min = range.min.min(value);
+                range.max = range.max.max(value);
             };
-            *range = (range.0.min(low), range.1.max(high));
+            match batch.column(column) {
+                ColumnSlice::F32(v) => v.iter().for_each(|&x| add(x.into())),
+                ColumnSlice::U32(v) => v.iter().for_each(|&x| add(x.into())),
+            }
         }
         for &v in &batch.one_minus_alpha {
             let bin = (1.0 - f64::from(v)) * ALPHA_BINS as f64;
-            self.alpha[(bin as usize).min(ALPHA_BINS - 1)] += 1;
+            self.alpha[(bin as usize).min(ALPHA_BINS - 1)].count += 1;
         }
     }
 
@@ -230,13 +214,19 @@ impl Work {
         lossy: bool,
     ) {
         let n = pixel.len();
-        self.summary.rows += n as u64;
-        self.summary.pixels += 1;
+        self.rows += n as u64;
+        self.pixels += 1;
         let bin = n.next_power_of_two().ilog2() as usize;
-        if self.counts.len() <= bin {
-            self.counts.resize(bin + 1, 0);
+        let bins = &mut self.fragments_per_pixel;
+        while bins.len() <= bin {
+            let before = bins.last().map_or(0.0, |b| b.to);
+            bins.push(Bin {
+                from: before + 1.0,
+                to: (before * 2.0).max(1.0),
+                count: 0,
+            });
         }
-        self.counts[bin] += 1;
+        bins[bin].count += 1;
 
         let alpha_sum: f64 = batch.one_minus_alpha[pixel.clone()]
             .iter()
@@ -280,7 +270,7 @@ impl Work {
         expected: f64,
         tolerance: f64,
     ) {
-        let check = &mut self.summary.checks[check];
+        let check = &mut self.checks[check];
         let deviation = (found - expected).abs();
         check.worst = check.worst.max(deviation);
         if deviation > 0.0 {
@@ -290,8 +280,8 @@ impl Work {
         }
         if deviation > tolerance {
             check.violations += 1;
-            if self.summary.violations.len() < LISTED {
-                self.summary.violations.push(Violation {
+            if self.violations.len() < LISTED {
+                self.violations.push(Violation {
                     file: file.to_owned(),
                     row,
                     check: check.name.clone(),
@@ -302,43 +292,11 @@ impl Work {
             }
         }
     }
+}
 
-    fn finish(mut self) -> Summary {
-        if self.summary.rows > 0 {
-            self.summary.columns = Column::ALL
-                .into_iter()
-                .zip(self.ranges)
-                .map(|(column, (min, max))| ColumnRange {
-                    name: column.name().to_owned(),
-                    min,
-                    max,
-                })
-                .collect();
-        }
-        self.summary.fragments_per_pixel = self
-            .counts
-            .iter()
-            .enumerate()
-            .map(|(k, &count)| Bin {
-                from: if k == 0 {
-                    1.0
-                } else {
-                    f64::from(1u32 << (k - 1)) + 1.0
-                },
-                to: f64::from(1u32 << k),
-                count,
-            })
-            .collect();
-        self.summary.alpha = self
-            .alpha
-            .iter()
-            .enumerate()
-            .map(|(k, &count)| Bin {
-                from: k as f64 / ALPHA_BINS as f64,
-                to: (k + 1) as f64 / ALPHA_BINS as f64,
-                count,
-            })
-            .collect();
-        self.summary
-    }
+/// Tolerance of Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err
+/// by at most one unit roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit
+/// roundoff of 1.
+pub fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
+    n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (sum + 1.0)
 }

@@ -32,26 +32,27 @@ pub enum Peel {
     Single,
 }
 
+impl Peel {
+    const NAMES: [(Self, &str); 3] = [
+        (Self::SBuffer, "sbuffer"),
+        (Self::Dual, "dual"),
+        (Self::Single, "single"),
+    ];
+}
+
 impl FromStr for Peel {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
-        match s {
-            "sbuffer" => Ok(Self::SBuffer),
-            "dual" => Ok(Self::Dual),
-            "single" => Ok(Self::Single),
-            _ => Err(format!("'{s}' is not one of sbuffer, dual, single")),
-        }
+        let found = Self::NAMES.into_iter().find(|(_, name)| *name == s);
+        let found = found.map(|(peel, _)| peel);
+        found.ok_or_else(|| format!("'{s}' is not one of sbuffer, dual, single"))
     }
 }
 
 impl fmt::Display for Peel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::SBuffer => "sbuffer",
-            Self::Dual => "dual",
-            Self::Single => "single",
-        })
+        f.write_str(Self::NAMES[*self as usize].1)
     }
 }
 
