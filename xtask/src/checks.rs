@@ -10,25 +10,25 @@ use std::{env, path::PathBuf, process::Command, time::Instant};
 /// A step's name and what it does.
 type Step = (&'static str, fn() -> Outcome);
 
-const SHORT: [Step; 3] = [
+const SHORT: [Step; 4] = [
     ("formatting", || run("cargo fmt --all --check")),
     ("build and clippy", || {
         linted("nextest run --workspace --no-run")
     }),
     ("tests", || linted("nextest run --workspace --no-fail-fast")),
+    ("documentation examples", || {
+        linted("test --workspace --doc --quiet")
+    }),
 ];
 
 /// Everything else, the quickest first.
-const LONG: [Step; 16] = [
+const LONG: [Step; 15] = [
     ("long tests", || {
         ensure_browser()?;
         linted("nextest run --workspace --no-fail-fast --run-ignored only")
     }),
     ("benchmarks", || {
         linted("test --workspace --benches --no-run")
-    }),
-    ("documentation examples", || {
-        run("cargo test --workspace --doc --quiet")
     }),
     ("documentation", || {
         let mut doc = command("cargo doc --workspace --no-deps --quiet");
