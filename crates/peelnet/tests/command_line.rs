@@ -254,15 +254,15 @@ fn hard_input_is_refused_with_its_place() {
     for (line, words) in [
         (
             "render nan.toml --out a.png",
-            vec!["nan.obj:5", "position 'nan'", "repair"],
+            vec!["nan.obj:5", "'v 0 nan 0' holds no finite", "repair"],
         ),
         (
             "render normal.toml --out a.png",
-            vec!["normal.obj:5", "normal 'inf'", "repair"],
+            vec!["normal.obj:5", "'vn 0 inf 1' holds", "repair"],
         ),
         (
             "extract beyond.toml --out d",
-            vec!["beyond.obj:5", "index 9"],
+            vec!["beyond.obj:5", "'f 1 2 9'"],
         ),
         ("bench cut.toml --out d", vec!["cut.obj:5", "cut off"]),
         (

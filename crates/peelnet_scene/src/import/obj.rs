@@ -82,7 +82,7 @@ pub(super) fn load(
         return Err(e);
     }
     if !models.iter().all(|m| is_sound(&m.mesh)) {
-        let message = "a number is not finite, or a face has fewer than 3 vertices; is the file cut off? Export the mesh again";
+        let message = "a number is not finite; is it too large? Export the mesh again";
         return Err(fail(None, message.into()));
     }
     if models.iter().all(|m| m.mesh.indices.is_empty()) {
@@ -177,7 +177,7 @@ pub(super) fn statements(
 }
 
 /// Refuses what `tobj` would read wrong or panic on: words for numbers, such as `nan`; indices that overflow; colours of some vertices alone,
-/// which would become those of others. The line from 1, and a message.
+/// which would become those of others; faces of fewer than three vertices, which it takes for lines. The line from 1, and a message.
 fn check(text: &str) -> Result<(), (usize, String)> {
     let mut has_colors = None;
     for (line, number) in text.lines().zip(1..) {
@@ -209,6 +209,9 @@ fn check(text: &str) -> Result<(), (usize, String)> {
                 }
             }
             "f" if is_index_too_large() => "an index is too large; repair the face".into(),
+            "f" if rest.split_whitespace().count() < 3 => {
+                "a face has fewer than 3 vertices; is the file cut off?".into()
+            }
             _ => continue,
         };
         return Err((number, message));
@@ -216,11 +219,10 @@ fn check(text: &str) -> Result<(), (usize, String)> {
     Ok(())
 }
 
-/// Whether a mesh has finite numbers, and faces of three vertices or more.
+/// Whether a mesh has finite numbers alone: some are too large for the type.
 fn is_sound(mesh: &tobj::Mesh) -> bool {
     let numbers = [&mesh.positions, &mesh.normals, &mesh.vertex_color];
-    mesh.face_arities.iter().all(|n| *n >= 3)
-        && numbers.into_iter().flatten().all(|x| x.is_finite())
+    numbers.into_iter().flatten().all(|x| x.is_finite())
 }
 
 /// The mesh of all models of a file.

@@ -225,7 +225,7 @@ fn bad_files() {
             "a.obj:5: an index is too large",
         ),
         (Vec::new(), "a.obj: holds no faces"),
-        (quad("f 1 2"), "a face has fewer than 3 vertices"),
+        (quad("f 1 2"), "a.obj:5: a face has fewer than 3 vertices"),
     ];
     for (bytes, expected) in cases {
         let e = load(&[("a.obj", &bytes)]).expect_err(expected).to_string();
