@@ -1,18 +1,25 @@
+use crate::error::{Fault, within};
 use glam::{Mat4, Quat, Vec3};
+use serde::{Deserialize, Deserializer};
 
 /// Vertical fields of view that files may ask for, degrees: of smaller or larger ones, 32-bit positions on the screen keep too few bits.
 pub(crate) const FOV_Y: std::ops::RangeInclusive<f32> = 0.01..=179.0;
 
-/// A perspective camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A perspective camera, with the keys of a scene file.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Camera {
     /// Eye, scene units.
+    #[serde(deserialize_with = "vector")]
     pub position: Vec3,
     /// Point looked at, scene units.
+    #[serde(deserialize_with = "vector")]
     pub target: Vec3,
     /// Up direction, any length.
+    #[serde(default = "up", deserialize_with = "vector")]
     pub up: Vec3,
     /// Vertical field of view, degrees.
+    #[serde(default = "fov_y", rename = "fov_y")]
     pub fov_y_degrees: f32,
     /// Near clip distance, scene units.
     pub near: f32,
@@ -20,7 +27,48 @@ pub struct Camera {
     pub far: f32,
 }
 
+const fn up() -> Vec3 {
+    Vec3::Y
+}
+
+const fn fov_y() -> f32 {
+    45.0
+}
+
+fn vector<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
+    <[f32; 3]>::deserialize(deserializer).map(Vec3::from)
+}
+
 impl Camera {
+    /// Checks the values; an error holds the key and what is wrong.
+    pub(crate) fn check(&self) -> Result<(), Fault> {
+        for (key, v) in [
+            ("position", self.position),
+            ("target", self.target),
+            ("up", self.up),
+        ] {
+            if !v.is_finite() {
+                return Err((key, "must be finite".into()));
+            }
+        }
+        let (near, far) = (self.near, self.far);
+        if !(near > 0.0 && near < far && far.is_finite()) {
+            let message = format!("near {near} must be positive and below far {far}");
+            return Err(("near", message));
+        }
+        within("fov_y", self.fov_y_degrees, *FOV_Y.start(), *FOV_Y.end())?;
+        let forward = self.target - self.position;
+        if forward.length() == 0.0 {
+            return Err(("target", "must differ from position".into()));
+        }
+        let up = self.up.normalize_or_zero();
+        if forward.normalize().cross(up).length() < 1e-4 {
+            let message = "must not be zero or along the line of sight";
+            return Err(("up", message.into()));
+        }
+        Ok(())
+    }
+
     /// World to view space: right-handed, looking along −z.
     pub fn view_from_world(&self) -> Mat4 {
         glam::camera::rh::view::look_at_mat4(self.position, self.target, self.up)
@@ -34,6 +82,12 @@ impl Camera {
             self.near,
             self.far,
         )
+    }
+
+    /// The camera at so many places around its target.
+    pub(crate) fn orbit(&self, views: u32) -> Vec<Self> {
+        let degrees = |i: u32| 360.0 * i as f32 / views as f32;
+        (0..views).map(|i| self.orbited(degrees(i))).collect()
     }
 
     /// The camera turned about `up` through the target.

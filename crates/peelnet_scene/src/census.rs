@@ -103,92 +103,104 @@ impl Variant {
 
     /// The shader features that it links.
     pub fn features(self) -> Vec<&'static str> {
-        let lighting: &[&str] = match self.lighting {
-            Lighting::Unlit => &[],
-            Lighting::Phong => &["lit", "phong"],
-            Lighting::Pbr => &["lit", "pbr"],
-        };
-        let mut all = lighting.to_vec();
-        all.extend(self.emissive.then_some("emission"));
-        all.extend(self.cutout.then_some("cutout"));
-        all.extend(self.is_mapped().then_some("mapped"));
-        let maps = self.maps.iter().zip(MAP_FEATURES);
-        all.extend(maps.filter_map(|(read, name)| read.then_some(name)));
-        all.extend(self.clear_map.then_some("clear_map"));
-        all.extend(self.vertex_colors.then_some("vertex_colors"));
-        all.extend(self.sun.then_some("sun"));
-        all.extend(self.transmissive.then_some("transmission"));
-        all
+        let before = [
+            (self.is_lit(), "lit"),
+            (self.lighting == Lighting::Phong, "phong"),
+            (self.lighting == Lighting::Pbr, "pbr"),
+            (self.emissive, "emission"),
+            (self.cutout, "cutout"),
+            (self.is_mapped(), "mapped"),
+        ];
+        let maps = self.maps.into_iter().zip([
+            "color_map",
+            "normal_map",
+            "metallic_roughness_map",
+            "occlusion_map",
+            "emissive_map",
+        ]);
+        let after = [
+            (self.clear_map, "clear_map"),
+            (self.vertex_colors, "vertex_colors"),
+            (self.sun, "sun"),
+            (self.transmissive, "transmission"),
+        ];
+        let all = before.into_iter().chain(maps).chain(after);
+        all.filter_map(|(on, name)| on.then_some(name)).collect()
     }
 }
 
-/// Shader features of the maps, in the order of [`Maps::all`].
-const MAP_FEATURES: [&str; 5] = [
-    "color_map",
-    "normal_map",
-    "metallic_roughness_map",
-    "occlusion_map",
-    "emissive_map",
-];
+/// Declares [`Effect`]: name, what it adds to a frame, and whether a material needs it, from the material and its [`Variant`].
+macro_rules! effects {
+    ($($(#[$doc:meta])* $effect:ident $name:literal $adds:literal $needed:expr;)*) => {
+        /// Something that a renderer does only where a scene needs it.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Effect {
+            $($(#[$doc])* $effect,)*
+        }
 
-/// Something that a renderer does only where a scene needs it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
+        impl Effect {
+            /// All of them.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$effect),*];
+
+            /// Its name.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$effect => $name,)* }
+            }
+
+            /// What it adds to a frame.
+            pub const fn adds(self) -> &'static str {
+                match self { $(Self::$effect => $adds,)* }
+            }
+
+            fn is_needed_by(self, material: &Material, variant: Variant) -> bool {
+                let needed: fn(&Material, Variant) -> bool = match self { $(Self::$effect => $needed,)* };
+                needed(material, variant)
+            }
+        }
+    };
+}
+
+effects! {
     /// Opaque surfaces.
-    Opaque,
+    Opaque "opaque" "its draws in the background pass, a depth target of 4 bytes a pixel, a comparison in transparent passes"
+        |material, _| material.is_opaque();
     /// Surfaces whose back faces are culled.
-    Culling,
+    Culling "culling" "nothing: back faces are not rasterised" |_, variant| variant.culled;
     /// Blinn–Phong.
-    Lighting,
+    Lighting "lighting" "normals and positions, a binding of lights, Blinn–Phong in the shader"
+        |_, variant| variant.lighting == Lighting::Phong;
     /// Cook–Torrance.
-    Pbr,
+    Pbr "pbr" "normals and positions, a binding of lights, Cook–Torrance in the shader"
+        |_, variant| variant.lighting == Lighting::Pbr;
     /// Holes where opacity is low.
-    Cutout,
+    Cutout "cutout" "a comparison and a discard in the pipelines of these materials" |_, variant| variant.cutout;
     /// Emissive surfaces.
-    Emission,
+    Emission "emission" "an addition in the pipelines of these materials" |_, variant| variant.emissive;
     /// Textures of base colour and opacity.
-    ColorMap,
+    ColorMap "color-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[0];
     /// Textures of normals.
-    NormalMap,
+    NormalMap "normal-map" "a texture with its fetch, tangents, UVs, a sampler" |_, variant| variant.maps[1];
     /// Textures of metallic and roughness.
-    MetallicRoughnessMap,
+    MetallicRoughnessMap "metallic-roughness-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[2];
     /// Textures of ambient occlusion.
-    OcclusionMap,
+    OcclusionMap "occlusion-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[3];
     /// Textures of emission.
-    EmissiveMap,
+    EmissiveMap "emissive-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[4];
     /// Vertex colours.
-    VertexColors,
+    VertexColors "vertex-colors" "16 bytes a vertex and a product" |_, variant| variant.vertex_colors;
     /// Directional lights.
-    Sun,
+    Sun "directional-light" "a choice between position and direction for each light" |_, variant| variant.sun;
     /// Coloured transmission through surfaces.
-    Transmission,
+    Transmission "transmission" "three channels of transmittance instead of one where it is not grey"
+        |_, variant| variant.transmissive;
     /// A scene whose colours are all grey.
-    Monochrome,
+    Monochrome "monochrome" "nothing: weighted sums and transmittance share one target" |_, _| false;
     /// Transparency at a lower resolution.
-    LowResolution,
+    LowResolution "low-resolution"
+        "two passes over the pixels and 36 bytes a sample; fewer samples for everything transparent" |_, _| false;
 }
 
 impl Effect {
-    /// All of them.
-    pub const ALL: [Self; 16] = [
-        Self::Opaque,
-        Self::Culling,
-        Self::Lighting,
-        Self::Pbr,
-        Self::Cutout,
-        Self::Emission,
-        Self::ColorMap,
-        Self::NormalMap,
-        Self::MetallicRoughnessMap,
-        Self::OcclusionMap,
-        Self::EmissiveMap,
-        Self::VertexColors,
-        Self::Sun,
-        Self::Transmission,
-        Self::Monochrome,
-        Self::LowResolution,
-    ];
-
     /// The five maps in the order of [`Maps::all`].
     pub const MAPS: [Self; 5] = [
         Self::ColorMap,
@@ -197,78 +209,6 @@ impl Effect {
         Self::OcclusionMap,
         Self::EmissiveMap,
     ];
-
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Opaque => "opaque",
-            Self::Culling => "culling",
-            Self::Lighting => "lighting",
-            Self::Pbr => "pbr",
-            Self::Cutout => "cutout",
-            Self::Emission => "emission",
-            Self::ColorMap => "color-map",
-            Self::NormalMap => "normal-map",
-            Self::MetallicRoughnessMap => "metallic-roughness-map",
-            Self::OcclusionMap => "occlusion-map",
-            Self::EmissiveMap => "emissive-map",
-            Self::VertexColors => "vertex-colors",
-            Self::Sun => "directional-light",
-            Self::Transmission => "transmission",
-            Self::Monochrome => "monochrome",
-            Self::LowResolution => "low-resolution",
-        }
-    }
-
-    /// What it adds to a frame.
-    pub const fn adds(self) -> &'static str {
-        match self {
-            Self::Opaque => {
-                "its draws in the background pass, a depth target of 4 bytes a pixel, a comparison in transparent passes"
-            }
-            Self::Culling => "nothing: back faces are not rasterised",
-            Self::Lighting => {
-                "normals and positions, a binding of lights, Blinn–Phong in the shader"
-            }
-            Self::Pbr => "normals and positions, a binding of lights, Cook–Torrance in the shader",
-            Self::Cutout => "a comparison and a discard in the pipelines of these materials",
-            Self::Emission => "an addition in the pipelines of these materials",
-            Self::ColorMap => "a texture with its fetch, UVs, a sampler",
-            Self::NormalMap => "a texture with its fetch, tangents, UVs, a sampler",
-            Self::MetallicRoughnessMap | Self::OcclusionMap | Self::EmissiveMap => {
-                "a texture with its fetch, UVs, a sampler"
-            }
-            Self::VertexColors => "16 bytes a vertex and a product",
-            Self::Sun => "a choice between position and direction for each light",
-            Self::Transmission => {
-                "three channels of transmittance instead of one where it is not grey"
-            }
-            Self::Monochrome => "nothing: weighted sums and transmittance share one target",
-            Self::LowResolution => {
-                "two passes over the pixels and 36 bytes a sample; fewer samples for everything transparent"
-            }
-        }
-    }
-
-    fn is_needed_by(self, material: &Material, variant: Variant) -> bool {
-        match self {
-            Self::Opaque => material.is_opaque(),
-            Self::Culling => variant.culled,
-            Self::Lighting => variant.lighting == Lighting::Phong,
-            Self::Pbr => variant.lighting == Lighting::Pbr,
-            Self::Cutout => variant.cutout,
-            Self::Emission => variant.emissive,
-            Self::ColorMap => variant.maps[0],
-            Self::NormalMap => variant.maps[1],
-            Self::MetallicRoughnessMap => variant.maps[2],
-            Self::OcclusionMap => variant.maps[3],
-            Self::EmissiveMap => variant.maps[4],
-            Self::VertexColors => variant.vertex_colors,
-            Self::Sun => variant.sun,
-            Self::Transmission => variant.transmissive,
-            Self::LowResolution | Self::Monochrome => false,
-        }
-    }
 }
 
 impl fmt::Display for Effect {
@@ -304,48 +244,38 @@ impl Census {
     pub fn of(scene: &Scene) -> Self {
         let setting = Setting::of(scene);
         let mut variants: Vec<Variant> = Vec::new();
-        let materials = scene.objects.iter().flat_map(|object| {
+        let mut effects = Effect::ALL.map(|effect| Called {
+            name: effect.name(),
+            on: false,
+            why: Vec::new(),
+            adds: effect.adds(),
+        });
+        for object in &scene.objects {
             let materials = object.mesh.parts.iter().zip(&object.materials);
             // A part without triangles needs nothing.
-            let drawn = materials.filter(|(part, _)| !part.triangles.is_empty());
-            drawn.map(move |(_, material)| (object, material))
-        });
-        let mut why: Vec<Vec<String>> = vec![Vec::new(); Effect::ALL.len()];
-        for (object, material) in materials {
-            let variant = Variant::of(material, object, setting);
-            if !variants.contains(&variant) {
-                variants.push(variant);
-            }
-            for (effect, why) in Effect::ALL.iter().zip(&mut why) {
-                let is_new = || !why.contains(&object.name);
-                if effect.is_needed_by(material, variant) && is_new() {
-                    why.push(object.name.clone());
+            for (_, material) in materials.filter(|(part, _)| !part.triangles.is_empty()) {
+                let variant = Variant::of(material, object, setting);
+                if !variants.contains(&variant) {
+                    variants.push(variant);
+                }
+                for (effect, called) in Effect::ALL.iter().zip(&mut effects) {
+                    let is_needed = effect.is_needed_by(material, variant);
+                    if is_needed && !called.why.contains(&object.name) {
+                        called.why.push(object.name.clone());
+                    }
                 }
             }
         }
-        let mut effects: Vec<Called> = Effect::ALL
-            .iter()
-            .zip(why)
-            .map(|(effect, why)| Called {
-                name: effect.name(),
-                on: !why.is_empty(),
-                why,
-                adds: effect.adds(),
-            })
-            .collect();
-        let mut call = |which: Effect, why: String| {
-            for effect in effects.iter_mut().filter(|e| e.name == which.name()) {
-                (effect.on, effect.why) = (true, vec![why.clone()]);
-            }
-        };
-        if scene.transparency_scale < 1.0 {
-            let why = format!("transparency_scale = {}", scene.transparency_scale);
-            call(Effect::LowResolution, why);
-        }
+        let low = scene.transparency_scale < 1.0;
+        let why = format!("transparency_scale = {}", scene.transparency_scale);
+        effects[Effect::LowResolution as usize].why = low.then_some(why).into_iter().collect();
         if scene.is_grey() {
-            call(Effect::Monochrome, "every colour is grey".into());
+            effects[Effect::Monochrome as usize].why = vec!["every colour is grey".into()];
         }
-        effects.extend(beyond_pixels(scene));
+        for called in &mut effects {
+            called.on = !called.why.is_empty();
+        }
+        let effects = effects.into_iter().chain(beyond_pixels(scene)).collect();
         Self { effects, variants }
     }
 
@@ -420,28 +350,21 @@ impl Scene {
     /// The scene without an effect: opaque objects are removed, lit surfaces unlit, and so on.
     pub fn without(&self, effect: Effect) -> Self {
         let mut scene = self.clone();
-        if effect == Effect::LowResolution {
-            scene.transparency_scale = 1.0;
-        }
-        if effect == Effect::Opaque {
-            let opaque = |m: &Material| m.is_opaque();
-            scene.objects.retain(|o| !o.materials.iter().all(opaque));
-        }
-        for m in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
-            match effect {
-                Effect::Culling => m.double_sided = true,
-                Effect::Lighting if m.lighting == Lighting::Phong => m.lighting = Lighting::Unlit,
-                Effect::Pbr if m.lighting == Lighting::Pbr => m.lighting = Lighting::Unlit,
-                Effect::Cutout => m.alpha_cutoff = m.alpha_cutoff.map(|_| 0.0),
-                Effect::Emission => m.emission = [0.0; 3],
-                Effect::ColorMap => m.maps.color = None,
-                Effect::NormalMap => m.maps.normal = None,
-                Effect::MetallicRoughnessMap => m.maps.metallic_roughness = None,
-                Effect::OcclusionMap => m.maps.occlusion = None,
-                Effect::EmissiveMap => m.maps.emissive = None,
-                Effect::Transmission => m.transmission = [0.0; 3],
-                _ => {}
+        match effect {
+            Effect::LowResolution => scene.transparency_scale = 1.0,
+            Effect::Opaque => {
+                let opaque = |m: &Material| m.is_opaque();
+                scene.objects.retain(|o| !o.materials.iter().all(opaque));
             }
+            Effect::Sun => {
+                let is_point = |l: &Light| matches!(l.source, Source::Point(_));
+                scene.lights.retain(is_point);
+            }
+            // The nearest colour that is not grey.
+            Effect::Monochrome if scene.is_grey() => {
+                scene.background[2] = scene.background[2].next_up();
+            }
+            _ => {}
         }
         for o in &mut scene.objects {
             if effect == Effect::VertexColors && !o.mesh.colors.is_empty() {
@@ -449,15 +372,24 @@ impl Scene {
                 mesh.colors.clear();
                 o.mesh = mesh.into();
             }
-        }
-        if effect == Effect::Sun {
-            scene
-                .lights
-                .retain(|l| matches!(l.source, Source::Point(_)));
-        }
-        // The nearest colour that is not grey.
-        if effect == Effect::Monochrome && scene.is_grey() {
-            scene.background[2] = scene.background[2].next_up();
+            for m in &mut o.materials {
+                match effect {
+                    Effect::Culling => m.double_sided = true,
+                    Effect::Lighting if m.lighting == Lighting::Phong => {
+                        m.lighting = Lighting::Unlit;
+                    }
+                    Effect::Pbr if m.lighting == Lighting::Pbr => m.lighting = Lighting::Unlit,
+                    Effect::Cutout => m.alpha_cutoff = m.alpha_cutoff.map(|_| 0.0),
+                    Effect::Emission => m.emission = [0.0; 3],
+                    Effect::ColorMap => m.maps.color = None,
+                    Effect::NormalMap => m.maps.normal = None,
+                    Effect::MetallicRoughnessMap => m.maps.metallic_roughness = None,
+                    Effect::OcclusionMap => m.maps.occlusion = None,
+                    Effect::EmissiveMap => m.maps.emissive = None,
+                    Effect::Transmission => m.transmission = [0.0; 3],
+                    _ => {}
+                }
+            }
         }
         scene
     }

@@ -128,48 +128,50 @@ fn take(mesh: &Mesh, level: u32, budget: &mut Budget) -> Result<(), String> {
     })
 }
 
-/// A mesh moved by the displacements of its materials, one for each part, which it has no more.
+/// A mesh moved by the displacements of its materials, one for each part, which they have no more.
 ///
 /// Vertices at one position move alike, along the mean of their normals and by the mean of their heights, each weighted by the angle of
 /// its triangle there: seams of normals and of textures do not open. Normals lean as the surface does: each turns as the mean of the
 /// triangles around it turns, so edges stay sharp and round surfaces round.
 pub(crate) fn displaced(
-    mesh: &Mesh,
-    materials: &[Material],
+    mesh: Arc<Mesh>,
+    materials: &mut [Material],
     budget: &mut Budget,
-) -> Result<Mesh, String> {
-    let displacements = materials
-        .iter()
-        .filter_map(|m| m.maps.displacement.as_ref());
-    for d in displacements {
-        if !(d.scale.abs() <= LONGEST && d.middle.abs() <= LONGEST) {
-            return Err(format!(
-                "a displacement of {} about {} is too large",
-                d.scale, d.middle
-            ));
-        }
+) -> Result<Arc<Mesh>, String> {
+    let displacements = || {
+        materials
+            .iter()
+            .filter_map(|m| m.maps.displacement.as_ref())
+    };
+    if displacements().next().is_none() {
+        return Ok(mesh);
     }
-    let level = level(mesh, materials);
-    take(mesh, level, budget)?;
-    let mut cut = mesh.clone();
+    let is_large = |d: &&Displacement| !(d.scale.abs() <= LONGEST && d.middle.abs() <= LONGEST);
+    if let Some(d) = displacements().find(is_large) {
+        return Err(format!(
+            "a displacement of {} about {} is too large",
+            d.scale, d.middle
+        ));
+    }
+    let level = level(&mesh, materials);
+    take(&mesh, level, budget)?;
+    let mut cut = (*mesh).clone();
     for _ in 0..level {
         cut = cut.subdivided();
     }
     let moves = moves(&cut, materials);
-    let positions = cut.positions.iter().map(|p| {
-        let of = moves.get(&key_of(*p)).copied();
-        *p + of.unwrap_or_default()
-    });
-    let positions: Vec<Vec3> = positions.collect();
+    let moved = |p: &Vec3| *p + moves.get(&key_of(*p)).copied().unwrap_or_default();
+    let positions: Vec<Vec3> = cut.positions.iter().map(moved).collect();
     if positions.iter().any(|p| !p.is_finite()) {
         return Err("a vertex moves too far; make displacement_scale smaller".into());
     }
     cut.normals = leaning(&cut, &positions);
     cut.positions = positions;
-    for part in &mut cut.parts {
-        part.material.maps.displacement = None;
+    let of_parts = cut.parts.iter_mut().map(|part| &mut part.material);
+    for material in of_parts.chain(materials) {
+        material.maps.displacement = None;
     }
-    Ok(cut)
+    Ok(Arc::new(cut))
 }
 
 /// What the triangles around a position add up to.

@@ -13,14 +13,14 @@ pub enum SceneError {
         /// The reason.
         source: std::io::Error,
     },
-    /// A scene file that is not TOML, or has an unknown key or a value of the wrong type.
-    #[error("{}:{line}: {}", shown(path), one_line(message))]
-    Syntax {
-        /// The scene file.
+    /// A file that cannot be used: no TOML, an unknown key, a damaged mesh.
+    #[error("{}{at}: {}", shown(path), one_line(message), at = line.map(|l| format!(":{l}")).unwrap_or_default())]
+    File {
+        /// The file.
         path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong.
+        /// The line, from 1, where it is known.
+        line: Option<usize>,
+        /// What is wrong, and the values that are allowed.
         message: String,
     },
     /// A value that a scene cannot have.
@@ -33,22 +33,30 @@ pub enum SceneError {
         /// What is wrong, and the values that are allowed.
         message: String,
     },
-    /// A mesh file that cannot be used.
-    #[error("{}{at}: {}", shown(path), one_line(message), at = line.map(|l| format!(":{l}")).unwrap_or_default())]
-    Mesh {
-        /// The mesh or material file.
-        path: PathBuf,
-        /// The line, from 1, where it is known.
-        line: Option<usize>,
-        /// What is wrong, and the values that are allowed.
-        message: String,
-    },
     /// A name that no shipped scene has.
     #[error("there is no scene '{}'; name a file, or a shipped scene: {known}", printable(name), known = shipped())]
     NotShipped {
         /// The name.
         name: String,
     },
+}
+
+impl SceneError {
+    pub(crate) fn file(path: &Path, line: Option<usize>, message: impl Into<String>) -> Self {
+        Self::File {
+            path: path.to_owned(),
+            line,
+            message: message.into(),
+        }
+    }
+
+    pub(crate) fn value(path: &Path, field: &str, message: impl Into<String>) -> Self {
+        Self::Value {
+            path: path.to_owned(),
+            field: field.to_owned(),
+            message: message.into(),
+        }
+    }
 }
 
 fn shipped() -> String {
@@ -59,4 +67,33 @@ fn shipped() -> String {
 /// A path in a message.
 pub(crate) fn shown(path: &Path) -> String {
     one_line(&path.display().to_string())
+}
+
+/// A key of a scene file's table, and what is wrong with its value.
+pub(crate) type Fault = (&'static str, String);
+
+/// Checks that a number lies between two others, of which the higher may be the largest there is.
+pub(crate) fn within(key: &'static str, x: f32, low: f32, high: f32) -> Result<(), Fault> {
+    if (low..=high).contains(&x) {
+        return Ok(());
+    }
+    let message = if high == f32::MAX {
+        format!("{x} must be finite and at least {low}")
+    } else {
+        format!("{x} must lie in {low} … {high}")
+    };
+    Err((key, message))
+}
+
+/// Checks the colour of a surface or a light.
+pub(crate) fn check_color(color: [f32; 3]) -> Result<(), Fault> {
+    match color.into_iter().find(|x| !(0.0..=1.0).contains(x)) {
+        None => Ok(()),
+        Some(x) => Err((
+            "color",
+            format!(
+                "{x} must lie in 0 … 1: divide numbers of 0 … 255 by 255; what is brighter than white has an emission or an intensity"
+            ),
+        )),
+    }
 }

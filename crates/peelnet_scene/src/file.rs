@@ -1,21 +1,15 @@
 //! The scene file: TOML, strict. A mesh file is a scene too, see [`Scene::load`].
 
-mod displaced;
 mod edited;
 mod loader;
-pub(crate) mod materials;
+mod materials;
 mod mesh_scene;
 mod objects;
-mod raw;
-pub(crate) mod references;
-mod specular;
-#[cfg(test)]
-mod tests;
+pub(crate) mod raw;
 mod timeline;
 mod views;
 
 pub use edited::Edited;
-pub use references::{MapRef, MeshRef};
 
 use crate::{
     budget,
@@ -103,11 +97,7 @@ fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, S
     if let Some(format) = Format::of(path) {
         return match time {
             None => mesh_scene::load(path, format, files),
-            Some(_) => Err(SceneError::Value {
-                path: path.to_owned(),
-                field: "timeline".into(),
-                message: NO_TIMELINE.into(),
-            }),
+            Some(_) => Err(SceneError::value(path, "timeline", NO_TIMELINE)),
         };
     }
     let raw = parse(path, &mut files)?;
@@ -140,24 +130,18 @@ fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
         let line = e.span().map_or(1, |s| {
             1 + text[..s.start.min(text.len())].matches('\n').count()
         });
-        SceneError::Syntax {
-            path: path.to_owned(),
-            line,
-            message: e.message().trim().replace('\n', "; "),
-        }
+        SceneError::file(path, Some(line), e.message().trim().replace('\n', "; "))
     })
 }
 
 /// Loads what a scene file names, and checks its values.
 fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<Scene, SceneError> {
-    let snapshot = Snapshot::of(&mut loader, &raw, time)?;
     let views = views::views(&loader, &raw)?;
     let lights = views::lights(&loader, &raw.light)?;
+    let snapshot = Snapshot::of(&mut loader, raw.object, &raw.timeline, time)?;
     if !(raw.transparency_scale > 0.0 && raw.transparency_scale <= 1.0) {
-        return Err(loader.value(
-            "transparency_scale",
-            format!("{} must be above 0 and at most 1", raw.transparency_scale),
-        ));
+        let message = format!("{} must be above 0 and at most 1", raw.transparency_scale);
+        return Err(loader.value("transparency_scale", message));
     }
     if raw.background.iter().any(|c| !c.is_finite() || *c < 0.0) {
         return Err(loader.value("background", "must be finite and not negative"));
@@ -169,20 +153,23 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
             shown(loader.path)
         ));
     }
-    if let Some(name) = &raw.name {
-        let length = name.chars().count();
-        if length > MAX_NAME {
-            let message = format!("has {length} characters; give it at most {MAX_NAME}");
-            return Err(loader.value("name", message));
-        }
+    let name = raw.name.unwrap_or_else(|| name_of(loader.path));
+    let length = name.chars().count();
+    if length > MAX_NAME {
+        let message = format!("has {length} characters; give it at most {MAX_NAME}");
+        return Err(loader.value("name", message));
     }
     let mut objects = Vec::new();
-    for (i, object) in raw.object.iter().enumerate() {
-        objects.push(objects::place(&mut loader, object, i, &snapshot)?);
+    for (i, object) in snapshot.objects.iter().enumerate() {
+        let next = &snapshot.next.get(i).unwrap_or(object).material;
+        let field = format!("object {}", i + 1);
+        let placed = objects::place(&mut loader, object, next, snapshot.share, field)?;
+        objects.push(placed);
     }
-    for (i, scatter) in raw.scatter.0.iter().enumerate() {
-        let eye = views[0].position;
-        objects.extend(objects::scatter(&mut loader, scatter, i, eye)?);
+    for (i, scatter) in raw.scatter.iter().enumerate() {
+        let field = format!("scatter {}", i + 1);
+        let placed = objects::scatter(&mut loader, scatter, &field, views[0].position)?;
+        objects.extend(placed);
     }
     let all = objects.iter().map(|o| o.mesh.triangles.len() as u64);
     budget::check_instances(all.sum()).map_err(|e| loader.value("object", e))?;
@@ -193,12 +180,12 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());
     }
-    let state = |s: raw::RawState| State {
+    let timeline = raw.timeline.into_iter().map(|s| State {
         time: s.time,
         label: s.label,
-    };
+    });
     Ok(Scene {
-        name: raw.name.unwrap_or_else(|| name_of(loader.path)),
+        name,
         source: loader.path.to_owned(),
         files: loader.files.used().to_vec(),
         hash: loader.files.hash(),
@@ -210,7 +197,7 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         held_out: raw.held_out,
         warnings: loader.warnings,
         time: snapshot.time,
-        timeline: raw.timeline.into_iter().map(state).collect(),
+        timeline: timeline.collect(),
     })
 }
 

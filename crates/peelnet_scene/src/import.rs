@@ -57,7 +57,7 @@ pub(crate) struct Format {
     /// Whether its files can hold lights and blended materials.
     pub is_scene: bool,
     /// Reads a file; `Lighting` is that of materials which do not say it. Every file that is read is recorded.
-    load: fn(&Path, Lighting, &mut Files<'_>) -> Result<Imported, SceneError>,
+    pub load: fn(&Path, Lighting, &mut Files<'_>) -> Result<Imported, SceneError>,
 }
 
 const FORMATS: [Format; 4] = [
@@ -89,19 +89,6 @@ impl Format {
         let ending = path.extension()?.to_str()?.to_lowercase();
         FORMATS.iter().find(|f| f.endings.contains(&&*ending))
     }
-
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// A file that cannot be read, is cut off, holds no triangle, or numbers or indices that make no sense.
-    pub fn load(
-        &self,
-        path: &Path,
-        lighting: Lighting,
-        files: &mut Files<'_>,
-    ) -> Result<Imported, SceneError> {
-        (self.load)(path, lighting, files)
-    }
 }
 
 /// Loads files that tests hold in memory, the first by its format.
@@ -118,7 +105,15 @@ fn load_from_memory(
     let mut read = Files::new(&read);
     let path = Path::new(files[0].0);
     let format = Format::of(path).expect("a mesh file");
-    let loaded = format.load(path, lighting, &mut read);
+    let loaded = (format.load)(path, lighting, &mut read);
     let used = read.used().len();
     (loaded, used)
+}
+
+/// The area of a mesh that faces +z.
+#[cfg(test)]
+fn area(mesh: &Mesh) -> f32 {
+    let triangles = mesh.triangles.iter();
+    let areas = triangles.map(|t| crate::mesh::area_of(&mesh.positions, *t).z / 2.0);
+    areas.sum()
 }

@@ -1,7 +1,7 @@
 //! Scenes: read from TOML files or mesh files, or built in code.
 //!
 //! [`Scene::load`] reads a scene file ([`mod@file`]): cameras, lights, and objects, which are meshes of files (OBJ, glTF,
-//! PLY, STL), generated shapes ([`shapes`]), or many of either scattered from a seed ([`scatter`]). [`Scene::from_bytes`] reads the same
+//! PLY, STL), generated shapes, or many of either scattered from a seed. [`Scene::from_bytes`] reads the same
 //! through a function, so that an archive, a web page or a test can be the file system. Everything is resolved and checked
 //! here: a renderer meets no missing normal, no index out of range and no NaN.
 //!
@@ -22,7 +22,7 @@
 
 mod budget;
 mod camera;
-pub mod census;
+mod census;
 mod displacement;
 mod error;
 pub mod file;
@@ -30,10 +30,10 @@ mod files;
 mod import;
 mod material;
 mod mesh;
-pub mod pattern;
-pub mod scatter;
+mod pattern;
+mod scatter;
 mod scene;
-pub mod shapes;
+mod shapes;
 mod specular_glossiness;
 pub mod suite;
 mod texture;

@@ -72,49 +72,39 @@ impl Mesh {
         }
     }
 
-    /// Appends a part; indices of its triangles count from its own first vertex. Where it has maps and no UVs, its maps are dropped: the
-    /// warning [`NO_UVS`] is about it.
+    /// Appends a mesh of one part. Where that has maps and no UVs, its maps are dropped: the warning [`NO_UVS`] is about it.
     #[must_use]
-    pub(crate) fn push(&mut self, geometry: PartGeometry, mut part: Part) -> bool {
-        let (base, first) = (self.positions.len(), self.triangles.len());
-        let PartGeometry {
-            positions,
-            normals,
-            colors,
-            uvs,
-            triangles,
-        } = geometry;
-        if let Some(colors) = colors {
-            self.colors.resize(base, [1.0; 4]);
-            self.colors.extend(colors);
-        }
+    pub(crate) fn append(&mut self, mut other: Self) -> bool {
         let mut lost = false;
-        if let Some(uvs) = uvs {
-            self.uvs.resize(first, [Vec2::ZERO; 3]);
-            self.uvs
-                .extend(triangles.iter().map(|t| t.map(|i| uvs[i as usize])));
-        } else if part.material.maps.has_any() {
-            part.material.maps = Maps::NONE;
-            lost = true;
+        for part in &mut other.parts {
+            if other.uvs.is_empty() && part.material.maps.has_any() {
+                part.material.maps = Maps::NONE;
+                lost = true;
+            }
         }
-        if base == 0 {
+        if self.parts.is_empty() {
             // Not copied: most large files are one part.
-            (self.positions, self.normals, self.triangles) = (positions, normals, triangles);
-        } else {
-            self.positions.extend(positions);
-            self.normals.extend(normals);
-            let base = base as u32;
-            self.triangles
-                .extend(triangles.iter().map(|t| t.map(|i| i + base)));
+            *self = other;
+            return lost;
         }
-        if !self.colors.is_empty() {
-            self.colors.resize(self.positions.len(), [1.0; 4]);
-        }
-        if !self.uvs.is_empty() {
-            self.uvs.resize(self.triangles.len(), [Vec2::ZERO; 3]);
-        }
-        part.triangles = first..self.triangles.len();
-        self.parts.push(part);
+        let (base, first) = (self.positions.len(), self.triangles.len());
+        let (vertices, triangles) = (other.positions.len(), other.triangles.len());
+        let moved = |t: [u32; 3]| t.map(|i| i + base as u32);
+        self.positions.extend(other.positions);
+        self.normals.extend(other.normals);
+        self.triangles
+            .extend(other.triangles.into_iter().map(moved));
+        append_some(&mut self.colors, other.colors, [base, vertices], [1.0; 4]);
+        append_some(
+            &mut self.uvs,
+            other.uvs,
+            [first, triangles],
+            [Vec2::ZERO; 3],
+        );
+        self.parts.extend(other.parts.into_iter().map(|part| Part {
+            triangles: first + part.triangles.start..first + part.triangles.end,
+            ..part
+        }));
         lost
     }
 
@@ -210,15 +200,13 @@ impl Mesh {
     }
 }
 
-/// The vertices and triangles of a part.
-pub(crate) struct PartGeometry {
-    pub positions: Vec<Vec3>,
-    pub normals: Vec<Vec3>,
-    /// One for each position.
-    pub colors: Option<Vec<[f32; 4]>>,
-    /// One for each position.
-    pub uvs: Option<Vec<Vec2>>,
-    pub triangles: Vec<[u32; 3]>,
+/// Appends a list to another, either of which may be empty where it should have `counts` values: it has `default` ones then.
+fn append_some<T: Copy>(all: &mut Vec<T>, more: Vec<T>, [before, count]: [usize; 2], default: T) {
+    if !all.is_empty() || !more.is_empty() {
+        all.resize(before, default);
+        all.extend(more);
+        all.resize(before + count, default);
+    }
 }
 
 /// A run of triangles as MikkTSpace reads it, and the tangents that it writes.
@@ -267,13 +255,18 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
     }
 }
 
+/// A triangle's normal, twice as long as its area.
+pub(crate) fn area_of(positions: &[Vec3], triangle: [u32; 3]) -> Vec3 {
+    let [a, b, c] = triangle.map(|i| positions[i as usize]);
+    (b - a).cross(c - a)
+}
+
 /// Smooth normals: the sum of the adjacent triangles' area vectors, so that large triangles count more. A vertex whose
 /// triangles have no area gets +z, never NaN.
 pub(crate) fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
     for t in triangles {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        let area = (b - a).cross(c - a);
+        let area = area_of(positions, *t);
         for &i in t {
             sums[i as usize] += area;
         }
@@ -286,21 +279,23 @@ pub(crate) fn key_of(p: Vec3) -> [u32; 3] {
     p.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// Smooth normals of a surface whose vertices may be split: those at one position have one normal.
-pub(crate) fn smooth_normals_by_position(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+/// Smooth normals by position, of surfaces whose vertices may be split: those at one position have one normal.
+pub(crate) fn normals_by_position<'a>(
+    surfaces: impl Iterator<Item = (&'a [Vec3], &'a [[u32; 3]])>,
+) -> HashMap<[u32; 3], Vec3> {
     let mut sums: HashMap<[u32; 3], Vec3> = HashMap::new();
-    for t in triangles {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        let area = (b - a).cross(c - a);
-        for p in [a, b, c] {
-            *sums.entry(key_of(p)).or_default() += area;
+    for (positions, triangles) in surfaces {
+        for t in triangles {
+            let area = area_of(positions, *t);
+            for &i in t {
+                *sums.entry(key_of(positions[i as usize])).or_default() += area;
+            }
         }
     }
-    let normal = |p: &Vec3| sums.get(&key_of(*p)).copied().unwrap_or_default();
-    positions
-        .iter()
-        .map(|p| normal(p).normalize_or(Vec3::Z))
-        .collect()
+    for sum in sums.values_mut() {
+        *sum = sum.normalize_or(Vec3::Z);
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -334,12 +329,14 @@ mod tests {
     #[test]
     fn a_cut_surface_is_the_same() {
         let material = Material::unlit([1.0; 3], 0.5);
-        let shape = crate::shapes::Shape::Torus {
-            radius: 1.0,
+        let torus = crate::shapes::Torus {
             tube: 0.3,
             triangles: 200,
+            ..Default::default()
         };
-        let mesh = shape.build(&material, true).expect("builds");
+        let mesh = crate::shapes::Shape::Torus(torus)
+            .build(&material, true)
+            .expect("builds");
         let cut = mesh.colored_by_height([[0.0; 4], [1.0; 4]]).subdivided();
         assert_eq!(cut.triangles.len(), 4 * mesh.triangles.len());
         assert_eq!(cut.parts[0].triangles, 0..cut.triangles.len());
@@ -367,25 +364,19 @@ mod tests {
     fn tangents_of_a_rectangle() {
         for mirrored in [false, true] {
             let u = |x: f32| if mirrored { 1.0 - x } else { x };
-            let geometry = PartGeometry {
+            let uvs = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)];
+            let uvs = uvs.map(|(x, y)| Vec2::new(u(x), y));
+            let triangles = vec![[0, 1, 2], [0, 2, 3]];
+            let mesh = Mesh {
                 positions: vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y],
                 normals: vec![Vec3::Z; 4],
-                colors: None,
-                uvs: Some(vec![
-                    Vec2::new(u(0.0), 1.0),
-                    Vec2::new(u(1.0), 1.0),
-                    Vec2::new(u(1.0), 0.0),
-                    Vec2::new(u(0.0), 0.0),
-                ]),
-                triangles: vec![[0, 1, 2], [0, 2, 3]],
+                uvs: triangles
+                    .iter()
+                    .map(|t: &[u32; 3]| t.map(|i| uvs[i as usize]))
+                    .collect(),
+                triangles,
+                ..Mesh::empty()
             };
-            let mut mesh = Mesh::empty();
-            let part = Part {
-                name: "rectangle".into(),
-                triangles: 0..0,
-                material: Material::unlit([1.0; 3], 0.5),
-            };
-            assert!(!mesh.push(geometry, part));
             let tangents = mesh.tangents(0..2).expect("has UVs");
             for [x, y, z, sign] in tangents.into_iter().flatten() {
                 let tangent = Vec3::new(x, y, z);

@@ -11,7 +11,7 @@ use serde::Deserialize;
 /// What the field is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Field {
+pub(crate) enum Field {
     /// Squares of 0 and 1.
     Checker,
     /// Smooth noise of five octaves.
@@ -28,61 +28,52 @@ pub enum Field {
 
 /// A generated map: `color_map = { pattern = "cracks", cells = 12, colors = [[1, 1, 1], [0.2, 0.1, 0]] }`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Pattern {
-    /// The field.
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct Pattern {
     pub pattern: Field,
     /// Cells across and down the texture.
-    #[serde(default = "eight")]
     pub cells: u32,
     /// Another seed, another pattern.
-    #[serde(default)]
     pub seed: u32,
     /// Width and height in texels.
-    #[serde(default = "size")]
     pub size: u32,
     /// Where the field goes from 0 to 1: values below the first are 0, above the second 1.
-    #[serde(default = "unit")]
     pub range: [f32; 2],
     /// Width of cracks as a part of a cell.
-    #[serde(default = "twelfth")]
     pub width: f32,
     /// Linear RGB, or RGB and alpha, at 0 and at 1; for colours and emission.
-    #[serde(default = "black_and_white")]
     pub colors: [Vec<f32>; 2],
     /// Rise of 1 over 0 in widths of a cell; for normals.
-    #[serde(default = "twelfth")]
     pub height: f32,
     /// Metallic factor at 0 and at 1.
-    #[serde(default = "unit")]
     pub metallic: [f32; 2],
     /// Roughness factor at 0 and at 1.
-    #[serde(default = "unit")]
     pub roughness: [f32; 2],
     /// Share of ambient light that arrives at 0 and at 1.
-    #[serde(default = "unit")]
     pub occlusion: [f32; 2],
 }
 
-const fn eight() -> u32 {
-    8
-}
-const fn size() -> u32 {
-    512
-}
-const fn unit() -> [f32; 2] {
-    [0.0, 1.0]
-}
-const fn twelfth() -> f32 {
-    1.0 / 12.0
-}
-fn black_and_white() -> [Vec<f32>; 2] {
-    [vec![0.0; 3], vec![1.0; 3]]
+impl Default for Pattern {
+    fn default() -> Self {
+        Self {
+            pattern: Field::Checker,
+            cells: 8,
+            seed: 0,
+            size: 512,
+            range: [0.0, 1.0],
+            width: 1.0 / 12.0,
+            colors: [vec![0.0; 3], vec![1.0; 3]],
+            height: 1.0 / 12.0,
+            metallic: [0.0, 1.0],
+            roughness: [0.0, 1.0],
+            occlusion: [0.0, 1.0],
+        }
+    }
 }
 
 impl Pattern {
     /// Checks the values; an error names the one that is out of range.
-    pub(crate) fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), String> {
         let unit = |x: f32| (0.0..=1.0).contains(&x);
         if !(4..=4096).contains(&self.size) {
             return Err(format!("size {} must lie in 4 … 4096", self.size));
@@ -173,80 +164,48 @@ impl Pattern {
         }
     }
 
-    fn texture(
-        &self,
-        name: &str,
-        texel: impl Fn(f32) -> [u8; 4] + Sync,
-    ) -> Result<Texture, String> {
+    /// The texture that a key of a material makes of it; an error names the value that is out of range.
+    pub fn texture(&self, key: &str) -> Result<Texture, String> {
         self.check()?;
         let values = self.values();
         let n = self.size;
-        Ok(Texture::of(name, [n, n], |x, y| {
-            texel(values[(y * n + x) as usize])
-        }))
-    }
-
-    /// As colours in sRGB, with alpha where it is given.
-    ///
-    /// # Errors
-    /// A value out of range.
-    pub fn color(&self) -> Result<Texture, String> {
-        self.texture("a pattern of colours", |t| {
-            let channel = |k: usize| {
-                let at = |c: &Vec<f32>| c.get(k).copied().unwrap_or(1.0);
-                let [a, b] = [at(&self.colors[0]), at(&self.colors[1])];
-                a + t * (b - a)
-            };
-            let [r, g, b] = [0, 1, 2].map(|k| byte(srgb::encode(channel(k))));
-            [r, g, b, byte(channel(3))]
-        })
-    }
-
-    /// As normals of a surface whose height it is.
-    ///
-    /// # Errors
-    /// A value out of range.
-    pub fn normals(&self) -> Result<Texture, String> {
-        self.check()?;
-        let values = self.values();
-        let n = self.size;
-        let slope = self.height * n as f32 / self.cells as f32;
-        Ok(normals_of("a pattern of heights", [n, n], slope, |x, y| {
-            values[(y * n + x) as usize]
-        }))
-    }
-
-    /// As factors of metallic and roughness.
-    ///
-    /// # Errors
-    /// A value out of range.
-    pub fn metallic_roughness(&self) -> Result<Texture, String> {
-        self.texture("a pattern of metal", |t| {
-            let at = |[a, b]: [f32; 2]| byte(a + t * (b - a));
-            [255, at(self.roughness), at(self.metallic), 255]
-        })
-    }
-
-    /// As the field itself, linear: heights of a displacement, or glossiness.
-    ///
-    /// # Errors
-    /// A value out of range.
-    pub fn grey(&self) -> Result<Texture, String> {
-        self.texture("a pattern of grey", |t| {
-            let grey = byte(t);
-            [grey, grey, grey, 255]
-        })
-    }
-
-    /// As the share of ambient light that arrives.
-    ///
-    /// # Errors
-    /// A value out of range.
-    pub fn occlusion(&self) -> Result<Texture, String> {
-        let [a, b] = self.occlusion;
-        self.texture("a pattern of occlusion", |t| {
-            let share = byte(a + t * (b - a));
-            [share, share, share, 255]
+        let at = |x: u32, y: u32| values[(y * n + x) as usize];
+        let of = |name: &str, texel: &(dyn Fn(f32) -> [u8; 4] + Sync)| {
+            Texture::of(name, [n, n], |x, y| texel(at(x, y)))
+        };
+        let between = |[a, b]: [f32; 2], t: f32| byte(a + t * (b - a));
+        Ok(match key {
+            "normal_map" => {
+                let slope = self.height * n as f32 / self.cells as f32;
+                normals_of("a pattern of heights", [n, n], slope, at)
+            }
+            "metallic_roughness_map" => of("a pattern of metal", &|t| {
+                [
+                    255,
+                    between(self.roughness, t),
+                    between(self.metallic, t),
+                    255,
+                ]
+            }),
+            "occlusion_map" => of("a pattern of occlusion", &|t| {
+                let share = between(self.occlusion, t);
+                [share, share, share, 255]
+            }),
+            // The field itself, linear.
+            "displacement_map" | "glossiness_map" => of("a pattern of grey", &|t| {
+                let grey = byte(t);
+                [grey, grey, grey, 255]
+            }),
+            // Colours in sRGB, with alpha where it is given.
+            _ => of("a pattern of colours", &|t| {
+                let channel = |k: usize| {
+                    let at = |c: &Vec<f32>| c.get(k).copied().unwrap_or(1.0);
+                    let [a, b] = [at(&self.colors[0]), at(&self.colors[1])];
+                    a + t * (b - a)
+                };
+                let [r, g, b] = [0, 1, 2].map(|k| byte(srgb::encode(channel(k))));
+                [r, g, b, byte(channel(3))]
+            }),
         })
     }
 }
@@ -374,17 +333,17 @@ mod tests {
         let p = pattern(
             "pattern = 'checker'\ncells = 2\nsize = 4\ncolors = [[0, 0, 0, 0.2], [1, 0.5, 0]]\nroughness = [0.4, 1]\nmetallic = [1, 0]",
         );
-        let color = p.color().expect("in range");
+        let color = p.texture("color_map").expect("in range");
         assert_eq!(
             (color.texels[0], color.texels[2]),
             ([0, 0, 0, 51], [255, 188, 0, 255])
         );
-        let values = p.metallic_roughness().expect("in range");
+        let values = p.texture("metallic_roughness_map").expect("in range");
         assert_eq!(
             (values.texels[0], values.texels[2]),
             ([255, 102, 255, 255], [255, 255, 0, 255])
         );
-        let e = pattern("pattern = 'noise'\nroughness = [0, 2]").metallic_roughness();
+        let e = pattern("pattern = 'noise'\nroughness = [0, 2]").texture("color_map");
         assert!(e.is_err_and(|e| e.contains('2')));
     }
 }

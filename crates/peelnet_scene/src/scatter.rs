@@ -1,28 +1,9 @@
-//! `[scatter]`: many objects at random places, from a seed.
-//!
-//! ```toml
-//! [[scatter]]                       # or one [scatter]
-//! count = 16
-//! seed = 3
-//! meshes = [{ shape = "bumpy", triangles = 11100 }, "meshes/cow.obj"]   # taken in turn; or mesh = …
-//! min = [-1, -1, -1]                # the box in which the objects' origins lie
-//! max = [1, 1, 1]
-//! grid = [4, 2, 2]                  # optional: its cells in turn, instead of anywhere in the box
-//! jitter = 0.5                      # of a cell; 1 is anywhere in the cell
-//! scale = [0.5, 0.8]                # or one number
-//! rotate = "random"                 # or [x, y, z] degrees, or "camera": faces the first view, as billboards do
-//! color = "random"                  # or [r, g, b]
-//! alpha = [0.05, 0.95]              # evenly between, or one number
-//! lighting = "unlit"
-//! color_map = { pattern = "puff", … }   # or an image file, as in a material
-//! layer = 0
-//! ```
-//!
-//! Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
+//! `[scatter]`: many objects at random places. Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
 
-use crate::file::{
-    materials::check_color,
-    references::{MapRef, MeshRef},
+use crate::{
+    error::{Fault, check_color, within},
+    file::raw::{MapRef, MeshRef},
+    material::Lighting,
 };
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::random::Random;
@@ -31,40 +12,32 @@ use serde::Deserialize;
 /// The table in the scene file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scatter {
+pub(crate) struct Scatter {
     /// Number of objects.
     pub count: usize,
-    /// Seed.
     #[serde(default)]
     pub seed: u64,
     /// The mesh of every object,
     pub mesh: Option<MeshRef>,
     /// or several, taken in turn.
     pub meshes: Option<Vec<MeshRef>>,
-    /// Lower corner of the box.
+    /// The box in which the objects' origins lie.
     pub min: [f32; 3],
-    /// Upper corner of the box.
     pub max: [f32; 3],
-    /// Cells along each axis.
+    /// Cells along each axis, taken in turn.
     pub grid: Option<[usize; 3]>,
     /// Part of its cell in which an object may lie, around the cell's centre.
     #[serde(default)]
     pub jitter: f32,
-    /// Scale.
     #[serde(default = "one")]
     pub scale: NumberOrRange,
-    /// Rotation.
     #[serde(default)]
     pub rotate: Rotate,
-    /// Colour.
     pub color: Option<ColorChoice>,
-    /// Opacity.
     pub alpha: Option<NumberOrRange>,
-    /// As in a material.
-    pub lighting: Option<String>,
-    /// Texture of colour and opacity of every object, as in a material.
+    /// The last four as in a material and an object.
+    pub lighting: Option<Lighting>,
     pub color_map: Option<MapRef>,
-    /// Layer of all objects.
     pub layer: Option<u32>,
 }
 
@@ -81,10 +54,8 @@ const fn one() -> NumberOrRange {
 /// A number, or a range to draw from.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a number or [low, high]")]
-pub enum NumberOrRange {
-    /// Always this.
+pub(crate) enum NumberOrRange {
     Number(f32),
-    /// Evenly between.
     Range([f32; 2]),
 }
 
@@ -96,8 +67,7 @@ impl NumberOrRange {
         }
     }
 
-    /// Both ends.
-    pub fn ends(self) -> [f32; 2] {
+    fn ends(self) -> [f32; 2] {
         match self {
             Self::Number(x) => [x, x],
             Self::Range(r) => r,
@@ -111,8 +81,7 @@ impl NumberOrRange {
     untagged,
     expecting = "expected \"random\", \"camera\" or [x, y, z] degrees"
 )]
-pub enum Rotate {
-    /// `"random"` or `"camera"`.
+pub(crate) enum Rotate {
     Word(RotateWord),
     /// About the fixed axes x, y, z in this order, degrees.
     Degrees([f32; 3]),
@@ -124,30 +93,26 @@ impl Default for Rotate {
     }
 }
 
-/// The words that [`Rotate`] knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum RotateWord {
+pub(crate) enum RotateWord {
     /// Every orientation alike.
     Random,
-    /// +z towards the eye of the first view.
+    /// +z towards the eye of the first view, as billboards do.
     Camera,
 }
 
 /// How objects are coloured.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected \"random\" or [r, g, b]")]
-pub enum ColorChoice {
-    /// `"random"`.
+pub(crate) enum ColorChoice {
     Word(ColorWord),
-    /// Always this.
     Color([f32; 3]),
 }
 
-/// The word that [`ColorChoice`] knows.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum ColorWord {
+pub(crate) enum ColorWord {
     /// Every component evenly from 0 to 1.
     Random,
 }
@@ -163,56 +128,63 @@ pub(crate) struct Placed {
 
 impl Scatter {
     /// Checks the values; an error holds the field and what is wrong.
-    pub(crate) fn check(&self) -> Result<(), (&'static str, String)> {
+    pub fn check(&self) -> Result<(), Fault> {
         let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
-        if self.mesh.is_some() == self.meshes.is_some() {
-            return Err(("mesh", "give either mesh or meshes".into()));
-        }
-        if self.meshes.as_ref().is_some_and(Vec::is_empty) {
-            return Err(("meshes", "the list is empty; name at least one mesh".into()));
-        }
-        if !finite(&self.min) || !finite(&self.max) || (0..3).any(|k| self.min[k] > self.max[k]) {
-            return Err(("min", "min must be finite and nowhere above max".into()));
-        }
-        if self.count > MAX_COUNT {
-            return Err((
-                "count",
-                format!("{} must be at most {MAX_COUNT}", self.count),
-            ));
-        }
-        if let Some(grid) = self.grid
-            && grid.iter().any(|n| !(1..=MAX_CELLS).contains(n))
-        {
-            return Err((
-                "grid",
-                format!("a grid needs 1 … {MAX_CELLS} cells along each axis"),
-            ));
-        }
-        if !(0.0..=1.0).contains(&self.jitter) {
-            return Err(("jitter", format!("{} must lie in 0 … 1", self.jitter)));
-        }
-        if let Some(ColorChoice::Color(c)) = self.color {
-            check_color(c).map_err(|e| ("color", e))?;
-        }
-        if let Rotate::Degrees(d) = &self.rotate
-            && !finite(d)
-        {
-            return Err(("rotate", "must be finite".into()));
-        }
+        let is_above = (0..3).any(|k| self.min[k] > self.max[k]);
+        let degrees = match &self.rotate {
+            Rotate::Degrees(degrees) => degrees,
+            Rotate::Word(_) => &[0.0; 3],
+        };
         let [low, high] = self.scale.ends();
-        if !(low > 0.0 && low <= high && high.is_finite()) {
-            return Err(("scale", "must be positive, the lower end first".into()));
+        let [clear, dense] = self.alpha.map_or([0.0; 2], NumberOrRange::ends);
+        let mut cells = self.grid.into_iter().flatten();
+        for (is_right, key, message) in [
+            (
+                self.mesh.is_some() != self.meshes.is_some(),
+                "mesh",
+                "give either mesh or meshes",
+            ),
+            (
+                self.meshes.as_ref().is_none_or(|list| !list.is_empty()),
+                "meshes",
+                "the list is empty; name at least one mesh",
+            ),
+            (
+                finite(&self.min) && finite(&self.max) && !is_above,
+                "min",
+                "must be finite and nowhere above max",
+            ),
+            (self.count <= MAX_COUNT, "count", "must be at most 1000000"),
+            (
+                cells.all(|n| (1..=MAX_CELLS).contains(&n)),
+                "grid",
+                "needs 1 … 65535 cells along each axis",
+            ),
+            (finite(degrees), "rotate", "must be finite"),
+            (
+                low > 0.0 && low <= high && high.is_finite(),
+                "scale",
+                "must be positive, the lower end first",
+            ),
+            (
+                0.0 <= clear && clear <= dense && dense <= 1.0,
+                "alpha",
+                "must lie in 0 … 1, the lower end first",
+            ),
+        ] {
+            if !is_right {
+                return Err((key, message.into()));
+            }
         }
-        if let Some([low, high]) = self.alpha.map(NumberOrRange::ends)
-            && !(0.0 <= low && low <= high && high <= 1.0)
-        {
-            return Err(("alpha", "must lie in 0 … 1, the lower end first".into()));
+        within("jitter", self.jitter, 0.0, 1.0)?;
+        match self.color {
+            Some(ColorChoice::Color(color)) => check_color(color),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// The meshes that are taken in turn.
-    pub(crate) fn mesh_list(&self) -> &[MeshRef] {
+    pub fn mesh_list(&self) -> &[MeshRef] {
         match (&self.meshes, &self.mesh) {
             (Some(list), _) => list,
             (None, Some(one)) => std::slice::from_ref(one),
@@ -221,7 +193,7 @@ impl Scatter {
     }
 
     /// Draws the objects. `eye` is the first view's position.
-    pub(crate) fn place(&self, eye: Vec3) -> Vec<Placed> {
+    pub fn place(&self, eye: Vec3) -> Vec<Placed> {
         let mut random = Random::new(self.seed, &[0x5ca7]);
         let (min, max) = (Vec3::from_array(self.min), Vec3::from_array(self.max));
         let meshes = self.mesh_list().len().max(1);

@@ -171,18 +171,14 @@ impl Scene {
     /// # Errors
     /// A layer that no object has, or a transparent object without a layer.
     pub fn layer_view(&self, highlight: u32, shade_all: bool) -> Result<Self, SceneError> {
-        let value = |field: &str, message: String| SceneError::Value {
-            path: self.source.clone(),
-            field: field.to_owned(),
-            message,
-        };
+        let fail = |message| SceneError::value(&self.source, "layer", message);
         let layers = self.layers();
         if !layers.contains(&highlight) {
             let message = match layers.as_slice() {
                 [] => "no object has one: add layer = N to objects, 0 outermost".to_owned(),
                 all => format!("{highlight} is none of the layers {all:?}"),
             };
-            return Err(value("layer", message));
+            return Err(fail(message));
         }
         let mut scene = self.clone();
         scene.transparency_scale = 1.0;
@@ -195,7 +191,7 @@ impl Scene {
                     "of '{}' is missing: it is transparent",
                     printable(&object.name)
                 );
-                return Err(value("layer", message));
+                return Err(fail(message));
             };
             for material in &mut object.materials {
                 material.blend = true;

@@ -5,9 +5,13 @@
 //! b follows from either equation; the second is trusted by m², as the first divides by 1 − m, and the second by m.
 //! From Khronos' example of the conversion: KhronosGroup/glTF, `extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness/examples`.
 
-use crate::{budget::Budget, texture::Texture};
+use crate::{
+    budget::Budget,
+    material::Material,
+    texture::{Made, Texture},
+};
 use peelnet_core::srgb;
-use std::{collections::HashMap, sync::Arc};
+use std::sync::Arc;
 
 /// Reflectance of a dielectric seen head-on, as in glTF 2.0.
 pub(crate) const DIELECTRIC: f32 = 0.04;
@@ -21,17 +25,6 @@ pub(crate) struct Values {
     pub diffuse: [f32; 3],
     pub specular: [f32; 3],
     pub glossiness: f32,
-}
-
-/// The same in metallic and roughness.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Converted {
-    pub color: [f32; 3],
-    pub metallic: f32,
-    pub roughness: f32,
-    /// Base colour, with the diffuse texture's opacity. Its values are whole: the colour beside it is white.
-    pub color_map: Option<Arc<Texture>>,
-    pub metallic_roughness_map: Option<Arc<Texture>>,
 }
 
 /// Weights as the example has them.
@@ -71,101 +64,21 @@ fn converted(values: Values) -> ([f32; 3], f32, f32) {
     (color, m, 1.0 - values.glossiness)
 }
 
-/// What a conversion depends on: the textures' addresses, and the bits of all values.
-type Key = ([usize; 2], [u32; 7]);
-
-/// Two textures' addresses.
-fn addresses(textures: [Option<&Arc<Texture>>; 2]) -> [usize; 2] {
-    textures.map(|t| t.map_or(0, |t| Arc::as_ptr(t) as usize))
-}
-
-/// Textures that are held so that their addresses stay theirs.
-type Held = [Option<Arc<Texture>>; 2];
-
-fn white() -> Texture {
-    Texture::of("white", [1, 1], |_, _| [255; 4])
-}
-
-/// The size of two textures joined.
-fn larger([a, b]: [&Texture; 2]) -> [u32; 2] {
-    [0, 1].map(|k| a.size[k].max(b.size[k]))
-}
-
-/// Converts materials, textures once for all materials that have the same.
-#[derive(Default)]
-pub(crate) struct Converter {
-    packed: HashMap<[usize; 2], (Held, Arc<Texture>)>,
-    made: HashMap<Key, (Held, Converted)>,
-}
-
-impl Converter {
-    /// Specular colours, and glossiness in red, as one texture; `None` without either.
-    pub fn packed(
-        &mut self,
-        specular: Option<&Arc<Texture>>,
-        glossiness: Option<&Arc<Texture>>,
-        budget: &mut Budget,
-    ) -> Result<Option<Arc<Texture>>, String> {
-        let both = [specular, glossiness];
-        if both == [None, None] {
-            return Ok(None);
-        }
-        let key = addresses(both);
-        if let Some((_, known)) = self.packed.get(&key) {
-            return Ok(Some(Arc::clone(known)));
-        }
-        let white = white();
-        let maps = both.map(|t| t.map_or(&white, |t| t.as_ref()));
-        budget.take_texels(larger(maps))?;
-        let joined = Texture::joined(maps[0], maps[1], |s, g| [s[0], s[1], s[2], g[0]]);
-        let joined = Arc::new(joined);
-        let held = both.map(Option::<&Arc<Texture>>::cloned);
-        self.packed.insert(key, (held, Arc::clone(&joined)));
-        Ok(Some(joined))
+/// Converts a material, whose colour map is the diffuse one, in sRGB and with an opacity: per texel where there are textures. `specular` is
+/// sRGB, with the glossiness in its alpha. Of an error nothing is changed.
+pub(crate) fn convert(
+    values: Values,
+    material: &mut Material,
+    specular: Option<&Arc<Texture>>,
+    made: &mut Made,
+    budget: &mut Budget,
+) -> Result<(), String> {
+    let both = [material.maps.color.as_ref(), specular];
+    if both == [None, None] {
+        (material.color, material.metallic, material.roughness) = converted(values);
+        material.maps.metallic_roughness = None;
+        return Ok(());
     }
-
-    /// Converts a material: per texel where there are textures. `diffuse` is sRGB and has an opacity; `specular` is sRGB, with the glossiness in
-    /// its alpha.
-    pub fn convert(
-        &mut self,
-        values: Values,
-        diffuse: Option<&Arc<Texture>>,
-        specular: Option<&Arc<Texture>>,
-        budget: &mut Budget,
-    ) -> Result<Converted, String> {
-        if diffuse.is_none() && specular.is_none() {
-            let (color, metallic, roughness) = converted(values);
-            return Ok(Converted {
-                color,
-                metallic,
-                roughness,
-                color_map: None,
-                metallic_roughness_map: None,
-            });
-        }
-        let Values {
-            diffuse: [a, b, c],
-            specular: [d, e, f],
-            glossiness,
-        } = values;
-        let bits = [a, b, c, d, e, f, glossiness].map(f32::to_bits);
-        let both = [diffuse, specular];
-        let key = (addresses(both), bits);
-        if let Some((_, known)) = self.made.get(&key) {
-            return Ok(known.clone());
-        }
-        let white = white();
-        let maps = both.map(|t| t.map_or(&white, |t| t.as_ref()));
-        budget.take_texels(larger(maps))?;
-        budget.take_texels(larger(maps))?;
-        let made = textures(values, maps);
-        let held = both.map(Option::<&Arc<Texture>>::cloned);
-        self.made.insert(key, (held, made.clone()));
-        Ok(made)
-    }
-}
-
-fn textures(values: Values, [diffuse, specular]: [&Texture; 2]) -> Converted {
     let linear: Vec<f32> = (0..=255u8)
         .map(|byte| srgb::decode(f32::from(byte) / 255.0))
         .collect();
@@ -180,21 +93,19 @@ fn textures(values: Values, [diffuse, specular]: [&Texture; 2]) -> Converted {
         })
     };
     let byte = |x: f32| (x * 255.0).round() as u8;
-    let color = Texture::joined(diffuse, specular, |d, s| {
+    let color = made.joined(&format!("colours by {values:?}"), both, budget, |d, s| {
         let [r, g, b] = at(d, s).0.map(srgb::encode8);
         [r, g, b, d[3]]
-    });
-    let metallic_roughness = Texture::joined(diffuse, specular, |d, s| {
+    })?;
+    let metal = made.joined(&format!("metal by {values:?}"), both, budget, |d, s| {
         let (_, metallic, roughness) = at(d, s);
         [255, byte(roughness), byte(metallic), 255]
-    });
-    Converted {
-        color: [1.0; 3],
-        metallic: 1.0,
-        roughness: 1.0,
-        color_map: Some(Arc::new(color)),
-        metallic_roughness_map: Some(Arc::new(metallic_roughness)),
-    }
+    })?;
+    // The values are in the maps.
+    (material.color, material.metallic, material.roughness) = ([1.0; 3], 1.0, 1.0);
+    material.maps.color = Some(color);
+    material.maps.metallic_roughness = Some(metal);
+    Ok(())
 }
 
 #[cfg(test)]
@@ -265,29 +176,27 @@ mod tests {
             specular: [1.0; 3],
             glossiness: 0.5,
         };
-        let (mut converter, mut budget) = (Converter::default(), Budget::default());
+        let (mut made, mut budget) = (Made::default(), Budget::default());
         let mut convert = || {
-            let converted = converter.convert(values, Some(&diffuse), Some(&specular), &mut budget);
-            converted.expect("fits")
+            let mut material = Material::unlit([0.5; 3], 1.0);
+            material.maps.color = Some(Arc::clone(&diffuse));
+            let specular = Some(&specular);
+            convert(values, &mut material, specular, &mut made, &mut budget).expect("fits");
+            material
         };
-        let made = convert();
+        let material = convert();
         assert_eq!(
-            (made.color, made.metallic, made.roughness),
+            (material.color, material.metallic, material.roughness),
             ([1.0; 3], 1.0, 1.0)
         );
-        let color = made.color_map.clone().expect("is made");
-        let metal = made.metallic_roughness_map.clone().expect("is made");
+        let color = material.maps.color.expect("is made");
+        let metal = material.maps.metallic_roughness.expect("is made");
         assert_eq!(color.texels[0], [255, 255, 255, 255]);
         assert_eq!(metal.texels[0], [255, 128, 255, 255]);
         let [r, g, b, a] = color.texels[1];
         assert_eq!((g, b, a), (255, 255, 128));
         assert!(r.abs_diff(srgb::encode8(0.5)) <= 1, "{r}");
-        assert!(
-            metal.texels[1][2] <= 3 && metal.texels[1][1] == 204,
-            "{:?}",
-            metal.texels[1]
-        );
-        let again = convert().color_map.expect("is made");
-        assert!(Arc::ptr_eq(&color, &again));
+        assert!(metal.texels[1][2] <= 3 && metal.texels[1][1] == 204);
+        assert!(Arc::ptr_eq(&color, &convert().maps.color.expect("is made")));
     }
 }

@@ -6,7 +6,7 @@ mod decode;
 use crate::{budget::Budget, displacement::Displacement};
 use rayon::prelude::*;
 use serde::Deserialize;
-use std::{borrow::Cow, sync::Arc};
+use std::{borrow::Cow, collections::HashMap, sync::Arc};
 
 /// A texture of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
@@ -224,6 +224,53 @@ impl Texture {
             .collect();
         normals_of(&self.name, self.size, slope, |x, y| {
             heights[((y % height) * width + x % width) as usize]
+        })
+    }
+}
+
+/// Textures that are made of others, each once.
+#[derive(Default)]
+pub(crate) struct Made {
+    /// By what is made, and the addresses of what of: that is held, so that its addresses stay its own.
+    known: HashMap<String, (Sources, Arc<Texture>)>,
+}
+
+type Sources = [Option<Arc<Texture>>; 2];
+
+impl Made {
+    /// A texture of two others or fewer, whose size is the largest of each side.
+    pub fn of(
+        &mut self,
+        what: &str,
+        sources: [Option<&Arc<Texture>>; 2],
+        budget: &mut Budget,
+        make: impl FnOnce() -> Texture,
+    ) -> Result<Arc<Texture>, String> {
+        let [a, b] = sources.map(|t| t.map(Arc::as_ptr));
+        let key = format!("{what} of {a:?} and {b:?}");
+        if let Some((_, known)) = self.known.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let sizes = sources.map(|t| t.map_or([1, 1], |t| t.size));
+        budget.take_texels([0, 1].map(|k| sizes[0][k].max(sizes[1][k])))?;
+        let made = Arc::new(make());
+        let sources = sources.map(Option::<&Arc<Texture>>::cloned);
+        self.known.insert(key, (sources, Arc::clone(&made)));
+        Ok(made)
+    }
+
+    /// Two textures joined texel by texel. White stands for a missing one.
+    pub fn joined(
+        &mut self,
+        what: &str,
+        sources: [Option<&Arc<Texture>>; 2],
+        budget: &mut Budget,
+        texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync,
+    ) -> Result<Arc<Texture>, String> {
+        self.of(what, sources, budget, || {
+            let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
+            let [a, b] = sources.map(|t| t.map_or(&white, |t| t.as_ref()));
+            Texture::joined(a, b, texel)
         })
     }
 }

@@ -25,12 +25,19 @@ fn noise() -> Texture {
     })
 }
 
-fn moved(mesh: &Mesh, material: &Material) -> Mesh {
-    let materials = vec![material.clone(); mesh.parts.len()];
-    displaced(mesh, &materials, &mut Budget::default()).expect("fits")
+fn try_moved(mesh: &Mesh, materials: &[Material]) -> Result<Mesh, String> {
+    let (mesh, mut materials) = (Arc::new(mesh.clone()), materials.to_vec());
+    let moved = displaced(mesh, &mut materials, &mut Budget::default())?;
+    assert!(materials.iter().all(|m| m.maps.displacement.is_none()));
+    Ok((*moved).clone())
 }
 
-fn shape(shape: Shape) -> Mesh {
+fn moved(mesh: &Mesh, material: &Material) -> Mesh {
+    try_moved(mesh, &vec![material.clone(); mesh.parts.len()]).expect("fits")
+}
+
+fn shape(text: &str) -> Mesh {
+    let shape: Shape = toml::from_str(text).expect("parses");
     let material = Material::unlit([1.0; 3], 0.5);
     shape.build(&material, true).expect("builds")
 }
@@ -120,7 +127,7 @@ fn ramps_have_their_slope() {
 /// A cube's faces have normals of their own; it stays closed, its corners move along its diagonals, and its edges stay sharp.
 #[test]
 fn closed_surfaces_stay_closed() {
-    let cube = shape(Shape::Box { size: [2.0; 3] });
+    let cube = shape("shape = 'box'");
     assert!(is_closed(&cube));
     let large = moved(&cube, &material(white(), 0.3, 3));
     assert!(is_closed(&large));
@@ -138,11 +145,7 @@ fn closed_surfaces_stay_closed() {
         count += 1;
     }
     assert_eq!(count, 24);
-    let sphere = Shape::Sphere {
-        radius: 1.0,
-        triangles: 500,
-    };
-    for mesh in [cube, shape(sphere)] {
+    for mesh in [cube, shape("shape = 'sphere'\ntriangles = 500")] {
         let bumpy = moved(&mesh, &material(noise(), 0.1, 2));
         assert!(is_closed(&bumpy) == is_closed(&mesh));
         assert!(
@@ -158,10 +161,7 @@ fn closed_surfaces_stay_closed() {
 /// A sphere that grows keeps its round normals, though its triangles are flat.
 #[test]
 fn round_surfaces_stay_round() {
-    let sphere = shape(Shape::Sphere {
-        radius: 1.0,
-        triangles: 2000,
-    });
+    let sphere = shape("shape = 'sphere'");
     let large = moved(&sphere, &material(white(), 0.5, 1));
     for (p, n) in large.positions.iter().zip(&large.normals) {
         assert!((p.length() - 1.5).abs() < 0.01, "{p}");
@@ -180,7 +180,7 @@ fn parts_without_maps_follow() {
     mesh.parts[0].triangles = 0..1;
     mesh.parts.push(second);
     let materials = [material(white(), 1.0, 0), Material::unlit([1.0; 3], 0.5)];
-    let moved = displaced(&mesh, &materials, &mut Budget::default()).expect("fits");
+    let moved = try_moved(&mesh, &materials).expect("fits");
     // Corner 1 belongs to the first alone, corner 3 to the second; the others have half of their angle in either.
     let heights: Vec<f32> = moved.positions.iter().map(|p| p.z).collect();
     assert_eq!(heights, [0.5, 1.0, 0.5, 0.0]);
@@ -196,10 +196,7 @@ fn levels_are_bounded() {
     // The diagonal spans 16 texels across and 8 down.
     let plane = moved(&square(0.0, 1.0), &automatic);
     assert_eq!(plane.triangles.len(), 2 << (2 * 4));
-    let mesh = shape(Shape::Sphere {
-        radius: 1.0,
-        triangles: 100_000,
-    });
+    let mesh = shape("shape = 'sphere'\ntriangles = 100_000");
     let fine = Texture::of("fine", [4096, 4096], |_, _| [0; 4]);
     if let Some(d) = &mut automatic.maps.displacement {
         d.map = Arc::new(fine);
@@ -207,18 +204,15 @@ fn levels_are_bounded() {
     let level = level(&mesh, std::slice::from_ref(&automatic));
     assert!(mesh.triangles.len() << (2 * level) <= MAX_DISPLACED as usize);
     assert!(level == 2, "{level}");
-    let refused = |level: u32| {
-        let materials = [material(white(), 1.0, level)];
-        displaced(&mesh, &materials, &mut Budget::default()).expect_err("too many")
-    };
+    let refused =
+        |level: u32| try_moved(&mesh, &[material(white(), 1.0, level)]).expect_err("too many");
     let e = refused(8);
     assert!(
         e.contains("50000000") && e.contains("displacement_level of 4 or less"),
         "{e}"
     );
     assert!(refused(11).contains("0 … 10"));
-    let far = [material(white(), f32::INFINITY, 0)];
-    let e = displaced(&mesh, &far, &mut Budget::default()).expect_err("too far");
+    let e = try_moved(&mesh, &[material(white(), f32::INFINITY, 0)]).expect_err("too far");
     assert!(e.contains("too large"), "{e}");
 }
 

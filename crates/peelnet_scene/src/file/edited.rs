@@ -4,12 +4,11 @@ use crate::{
     camera::Camera,
     error::SceneError,
     material::{Lighting, Material},
-    scatter::from_fixed_axes,
+    scatter::{fixed_axes, from_fixed_axes},
     scene::{Light, Object, Scene, Source},
 };
 use glam::{Mat4, Quat, Vec3};
 use peelnet_files::printable;
-use std::path::Path;
 use toml::{Table, Value};
 
 /// A scene file's text, and what of the changes it cannot say.
@@ -38,11 +37,9 @@ impl Scene {
         view: Option<&Camera>,
     ) -> Result<Edited, SceneError> {
         let mut table = match text {
-            Some(text) => text.parse::<Table>().map_err(|e| SceneError::Syntax {
-                path: self.source.clone(),
-                line: 1,
-                message: e.message().to_owned(),
-            })?,
+            Some(text) => text
+                .parse::<Table>()
+                .map_err(|e| SceneError::file(&self.source, Some(1), e.message()))?,
             None => mesh_scene(self),
         };
         let mut left_out = Vec::new();
@@ -50,13 +47,11 @@ impl Scene {
             for key in ["camera", "view", "orbit"] {
                 table.remove(key);
             }
-            table.insert("camera".into(), camera_table(camera).into());
+            table.insert("camera".into(), camera_table(camera));
         }
         if self.lights != loaded.lights {
-            let lights = self.lights.iter().map(|l| Value::from(light_table(l)));
-            table.remove("light");
             // An empty list is the same as none.
-            table.insert("light".into(), Value::Array(lights.collect()));
+            table.insert("light".into(), list(&self.lights, light_table));
         }
         if !loaded.timeline.is_empty() && self.time != loaded.timeline[0].time {
             left_out.push(format!(
@@ -69,48 +64,47 @@ impl Scene {
             let mut objects = table.get_mut("object").and_then(Value::as_array_mut);
             let own = objects.as_mut().and_then(|list| list.get_mut(number));
             let name = printable(&now.name).to_string();
+            let is_moved = now.world_from_object != before.world_from_object;
             match own.and_then(Value::as_table_mut) {
                 // A mesh file with several objects is one object of a scene file.
                 Some(own) if text.is_some() || self.objects.len() == 1 => {
-                    write_object(own, now, before, &name, &mut left_out);
+                    left_out.extend(write_object(own, now, before, &name));
                 }
-                _ if differs(now, before) => {
+                _ if is_moved || now.materials != before.materials => {
                     left_out.push(format!("changes of {name}: it is no [[object]] of its own"));
                 }
                 _ => {}
             }
         }
-        let text = toml::to_string(&table).map_err(|e| SceneError::Value {
-            path: self.source.clone(),
-            field: "scene".into(),
-            message: e.to_string(),
-        })?;
+        let text = toml::to_string(&table)
+            .map_err(|e| SceneError::value(&self.source, "scene", e.to_string()))?;
         Ok(Edited { text, left_out })
     }
 }
 
-fn differs(now: &Object, before: &Object) -> bool {
-    now.world_from_object != before.world_from_object || now.materials != before.materials
-}
-
 /// A scene of a mesh file alone, with the scene's cameras and lights.
 fn mesh_scene(scene: &Scene) -> Table {
-    let mut table = Table::new();
-    let name = scene
-        .source
-        .file_name()
-        .map(Path::new)
-        .unwrap_or(Path::new(""));
-    table.insert("name".into(), scene.name.clone().into());
-    table.insert("background".into(), numbers(scene.background));
-    let views = scene.views.iter().map(|v| Value::from(camera_table(v)));
-    table.insert("view".into(), Value::Array(views.collect()));
-    let lights = scene.lights.iter().map(|l| Value::from(light_table(l)));
-    table.insert("light".into(), Value::Array(lights.collect()));
-    let mut object = Table::new();
-    object.insert("mesh".into(), name.to_string_lossy().into_owned().into());
-    table.insert("object".into(), Value::Array(vec![object.into()]));
-    table
+    let file = scene.source.file_name().unwrap_or_default();
+    let object = table([("mesh", file.to_string_lossy().into_owned().into())]);
+    let all = [
+        ("name", scene.name.clone().into()),
+        ("background", numbers(scene.background)),
+        ("view", list(&scene.views, camera_table)),
+        ("light", list(&scene.lights, light_table)),
+        ("object", Value::Array(vec![object])),
+    ];
+    all.map(|(key, value)| (key.to_owned(), value))
+        .into_iter()
+        .collect()
+}
+
+fn table<const N: usize>(values: [(&str, Value); N]) -> Value {
+    let values = values.map(|(key, value)| (key.to_owned(), value));
+    Value::Table(values.into_iter().collect())
+}
+
+fn list<T>(all: &[T], table: impl Fn(&T) -> Value) -> Value {
+    Value::Array(all.iter().map(table).collect())
 }
 
 /// The shortest decimal number that is this one in 32 bits.
@@ -123,40 +117,33 @@ fn numbers(x: impl Into<[f32; 3]>) -> Value {
     Value::Array(x.into().map(number).to_vec())
 }
 
-fn camera_table(camera: &Camera) -> Table {
-    let mut table = Table::new();
-    table.insert("position".into(), numbers(camera.position));
-    table.insert("target".into(), numbers(camera.target));
-    table.insert("up".into(), numbers(camera.up));
-    table.insert("fov_y".into(), number(camera.fov_y_degrees));
-    table.insert("near".into(), number(camera.near));
-    table.insert("far".into(), number(camera.far));
-    table
+fn camera_table(camera: &Camera) -> Value {
+    table([
+        ("position", numbers(camera.position)),
+        ("target", numbers(camera.target)),
+        ("up", numbers(camera.up)),
+        ("fov_y", number(camera.fov_y_degrees)),
+        ("near", number(camera.near)),
+        ("far", number(camera.far)),
+    ])
 }
 
-fn light_table(light: &Light) -> Table {
-    let mut table = Table::new();
-    match light.source {
-        Source::Point(position) => table.insert("position".into(), numbers(position)),
+fn light_table(light: &Light) -> Value {
+    let source = match light.source {
+        Source::Point(position) => ("position", numbers(position)),
         // A scene file says where the light goes, not where it comes from.
-        Source::Toward(from) => table.insert("direction".into(), numbers(-from)),
+        Source::Toward(from) => ("direction", numbers(-from)),
     };
-    table.insert("color".into(), numbers(light.color));
-    table.insert("intensity".into(), number(light.intensity));
-    table
+    let color = ("color", numbers(light.color));
+    table([source, color, ("intensity", number(light.intensity))])
 }
 
-fn write_object(
-    own: &mut Table,
-    now: &Object,
-    before: &Object,
-    name: &str,
-    left_out: &mut Vec<String>,
-) {
+/// Writes the changes of an object; returns what a scene file cannot say of them.
+fn write_object(own: &mut Table, now: &Object, before: &Object, name: &str) -> Vec<String> {
+    let mut left_out = Vec::new();
     if now.world_from_object != before.world_from_object {
-        let old = placed(own);
         // What a mesh's `fit` does comes first, and stays.
-        let wanted = now.world_from_object * before.world_from_object.inverse() * old;
+        let wanted = now.world_from_object * before.world_from_object.inverse() * placed(own);
         match similarity(wanted) {
             Some((scale, rotation, translation)) => {
                 own.insert("scale".into(), number(scale));
@@ -168,26 +155,26 @@ fn write_object(
             )),
         }
     }
-    let changed: Vec<(&Material, &Material)> = now
-        .materials
-        .iter()
-        .zip(&before.materials)
-        .filter(|(a, b)| a != b)
-        .collect();
-    match changed.as_slice() {
-        [] => {}
-        [(material, before)] if now.materials.len() == 1 => {
+    match (now.materials.as_slice(), before.materials.as_slice()) {
+        (now, before) if now == before => {}
+        ([now], [before]) => {
             let table = own
                 .entry("material")
                 .or_insert_with(|| Value::Table(Table::new()));
             if let Some(table) = table.as_table_mut() {
-                write_material(table, material, before, name, left_out);
+                write_material(table, now, before);
+            }
+            if now.maps != before.maps {
+                left_out.push(format!(
+                    "textures of {name} that its mesh file brings stay: a scene file adds textures"
+                ));
             }
         }
         _ => left_out.push(format!(
             "materials of {name}: its mesh has several, and a scene file sets all of them alike"
         )),
     }
+    left_out
 }
 
 /// The transform that an object's keys say, without `fit`.
@@ -204,7 +191,7 @@ fn placed(own: &Table) -> Mat4 {
     };
     let scale = own.get("scale").and_then(float).unwrap_or(1.0);
     Mat4::from_translation(vector("translate").into())
-        * Mat4::from_quat(crate::scatter::fixed_axes(vector("rotate")))
+        * Mat4::from_quat(fixed_axes(vector("rotate")))
         * Mat4::from_scale(Vec3::splat(scale))
 }
 
@@ -213,8 +200,8 @@ fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
     let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
     // A mirrored object has a negative scale of its first axis; a scene file mirrors all three.
     let (scale, rotation) = if scale.x < 0.0 {
-        let turned = Mat4::from_quat(rotation) * Mat4::from_scale(scale);
-        let (s, r, _) = (turned * Mat4::from_scale(Vec3::NEG_ONE)).to_scale_rotation_translation();
+        let turned = Mat4::from_quat(rotation) * Mat4::from_scale(-scale);
+        let (s, r, _) = turned.to_scale_rotation_translation();
         (-s, r)
     } else {
         (scale, rotation)
@@ -222,76 +209,50 @@ fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
     let again = Mat4::from_translation(translation)
         * Mat4::from_quat(rotation)
         * Mat4::from_scale(Vec3::splat(scale.x));
-    let largest = matrix
-        .to_cols_array()
-        .map(f32::abs)
-        .into_iter()
-        .fold(0.0, f32::max);
+    let columns = matrix.to_cols_array().map(f32::abs);
+    let largest = columns.into_iter().fold(0.0, f32::max);
     let close = again.abs_diff_eq(matrix, CLOSE * largest);
     (close && scale.x != 0.0 && matrix.is_finite()).then_some((scale.x, rotation, translation))
 }
 
-fn write_material(
-    table: &mut Table,
-    now: &Material,
-    before: &Material,
-    name: &str,
-    left_out: &mut Vec<String>,
-) {
-    let mut put = |key: &str, changed: bool, value: Value| {
-        if changed {
-            table.insert(key.into(), value);
-        }
-    };
-    let lighting = match now.lighting {
+fn write_material(table: &mut Table, now: &Material, before: &Material) {
+    let lighting = |m: &Material| match m.lighting {
         Lighting::Unlit => "unlit",
         Lighting::Phong => "phong",
         Lighting::Pbr => "pbr",
     };
-    put("lighting", now.lighting != before.lighting, lighting.into());
-    put("color", now.color != before.color, numbers(now.color));
-    put(
-        "emission",
-        now.emission != before.emission,
-        numbers(now.emission),
-    );
-    put(
-        "transmission_color",
-        now.transmission != before.transmission,
-        numbers(now.transmission),
-    );
-    for (key, new, old) in [
-        ("alpha", now.alpha, before.alpha),
-        ("specular", now.specular, before.specular),
-        ("shininess", now.shininess, before.shininess),
-        ("metallic", now.metallic, before.metallic),
-        ("roughness", now.roughness, before.roughness),
-    ] {
-        put(key, new != old, number(new));
+    let keys = |m: &Material| {
+        [
+            ("lighting", lighting(m).into()),
+            ("color", numbers(m.color)),
+            ("emission", numbers(m.emission)),
+            ("transmission_color", numbers(m.transmission)),
+            ("alpha", number(m.alpha)),
+            ("specular", number(m.specular)),
+            ("shininess", number(m.shininess)),
+            ("metallic", number(m.metallic)),
+            ("roughness", number(m.roughness)),
+            ("double_sided", m.double_sided.into()),
+        ]
+    };
+    for ((key, value), before) in keys(now).into_iter().zip(keys(before)) {
+        if value != before.1 {
+            table.insert(key.into(), value);
+        }
     }
-    put(
-        "double_sided",
-        now.double_sided != before.double_sided,
-        now.double_sided.into(),
-    );
+    let maps = [
+        "color_map",
+        "normal_map",
+        "metallic_roughness_map",
+        "occlusion_map",
+        "emissive_map",
+    ];
     if now.maps != before.maps {
-        for (key, gone) in [
-            ("color_map", now.maps.color.is_none()),
-            ("normal_map", now.maps.normal.is_none()),
-            (
-                "metallic_roughness_map",
-                now.maps.metallic_roughness.is_none(),
-            ),
-            ("occlusion_map", now.maps.occlusion.is_none()),
-            ("emissive_map", now.maps.emissive.is_none()),
-        ] {
-            if gone {
+        for (key, map) in maps.into_iter().zip(now.maps.all()) {
+            if map.is_none() {
                 table.remove(key);
             }
         }
-        left_out.push(format!(
-            "textures of {name} that its mesh file brings stay: a scene file adds textures"
-        ));
     }
 }
 
@@ -299,6 +260,7 @@ fn write_material(
 mod tests {
     use super::*;
     use crate::suite;
+    use std::path::Path;
 
     fn saved(scene: &Scene, loaded: &Scene, text: Option<&str>, view: Option<&Camera>) -> Edited {
         scene.edited(loaded, text, view).expect("writes")

@@ -1,16 +1,13 @@
 //! What all parts of a scene file share while it is loaded.
 
-use super::references::MeshRef;
+use super::raw::{MapRef, MeshRef, Reference};
 use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     import::Format,
     material::{Lighting, Material},
     mesh::Mesh,
-    pattern::Pattern,
-    shapes::Shape,
-    specular_glossiness::Converter,
-    texture::Texture,
+    texture::{Made, Texture},
 };
 use std::{
     collections::HashMap,
@@ -26,14 +23,12 @@ pub(super) struct Loader<'a> {
     pub lighting: Lighting,
     pub files: Files<'a>,
     pub warnings: Vec<String>,
-    meshes: HashMap<PathBuf, Arc<Mesh>>,
-    /// Generated meshes, by shape and whether they have UVs.
-    shapes: HashMap<(String, bool), Arc<Mesh>>,
-    /// Generated textures, by pattern and key.
-    patterns: HashMap<(String, &'static str), Arc<Texture>>,
-    textures: HashMap<PathBuf, Arc<Texture>>,
-    /// For materials of the specular–glossiness workflow.
-    pub converter: Converter,
+    /// By file, or shape and whether it has UVs.
+    meshes: HashMap<String, Arc<Mesh>>,
+    /// By file, or pattern and key of a material.
+    textures: HashMap<String, Arc<Texture>>,
+    /// Of materials of the specular–glossiness workflow.
+    pub made: Made,
 }
 
 impl<'a> Loader<'a> {
@@ -44,20 +39,14 @@ impl<'a> Loader<'a> {
             files,
             warnings: Vec::new(),
             meshes: HashMap::new(),
-            shapes: HashMap::new(),
-            patterns: HashMap::new(),
             textures: HashMap::new(),
-            converter: Converter::default(),
+            made: Made::default(),
         }
     }
 
     /// The error for a value of a field.
     pub fn value(&self, field: &str, message: impl Into<String>) -> SceneError {
-        SceneError::Value {
-            path: self.path.to_owned(),
-            field: field.to_owned(),
-            message: message.into(),
-        }
+        SceneError::value(self.path, field, message)
     }
 
     /// The path of a file that the scene file names.
@@ -65,92 +54,87 @@ impl<'a> Loader<'a> {
         self.path.parent().unwrap_or(Path::new(".")).join(name)
     }
 
-    /// A mesh, read or generated once. A generated one has UVs only where `has_uvs` asks for them.
+    /// A mesh, read or generated once. A generated one has UVs only where `has_uvs` asks for them; a file must have them then.
     pub fn mesh(
         &mut self,
         mesh: &MeshRef,
         has_uvs: bool,
         field: &str,
     ) -> Result<Arc<Mesh>, SceneError> {
-        match mesh {
-            MeshRef::Shape(shape) => {
-                let key = (format!("{shape:?}"), has_uvs);
-                if let Some(mesh) = self.shapes.get(&key) {
-                    return Ok(Arc::clone(mesh));
-                }
-                let built = self.shape(shape, has_uvs);
-                let built = Arc::new(built.map_err(|e| self.value(field, e))?);
-                self.shapes.insert(key, Arc::clone(&built));
-                Ok(built)
+        let key = match mesh {
+            Reference::Made(shape) => format!("{shape:?}, UVs {has_uvs}"),
+            Reference::File(name) => name.display().to_string(),
+        };
+        let known = match (self.meshes.get(&key), mesh) {
+            (Some(known), _) => Arc::clone(known),
+            (None, Reference::Made(shape)) => {
+                let triangles = shape.triangles() as u64;
+                // No shape has more than two vertices for each triangle.
+                let taken = self
+                    .files
+                    .budget
+                    .take_mesh(triangles, triangles.saturating_mul(2));
+                let material = Material::default_with(self.lighting);
+                let made = taken.and_then(|()| shape.build(&material, has_uvs));
+                Arc::new(made.map_err(|e| self.value(field, e))?)
             }
-            MeshRef::File(name) => {
-                let file = self.beside(name);
-                if let Some(mesh) = self.meshes.get(&file) {
-                    return Ok(Arc::clone(mesh));
-                }
-                let mesh = Arc::new(self.mesh_file(&file, field)?);
-                self.meshes.insert(file, Arc::clone(&mesh));
-                Ok(mesh)
-            }
+            (None, Reference::File(name)) => Arc::new(self.mesh_file(name, field)?),
+        };
+        self.meshes.insert(key, Arc::clone(&known));
+        if has_uvs && known.uvs.is_empty() {
+            let message = "has no texture coordinates for its material's maps; export it with them";
+            return Err(self.value(field, message));
         }
+        Ok(known)
     }
 
-    fn shape(&mut self, shape: &Shape, has_uvs: bool) -> Result<Mesh, String> {
-        let triangles = shape.triangles() as u64;
-        // No shape has more than two vertices for each triangle.
-        let vertices = triangles.saturating_mul(2);
-        self.files.budget.take_mesh(triangles, vertices)?;
-        shape.build(&Material::default_with(self.lighting), has_uvs)
-    }
-
-    /// A generated texture, made once for each pattern and key of a material.
-    pub fn pattern(
-        &mut self,
-        pattern: &Pattern,
-        make: fn(&Pattern) -> Result<Texture, String>,
-        key: &'static str,
-    ) -> Result<Arc<Texture>, String> {
-        let name = (format!("{pattern:?}"), key);
-        if let Some(known) = self.patterns.get(&name) {
-            return Ok(Arc::clone(known));
-        }
-        pattern.check()?;
-        self.files.budget.take_texels([pattern.size; 2])?;
-        let made = Arc::new(make(pattern)?);
-        self.patterns.insert(name, Arc::clone(&made));
-        Ok(made)
-    }
-
-    fn mesh_file(&mut self, file: &Path, field: &str) -> Result<Mesh, SceneError> {
-        let Some(format) = Format::of(file) else {
+    fn mesh_file(&mut self, name: &Path, field: &str) -> Result<Mesh, SceneError> {
+        let file = self.beside(name);
+        let Some(format) = Format::of(&file) else {
             let message = format!(
                 "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
-                shown(file)
+                shown(&file)
             );
             return Err(self.value(field, message));
         };
         // The scene file's lights and cameras replace those of the mesh.
-        let loaded = format.load(file, self.lighting, &mut self.files)?;
+        let loaded = (format.load)(&file, self.lighting, &mut self.files)?;
         self.warnings.extend(loaded.warnings);
         Ok(loaded.mesh)
     }
 
-    /// A texture of a file, read once.
-    pub fn texture(&mut self, name: &Path) -> Result<Arc<Texture>, SceneError> {
-        let file = self.beside(name);
-        if let Some(known) = self.textures.get(&file) {
+    /// The texture of a key of a table: of a file, read once, or of a pattern, made once for each key.
+    pub fn map(
+        &mut self,
+        map: &MapRef,
+        key: &str,
+        table: &str,
+    ) -> Result<Arc<Texture>, SceneError> {
+        let name = match map {
+            Reference::Made(pattern) => format!("{key} = {pattern:?}"),
+            Reference::File(name) => name.display().to_string(),
+        };
+        if let Some(known) = self.textures.get(&name) {
             return Ok(Arc::clone(known));
         }
-        let bytes = self.files.read(&file, FileKind::Image)?;
-        let name = file.display().to_string();
-        let texture = Texture::decode_within(&name, &bytes, &mut self.files.budget);
-        let texture = Arc::new(texture.map_err(|message| SceneError::Mesh {
-            path: file.clone(),
-            line: None,
-            message,
-        })?);
-        self.files.record(&file, &bytes);
-        self.textures.insert(file, Arc::clone(&texture));
+        let texture = match map {
+            Reference::Made(pattern) => {
+                let taken = pattern.check();
+                let taken = taken.and_then(|()| self.files.budget.take_texels([pattern.size; 2]));
+                let made = taken.and_then(|()| pattern.texture(key));
+                made.map_err(|e| self.value(&format!("{table}.{key}"), e))?
+            }
+            Reference::File(name) => {
+                let file = self.beside(name);
+                let bytes = self.files.read(&file, FileKind::Image)?;
+                let name = file.display().to_string();
+                let texture = Texture::decode_within(&name, &bytes, &mut self.files.budget);
+                self.files.record(&file, &bytes);
+                texture.map_err(|message| SceneError::file(&file, None, message))?
+            }
+        };
+        let texture = Arc::new(texture);
+        self.textures.insert(name, Arc::clone(&texture));
         Ok(texture)
     }
 }

@@ -1,173 +1,221 @@
 //! Materials: a mesh's own, with the values and textures that the scene file sets.
 
 use super::{
-    displaced,
     loader::Loader,
-    raw::{AlphaMode, RawMaterial},
-    references::MapRef,
-    specular::Finish,
+    raw::{AlphaMode, MapRef, RawMaterial},
 };
 use crate::{
-    error::SceneError,
+    displacement::{self, Displacement, MAX_LEVEL},
+    error::{Fault, SceneError, check_color, within},
     material::{Lighting, Material},
-    pattern::Pattern,
+    mesh::Mesh,
+    specular_glossiness::{DIELECTRIC, Values, convert},
     texture::{Maps, Texture},
 };
-use peelnet_files::printable;
+use glam::Mat4;
 use std::sync::Arc;
 
 /// glTF's default.
 const ALPHA_CUTOFF: f32 = 0.5;
 
-impl Loader<'_> {
-    /// The lighting that a word names.
-    pub fn lighting_word(
-        &self,
-        word: Option<&str>,
-        field: &str,
-    ) -> Result<Option<Lighting>, SceneError> {
-        match word {
-            None => Ok(None),
-            Some("unlit") => Ok(Some(Lighting::Unlit)),
-            Some("phong") => Ok(Some(Lighting::Phong)),
-            Some("pbr") => Ok(Some(Lighting::Pbr)),
-            Some(other) => Err(self.value(
-                field,
-                format!(
-                    "\"{}\" is not one of \"unlit\", \"phong\", \"pbr\"",
-                    printable(other)
-                ),
-            )),
+/// Longest displacement, scene units, and farthest middle.
+const MOST_DISPLACED: f32 = 1e9;
+
+const ADD_MAP: &str = "belongs to a displacement_map: add that, or leave it out";
+const ADD_SCALE: &str = "needs displacement_scale, the length by which white rises over black";
+const ADD_MASK: &str = "belongs to alpha_mode = \"mask\": add that, or leave it out";
+const ONE_MODE: &str = "means the same as alpha_mode: give one of them";
+const ADD_PBR: &str = "belongs to lighting = \"pbr\": add that, or leave it out";
+const ONE_WORKFLOW: &str =
+    "belongs to another workflow than metallic and roughness: give one of them";
+const ONE_MAP: &str = "and specular_glossiness_map mean the same: give one of them";
+
+impl RawMaterial {
+    pub fn has_maps(&self) -> bool {
+        let maps = [
+            &self.color_map,
+            &self.normal_map,
+            &self.metallic_roughness_map,
+            &self.specular_color_map,
+            &self.glossiness_map,
+            &self.specular_glossiness_map,
+            &self.occlusion_map,
+            &self.emissive_map,
+            &self.displacement_map,
+        ];
+        maps.into_iter().any(Option::is_some)
+    }
+
+    /// The first key of the specular–glossiness workflow, whose `color` and `color_map` are diffuse.
+    fn specular_key(&self) -> Option<&'static str> {
+        let keys = [
+            (self.specular_color.is_some(), "specular_color"),
+            (self.glossiness.is_some(), "glossiness"),
+            (self.specular_color_map.is_some(), "specular_color_map"),
+            (self.glossiness_map.is_some(), "glossiness_map"),
+            (
+                self.specular_glossiness_map.is_some(),
+                "specular_glossiness_map",
+            ),
+        ];
+        keys.into_iter()
+            .find_map(|(given, key)| given.then_some(key))
+    }
+
+    /// Checks the values, and that keys which need or exclude each other do.
+    fn check(&self, lighting: Lighting) -> Result<(), Fault> {
+        let level = self.displacement_level.map(|level| level as f32);
+        for (key, number, low, high) in [
+            ("alpha", self.alpha, 0.0, 1.0),
+            ("metallic", self.metallic, 0.0, 1.0),
+            ("roughness", self.roughness, 0.0, 1.0),
+            ("glossiness", self.glossiness, 0.0, 1.0),
+            ("occlusion_strength", self.occlusion_strength, 0.0, 1.0),
+            ("alpha_cutoff", self.alpha_cutoff, 0.0, 1.0),
+            ("normal_scale", self.normal_scale, -100.0, 100.0),
+            ("specular", self.specular, 0.0, f32::MAX),
+            // pow(0, 0) is not defined in shaders.
+            ("shininess", self.shininess, 1.0, f32::MAX),
+            (
+                "displacement_scale",
+                self.displacement_scale,
+                -MOST_DISPLACED,
+                MOST_DISPLACED,
+            ),
+            (
+                "displacement_middle",
+                self.displacement_middle,
+                -MOST_DISPLACED,
+                MOST_DISPLACED,
+            ),
+            ("displacement_level", level, 0.0, MAX_LEVEL as f32),
+        ] {
+            number.map_or(Ok(()), |x| within(key, x, low, high))?;
+        }
+        for (key, color, high) in [
+            ("transmission_color", self.transmission_color, 1.0),
+            ("specular_color", self.specular_color, 1.0),
+            ("emission", self.emission, f32::MAX),
+        ] {
+            let mut color = color.into_iter().flatten();
+            color.try_for_each(|x| within(key, x, 0.0, high))?;
+        }
+        self.color.map_or(Ok(()), check_color)?;
+        let is_displaced = self.displacement_map.is_some();
+        let has_scale = self.displacement_scale.is_some();
+        let has_middle = self.displacement_middle.is_some();
+        let is_phong = lighting == Lighting::Phong;
+        let is_masked = self.alpha_mode == Some(AlphaMode::Mask);
+        let metal = self.metallic_roughness_map.is_some();
+        let is_metallic = self.metallic.is_some() || self.roughness.is_some() || metal;
+        let is_separate = self.specular_color_map.is_some() || self.glossiness_map.is_some();
+        let is_packed = self.specular_glossiness_map.is_some();
+        let specular = self.specular_key();
+        let is_specular = specular.is_some();
+        let specular = specular.unwrap_or_default();
+        let faults = [
+            (!is_displaced && has_scale, "displacement_scale", ADD_MAP),
+            (!is_displaced && has_middle, "displacement_middle", ADD_MAP),
+            (
+                !is_displaced && level.is_some(),
+                "displacement_level",
+                ADD_MAP,
+            ),
+            (is_displaced && !has_scale, "displacement_map", ADD_SCALE),
+            (
+                self.alpha_cutoff.is_some() && !is_masked,
+                "alpha_cutoff",
+                ADD_MASK,
+            ),
+            (
+                self.alpha_mode.is_some() && self.blend.is_some(),
+                "blend",
+                ONE_MODE,
+            ),
+            (is_specular && is_metallic, specular, ONE_WORKFLOW),
+            (is_separate && is_packed, specular, ONE_MAP),
+            (metal && is_phong, "metallic_roughness_map", ADD_PBR),
+            (is_specular && is_phong, specular, ADD_PBR),
+        ];
+        match faults.into_iter().find(|(is_wrong, ..)| *is_wrong) {
+            Some((_, key, message)) => Err((key, message.into())),
+            None => Ok(()),
         }
     }
 
-    /// A texture: a file, read once, or a generated pattern, read as its use asks. `field` is the table of the key.
-    pub fn map(
-        &mut self,
-        map: Option<&MapRef>,
-        of_pattern: fn(&Pattern) -> Result<Texture, String>,
-        key: &'static str,
-        field: &str,
-    ) -> Result<Option<Arc<Texture>>, SceneError> {
-        match map {
-            None => Ok(None),
-            Some(MapRef::Pattern(pattern)) => {
-                let texture = self.pattern(pattern, of_pattern, key);
-                texture
-                    .map(Some)
-                    .map_err(|e| self.value(&format!("{field}.{key}"), e))
+    /// The cutoff of a material's opacity, and whether it blends.
+    fn opacity(&self, base: &Material, maps: &Maps) -> (Option<f32>, bool) {
+        match self.alpha_mode {
+            None => {
+                // A colour map with transparent texels makes the surface transparent.
+                let own = self.color_map.as_ref().and(maps.color.as_ref());
+                let is_clear = own.is_some_and(|map| map.has_alpha());
+                let blend = self.blend.unwrap_or(base.blend || is_clear);
+                (base.alpha_cutoff, blend)
             }
-            Some(MapRef::File(name)) => self.texture(name).map(Some),
+            Some(AlphaMode::Opaque) => (Some(0.0), false),
+            Some(AlphaMode::Mask) => (Some(self.alpha_cutoff.unwrap_or(ALPHA_CUTOFF)), false),
+            Some(AlphaMode::Blend) => (None, true),
         }
     }
+}
 
-    /// The textures of a material: those of the scene file, else the mesh's.
-    fn maps(
-        &mut self,
-        base: &Maps,
-        raw: &RawMaterial,
-        read: bool,
-        field: &str,
-    ) -> Result<Maps, SceneError> {
-        let at = |key: &str| format!("{field}.material.{key}");
-        let number = |x: f32| x.is_finite() && x.abs() <= 100.0;
-        if let Some(x) = raw.normal_scale.filter(|x| !number(*x)) {
-            return Err(self.value(&at("normal_scale"), format!("{x} must lie in -100 … 100")));
-        }
-        let strength = raw.occlusion_strength.filter(|x| !(0.0..=1.0).contains(x));
-        if let Some(x) = strength {
-            return Err(self.value(&at("occlusion_strength"), format!("{x} must lie in 0 … 1")));
-        }
-        let displacement = match &raw.displacement_map {
-            Some(_) => self.displacement(raw, read, field)?,
-            None => base.displacement.clone(),
-        };
-        let mut map = |map: &Option<MapRef>, of_pattern, key, base: &Option<Arc<Texture>>| {
-            let own = map.as_ref().filter(|_| read);
-            let own = self.map(own, of_pattern, key, &format!("{field}.material"))?;
-            Ok::<_, SceneError>(own.or_else(|| base.clone()))
-        };
-        let metal = &raw.metallic_roughness_map;
-        Ok(Maps {
-            color: map(&raw.color_map, Pattern::color, "color_map", &base.color)?,
-            normal: map(
-                &raw.normal_map,
-                Pattern::normals,
-                "normal_map",
-                &base.normal,
-            )?,
-            metallic_roughness: map(
-                metal,
-                Pattern::metallic_roughness,
-                "metallic_roughness_map",
-                &base.metallic_roughness,
-            )?,
-            occlusion: map(
-                &raw.occlusion_map,
-                Pattern::occlusion,
-                "occlusion_map",
-                &base.occlusion,
-            )?,
-            emissive: map(
-                &raw.emissive_map,
-                Pattern::color,
-                "emissive_map",
-                &base.emissive,
-            )?,
-            displacement,
-            normal_scale: raw.normal_scale.unwrap_or(base.normal_scale),
-            occlusion_strength: raw.occlusion_strength.unwrap_or(base.occlusion_strength),
-            wrap: raw.wrap.map_or(base.wrap, |wrap| [wrap; 2]),
-            nearest: base.nearest,
-        })
-    }
-
+impl Loader<'_> {
     /// A mesh's material with the scene file's values. Textures stay the mesh's unless they are `read`.
     pub fn material(
         &mut self,
         base: &Material,
         raw: &RawMaterial,
         read: bool,
-        field: &str,
+        object: &str,
     ) -> Result<Material, SceneError> {
-        let mut maps = self.maps(&base.maps, raw, read, field)?;
-        let fail = |(key, message): (&str, String)| {
-            self.value(&format!("{field}.material.{key}"), message)
+        let table = format!("{object}.material");
+        let lighting = raw.lighting.unwrap_or(base.lighting);
+        raw.check(lighting)
+            .map_err(|(key, message)| self.value(&format!("{table}.{key}"), message))?;
+        let mut map = |map: &Option<MapRef>, key: &str, base: &Option<Arc<Texture>>| match map {
+            Some(map) if read => self.map(map, key, &table).map(Some),
+            _ => Ok::<_, SceneError>(base.clone()),
         };
-        check_numbers(raw).map_err(fail)?;
-        let (alpha_cutoff, blend) = opacity(base, raw, &maps).map_err(fail)?;
-        let lighting = self
-            .lighting_word(
-                raw.lighting.as_deref(),
-                &format!("{field}.material.lighting"),
-            )?
-            .unwrap_or(base.lighting);
-        if raw.metallic_roughness_map.is_some() && lighting == Lighting::Phong {
-            let message = "belongs to lighting = \"pbr\": add that, or leave it out";
-            return Err(fail(("metallic_roughness_map", message.into())));
-        }
-        let converted = self.specular_glossiness(base, raw, &mut maps, (lighting, read), field)?;
+        let own = &base.maps;
+        let displacement = match &raw.displacement_map {
+            None => own.displacement.clone(),
+            file => map(file, "displacement_map", &None)?.map(|map| Displacement {
+                map,
+                scale: raw.displacement_scale.unwrap_or_default(),
+                middle: raw.displacement_middle.unwrap_or_default(),
+                level: raw.displacement_level,
+            }),
+        };
+        let maps = Maps {
+            color: map(&raw.color_map, "color_map", &own.color)?,
+            normal: map(&raw.normal_map, "normal_map", &own.normal)?,
+            metallic_roughness: map(
+                &raw.metallic_roughness_map,
+                "metallic_roughness_map",
+                &own.metallic_roughness,
+            )?,
+            occlusion: map(&raw.occlusion_map, "occlusion_map", &own.occlusion)?,
+            emissive: map(&raw.emissive_map, "emissive_map", &own.emissive)?,
+            displacement,
+            normal_scale: raw.normal_scale.unwrap_or(own.normal_scale),
+            occlusion_strength: raw.occlusion_strength.unwrap_or(own.occlusion_strength),
+            wrap: raw.wrap.map_or(own.wrap, |wrap| [wrap; 2]),
+            nearest: own.nearest,
+        };
+        let (alpha_cutoff, blend) = raw.opacity(base, &maps);
         // A map multiplies the material's value, which is 1 where the file gives a map and no value.
         let by_map = |map: &Option<MapRef>, base: f32| if map.is_some() { 1.0 } else { base };
         let metal = &raw.metallic_roughness_map;
-        let Finish {
-            color,
-            metallic,
-            roughness,
-        } = converted.unwrap_or(Finish {
-            color: raw.color.unwrap_or(base.color),
-            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
-            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
-        });
-        Ok(Material {
+        let material = Material {
             name: base.name.clone(),
-            color,
+            color: raw.color.unwrap_or(base.color),
             alpha: raw.alpha.unwrap_or(base.alpha),
             lighting,
             specular: raw.specular.unwrap_or(base.specular),
             shininess: raw.shininess.unwrap_or(base.shininess),
-            metallic,
-            roughness,
+            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
+            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
             emission: raw
                 .emission
                 .unwrap_or(base.emission.map(|c| by_map(&raw.emissive_map, c))),
@@ -176,90 +224,104 @@ impl Loader<'_> {
             alpha_cutoff,
             double_sided: raw.double_sided.unwrap_or(base.double_sided),
             blend,
-        })
-    }
-}
-
-/// A key of a material, and what is wrong with its value.
-pub(super) type Fault = (&'static str, String);
-
-fn in_unit(key: &'static str, x: f32) -> Result<f32, Fault> {
-    if (0.0..=1.0).contains(&x) {
-        Ok(x)
-    } else {
-        Err((key, format!("{x} must lie in 0 … 1")))
-    }
-}
-
-/// Checks the colour of a surface or a light.
-pub(crate) fn check_color(color: [f32; 3]) -> Result<(), String> {
-    match color.into_iter().find(|x| !(0.0..=1.0).contains(x)) {
-        None => Ok(()),
-        Some(x) => Err(format!(
-            "{x} must lie in 0 … 1: divide numbers of 0 … 255 by 255; what is brighter than white has an emission or an intensity"
-        )),
-    }
-}
-
-/// Checks the ranges of a material's numbers.
-fn check_numbers(raw: &RawMaterial) -> Result<(), Fault> {
-    for x in raw.transmission_color.into_iter().flatten() {
-        in_unit("transmission_color", x)?;
-    }
-    for x in raw.specular_color.into_iter().flatten() {
-        in_unit("specular_color", x)?;
-    }
-    for (key, x) in [
-        ("alpha", raw.alpha),
-        ("metallic", raw.metallic),
-        ("roughness", raw.roughness),
-        ("glossiness", raw.glossiness),
-    ] {
-        x.map_or(Ok(0.0), |x| in_unit(key, x))?;
-    }
-    if let Some(color) = raw.color {
-        check_color(color).map_err(|e| ("color", e))?;
-    }
-    let colors = [("emission", raw.emission)];
-    let colors = colors.map(|(key, color)| (key, color.map_or(Vec::new(), Vec::from)));
-    let specular = ("specular", raw.specular.into_iter().collect());
-    for (key, numbers) in colors.into_iter().chain([specular]) {
-        if let Some(x) = numbers.iter().find(|x| !(x.is_finite() && **x >= 0.0)) {
-            return Err((key, format!("{x} must be finite and not negative")));
+        };
+        match raw.specular_key() {
+            // An unlit surface shows its colour alone.
+            Some(key) if lighting != Lighting::Unlit => {
+                self.converted(material, base.roughness, raw, read, [&table, key])
+            }
+            _ => Ok(material),
         }
     }
-    displaced::check(raw)?;
-    // pow(0, 0) is not defined in shaders.
-    let is_sharp = |x: &f32| x.is_finite() && *x >= 1.0;
-    match raw.shininess.filter(|x| !is_sharp(x)) {
-        Some(x) => Err(("shininess", format!("{x} must be finite and at least 1"))),
-        None => Ok(()),
+
+    /// A material of the specular–glossiness workflow, as one of the other.
+    fn converted(
+        &mut self,
+        mut material: Material,
+        base_roughness: f32,
+        raw: &RawMaterial,
+        read: bool,
+        [table, key]: [&str; 2],
+    ) -> Result<Material, SceneError> {
+        let packed = &raw.specular_glossiness_map;
+        let (colors, glossiness) = (&raw.specular_color_map, &raw.glossiness_map);
+        let mut all = [packed, colors, glossiness, &raw.color_map].into_iter();
+        if !read && all.any(Option::is_some) {
+            // Its values are in its maps.
+            (material.color, material.metallic, material.roughness) = ([1.0; 3], 1.0, 1.0);
+            return Ok(material);
+        }
+        let has = |map: &Option<MapRef>| map.is_some() || packed.is_some();
+        let by_map = |map, other: f32| if has(map) { 1.0 } else { other };
+        let values = Values {
+            diffuse: material.color,
+            specular: raw
+                .specular_color
+                .unwrap_or([by_map(colors, DIELECTRIC); 3]),
+            glossiness: raw
+                .glossiness
+                .unwrap_or(by_map(glossiness, 1.0 - base_roughness)),
+        };
+        let mut map = |map: &Option<MapRef>, key: &str| {
+            let read = map.as_ref().map(|map| self.map(map, key, table));
+            read.transpose()
+        };
+        // Specular colours with the glossiness in alpha.
+        let specular = match map(packed, "specular_glossiness_map")? {
+            Some(packed) => Ok(Some(packed)),
+            None => {
+                let colors = map(colors, "specular_color_map")?;
+                let glossiness = map(glossiness, "glossiness_map")?;
+                let both = [colors.as_ref(), glossiness.as_ref()];
+                let budget = &mut self.files.budget;
+                let packed = (both != [None, None]).then(|| {
+                    let texel = |s: [u8; 4], g: [u8; 4]| [s[0], s[1], s[2], g[0]];
+                    self.made.joined("gloss", both, budget, texel)
+                });
+                packed.transpose()
+            }
+        };
+        let converted = specular.and_then(|specular| {
+            let (made, budget) = (&mut self.made, &mut self.files.budget);
+            convert(values, &mut material, specular.as_ref(), made, budget)
+        });
+        converted.map_err(|e| self.value(&format!("{table}.{key}"), e))?;
+        Ok(material)
+    }
+
+    /// A mesh moved by its materials' displacements, which they have no more.
+    pub fn displaced(
+        &mut self,
+        mesh: Arc<Mesh>,
+        materials: &mut [Material],
+        field: &str,
+    ) -> Result<Arc<Mesh>, SceneError> {
+        displacement::displaced(mesh, materials, &mut self.files.budget)
+            .map_err(|e| self.value(field, e))
     }
 }
 
-/// The cutoff of a material's opacity, and whether it blends.
-fn opacity(base: &Material, raw: &RawMaterial, maps: &Maps) -> Result<(Option<f32>, bool), Fault> {
-    if raw.alpha_cutoff.is_some() && raw.alpha_mode != Some(AlphaMode::Mask) {
-        let message = "belongs to alpha_mode = \"mask\": add that, or leave it out";
-        return Err(("alpha_cutoff", message.into()));
+/// Makes a scene file's lengths those of the object, and interpolates them: `next` is the material of the next state, to which the time has gone
+/// a `share` of the way. Displacements of the mesh's own file are in its lengths.
+pub(super) fn displace_in_object_space(
+    materials: &mut [Material],
+    now: &RawMaterial,
+    next: &RawMaterial,
+    share: f32,
+    world_from_object: &Mat4,
+) {
+    if now.displacement_map.is_none() {
+        return;
     }
-    if raw.alpha_mode.is_some() && raw.blend.is_some() {
-        let message = "means the same as alpha_mode: give one of them";
-        return Err(("blend", message.into()));
+    let has_next = share > 0.0 && next.displacement_map.is_some();
+    let next = if has_next { next } else { now };
+    let mix = |a: Option<f32>, b: Option<f32>| {
+        let a = a.unwrap_or_default();
+        a + share * (b.unwrap_or_default() - a)
+    };
+    let unit = world_from_object.x_axis.truncate().length();
+    for displacement in materials.iter_mut().flat_map(|m| &mut m.maps.displacement) {
+        displacement.scale = mix(now.displacement_scale, next.displacement_scale) / unit;
+        displacement.middle = mix(now.displacement_middle, next.displacement_middle);
     }
-    let cutoff = raw.alpha_cutoff.unwrap_or(ALPHA_CUTOFF);
-    Ok(match raw.alpha_mode {
-        None => {
-            // A colour map with transparent texels makes the surface transparent.
-            let own = raw.color_map.as_ref().and(maps.color.as_ref());
-            let is_clear = own.is_some_and(|map| map.has_alpha());
-            (
-                base.alpha_cutoff,
-                raw.blend.unwrap_or(base.blend || is_clear),
-            )
-        }
-        Some(AlphaMode::Opaque) => (Some(0.0), false),
-        Some(AlphaMode::Mask) => (Some(in_unit("alpha_cutoff", cutoff)?), false),
-        Some(AlphaMode::Blend) => (None, true),
-    })
 }

@@ -24,31 +24,21 @@ pub(super) fn load(
     mut files: Files<'_>,
 ) -> Result<Scene, SceneError> {
     let Imported {
-        mut mesh,
+        mesh,
         mut lights,
         cameras,
         mut warnings,
-    } = format.load(path, Lighting::Phong, &mut files)?;
-    let fail = |message: String| SceneError::Mesh {
-        path: path.to_owned(),
-        line: None,
-        message,
-    };
+    } = (format.load)(path, Lighting::Phong, &mut files)?;
+    let fail = |message: String| SceneError::file(path, None, message);
     let materials = mesh.parts.iter().map(|p| p.material.clone());
     let mut materials: Vec<Material> = materials.collect();
-    if materials.iter().any(|m| m.maps.displacement.is_some()) {
-        mesh = displaced(&mesh, &materials, &mut files.budget).map_err(&fail)?;
-        for material in &mut materials {
-            material.maps.displacement = None;
-        }
-    }
+    let mesh = displaced(Arc::new(mesh), &mut materials, &mut files.budget).map_err(&fail)?;
     let bounds = Bounds::of(&mesh).map_err(&fail)?;
     check_lights(lights.len()).map_err(&fail)?;
-    let cameras = cameras.iter();
-    let mut views: Vec<Camera> = cameras.filter_map(|c| camera(c, bounds)).collect();
+    let cameras = cameras.iter().filter_map(|c| camera(c, bounds));
+    let mut views: Vec<Camera> = cameras.collect();
     if views.is_empty() {
-        let first = fitting_camera(bounds);
-        views.extend((0..VIEWS).map(|i| first.orbited(360.0 * i as f32 / VIEWS as f32)));
+        views = fitting_camera(bounds).orbit(VIEWS);
     }
     if lights.is_empty()
         && let Some(lighting) = one_lighting(&mut materials)
@@ -68,28 +58,23 @@ pub(super) fn load(
             shown(path)
         ));
     }
+    let first = views[0];
     let name = super::name_of(path);
     let object = Object {
         name: name.clone(),
         materials,
-        mesh: Arc::new(mesh),
+        mesh,
         world_from_object: Mat4::IDENTITY,
         layer: None,
     };
     Ok(Scene {
-        name,
         source: path.to_owned(),
         files: files.used().to_vec(),
         hash: files.hash(),
-        background: [1.0; 3],
-        transparency_scale: 1.0,
         views,
         lights,
-        objects: vec![object],
-        held_out: false,
         warnings,
-        timeline: Vec::new(),
-        time: 0.0,
+        ..Scene::generated(&name, "its file", [1.0; 3], first, vec![object])
     })
 }
 

@@ -1,8 +1,12 @@
 //! The scene file as TOML: tables and keys. An unknown key is an error, because a misspelt one would otherwise be silently ignored.
 
-use super::references::{MapRef, MeshRef};
-use crate::{scatter::Scatter, texture::Wrap};
+use crate::{
+    camera::Camera, material::Lighting, pattern::Pattern, scatter::Scatter, shapes::Shape,
+    texture::Wrap,
+};
 use serde::{Deserialize, Deserializer, de::Error as _};
+use std::path::PathBuf;
+use toml::Value;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -14,65 +18,32 @@ pub(super) struct RawScene {
     pub transparency_scale: f32,
     #[serde(default)]
     pub held_out: bool,
-    pub camera: Option<RawCamera>,
+    pub camera: Option<Camera>,
     #[serde(default)]
-    pub view: Vec<RawCamera>,
+    pub view: Vec<Camera>,
     pub orbit: Option<RawOrbit>,
     #[serde(default)]
     pub light: Vec<RawLight>,
     #[serde(default)]
     pub object: Vec<RawObject>,
-    #[serde(default)]
-    pub scatter: OneOrMany<Scatter>,
+    #[serde(default, deserialize_with = "one_or_many")]
+    pub scatter: Vec<Scatter>,
     #[serde(default)]
     pub timeline: Vec<RawState>,
 }
 
-/// `[scatter]` or `[[scatter]]`.
-#[derive(Debug)]
-pub(super) struct OneOrMany<T>(pub Vec<T>);
-
-impl<T> Default for OneOrMany<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
+const fn one() -> f32 {
+    1.0
 }
 
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMany<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        // Through a value, so that the inner error and not "no variant matched" is reported.
-        match toml::Value::deserialize(deserializer)? {
-            toml::Value::Array(list) => list
-                .into_iter()
-                .map(|v| T::deserialize(v).map_err(D::Error::custom))
-                .collect::<Result<_, _>>()
-                .map(Self),
-            one => T::deserialize(one)
-                .map_err(D::Error::custom)
-                .map(|one| Self(vec![one])),
-        }
-    }
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawCamera {
-    pub position: [f32; 3],
-    pub target: [f32; 3],
-    #[serde(default = "up")]
-    pub up: [f32; 3],
-    #[serde(default = "fov")]
-    pub fov_y: f32,
-    pub near: f32,
-    pub far: f32,
-}
-
-const fn up() -> [f32; 3] {
-    [0.0, 1.0, 0.0]
-}
-
-const fn fov() -> f32 {
-    45.0
+/// `[scatter]` or `[[scatter]]`: through a value, so that the inner error and not "no variant matched" is reported.
+fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Scatter>, D::Error> {
+    let all = match Value::deserialize(deserializer)? {
+        Value::Array(list) => list,
+        one => vec![one],
+    };
+    let read = |value| Scatter::deserialize(value).map_err(D::Error::custom);
+    all.into_iter().map(read).collect()
 }
 
 #[derive(Debug, Deserialize)]
@@ -96,11 +67,7 @@ const fn white() -> [f32; 3] {
     [1.0; 3]
 }
 
-const fn one() -> f32 {
-    1.0
-}
-
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawObject {
     pub name: Option<String>,
@@ -119,96 +86,56 @@ pub(super) struct RawObject {
     pub material: RawMaterial,
 }
 
-/// The values of a material that a scene file sets; the mesh's own material has the others.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawMaterial {
-    pub color: Option<[f32; 3]>,
-    pub alpha: Option<f32>,
-    pub lighting: Option<String>,
-    pub specular: Option<f32>,
-    pub shininess: Option<f32>,
-    pub metallic: Option<f32>,
-    pub roughness: Option<f32>,
-    pub specular_color: Option<[f32; 3]>,
-    pub glossiness: Option<f32>,
-    pub emission: Option<[f32; 3]>,
-    pub transmission_color: Option<[f32; 3]>,
-    pub color_map: Option<MapRef>,
-    pub normal_map: Option<MapRef>,
-    pub metallic_roughness_map: Option<MapRef>,
-    pub specular_color_map: Option<MapRef>,
-    pub glossiness_map: Option<MapRef>,
-    pub specular_glossiness_map: Option<MapRef>,
-    pub occlusion_map: Option<MapRef>,
-    pub emissive_map: Option<MapRef>,
-    pub displacement_map: Option<MapRef>,
-    pub displacement_scale: Option<f32>,
-    pub displacement_middle: Option<f32>,
-    pub displacement_level: Option<u32>,
-    pub normal_scale: Option<f32>,
-    pub occlusion_strength: Option<f32>,
-    pub wrap: Option<Wrap>,
-    pub alpha_mode: Option<AlphaMode>,
-    pub alpha_cutoff: Option<f32>,
-    pub double_sided: Option<bool>,
-    pub blend: Option<bool>,
+/// Declares the keys of a material, all of which may be left out.
+macro_rules! material_keys {
+    ($($key:ident: $type:ty,)*) => {
+        /// The values of a material that a scene file sets; the mesh's own material has the others.
+        #[derive(Clone, Debug, Default, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct RawMaterial {
+            $(pub $key: Option<$type>,)*
+        }
+
+        impl RawMaterial {
+            /// This material's values, and an earlier state's where this one has none.
+            pub fn after(&self, earlier: &Self) -> Self {
+                Self { $($key: self.$key.clone().or_else(|| earlier.$key.clone()),)* }
+            }
+        }
+    };
 }
 
-impl RawMaterial {
-    pub fn has_maps(&self) -> bool {
-        let maps = [
-            &self.color_map,
-            &self.normal_map,
-            &self.metallic_roughness_map,
-            &self.specular_color_map,
-            &self.glossiness_map,
-            &self.specular_glossiness_map,
-            &self.occlusion_map,
-            &self.emissive_map,
-            &self.displacement_map,
-        ];
-        maps.into_iter().any(Option::is_some)
-    }
-
-    /// This material's values, and an earlier state's where this one has none.
-    pub fn after(&self, earlier: &Self) -> Self {
-        macro_rules! later {
-            ($($field:ident),*) => { Self { $($field: self.$field.clone().or_else(|| earlier.$field.clone())),* } };
-        }
-        later!(
-            color,
-            alpha,
-            lighting,
-            specular,
-            shininess,
-            metallic,
-            roughness,
-            specular_color,
-            glossiness,
-            emission,
-            transmission_color,
-            color_map,
-            normal_map,
-            metallic_roughness_map,
-            specular_color_map,
-            glossiness_map,
-            specular_glossiness_map,
-            occlusion_map,
-            emissive_map,
-            displacement_map,
-            displacement_scale,
-            displacement_middle,
-            displacement_level,
-            normal_scale,
-            occlusion_strength,
-            wrap,
-            alpha_mode,
-            alpha_cutoff,
-            double_sided,
-            blend
-        )
-    }
+material_keys! {
+    color: [f32; 3],
+    alpha: f32,
+    lighting: Lighting,
+    specular: f32,
+    shininess: f32,
+    metallic: f32,
+    roughness: f32,
+    specular_color: [f32; 3],
+    glossiness: f32,
+    emission: [f32; 3],
+    transmission_color: [f32; 3],
+    color_map: MapRef,
+    normal_map: MapRef,
+    metallic_roughness_map: MapRef,
+    specular_color_map: MapRef,
+    glossiness_map: MapRef,
+    specular_glossiness_map: MapRef,
+    occlusion_map: MapRef,
+    emissive_map: MapRef,
+    displacement_map: MapRef,
+    displacement_scale: f32,
+    displacement_middle: f32,
+    displacement_level: u32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    wrap: Wrap,
+    alpha_mode: AlphaMode,
+    alpha_cutoff: f32,
+    double_sided: bool,
+    blend: bool,
 }
 
 /// What opacity means, as in glTF 2.0.
@@ -239,4 +166,46 @@ pub(super) struct RawChange {
     pub mesh: Option<MeshRef>,
     #[serde(default)]
     pub material: RawMaterial,
+}
+
+/// A path relative to the scene file, or a table that describes something generated.
+#[derive(Clone, Debug)]
+pub(crate) enum Reference<T> {
+    File(PathBuf),
+    Made(Box<T>),
+}
+
+/// A mesh: a path, or a table with `shape = …`.
+pub(crate) type MeshRef = Reference<Shape>;
+
+/// A texture: a path, or a table with `pattern = …`.
+pub(crate) type MapRef = Reference<Pattern>;
+
+/// What a table describes: the name of that, and the key that its table needs.
+pub(crate) trait Made {
+    const NAMES: [&str; 2];
+}
+
+impl Made for Shape {
+    const NAMES: [&str; 2] = ["mesh", "shape"];
+}
+
+impl Made for Pattern {
+    const NAMES: [&str; 2] = ["map", "pattern"];
+}
+
+impl<'de, T: Made + Deserialize<'de>> Deserialize<'de> for Reference<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let [what, key] = T::NAMES;
+        match Value::deserialize(deserializer)? {
+            Value::String(path) => Ok(Self::File(path.into())),
+            Value::Table(table) if table.contains_key(key) => T::deserialize(table)
+                .map(|made| Self::Made(Box::new(made)))
+                .map_err(|e| D::Error::custom(e.message())),
+            other => Err(D::Error::custom(format!(
+                "a {what} is a path or a table with {key} = …, not {}",
+                other.type_str()
+            ))),
+        }
+    }
 }

@@ -2,8 +2,7 @@
 
 use super::{
     loader::Loader,
-    raw::{RawMaterial, RawObject, RawScene},
-    references::MeshRef,
+    raw::{RawObject, RawState},
 };
 use crate::{error::SceneError, material::Material};
 use peelnet_files::printable;
@@ -12,100 +11,84 @@ use std::collections::HashMap;
 pub(super) const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";
 
 /// The objects of a scene at one time of its timeline.
+#[derive(Default)]
 pub(super) struct Snapshot {
     pub time: f32,
-    /// By name of the object: the changes that are in force, and those that are at the next state's time.
-    pub changes: HashMap<String, [Changed; 2]>,
+    /// The objects as they are, and as they are at the next state's time; no next ones without a timeline.
+    pub objects: Vec<RawObject>,
+    pub next: Vec<RawObject>,
     /// How far the time is on its way to the next state, 0 … 1.
     pub share: f32,
-}
-
-/// All changes of an object up to a state.
-#[derive(Clone, Default)]
-pub(super) struct Changed {
-    pub mesh: Option<MeshRef>,
-    pub material: RawMaterial,
 }
 
 impl Snapshot {
     /// Checks all states, and takes the snapshot at a time, the first state's if there is none.
     pub fn of(
         loader: &mut Loader<'_>,
-        raw: &RawScene,
+        mut objects: Vec<RawObject>,
+        states: &[RawState],
         time: Option<f32>,
     ) -> Result<Self, SceneError> {
-        let states = &raw.timeline;
         let (Some(first), Some(last)) = (states.first(), states.last()) else {
-            return match time {
-                None => Ok(Self {
-                    time: 0.0,
-                    changes: HashMap::new(),
-                    share: 0.0,
-                }),
-                Some(_) => Err(loader.value("timeline", NO_TIMELINE)),
-            };
+            if time.is_some() {
+                return Err(loader.value("timeline", NO_TIMELINE));
+            }
+            return Ok(Self {
+                objects,
+                ..Self::default()
+            });
         };
-        check(loader, raw)?;
-        let time = time.unwrap_or(first.time);
-        if !(first.time..=last.time).contains(&time) {
-            return Err(loader.value(
-                "timeline",
-                format!("runs from {} to {}, not to {time}", first.time, last.time),
-            ));
-        }
-        let shown = states.iter().rposition(|s| s.time <= time).unwrap_or(0);
-        let mut changes: HashMap<String, [Changed; 2]> = HashMap::new();
-        for (i, state) in states.iter().enumerate().take(shown + 2) {
-            for change in &state.object {
-                let both = changes.entry(change.name.clone()).or_default();
-                let next = both[1].clone();
-                let changed = Changed {
-                    mesh: change.mesh.clone().or(next.mesh),
-                    material: change.material.after(&next.material),
-                };
-                if i <= shown {
-                    both[0] = changed.clone();
-                }
-                both[1] = changed;
+        for (i, state) in states.iter().enumerate() {
+            let is_later = i == 0 || states[i - 1].time < state.time;
+            if !(state.time.is_finite() && is_later) {
+                let field = format!("timeline {}.time", i + 1);
+                let message = "must be finite and later than the state before it";
+                return Err(loader.value(&field, message));
             }
         }
+        let time = time.unwrap_or(first.time);
+        if !(first.time..=last.time).contains(&time) {
+            let message = format!("runs from {} to {}, not to {time}", first.time, last.time);
+            return Err(loader.value("timeline", message));
+        }
+        let shown = states.iter().rposition(|s| s.time <= time).unwrap_or(0);
         let next = states.get(shown + 1).map_or(f32::INFINITY, |s| s.time);
-        let share = (time - states[shown].time) / (next - states[shown].time);
-        Ok(Self {
+        let mut snapshot = Self {
             time,
-            changes,
-            share,
-        })
-    }
-}
-
-/// Checks all states, whichever is shown.
-fn check(loader: &mut Loader<'_>, raw: &RawScene) -> Result<(), SceneError> {
-    let states = &raw.timeline;
-    let mut objects: HashMap<&str, &RawObject> = HashMap::new();
-    for object in &raw.object {
-        if let Some(name) = &object.name {
-            objects.entry(name).or_insert(object);
+            share: (time - states[shown].time) / (next - states[shown].time),
+            ..Self::default()
+        };
+        let mut numbers: HashMap<String, Vec<usize>> = HashMap::new();
+        for (i, object) in objects.iter().enumerate() {
+            if let Some(name) = &object.name {
+                numbers.entry(name.clone()).or_default().push(i);
+            }
         }
-    }
-    for (i, state) in states.iter().enumerate() {
-        let field = format!("timeline {}", i + 1);
-        let is_later = i == 0 || states[i - 1].time < state.time;
-        if !(state.time.is_finite() && is_later) {
-            return Err(loader.value(
-                &format!("{field}.time"),
-                "must be finite and later than the state before it",
-            ));
+        let any = Material::default_with(loader.lighting);
+        for (i, state) in states.iter().enumerate() {
+            let field = format!("timeline {}", i + 1);
+            for change in &state.object {
+                let Some(numbers) = numbers.get(&change.name) else {
+                    let message = format!("no [[object]] is named '{}'", printable(&change.name));
+                    return Err(loader.value(&format!("{field}.object.name"), message));
+                };
+                for object in numbers {
+                    let object = &mut objects[*object];
+                    object.material = change.material.after(&object.material);
+                    if let Some(mesh) = &change.mesh {
+                        object.mesh = mesh.clone();
+                    }
+                    let field = format!("{field}, {}", change.name);
+                    loader.material(&any, &object.material, false, &field)?;
+                }
+            }
+            if i == shown {
+                snapshot.objects = objects.clone();
+            }
+            if i == shown + 1 {
+                snapshot.next = objects.clone();
+            }
         }
-        for change in &state.object {
-            let Some(object) = objects.get(change.name.as_str()) else {
-                let message = format!("no [[object]] is named '{}'", printable(&change.name));
-                return Err(loader.value(&format!("{field}.object.name"), message));
-            };
-            let any = Material::default_with(loader.lighting);
-            let material = change.material.after(&object.material);
-            loader.material(&any, &material, false, &format!("{field}, {}", change.name))?;
-        }
+        Ok(snapshot)
     }
-    Ok(())
 }

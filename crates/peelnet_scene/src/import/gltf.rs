@@ -84,11 +84,7 @@ pub(super) fn load(
     _: Lighting,
     files: &mut Files<'_>,
 ) -> Result<Imported, SceneError> {
-    let fail = |message: String| SceneError::Mesh {
-        path: path.to_owned(),
-        line: None,
-        message,
-    };
+    let fail = |message: String| SceneError::file(path, None, message);
     let bytes = files.read(path, FileKind::Mesh)?;
     files.record(path, &bytes);
     let (document, blob) = parse(&bytes).map_err(&fail)?;

@@ -1,6 +1,7 @@
 //! OBJ and MTL files as exporters write them, and as they should not.
 
 use super::*;
+use crate::import::area;
 
 fn load_counted(files: &[(&str, &[u8])]) -> (Result<Imported, SceneError>, usize) {
     crate::import::load_from_memory(files, Lighting::Unlit)
@@ -39,15 +40,7 @@ fn what_exporters_write() {
     let mtl = b"newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n";
     let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
     let m = &loaded.mesh;
-    let area: f32 = m
-        .triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|i| m.positions[i as usize]);
-            (b - a).cross(c - a).z / 2.0
-        })
-        .sum();
-    assert_eq!((m.triangles.len(), area), (4, 3.0));
+    assert_eq!((m.triangles.len(), area(m)), (4, 3.0));
     assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
     assert_eq!(loaded.warnings.len(), 1);
     assert!(
@@ -57,48 +50,71 @@ fn what_exporters_write() {
     );
 }
 
+/// Lines of a library, where ` ; ` ends one, and the error; the same of what follows the vertices of a square.
+const BAD_MATERIALS: &str = "
+newmtl m ; Kd 1 0 => a.mtl:2: 'Kd 1 0' needs 1 or 3 numbers
+newmtl m ; d x => a.mtl:2: 'd x' holds no finite number
+newmtl m ; d nan => a.mtl:2: 'd nan' holds no finite number
+newmtl m ;  ; Tr 1.5 => a.mtl:3: 'Tr 1.5' must lie in 0 … 1
+newmtl m ; Tr x => a.mtl:2: 'Tr x' holds no finite number
+";
+const BAD_STATEMENTS: &str = "
+v nan 0 0 ; f 1 2 3 => a.obj:5: 'v nan 0 0' holds no finite numbers
+v 1 0 0 1e-42 ; f 1 2 3 => a.obj:5: 'v 1 0 0 1e-42' holds no finite numbers
+v 0 zero 0 ; f 1 2 3 => a.obj:5: 'v 0 zero 0' holds no finite numbers
+vn 0 nan 0 ; f 1//1 2//1 3//1 => a.obj:5: 'vn 0 nan 0' holds no finite numbers
+v 0 0 ; f 1 2 3 => a.obj:5: 'v 0 0' is a vertex of 2 numbers
+v 0 0 0 1 0 0 ; f 1 2 3 => a.obj:5: 'v 0 0 0 1 0 0' is among vertices some of which have a colour
+vt 1 ; f 1 2 3 => a.obj:5: 'vt 1' holds too few numbers
+f 1 2 5 => a.obj:5: 'f 1 2 5' names a vertex that is not there; repair the face
+f 0 1 2 => a.obj:5: 'f 0 1 2' names a vertex
+f -1 -2 -5 => a.obj:5: 'f -1 -2 -5' names a vertex
+f 1//1 1//1 1//6148914691236517206 ; vn 0 0 1 => a.obj:5: 'f
+f 1 2 3/1/1/1 => a.obj:5: 'f
+f 1 2 => a.obj:5: 'f 1 2' is a face of fewer than 3 vertices
+g empty => a.obj: holds no faces
+f 1 1 1 => a.obj: holds no triangle with an area
+";
+
+/// Each bad file gives one error that names the file, the line where that is known, and a fix.
 #[test]
-fn bad_materials_are_named() {
-    let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
-    for (mtl, expected) in [
-        (
-            "newmtl m\nKd 1 0\n",
-            "a.mtl:2: 'Kd 1 0' needs 1 or 3 numbers",
-        ),
-        ("newmtl m\nd x\n", "a.mtl:2: 'd x' cannot be read"),
-        (
-            "newmtl m\nd nan\n",
-            "a.mtl: material 'm': a number is not finite",
-        ),
-        (
-            "newmtl m\n\nTr 1.5\n",
-            "a.mtl: material 'm': d and Tr must lie in 0 … 1",
-        ),
-        (
-            "newmtl m\nTr x\n",
-            "a.mtl: material 'm': Tr is not a number",
-        ),
-    ] {
-        let e = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())]).expect_err(mtl);
-        assert!(e.to_string().contains(expected), "{e}");
+fn bad_files() {
+    for row in BAD_MATERIALS
+        .trim()
+        .lines()
+        .chain(BAD_STATEMENTS.trim().lines())
+    {
+        let (text, expected) = row.split_once(" => ").expect("two columns");
+        let text = text.replace(" ; ", "\n");
+        let (obj, mtl) = if expected.starts_with("a.mtl") {
+            (format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n"), text)
+        } else {
+            (format!("{QUAD}{text}\n"), String::new())
+        };
+        let files = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
+        let e = load(&files).expect_err(row).to_string();
+        assert!(e.starts_with(expected), "{row}: {e}");
+        let has_fix = ["repair", "xport", "?"].iter().any(|fix| e.contains(fix));
+        assert!(has_fix, "no fix: {e}");
     }
+    let utf16 = [b'v', 0, b'\n', 0, 0xff, 0xfe];
+    let e = load(&[("a.obj", &utf16)]).expect_err("UTF-16").to_string();
+    assert!(e.contains("a.obj:2: is not UTF-8"), "{e}");
 }
 
-/// Vertices that a UV seam splits keep one normal: the surface is smooth there.
 #[test]
 fn physically_based_values_and_emission() {
     let mtl = b"newmtl m\nKd 1 0 0\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
     let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
     let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
     let m = &loaded.mesh.parts[0].material;
-    assert_eq!(
-        (m.roughness, m.metallic, m.emission),
-        (0.3, 0.8, [2.0, 0.0, 1.0])
-    );
-    // Unlit scenes stay unlit; these tests load so, or with Phong.
-    assert_ne!(m.lighting, Lighting::Phong);
+    let values = (m.roughness, m.metallic, m.emission);
+    assert_eq!(values, (0.3, 0.8, [2.0, 0.0, 1.0]));
+    // Unlit scenes stay unlit.
+    assert_eq!(m.lighting, Lighting::Unlit);
 }
 
+/// Vertices that a UV seam splits keep one normal: the surface is smooth there.
 #[test]
 fn seams_do_not_split_normals() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 4/2 2/2\n";
@@ -156,8 +172,9 @@ fn images_of_materials() {
     assert_eq!((loaded.warnings.len(), used), (2, 4), "{warnings}");
 }
 
+/// A library that is missing is a warning; one that a file names a thousand times is read once.
 #[test]
-fn a_missing_mtl_is_survived() {
+fn libraries_are_read_once() {
     let obj = format!("mtllib gone.mtl\n{QUAD}usemtl glass\nf 1 2 3 4\n");
     let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
     assert_eq!(loaded.warnings.len(), 1);
@@ -167,11 +184,6 @@ fn a_missing_mtl_is_survived() {
         loaded.warnings
     );
     assert_eq!(loaded.mesh.parts[0].material.color, [0.8; 3]);
-}
-
-/// A library that a file names a thousand times is read once, and its materials are there once.
-#[test]
-fn a_library_is_read_once() {
     let obj = format!("{}{QUAD}usemtl m\nf 1 2 3\n", "mtllib a.mtl\n".repeat(1000));
     let mtl = b"newmtl m\nKd 0.25 0.5 1\n";
     let (loaded, used) = load_counted(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]);
@@ -188,56 +200,6 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
     for n in &loaded.mesh.normals {
         assert!((n.length() - 1.0).abs() < 1e-6);
     }
-}
-
-/// Each bad file gives one error that names the file, the line where that is known, and a fix.
-#[test]
-fn bad_files() {
-    let quad = |rest: &str| format!("{QUAD}{rest}").into_bytes();
-    let cases: [(Vec<u8>, &str); 12] = [
-        (
-            b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
-            "a.obj:2: 'v nan 0 0'",
-        ),
-        (
-            quad("vn 0 nan 0\nf 1//1 2//1 3//1\n"),
-            "a.obj:5: 'vn 0 nan 0'",
-        ),
-        (
-            b"v 0 0 0\nv 1 0 0 1e-42\nv 0 1 0\nf 1 2 3\n".to_vec(),
-            "not finite",
-        ),
-        (b"v 0 zero 0\nf 1 1 1\n".to_vec(), "a.obj:1: 'v 0 zero 0'"),
-        (
-            b"v 0 0\nf 1 1 1\n".to_vec(),
-            "a.obj:1: a vertex of 2 numbers",
-        ),
-        (
-            b"v 0 0 0 1 0 0\nv 0 0 0\n".to_vec(),
-            "a.obj:2: a vertex with a colour",
-        ),
-        (quad("f 1 2 5\n"), "a.obj:5"),
-        (quad("f 0 1 2\n"), "a.obj:5"),
-        (quad("f -1 -2 -5\n"), "a.obj:5"),
-        // An index whose triple overflows 64 bits.
-        (
-            quad("f 1//1 1//1 1//6148914691236517206\n"),
-            "a.obj:5: an index is too large",
-        ),
-        (Vec::new(), "a.obj: holds no faces"),
-        (quad("f 1 2"), "a.obj:5: a face has fewer than 3 vertices"),
-    ];
-    for (bytes, expected) in cases {
-        let e = load(&[("a.obj", &bytes)]).expect_err(expected).to_string();
-        assert!(
-            e.starts_with("a.obj") && e.contains(expected),
-            "{expected}: {e}"
-        );
-        assert!(e.contains("repair") || e.contains('?'), "no fix: {e}");
-    }
-    let utf16 = [b'v', 0, b'\n', 0, 0xff, 0xfe];
-    let e = load(&[("a.obj", &utf16)]).expect_err("UTF-16").to_string();
-    assert!(e.contains("a.obj:2: is not UTF-8"), "{e}");
 }
 
 /// One number is grey, a halo's factor is an opacity, an exponent of 0 is no highlight, colours end at 1; marks are no statements.

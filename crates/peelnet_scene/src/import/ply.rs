@@ -233,10 +233,10 @@ impl Faces<'_> {
         }
         if has(&["nx"]) {
             let normals = vertices.iter().map(|v| v.normal.into());
-            self.surface.normals = Some(normals.collect());
+            self.surface.normals = normals.collect();
         }
         if has(&RED) {
-            self.surface.colors = Some(vertices.iter().map(|v| v.color).collect());
+            self.surface.colors = vertices.iter().map(|v| v.color).collect();
         }
         if has(&U) {
             // v runs up in PLY, down here.
@@ -255,10 +255,12 @@ impl Faces<'_> {
             );
             return Err(Fault::new(message));
         }
-        if has("texcoord") || !self.vertex_uvs.is_empty() {
+        let has_uvs =
+            has("texcoord") || !self.vertex_uvs.is_empty() || !self.surface.uvs.is_empty();
+        if has_uvs {
             // Triangles of an element before this one have none.
-            let zeros = vec![[Vec2::ZERO; 3]; self.surface.triangles.len()];
-            self.surface.uvs.get_or_insert(zeros);
+            let before = self.surface.triangles.len();
+            self.surface.uvs.resize(before, [Vec2::ZERO; 3]);
         }
         let is_strip = element.name == "tristrips";
         for (i, face) in faces.iter().enumerate() {
@@ -272,8 +274,9 @@ impl Faces<'_> {
                     uv.copied().unwrap_or_default()
                 }
             };
-            if let Some(uvs) = &mut self.surface.uvs {
-                uvs.extend(corners.iter().map(|t| t.map(uv)));
+            if has_uvs {
+                let uvs = corners.iter().map(|t| t.map(uv));
+                self.surface.uvs.extend(uvs);
             }
             let triangles = corners.iter().map(|t| t.map(|k| indices[k]));
             self.surface.triangles.extend(triangles);

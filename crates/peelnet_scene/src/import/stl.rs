@@ -8,7 +8,11 @@ use super::{
     surface::{self, Fault, Surface, fault_of},
 };
 use crate::{
-    budget::Budget, error::SceneError, files::Files, material::Lighting, mesh::key_of,
+    budget::Budget,
+    error::SceneError,
+    files::Files,
+    material::Lighting,
+    mesh::{area_of, key_of},
     warnings::Warnings,
 };
 use glam::Vec3;
@@ -165,7 +169,11 @@ impl Soup {
             triangles: self.triangles,
             ..Surface::default()
         };
-        surface.drop_degenerate(warnings);
+        let lost = surface.drop_degenerate() as u64;
+        if lost > 0 {
+            let count = counted(lost, "triangle");
+            warnings.add(format!("{count} without area left out"));
+        }
         let surface = creased(&surface);
         let vertices = surface.positions.len() as u64;
         budget.take_mesh(0, vertices).map_err(Fault::new)?;
@@ -182,11 +190,8 @@ const MOST_AROUND: usize = 64;
 /// The surface with a normal for every vertex: of the triangles around it that lean by less than 30 degrees against each other. A vertex on a
 /// sharp edge is split, as parts of machines have such edges; files of this format do not say where.
 fn creased(surface: &Surface) -> Surface {
-    let areas = surface.triangles.iter().map(|t| {
-        let [a, b, c] = t.map(|i| surface.positions[i as usize]);
-        (b - a).cross(c - a)
-    });
-    let areas: Vec<Vec3> = areas.collect();
+    let triangles = surface.triangles.iter();
+    let areas: Vec<Vec3> = triangles.map(|t| area_of(&surface.positions, *t)).collect();
     let units: Vec<Vec3> = areas.iter().map(|a| a.normalize_or_zero()).collect();
     let (starts, adjacent) = adjacent(surface);
     let mut positions = Vec::with_capacity(surface.positions.len());
@@ -223,7 +228,7 @@ fn creased(surface: &Surface) -> Surface {
     }
     Surface {
         positions,
-        normals: Some(normals),
+        normals,
         triangles,
         ..Surface::default()
     }

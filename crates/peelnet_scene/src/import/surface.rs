@@ -1,4 +1,4 @@
-//! Surfaces of PLY and STL files, as meshes.
+//! Surfaces of OBJ, PLY and STL files, as meshes.
 
 use super::Imported;
 use crate::{
@@ -6,17 +6,17 @@ use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
-    mesh::{Mesh, Part, smooth_normals_by_position},
+    mesh::{Mesh, NO_UVS, Part, area_of, key_of, normals_by_position},
     warnings::Warnings,
 };
 use glam::{Vec2, Vec3};
-use peelnet_files::counted;
-use std::path::Path;
+use peelnet_files::{counted, printable};
+use std::{collections::HashMap, path::Path};
 
 /// Positions beyond this overflow when they are squared.
 const FARTHEST: f32 = 1e15;
 
-/// Reads a file, whose triangles `surface` finds.
+/// Reads a file without materials, whose triangles `surface` finds.
 pub(super) fn load(
     path: &Path,
     lighting: Lighting,
@@ -26,15 +26,13 @@ pub(super) fn load(
     let bytes = files.read(path, FileKind::Mesh)?;
     files.record(path, &bytes);
     let mut warnings = Warnings::default();
-    let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|surface| {
+    let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|mut surface| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        surface.into_mesh(&name, lighting, &mut warnings)
+        let material = surface.material(lighting, &mut warnings);
+        let part = (name.into_owned(), material, surface);
+        assemble(vec![part], "", &mut warnings).map_err(Fault::new)
     });
-    let mesh = mesh.map_err(|Fault { line, message }| SceneError::Mesh {
-        path: path.to_owned(),
-        line,
-        message,
-    })?;
+    let mesh = mesh.map_err(|Fault { line, message }| SceneError::file(path, line, message))?;
     let texts = warnings.texts().into_iter();
     let texts = texts.map(|text| format!("{}: {text}", shown(path)));
     Ok(Imported::mesh(mesh, texts.collect()))
@@ -64,16 +62,16 @@ impl Fault {
     }
 }
 
-/// The triangles of a file, before they are checked.
+/// Triangles of a file, before they are checked. What a file does not have is empty.
 #[derive(Default)]
 pub(super) struct Surface {
     pub positions: Vec<Vec3>,
     /// One for each position.
-    pub normals: Option<Vec<Vec3>>,
+    pub normals: Vec<Vec3>,
     /// One for each position: linear RGB and alpha.
-    pub colors: Option<Vec<[f32; 4]>>,
+    pub colors: Vec<[f32; 4]>,
     /// One for each vertex of each triangle.
-    pub uvs: Option<Vec<[Vec2; 3]>>,
+    pub uvs: Vec<[Vec2; 3]>,
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -87,96 +85,109 @@ pub(super) fn fault_of(position: Vec3) -> Option<String> {
 }
 
 impl Surface {
-    /// A mesh of one part: without triangles that have no area, with normals where the file has none, and with an opaque light grey
-    /// material, which is white under vertex colours.
-    pub fn into_mesh(
-        mut self,
-        name: &str,
-        lighting: Lighting,
-        warnings: &mut Warnings,
-    ) -> Result<Mesh, Fault> {
-        self.drop_degenerate(warnings);
-        if self.triangles.is_empty() {
-            let message = "holds no triangle with an area; export the mesh again";
-            return Err(Fault::new(message));
-        }
-        let normals = self.normals(warnings);
+    /// An opaque light grey material, which is white under vertex colours.
+    fn material(&mut self, lighting: Lighting, warnings: &mut Warnings) -> Material {
         let mut material = Material::default_with(lighting);
-        if let Some(colors) = &mut self.colors {
-            material.color = [1.0; 3];
-            if colors.iter().all(|c| c[3] == 0.0) {
-                warnings.add("every vertex has an opacity of 0, which is taken as 1");
-                for color in colors.iter_mut() {
-                    color[3] = 1.0;
-                }
-            }
-            material.blend = colors.iter().any(|c| c[3] < 1.0);
+        if self.colors.is_empty() {
+            return material;
         }
-        let uvs = self.uvs.map(|mut uvs| {
-            for uv in uvs.iter_mut().flatten().filter(|uv| !uv.is_finite()) {
-                *uv = Vec2::ZERO;
-            }
-            uvs
-        });
-        Ok(Mesh {
-            positions: self.positions,
-            normals,
-            colors: self.colors.unwrap_or_default(),
-            uvs: uvs.unwrap_or_default(),
-            parts: vec![Part {
-                name: name.to_owned(),
-                triangles: 0..self.triangles.len(),
-                material,
-            }],
-            triangles: self.triangles,
-        })
+        material.color = [1.0; 3];
+        if self.colors.iter().all(|c| c[3] == 0.0) {
+            warnings.add("every vertex has an opacity of 0, which is taken as 1");
+            self.colors.iter_mut().for_each(|c| c[3] = 1.0);
+        }
+        material.blend = self.colors.iter().any(|c| c[3] < 1.0);
+        material
     }
 
-    /// Drops triangles without area: exactly zero, as a sliver is a triangle.
-    pub fn drop_degenerate(&mut self, warnings: &mut Warnings) {
+    /// Drops triangles without area: exactly zero, as a sliver is a triangle. Returns how many.
+    pub fn drop_degenerate(&mut self) -> usize {
         let all = self.triangles.len();
-        let has_area = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| self.positions[i as usize]);
-            (b - a).cross(c - a) != Vec3::ZERO
-        };
+        let has_area = |t: &[u32; 3]| area_of(&self.positions, *t) != Vec3::ZERO;
         if self.triangles.iter().all(has_area) {
-            return;
+            return 0;
         }
-        if let Some(uvs) = &mut self.uvs {
-            let mut triangles = self.triangles.iter();
-            uvs.retain(|_| triangles.next().is_some_and(has_area));
-        }
+        let mut triangles = self.triangles.iter();
+        self.uvs.retain(|_| triangles.next().is_some_and(has_area));
         let triangles = std::mem::take(&mut self.triangles);
         self.triangles = triangles.into_iter().filter(has_area).collect();
-        let lost = (all - self.triangles.len()) as u64;
-        warnings.add(format!(
-            "{} without area left out",
-            counted(lost, "triangle")
-        ));
+        all - self.triangles.len()
     }
+}
 
-    /// The file's normals, and computed ones where it has none or zeros.
-    fn normals(&mut self, warnings: &mut Warnings) -> Vec<Vec3> {
-        let smooth = || smooth_normals_by_position(&self.positions, &self.triangles);
-        let Some(mut normals) = self.normals.take() else {
-            return smooth();
-        };
-        let mut lost = 0;
-        for normal in &mut normals {
+/// The mesh of all parts: without triangles that have no area, and with computed normals where a part has none or zeros. Parts split
+/// vertices, but not the surface: computed normals are those of all triangles around a position.
+pub(super) fn assemble(
+    mut parts: Vec<(String, Material, Surface)>,
+    file: &str,
+    warnings: &mut Warnings,
+) -> Result<Mesh, String> {
+    let [mut lost_triangles, mut lost_normals, mut lost_uvs] = [0; 3];
+    for (_, _, surface) in &mut parts {
+        lost_triangles += surface.drop_degenerate();
+        for normal in &mut surface.normals {
             *normal = normal.try_normalize().unwrap_or_default();
-            lost += u64::from(*normal == Vec3::ZERO);
+            lost_normals += usize::from(*normal == Vec3::ZERO);
         }
-        if lost > 0 {
-            for (normal, smooth) in normals.iter_mut().zip(smooth()) {
-                if *normal == Vec3::ZERO {
-                    *normal = smooth;
-                }
-            }
-            warnings.add(format!(
-                "{} without a direction computed from the triangles",
-                counted(lost, "normal")
-            ));
+        for uv in surface
+            .uvs
+            .iter_mut()
+            .flatten()
+            .filter(|uv| !uv.is_finite())
+        {
+            *uv = Vec2::ZERO;
+            lost_uvs += 1;
         }
-        normals
     }
+    parts.retain(|(_, _, surface)| !surface.triangles.is_empty());
+    let is_incomplete = |(_, _, s): &(_, _, Surface)| s.normals.len() < s.positions.len();
+    let mut smooth = HashMap::new();
+    if lost_normals > 0 || parts.iter().any(is_incomplete) {
+        let surfaces = parts.iter().map(|(_, _, s)| (&*s.positions, &*s.triangles));
+        smooth = normals_by_position(surfaces);
+    }
+    let mut mesh = Mesh::empty();
+    for (name, material, surface) in parts {
+        let mut normals = surface.normals;
+        normals.resize(surface.positions.len(), Vec3::ZERO);
+        for (normal, position) in normals.iter_mut().zip(&surface.positions) {
+            if *normal == Vec3::ZERO {
+                *normal = smooth.get(&key_of(*position)).copied().unwrap_or(Vec3::Z);
+            }
+        }
+        let shown = format!("'{}'", printable(&name));
+        let lost_maps = mesh.append(Mesh {
+            positions: surface.positions,
+            normals,
+            colors: surface.colors,
+            uvs: surface.uvs,
+            parts: vec![Part {
+                name,
+                triangles: 0..surface.triangles.len(),
+                material,
+            }],
+            triangles: surface.triangles,
+        });
+        if lost_maps {
+            warnings.about(file, &shown, NO_UVS);
+        }
+    }
+    for (count, what, why) in [
+        (lost_uvs, "UV", "that is not finite is taken as 0"),
+        (lost_triangles, "triangle", "without area left out"),
+        (
+            lost_normals,
+            "normal",
+            "without a direction computed from the triangles",
+        ),
+    ] {
+        if count > 0 {
+            let count = counted(count as u64, what);
+            warnings.add(format!("{file}{count} {why}"));
+        }
+    }
+    if mesh.triangles.is_empty() {
+        return Err("holds no triangle with an area; export the mesh again".into());
+    }
+    Ok(mesh)
 }

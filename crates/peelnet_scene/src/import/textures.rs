@@ -1,11 +1,12 @@
 //! Textures that MTL files name.
 
+use super::mtl::Entry;
 use crate::{
     displacement::Displacement,
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
-    texture::{Maps, Texture, Wrap},
+    texture::{Made, Maps, Texture, Wrap},
     warnings::Warnings,
 };
 use peelnet_files::printable;
@@ -43,23 +44,6 @@ pub(super) fn drawn_as(key: &str) -> Option<Use> {
     })
 }
 
-/// The texture statements of a material, by key, without the key: some `tobj` knows, the others it leaves as text.
-fn statements(m: &tobj::Material) -> BTreeMap<&str, &str> {
-    let known = [
-        ("map_Kd", &m.diffuse_texture),
-        ("map_d", &m.dissolve_texture),
-        ("map_Bump", &m.normal_texture),
-    ];
-    let known = known
-        .into_iter()
-        .filter_map(|(key, text)| Some((key, text.as_deref()?)));
-    let others = m
-        .unknown_param
-        .iter()
-        .map(|(k, v)| (k.as_str(), v.as_str()));
-    known.chain(others).collect()
-}
-
 /// The arguments of a statement such as `map_Bump -bm 0.5 -clamp on bricks.png`.
 #[derive(Clone, Debug)]
 struct Statement {
@@ -72,43 +56,30 @@ struct Statement {
 }
 
 /// The textures of all materials, each file read once and each pair of them joined once.
-pub(super) struct Textures<'a> {
-    read: HashMap<PathBuf, Option<Arc<Texture>>>,
-    /// By what they are for and the names of what they are made of.
-    made: HashMap<String, Option<Arc<Texture>>>,
+pub(super) struct Textures<'a, 'f> {
+    files: &'a mut Files<'f>,
     warnings: &'a mut Warnings,
+    read: HashMap<PathBuf, Option<Arc<Texture>>>,
+    made: Made,
 }
 
-impl<'a> Textures<'a> {
-    pub fn new(warnings: &'a mut Warnings) -> Self {
+impl<'a, 'f> Textures<'a, 'f> {
+    pub fn new(files: &'a mut Files<'f>, warnings: &'a mut Warnings) -> Self {
         Self {
-            read: HashMap::new(),
-            made: HashMap::new(),
+            files,
             warnings,
+            read: HashMap::new(),
+            made: Made::default(),
         }
     }
 
-    /// A texture made of others, which are named in its key; `None`, with a warning, where the scene has no room for it.
-    fn made(
-        &mut self,
-        files: &mut Files<'_>,
-        key: String,
-        size: [u32; 2],
-        make: impl FnOnce() -> Texture,
-    ) -> Option<Arc<Texture>> {
-        if let Some(known) = self.made.get(&key) {
-            return known.clone();
-        }
-        let made = match files.budget.take_texels(size) {
-            Ok(()) => Some(Arc::new(make())),
-            Err(e) => {
-                let after = format!(" is not drawn: {e}");
-                self.warnings.about("texture ", &printable(&key), after);
-                None
-            }
-        };
-        self.made.insert(key, made.clone());
-        made
+    /// A texture that was made; `None`, with a warning, where the scene has no room for it.
+    fn drawn(&mut self, made: Result<Arc<Texture>, String>, what: &str) -> Option<Arc<Texture>> {
+        made.map_err(|e| {
+            let after = format!(" is not drawn: {e}");
+            self.warnings.about("texture ", &printable(what), after);
+        })
+        .ok()
     }
 
     /// Reads a statement's arguments; `None`, with a warning, where it names no file.
@@ -158,10 +129,11 @@ impl<'a> Textures<'a> {
     }
 
     /// A texture; `None`, and a warning, where it cannot be drawn.
-    fn texture(&mut self, files: &mut Files<'_>, file: &Path) -> Option<Arc<Texture>> {
+    fn texture(&mut self, file: &Path) -> Option<Arc<Texture>> {
         if let Some(known) = self.read.get(file) {
             return known.clone();
         }
+        let files = &mut *self.files;
         let read = match files.read(file, FileKind::Image) {
             Err(SceneError::Read { source, .. }) => Err(format!("cannot be read: {source}")),
             Err(e) => Err(e.to_string()),
@@ -183,24 +155,21 @@ impl<'a> Textures<'a> {
         texture
     }
 
-    /// A material with its textures. `library` is the MTL file that `m` comes from.
-    pub fn put_on(
-        &mut self,
-        files: &mut Files<'_>,
-        library: &Path,
-        m: &tobj::Material,
-        mut material: Material,
-    ) -> Material {
+    /// A material with its textures.
+    pub fn put_on(&mut self, entry: &Entry) -> Material {
+        let mut material = entry.material.clone();
         let mut uses: BTreeMap<Use, Statement> = BTreeMap::new();
-        for (key, text) in statements(m) {
-            let Some(kind) = drawn_as(key) else { continue };
-            if let Some(statement) = self.statement(library, key, text) {
+        for statement in &entry.statements {
+            let (key, rest) = (&statement.key, &statement.rest);
+            if let Some(kind) = drawn_as(key)
+                && let Some(statement) = self.statement(&entry.path, key, rest)
+            {
                 uses.insert(kind, statement);
             }
         }
         let mut found: BTreeMap<Use, Arc<Texture>> = BTreeMap::new();
         for (kind, statement) in &uses {
-            if let Some(texture) = self.texture(files, &statement.file) {
+            if let Some(texture) = self.texture(&statement.file) {
                 found.insert(*kind, texture);
             }
         }
@@ -208,7 +177,7 @@ impl<'a> Textures<'a> {
         if uses.values().any(|s| s.clamp) {
             maps.wrap = [Wrap::Clamp; 2];
         }
-        maps.color = self.color_map(files, found.get(&Use::Color), found.get(&Use::Alpha));
+        maps.color = self.color_map(found.get(&Use::Color), found.get(&Use::Alpha));
         if found.contains_key(&Use::Alpha) {
             material.blend = true;
         }
@@ -217,30 +186,33 @@ impl<'a> Textures<'a> {
             (None, Some(bump)) if bump.is_grey() => {
                 // White rises over black by an eightieth of the texture's width.
                 let slope = uses[&Use::Bump].strength * bump.size[0] as f32 / 80.0;
-                let key = format!("normals of {} by {slope}", bump.name);
-                self.made(files, key, bump.size, || bump.normals_of_heights(slope))
+                let what = format!("normals by {slope}");
+                let made = self
+                    .made
+                    .of(&what, [Some(bump), None], &mut self.files.budget, || {
+                        bump.normals_of_heights(slope)
+                    });
+                self.drawn(made, &format!("{what} of {}", bump.name))
             }
             (None, bump) => bump.cloned(),
         };
-        let has = |key: &str| m.unknown_param.contains_key(key);
         let (rough, metal) = (found.get(&Use::Roughness), found.get(&Use::Metallic));
         if rough.is_some() || metal.is_some() {
-            let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
-            let [rough_map, metal_map] = [rough, metal].map(|t| t.map_or(&white, |t| t.as_ref()));
-            let key = format!("roughness {}, metallic {}", rough_map.name, metal_map.name);
-            let size = larger(rough_map, metal_map);
-            maps.metallic_roughness = self.made(files, key, size, || {
-                Texture::joined(rough_map, metal_map, |rough, metal| {
+            let budget = &mut self.files.budget;
+            let what = "roughness and metallic";
+            let made = self
+                .made
+                .joined(what, [rough, metal], budget, |rough, metal| {
                     [255, rough[0], metal[0], 255]
-                })
-            });
+                });
+            maps.metallic_roughness = self.drawn(made, what);
             if material.lighting != Lighting::Unlit {
                 material.lighting = Lighting::Pbr;
             }
-            if rough.is_some() && !has("Pr") {
+            if rough.is_some() && !entry.has("Pr") {
                 material.roughness = 1.0;
             }
-            if metal.is_some() && !has("Pm") {
+            if metal.is_some() && !entry.has("Pm") {
                 material.metallic = 1.0;
             }
         }
@@ -258,41 +230,36 @@ impl<'a> Textures<'a> {
             })
         });
         maps.emissive = found.get(&Use::Emission).cloned();
-        if maps.emissive.is_some() && m.emissive.is_none() {
+        if maps.emissive.is_some() && !entry.has("Ke") {
             material.emission = [1.0; 3];
         }
         Material { maps, ..material }
     }
+
     /// Base colour with the opacity of `map_d`. Opacity in the colour's own file is dropped.
     fn color_map(
         &mut self,
-        files: &mut Files<'_>,
         color: Option<&Arc<Texture>>,
         alpha: Option<&Arc<Texture>>,
     ) -> Option<Arc<Texture>> {
+        let budget = &mut self.files.budget;
         let Some(alpha) = alpha else {
             let color = color?;
             if !color.has_alpha() {
                 return Some(Arc::clone(color));
             }
-            let key = format!("colours of {}", color.name);
-            return self.made(files, key, color.size, || color.opaque());
+            let both = [Some(color), None];
+            let made = self.made.of("colours", both, budget, || color.opaque());
+            return self.drawn(made, &format!("colours of {}", color.name));
         };
         let by_alpha = alpha.has_alpha();
         let value = |t: [u8; 4]| if by_alpha { t[3] } else { t[0] };
-        let key = match color {
-            None => format!("opacity of {}", alpha.name),
-            Some(color) => format!("colours of {}, opacity of {}", color.name, alpha.name),
-        };
-        let size = larger(alpha, color.unwrap_or(alpha));
-        self.made(files, key, size, || match color {
-            None => Texture::joined(alpha, alpha, |t, _| [255, 255, 255, value(t)]),
-            Some(color) => Texture::joined(color, alpha, |c, a| [c[0], c[1], c[2], value(a)]),
-        })
+        let both = [color, Some(alpha)];
+        let made = self
+            .made
+            .joined("colours and opacity", both, budget, |c, a| {
+                [c[0], c[1], c[2], value(a)]
+            });
+        self.drawn(made, &format!("opacity of {}", alpha.name))
     }
-}
-
-/// The larger of two textures' sizes, along each side.
-fn larger(a: &Texture, b: &Texture) -> [u32; 2] {
-    [0, 1].map(|k| a.size[k].max(b.size[k]))
 }

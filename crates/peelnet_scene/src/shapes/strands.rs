@@ -1,6 +1,6 @@
 //! Hair.
 
-use super::{MAX_TRIANGLES, Surface, length, unwrap::Unwrap};
+use super::{MAX_TRIANGLES, Strands, Surface, length};
 use glam::{Vec2, Vec3};
 use peelnet_core::random::Random;
 use std::f32::consts::{PI, TAU};
@@ -17,32 +17,20 @@ const CLEARANCE: f32 = 0.02;
 /// Turns of a curl along a strand.
 const TURNS: f32 = 3.0;
 
-/// The parameters of [`Shape::Strands`](super::Shape::Strands).
-pub(super) struct Strands {
-    pub radius: f32,
-    pub count: usize,
-    pub segments: usize,
-    pub length: f32,
-    pub width: f32,
-    pub droop: f32,
-    pub curl: f32,
-    pub roots: f32,
-    pub seed: u64,
-}
-
 impl Strands {
+    /// Two for each rectangle.
+    pub(super) const fn triangles(&self) -> usize {
+        self.count.saturating_mul(self.segments).saturating_mul(2)
+    }
+
     /// The ribbons, and UVs: u across a ribbon, v from its tip down to its root.
-    pub fn build(&self) -> Result<(Surface, Unwrap), String> {
+    pub(super) fn surface(&self) -> Result<Surface, String> {
         self.check()?;
         let rows = self.segments + 1;
-        let vertices = self.count * rows * 2;
-        let (mut positions, mut normals) = (Vec::with_capacity(vertices), Vec::new());
-        let (mut uvs, mut triangles) = (Vec::with_capacity(vertices), Vec::new());
+        let mut surface = Surface::default();
         let mut random = Random::new(self.seed, &[0x4a_1e]);
         for strand in 0..self.count {
-            let (course, side) = self.course(&mut random);
-            let base = (strand * rows * 2) as u32;
-            let mut side = side;
+            let (course, mut side) = self.course(&mut random);
             for (i, &p) in course.iter().enumerate() {
                 let t = i as f32 / self.segments as f32;
                 let along = course[(i + 1).min(self.segments)] - course[i.saturating_sub(1)];
@@ -54,16 +42,19 @@ impl Strands {
                 // Hair is lit by the direction away from the head, as if it were round.
                 let out = p.normalize_or(Vec3::Y);
                 let normal = (out - along * out.dot(along)).normalize_or(side.cross(along));
-                positions.extend([p - half, p + half]);
-                normals.extend([normal; 2]);
-                uvs.extend([Vec2::new(0.0, 1.0 - t), Vec2::new(1.0, 1.0 - t)]);
+                surface.positions.extend([p - half, p + half]);
+                surface.normals.extend([normal; 2]);
             }
+            let base = (strand * rows * 2) as u32;
             for i in 0..self.segments as u32 {
-                let [a, b, c, d] = [0, 1, 2, 3].map(|k| base + 2 * i + k);
-                triangles.extend([[a, b, d], [a, d, c]]);
+                surface.push_rectangle([0, 1, 2, 3].map(|k| base + 2 * i + k));
             }
         }
-        Ok(((positions, normals, triangles), Unwrap::Vertices(uvs)))
+        surface.unwrap(|i| {
+            let along = (i / 2 % rows) as f32 / self.segments as f32;
+            Vec2::new((i % 2) as f32, 1.0 - along)
+        });
+        Ok(surface)
     }
 
     /// Points along a strand from its root, and the direction of its width.
@@ -112,8 +103,7 @@ impl Strands {
                 return Err(format!("{name} {x} must lie in {low} … {high}"));
             }
         }
-        let triangles = self.count.saturating_mul(self.segments).saturating_mul(2);
-        if self.count == 0 || self.segments == 0 || triangles > MAX_TRIANGLES {
+        if !(2..=MAX_TRIANGLES).contains(&self.triangles()) {
             return Err(format!(
                 "count {} and segments {} must be 1 or more, and twice their product at most {MAX_TRIANGLES}",
                 self.count, self.segments

@@ -45,23 +45,25 @@ pub(super) fn check_version(document: &Value) -> Result<(), String> {
 
 /// Checks that images, cameras and lights hold what their kind needs, and that every light exists.
 pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
+    let lacks = |what: &str, i: usize, part: &str| {
+        Err(format!("{what} {i} lacks {part}; export the file again"))
+    };
     for (i, image) in list(&document["images"]).iter().enumerate() {
         if !image["uri"].is_string() && image["bufferView"].is_null() {
-            return Err(lacks("image", i, "a uri or a buffer view"));
+            return lacks("image", i, "a uri or a buffer view");
         }
     }
     for (i, camera) in list(&document["cameras"]).iter().enumerate() {
         if let Some(kind) = camera["type"].as_str()
             && !camera[kind].is_object()
         {
-            return Err(lacks("camera", i, &printable(kind)));
+            return lacks("camera", i, &printable(kind));
         }
     }
     let lights = list(&document["extensions"][LIGHTS]["lights"]);
-    for (i, light) in lights.iter().enumerate() {
-        if light["type"] == "spot" && !light["spot"].is_object() {
-            return Err(lacks("light", i, "spot"));
-        }
+    let is_broken = |light: &Value| light["type"] == "spot" && !light["spot"].is_object();
+    if let Some(i) = lights.iter().position(is_broken) {
+        return lacks("light", i, "spot");
     }
     for (i, node) in list(&document["nodes"]).iter().enumerate() {
         let light = &node["extensions"][LIGHTS]["light"];
@@ -75,12 +77,8 @@ pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
     Ok(())
 }
 
-fn list(value: &Value) -> &[Value] {
+pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
-}
-
-fn lacks(what: &str, number: usize, part: &str) -> String {
-    format!("{what} {number} lacks {part}; export the file again")
 }
 
 /// The list that a field's number points into.

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     files::FileKind,
     material::{Lighting, Material},
-    specular_glossiness::Values,
+    specular_glossiness::{Values, convert},
     texture::{Maps, Texture, Wrap},
 };
 use glam::{Mat2, Vec2};
@@ -185,76 +185,61 @@ impl Reader<'_, '_> {
         (maps, placement)
     }
 
-    /// Base colour with opacity, metallic and roughness of a material of the specular–glossiness workflow, whose maps become those of the other.
-    fn converted(
+    /// Converts a material of the specular–glossiness workflow, whose second map is in the place of metallic and roughness.
+    fn convert(
         &mut self,
+        material: &mut Material,
         pbr: &gltf::material::PbrSpecularGlossiness<'_>,
-        maps: &mut Maps,
-    ) -> ([f32; 4], f32, f32) {
+    ) {
         let unit = |x: f32| finite(x, 0.0, 1.0);
-        let [r, g, b, a] = pbr.diffuse_factor();
         let values = Values {
-            diffuse: [r, g, b].map(unit),
+            diffuse: material.color,
             specular: pbr.specular_factor().map(unit),
             glossiness: unit(pbr.glossiness_factor()),
         };
-        let (diffuse, specular) = (maps.color.take(), maps.metallic_roughness.take());
-        let budget = &mut self.files.budget;
-        let converter = &mut self.converter;
-        let textured = converter.convert(values, diffuse.as_ref(), specular.as_ref(), budget);
-        let converted = textured.or_else(|why| {
+        let specular = material.maps.metallic_roughness.take();
+        let (made, budget) = (&mut self.made, &mut self.files.budget);
+        if let Err(why) = convert(values, material, specular.as_ref(), made, budget) {
             let what = format!("maps of the specular–glossiness workflow, which take {why}");
             self.missing.add(what);
-            converter.convert(values, None, None, budget)
-        });
-        let Ok(converted) = converted else {
-            return ([r, g, b, a], 0.0, 1.0);
-        };
-        maps.color = converted.color_map;
-        maps.metallic_roughness = converted.metallic_roughness_map;
-        let [r, g, b] = converted.color;
-        ([r, g, b, a], converted.metallic, converted.roughness)
+            material.maps.color = None;
+            // Without maps it takes nothing.
+            let _ = convert(
+                values,
+                material,
+                None,
+                &mut self.made,
+                &mut self.files.budget,
+            );
+        }
     }
 
     /// A material, and the placement of its maps.
     pub fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placement) {
-        let (mut maps, placement) = self.maps(m);
+        let (maps, placement) = self.maps(m);
         let pbr = m.pbr_metallic_roughness();
-        let ([r, g, b, a], metallic, roughness) = match specular_glossiness(m) {
-            Some(pbr) => self.converted(&pbr, &mut maps),
-            None => (
-                pbr.base_color_factor(),
-                pbr.metallic_factor(),
-                pbr.roughness_factor(),
-            ),
+        let specular = specular_glossiness(m);
+        let [r, g, b, a] = match &specular {
+            Some(pbr) => pbr.diffuse_factor(),
+            None => pbr.base_color_factor(),
         };
-        let base = [r, g, b].map(|c| finite(c, 0.0, 1.0));
         let lighting = if m.unlit() {
             Lighting::Unlit
         } else {
             Lighting::Pbr
         };
         let strength = m.emissive_strength().unwrap_or(1.0);
-        // What passes is not scattered: glTF's mix of both, as opacity and colour (McGuire and Mara 2016).
-        let passing = m.transmission().map_or(0.0, |t| {
-            if t.transmission_texture().is_some() {
-                self.missing
-                    .add("transmission maps (the factor alone is drawn)");
-            }
-            finite(t.transmission_factor(), 0.0, 1.0)
-        });
         let (alpha, blend, alpha_cutoff) = match m.alpha_mode() {
             AlphaMode::Opaque => (1.0, false, None),
             AlphaMode::Mask => (a, false, Some(m.alpha_cutoff().unwrap_or(0.5))),
             AlphaMode::Blend => (a, true, None),
         };
-        let material = Material {
+        let mut material = Material {
             name: m.name().unwrap_or("unnamed").to_owned(),
-            color: base.map(|c| c * (1.0 - passing)),
-            transmission: base.map(|c| c * passing),
+            color: [r, g, b].map(|c| finite(c, 0.0, 1.0)),
             alpha: finite(alpha, 0.0, 1.0),
-            metallic: finite(metallic, 0.0, 1.0),
-            roughness: finite(roughness, 0.0, 1.0),
+            metallic: finite(pbr.metallic_factor(), 0.0, 1.0),
+            roughness: finite(pbr.roughness_factor(), 0.0, 1.0),
             emission: m.emissive_factor().map(|c| finite(c * strength, 0.0, 1e6)),
             maps,
             alpha_cutoff: alpha_cutoff.map(|c| finite(c, 0.0, 1.0)),
@@ -262,6 +247,19 @@ impl Reader<'_, '_> {
             blend,
             ..Material::default_with(lighting)
         };
+        if let Some(pbr) = specular {
+            self.convert(&mut material, &pbr);
+        }
+        // What passes is not scattered: glTF's mix of both, as opacity and colour (McGuire and Mara 2016).
+        if let Some(t) = m.transmission() {
+            if t.transmission_texture().is_some() {
+                let what = "transmission maps (the factor alone is drawn)";
+                self.missing.add(what);
+            }
+            let passing = finite(t.transmission_factor(), 0.0, 1.0);
+            material.transmission = material.color.map(|c| c * passing);
+            material.color = material.color.map(|c| c * (1.0 - passing));
+        }
         (material, placement)
     }
 }

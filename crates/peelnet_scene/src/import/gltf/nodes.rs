@@ -7,8 +7,7 @@ use crate::{
     files::Files,
     mesh::Mesh,
     scene::{Light, Source},
-    specular_glossiness::Converter,
-    texture::Texture,
+    texture::{Made, Texture},
     warnings::Warnings,
 };
 use glam::{Mat4, Vec3};
@@ -20,8 +19,8 @@ pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
     pub buffers: Vec<Vec<u8>>,
-    /// For materials of the specular–glossiness workflow.
-    pub converter: Converter,
+    /// Of materials of the specular–glossiness workflow.
+    pub made: Made,
     /// By number, and whether their opacity is dropped; `None` for those that cannot be drawn.
     pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What the file uses and is not drawn.
@@ -65,7 +64,7 @@ impl<'a, 'f> Reader<'a, 'f> {
             path,
             files,
             buffers,
-            converter: Converter::default(),
+            made: Made::default(),
             images: HashMap::new(),
             missing: Warnings::default(),
             loaded: Imported::mesh(Mesh::empty(), Vec::new()),
@@ -73,11 +72,7 @@ impl<'a, 'f> Reader<'a, 'f> {
     }
 
     pub fn fail(&self, message: String) -> SceneError {
-        SceneError::Mesh {
-            path: self.path.to_owned(),
-            line: None,
-            message,
-        }
+        SceneError::file(self.path, None, message)
     }
 
     /// Adds a scene's nodes.

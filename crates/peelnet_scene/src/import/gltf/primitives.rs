@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::SceneError,
-    mesh::{NO_UVS, Part, PartGeometry, smooth_normals},
+    mesh::{Mesh, NO_UVS, Part, smooth_normals},
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{material::AlphaMode, mesh::Mode};
@@ -80,26 +80,31 @@ impl Reader<'_, '_> {
         let (material, placement) = self.material(&primitive.material());
         let buffers = &self.buffers;
         let reader = primitive.reader(|b| buffers.get(b.index()).map(Vec::as_slice));
-        let uvs = reader.read_tex_coords(placement.set).map(|uvs| {
-            let (turned, moved) = placement.transform;
-            let uvs = uvs.into_f32().map(|uv| turned * Vec2::from(uv) + moved);
-            uvs.map(|uv| if uv.is_finite() { uv } else { Vec2::ZERO })
-                .collect::<Vec<_>>()
-        });
-        let geometry = PartGeometry {
-            uvs: uvs.filter(|uvs| uvs.len() == n),
-            colors: colors.filter(|colors| colors.len() == n),
-            positions,
-            normals,
-            triangles,
-        };
+        let uvs: Vec<Vec2> = reader
+            .read_tex_coords(placement.set)
+            .map_or_else(Vec::new, |uvs| {
+                let (turned, moved) = placement.transform;
+                let uvs = uvs.into_f32().map(|uv| turned * Vec2::from(uv) + moved);
+                uvs.map(|uv| if uv.is_finite() { uv } else { Vec2::ZERO })
+                    .collect()
+            });
+        let corners = triangles.iter().filter(|_| uvs.len() == n);
+        let uvs = corners.map(|t| t.map(|i| uvs[i as usize])).collect();
         let part = Part {
             name: mesh.name().unwrap_or(&place).to_owned(),
-            triangles: 0..0,
+            triangles: 0..triangles.len(),
             material,
         };
         let name = format!("'{}'", printable(&part.name));
-        if self.loaded.mesh.push(geometry, part) {
+        let lost_maps = self.loaded.mesh.append(Mesh {
+            uvs,
+            colors: colors.filter(|c| c.len() == n).unwrap_or_default(),
+            positions,
+            normals,
+            triangles,
+            parts: vec![part],
+        });
+        if lost_maps {
             self.missing.about("", &name, NO_UVS);
         }
         Ok(())
