@@ -128,19 +128,4 @@ mod tests {
         let p = clip * Vec4::new(12.0, 6.0, 0.0, 1.0);
         assert!((p.x / p.w - 1.0).abs() < 1e-6 && (p.y / p.w - 1.0).abs() < 1e-6);
     }
-
-    #[test]
-    fn an_orbit_keeps_distance_and_height() {
-        let camera = Camera {
-            position: Vec3::new(3.0, 2.0, 4.0),
-            target: Vec3::new(0.0, 1.0, 0.0),
-            up: Vec3::new(0.0, 7.0, 0.0),
-            fov_y_degrees: 45.0,
-            near: 0.1,
-            far: 10.0,
-        };
-        let turned = camera.orbited(90.0);
-        assert!((turned.position - Vec3::new(4.0, 2.0, -3.0)).length() < 1e-5);
-        assert_eq!(camera.orbited(0.0), camera);
-    }
 }

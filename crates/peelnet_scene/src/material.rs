@@ -51,19 +51,11 @@ impl Material {
     pub fn default_with(lighting: Lighting) -> Self {
         Self {
             name: "default".into(),
-            color: [0.8; 3],
-            alpha: 1.0,
             lighting,
             specular: 0.3,
             shininess: 32.0,
-            metallic: 0.0,
-            roughness: 0.5,
-            emission: [0.0; 3],
-            transmission: [0.0; 3],
-            maps: Maps::NONE,
-            alpha_cutoff: None,
-            double_sided: true,
             blend: false,
+            ..Self::unlit([0.8; 3], 1.0)
         }
     }
 

@@ -23,54 +23,49 @@ fn plain() -> Material {
     Material::unlit([0.5, 0.4, 0.5], 0.5)
 }
 
-/// A material that needs an effect, as far as a material can, and the effects that come with it.
-fn material_with(effect: Effect) -> (Material, Vec<&'static str>) {
-    let texture = || {
-        let texture = Texture::of("red", [1, 1], |_, _| [255, 0, 0, 255]);
-        Some(std::sync::Arc::new(texture))
-    };
-    let mut material = plain();
-    let maps = &mut material.maps;
-    let mut others = Vec::new();
+/// Adds the cause of an effect to a scene; returns the effects that come with it.
+fn add(effect: Effect, scene: &mut Scene) -> &'static [&'static str] {
+    let texture = Texture::of("red", [1, 1], |_, _| [255, 0, 0, 255]);
+    let texture = Some(std::sync::Arc::new(texture));
+    let object = &mut scene.objects[0];
+    let material = &mut object.materials[0];
     match effect {
         Effect::Opaque => (material.alpha, material.blend) = (1.0, false),
         Effect::Culling => material.double_sided = false,
-        Effect::Lighting => material.lighting = Lighting::Phong,
+        Effect::Lighting | Effect::Sun => material.lighting = Lighting::Phong,
         Effect::Pbr => material.lighting = Lighting::Pbr,
-        Effect::Cutout => {
-            (material.alpha_cutoff, material.blend) = (Some(0.4), false);
-            // A surface with holes is drawn with the opaque ones.
-            others.push("opaque");
-        }
+        Effect::Cutout => (material.alpha_cutoff, material.blend) = (Some(0.4), false),
         Effect::Emission => material.emission = [0.0, 0.1, 0.0],
-        Effect::ColorMap => maps.color = texture(),
-        Effect::NormalMap | Effect::OcclusionMap => {
-            match effect {
-                Effect::NormalMap => maps.normal = texture(),
-                _ => maps.occlusion = texture(),
-            }
-            material.lighting = Lighting::Phong;
-            others.push("lighting");
+        Effect::ColorMap => material.maps.color = texture,
+        Effect::NormalMap => {
+            (material.maps.normal, material.lighting) = (texture, Lighting::Phong);
+        }
+        Effect::OcclusionMap => {
+            (material.maps.occlusion, material.lighting) = (texture, Lighting::Phong);
         }
         Effect::MetallicRoughnessMap => {
-            maps.metallic_roughness = texture();
-            material.lighting = Lighting::Pbr;
-            others.push("pbr");
+            (material.maps.metallic_roughness, material.lighting) = (texture, Lighting::Pbr);
         }
         Effect::EmissiveMap => {
-            maps.emissive = texture();
-            material.emission = [0.0, 0.1, 0.0];
-            others.push("emission");
+            (material.maps.emissive, material.emission) = (texture, [0.0, 0.1, 0.0]);
         }
-        Effect::Sun => {
-            material.lighting = Lighting::Phong;
-            others.push("lighting");
+        Effect::VertexColors => {
+            let mut mesh = (*object.mesh).clone();
+            mesh.colors = vec![[1.0, 0.0, 0.0, 1.0]; 3];
+            object.mesh = mesh.into();
         }
         Effect::Transmission => material.transmission = [0.0, 0.5, 0.0],
         Effect::Monochrome => material.color = [0.25; 3],
-        Effect::VertexColors | Effect::LowResolution => {}
+        Effect::LowResolution => scene.transparency_scale = 0.5,
     }
-    (material, others)
+    match effect {
+        Effect::NormalMap | Effect::OcclusionMap | Effect::Sun => &["lighting"],
+        Effect::MetallicRoughnessMap => &["pbr"],
+        Effect::EmissiveMap => &["emission"],
+        // A surface with holes is drawn with the opaque ones.
+        Effect::Cutout => &["opaque"],
+        _ => &[],
+    }
 }
 
 /// Names of the effects that are on.
@@ -82,42 +77,30 @@ fn on(scene: &Scene) -> Vec<&str> {
 #[test]
 fn each_effect_has_its_cause() {
     for effect in Effect::ALL {
-        assert!(!Census::of(&scene(plain())).has(effect), "{effect}");
-        let (material, mut expected) = material_with(effect);
-        let is_lit = material.lighting != Lighting::Unlit;
-        let mut scene = scene(material);
-        if is_lit {
+        let mut scene = scene(plain());
+        assert!(!Census::of(&scene).has(effect), "{effect}");
+        let mut expected = add(effect, &mut scene).to_vec();
+        expected.push(effect.name());
+        if scene.objects[0].materials[0].lighting != Lighting::Unlit {
             // Without a light there is nothing to compute.
             assert!(!Census::of(&scene).has(effect), "{effect}");
+            let mut light = |source| {
+                scene.lights.push(Light {
+                    source,
+                    color: [1.0; 3],
+                    intensity: 1.0,
+                });
+            };
+            light(Source::Point(Vec3::ONE));
+            if effect == Effect::Sun {
+                light(Source::Toward(Vec3::Y));
+            }
         }
-        let light = Light {
-            source: Source::Point(Vec3::ONE),
-            color: [1.0; 3],
-            intensity: 1.0,
-        };
-        if effect == Effect::Sun {
-            scene.lights.push(Light {
-                source: Source::Toward(Vec3::Y),
-                ..light
-            });
-        }
-        scene.lights.extend(is_lit.then_some(light));
-        if effect == Effect::VertexColors {
-            let mut mesh = (*scene.objects[0].mesh).clone();
-            mesh.colors = vec![[1.0, 0.0, 0.0, 1.0]; 3];
-            scene.objects[0].mesh = mesh.into();
-        }
-        if effect == Effect::LowResolution {
-            scene.transparency_scale = 0.5;
-        }
-        expected.push(effect.name());
-        expected.sort_unstable();
         let mut found = on(&scene);
+        expected.sort_unstable();
         found.sort_unstable();
         assert_eq!(found, expected, "{effect}");
-        assert!(
-            !on(&scene.without(effect)).contains(&effect.name()),
-            "{effect}"
-        );
+        let without = scene.without(effect);
+        assert!(!on(&without).contains(&effect.name()), "{effect}");
     }
 }

@@ -68,17 +68,12 @@ fn is_closed(mesh: &Mesh) -> bool {
     let mut edges: HashMap<_, i32> = HashMap::new();
     for t in &mesh.triangles {
         let keys = t.map(|i| key_of(mesh.positions[i as usize]));
-        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-            let forward = keys[a] < keys[b];
-            let edge = if forward {
-                [keys[a], keys[b]]
-            } else {
-                [keys[b], keys[a]]
-            };
-            *edges.entry(edge).or_default() += if forward { 1 } else { 1 << 16 };
+        for k in 0..3 {
+            *edges.entry([keys[k], keys[(k + 1) % 3]]).or_default() += 1;
         }
     }
-    edges.values().all(|n| *n == 1 + (1 << 16))
+    let is_paired = |(edge, n): (&[_; 2], &i32)| *n == 1 && edges.contains_key(&[edge[1], edge[0]]);
+    edges.iter().all(is_paired)
 }
 
 /// A plane under a white map moves by exactly the scale, and less the middle; black stays.
@@ -98,12 +93,8 @@ fn constant_maps_move_planes() {
         d.middle = 1.0;
         d.scale = -2.0;
     }
-    assert!(
-        moved(&square(0.0, 1.0), &material)
-            .positions
-            .iter()
-            .all(|p| p.z == 0.0)
-    );
+    let black = moved(&square(0.0, 1.0), &material);
+    assert!(black.positions.iter().all(|p| p.z == 0.0));
     let half = Texture::of("colour", [1, 1], |_, _| [0, 255, 0, 255]);
     let green = moved(&square(0.0, 1.0), &self::material(half, 1.0, 0));
     assert!(green.positions.iter().all(|p| p.z == 0.7152));
@@ -135,25 +126,17 @@ fn closed_surfaces_stay_closed() {
     let (low, high) = large.bounds().expect("has vertices");
     // Flat faces move by the whole scale, edges by its share along them.
     assert!((high.x - 1.3).abs() < 1e-6 && (low.y + 1.3).abs() < 1e-6);
-    let at_corner = large
-        .positions
-        .iter()
-        .filter(|p| p.abs().min_element() > 1.15);
-    let mut count = 0;
+    let positions = large.positions.iter();
+    let at_corner: Vec<_> = positions.filter(|p| p.abs().min_element() > 1.15).collect();
+    assert_eq!(at_corner.len(), 24);
     for p in at_corner {
         assert!((p.abs() - Vec3::splat(corner)).length() < 1e-6, "{p}");
-        count += 1;
     }
-    assert_eq!(count, 24);
     for mesh in [cube, shape("shape = 'sphere'\ntriangles = 500")] {
         let bumpy = moved(&mesh, &material(noise(), 0.1, 2));
         assert!(is_closed(&bumpy) == is_closed(&mesh));
-        assert!(
-            bumpy
-                .normals
-                .iter()
-                .all(|n| (n.length() - 1.0).abs() < 1e-5)
-        );
+        let mut normals = bumpy.normals.iter();
+        assert!(normals.all(|n| (n.length() - 1.0).abs() < 1e-5));
         assert_ne!(bumpy.bounds(), mesh.bounds());
     }
 }

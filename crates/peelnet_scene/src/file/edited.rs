@@ -310,20 +310,18 @@ mod tests {
             let [x, y] = [a, b].map(|l| match l.source {
                 Source::Point(p) | Source::Toward(p) => p,
             });
-            assert!((x - y).length() < 1e-6 && a.intensity == b.intensity);
-            assert_eq!(a.color, b.color);
+            assert!((x - y).length() < 1e-6 && a.intensity == b.intensity && a.color == b.color);
         }
         assert_eq!(back.objects.len(), scene.objects.len());
         for (a, b) in back.objects.iter().zip(&scene.objects) {
             assert_eq!(a.materials, b.materials, "{}", a.name);
-            let largest = b.world_from_object.to_cols_array().map(f32::abs);
-            let close = CLOSE * largest.into_iter().fold(0.0, f32::max);
-            let equal = a.world_from_object.abs_diff_eq(b.world_from_object, close);
-            assert!(
-                equal,
-                "{}: {} {}",
-                a.name, a.world_from_object, b.world_from_object
-            );
+            let [x, y] = [a, b].map(|o| o.world_from_object);
+            let largest = y
+                .to_cols_array()
+                .map(f32::abs)
+                .into_iter()
+                .fold(0.0, f32::max);
+            assert!(x.abs_diff_eq(y, CLOSE * largest), "{}: {x} {y}", a.name);
         }
     }
 
