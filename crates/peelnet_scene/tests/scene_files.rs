@@ -125,8 +125,8 @@ fn assert_refused(loaded: Result<Scene, String>, text: &str, words: &str) {
 #[test]
 fn bad_scene_files() {
     let material =
-        format!("[[light]]\nposition = [1, 1, 1]\n[[object]]\nmesh = 'a.obj'\n[object.material]\n");
-    let cases = [("", BAD), (&material, BAD_MATERIALS)];
+        "[[light]]\nposition = [1, 1, 1]\n[[object]]\nmesh = 'a.obj'\n[object.material]\n";
+    let cases = [("", BAD), (material, BAD_MATERIALS)];
     for (head, table) in cases {
         for row in table.trim().lines() {
             let (text, words) = row.split_once(" => ").unwrap();
