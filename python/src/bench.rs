@@ -1,29 +1,26 @@
 //! Measurements: error against time, and what to choose.
 
 use crate::{
+    argument::{Argument, Arguments},
     failure::{failed, raised, warn, wrong},
     gpu, json,
-    model::ModelArg,
-    render::{method, sampled, sized, text_of},
-    scene::{SceneArg, SceneArgs},
+    model::Model,
+    render::{method, sampled, sized},
+    scene::{Scene, loaded},
     watch::{Bar, Reporter, watch},
 };
 use peelnet::{
-    Gpu, LearnedWeight, MethodSpec, Model, Recipe, Scene,
+    Compared, Failure, Gpu, MethodSpec,
     bench::{
         Partial, Row,
         bench::{Bench, Progress, bench_watched},
         compare::Plan,
-        front::{BASE, Mean, Point, points},
-        recommend::Budget,
+        front::{BASE, Point},
+        recommend::{Budget, judged},
     },
-    model::ModelError,
     report::Results,
 };
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyList, PyTuple},
-};
+use pyo3::prelude::*;
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 enum Said {
@@ -36,58 +33,33 @@ struct Measure {
     samples: u32,
     views: Option<usize>,
     frames: u32,
-    methods: Vec<MethodSpec>,
-    models: Vec<Model>,
+    compared: Compared,
     /// Whether methods that this adapter cannot draw are left out.
     lenient: bool,
 }
 
 impl Measure {
     /// What to compare: the methods named, or all; with the shipped networks where none is given.
-    fn new(named: Option<Vec<String>>, models: Vec<Model>) -> PyResult<Self> {
-        for (i, model) in models.iter().enumerate() {
-            if models[..i]
-                .iter()
-                .any(|m| m.meta.recipe == model.meta.recipe)
-            {
-                return Err(wrong(format!(
-                    "models: a second model of recipe {}; one run compares one of each",
-                    model.meta.recipe
-                )));
-            }
-        }
+    fn new(named: Option<Vec<String>>, models: Vec<peelnet::Model>) -> PyResult<Self> {
         let lenient = named.is_none();
-        let mut models = models;
-        let mut methods: Vec<MethodSpec> = match named {
-            Some(names) => names.iter().map(|n| method(n)).collect::<PyResult<_>>()?,
-            None => MethodSpec::compared(),
-        };
-        for recipe in Recipe::ALL {
-            let wanted = methods.iter().any(|m| m.name() == recipe.method);
-            if !wanted || models.iter().any(|m| m.meta.recipe == recipe) {
-                continue;
-            }
-            match Model::shipped(recipe) {
-                Ok(model) => models.push(model),
-                Err(ModelError::NotShipped(_)) if lenient => {
-                    methods.retain(|m| m.name() != recipe.method);
-                }
-                Err(e) => return Err(raised(e)),
-            }
-        }
-        let drawn_with = models.iter().map(|m| m.meta.recipe.method);
-        for name in drawn_with.chain([BASE]) {
-            if !methods.iter().any(|m| m.name() == name) {
-                methods.push(method(name)?);
-            }
+        let named = named.map(|names| {
+            names
+                .iter()
+                .map(|n| method(n))
+                .collect::<PyResult<Vec<_>>>()
+        });
+        let named = named.transpose()?;
+        let mut compared = Compared::new(named, models, MethodSpec::compared).map_err(raised)?;
+        let base = method(BASE)?;
+        if !compared.methods.contains(&base) {
+            compared.methods.push(base);
         }
         Ok(Self {
             size: [1024, 768],
             samples: 1,
             views: None,
             frames: 5,
-            methods,
-            models,
+            compared,
             lenient,
         })
     }
@@ -95,22 +67,17 @@ impl Measure {
     fn run(
         &self,
         gpu: &Gpu,
-        scenes: &[Scene],
+        scenes: &[peelnet::Scene],
         stop: &AtomicBool,
         reporter: &Reporter<Said>,
-    ) -> PyResult<Bench> {
-        let learned: Vec<LearnedWeight> = self
-            .models
-            .iter()
-            .map(|model| text_of(gpu, model))
-            .collect::<Result<_, _>>()
-            .map_err(raised)?;
+    ) -> Result<Bench, Failure> {
+        let learned = self.compared.weights(gpu)?;
         let plan = Plan {
             size: self.size,
             samples: self.samples,
-            methods: &self.methods,
+            methods: &self.compared.methods,
             learned: &learned,
-            models: &self.models,
+            models: &self.compared.models,
             lenient: self.lenient,
             views: self.views,
             frames: self.frames,
@@ -125,18 +92,18 @@ impl Measure {
                 method,
             } => reporter.say(Said::Drawn(done, total, format!("{scene} with {method}"))),
             Progress::LeftOut { scene, method, why } => {
-                reporter.ask(Said::LeftOut(format!(
-                    "{method} is left out of {scene}: {why}"
-                )));
+                let text = format!("{method} is left out of {scene}: {why}");
+                reporter.ask(Said::LeftOut(text));
             }
         };
-        bench_watched(gpu, scenes, &plan, partial, stop, &mut show).map_err(raised)
+        let bench = bench_watched(gpu, scenes, &plan, partial, stop, &mut show)?;
+        Ok(bench)
     }
 
     fn watched<'py>(
         &self,
         py: Python<'py>,
-        scenes: &[Scene],
+        scenes: &[peelnet::Scene],
         adapter: &str,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bench> {
@@ -150,14 +117,9 @@ impl Measure {
                 Said::LeftOut(text) => warn(py, &text),
             },
         )
-        .and_then(|result| result);
+        .and_then(|result| result.map_err(raised));
         bar.close(result)
     }
-}
-
-fn loaded(models: Option<Vec<ModelArg>>) -> PyResult<Vec<Model>> {
-    let models = models.unwrap_or_default().into_iter();
-    models.map(ModelArg::load).collect()
 }
 
 /// Compares methods on scenes: error against the exact image, and time.
@@ -182,9 +144,9 @@ fn loaded(models: Option<Vec<ModelArg>>) -> PyResult<Vec<Model>> {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn bench<'py>(
     py: Python<'py>,
-    scenes: SceneArgs,
+    scenes: Arguments<Scene>,
     methods: Option<Vec<String>>,
-    models: Option<Vec<ModelArg>>,
+    models: Option<Vec<Argument<Model>>>,
     size: (u32, u32),
     views: Option<usize>,
     frames: u32,
@@ -192,36 +154,19 @@ pub fn bench<'py>(
     adapter: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let models = models.unwrap_or_default().into_iter();
+    let models = models.map(|model| Ok(model.load(py)?.0));
     let measure = Measure {
         size: sized(size)?,
         samples: sampled(samples)?,
         views,
         frames,
-        ..Measure::new(methods, loaded(models)?)?
+        ..Measure::new(methods, models.collect::<PyResult<_>>()?)?
     };
-    let scenes = scenes.load(py)?;
+    let scenes = loaded(scenes, py)?;
     let bench = measure.watched(py, &scenes, adapter, progress)?;
-    frame(py, &json::to_python(py, &bench.rows)?)
-}
-
-/// Records as a DataFrame, or as a dict of columns without pandas.
-fn frame<'py>(py: Python<'py>, records: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    match py.import("pandas") {
-        Ok(pandas) => pandas.getattr("DataFrame")?.call1((records,)),
-        Err(e) if e.is_instance_of::<pyo3::exceptions::PyImportError>(py) => {
-            let columns = PyDict::new(py);
-            for record in records.try_iter()? {
-                for (name, value) in record?.cast::<PyDict>()? {
-                    match columns.get_item(&name)? {
-                        Some(column) => drop(column.call_method1("append", (value,))?),
-                        None => columns.set_item(name, [value].to_vec())?,
-                    }
-                }
-            }
-            Ok(columns.into_any())
-        }
-        Err(e) => Err(e),
-    }
+    let convert = py.import("peelnet._convert")?;
+    convert.call_method1("frame", (json::to_python(py, &bench.rows)?,))
 }
 
 /// A method that `recommend` names.
@@ -277,17 +222,8 @@ impl Recommendation {
     }
 }
 
-/// Pandas keeps counts as floats where one of them is missing.
-fn integer(value: serde_json::Value) -> serde_json::Value {
-    let whole = value
-        .as_f64()
-        .filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
-    whole.map_or(value, |x| (x as i64).into())
-}
-
 /// Rows of earlier results: what `bench` returned, or a folder or results.json that the command wrote.
 fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
-    let py = results.py();
     if let Ok(path) = results.extract::<PathBuf>() {
         let file = if path.is_dir() {
             path.join("results.json")
@@ -297,48 +233,9 @@ fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
         let read = Results::<Bench>::read(&file).map_err(raised)?;
         return Ok(read.measured.rows);
     }
-    let unlike = |e: serde_json::Error| failed(format!("results: not what bench returns: {e}"));
-    let text: String = if results.hasattr("to_json")? {
-        // A DataFrame: its NaN becomes null again.
-        let options = PyDict::new(py);
-        options.set_item("orient", "records")?;
-        options.set_item("double_precision", 15)?;
-        results
-            .call_method("to_json", (), Some(&options))?
-            .extract()?
-    } else {
-        let records = match results.cast::<PyDict>() {
-            Ok(columns) => records(columns)?,
-            Err(_) => results.clone(),
-        };
-        py.import("json")?
-            .call_method1("dumps", (records,))?
-            .extract()?
-    };
-    let records: Vec<serde_json::Map<String, serde_json::Value>> =
-        serde_json::from_str(&text).map_err(unlike)?;
-    let whole = records.into_iter().map(|record| {
-        let fields = record.into_iter();
-        serde_json::Value::Object(fields.map(|(name, v)| (name, integer(v))).collect())
-    });
-    serde_json::from_value(serde_json::Value::Array(whole.collect())).map_err(unlike)
-}
-
-/// Columns as a list of records.
-fn records<'py>(columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    let py = columns.py();
-    let names: Vec<Bound<'py, PyAny>> = columns.keys().iter().collect();
-    let zip = py.import("builtins")?.getattr("zip")?;
-    let tuples = zip.call1(PyTuple::new(py, columns.values().iter())?)?;
-    let records = PyList::empty(py);
-    for tuple in tuples.try_iter()? {
-        let record = PyDict::new(py);
-        for (name, value) in names.iter().zip(tuple?.try_iter()?) {
-            record.set_item(name, value?)?;
-        }
-        records.append(record)?;
-    }
-    Ok(records.into_any())
+    let convert = results.py().import("peelnet._convert")?;
+    let text: String = convert.call_method1("text", (results,))?.extract()?;
+    serde_json::from_str(&text).map_err(|e| failed(format!("results: not what bench returns: {e}")))
 }
 
 /// Recommends the method for a budget of time, error or memory.
@@ -361,7 +258,7 @@ fn records<'py>(columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn recommend<'py>(
     py: Python<'py>,
-    scene: SceneArg,
+    scene: Argument<Scene>,
     budget_ms: Option<f64>,
     max_error: Option<f64>,
     max_bytes: Option<f64>,
@@ -393,17 +290,8 @@ pub fn recommend<'py>(
             measure.watched(py, scenes, adapter, progress)?.rows
         }
     };
-    let mut found = points(&rows, Some(&scene.name), Mean::Geometric);
-    if found.is_empty() {
-        warn(
-            py,
-            &format!(
-                "scene '{}' is not among the results: judged by the geometric means over all scenes of them",
-                scene.name
-            ),
-        )?;
-        found = points(&rows, None, Mean::Geometric);
-    }
+    let (found, warning) = judged(&rows, &scene.name);
+    warning.iter().try_for_each(|text| warn(py, text))?;
     let budget = Budget {
         ms: budget_ms,
         error: max_error,

@@ -3,6 +3,7 @@
 //! A file a subject. Long work runs on a thread of its own ([`watch`]), so that Python keeps its GIL and hears Ctrl-C; errors become
 //! exceptions in [`failure`], with the texts of the command line.
 
+mod argument;
 mod bench;
 mod failure;
 mod gpu;

@@ -1,44 +1,31 @@
 //! Models: their files, their weights, and shader text made of them.
 
 use crate::{
+    argument::{Argument, FromFile},
     failure::{failed, raised, wrong},
     gpu, json,
     watch::{Reporter, watch},
 };
 use numpy::{
-    IntoPyArray as _, PyArray2, PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArrayMethods as _,
+    IntoPyArray as _, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _,
     ndarray::{Array1, Array2},
 };
 use peelnet::{
+    LANGUAGES, PRECISIONS,
     dataset::is_remote,
-    export::{Language, Options, Precision},
+    export::{Language, Options},
+    named,
 };
 use peelnet_core::mlp::{Layer, Mlp};
-use peelnet_files::{Kind, Standing, shown};
+use peelnet_files::Outputs;
 use pyo3::{
-    exceptions::PyTypeError,
     prelude::*,
     types::{PyBytes, PyDict, PyType},
 };
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Refuses to replace a file that peelnet did not write.
-///
-/// # Errors
-/// Such a file, or a place that cannot be written.
-pub fn may_write(path: &Path, kind: Kind, force: bool) -> PyResult<()> {
-    let standing = kind
-        .standing(path)
-        .map_err(|e| failed(format!("{}: cannot be written: {e}", shown(path))))?;
-    if standing == Standing::Foreign && !force {
-        return Err(failed(format!(
-            "{}: the file there is not {}; choose another name, or replace it with force=True",
-            shown(path),
-            kind.name
-        )));
-    }
-    Ok(())
-}
+/// What reads no file.
+pub const NO_INPUTS: [&str; 0] = [];
 
 /// A trained network with everything that is needed to use it.
 #[pyclass(frozen, module = "peelnet", eq)]
@@ -53,7 +40,7 @@ impl Model {
         peelnet::load_model(path).map(Self).map_err(raised)
     }
 
-    /// The network that ships for a recipe: "thesis", "small", "medium", "large", "nmt" or "dfaoit".
+    /// The network that ships for a recipe: "thesis", "small", "medium", "large", "anchored-small", "anchored-medium", "nmt" or "dfaoit".
     #[staticmethod]
     fn shipped(recipe: &str) -> PyResult<Self> {
         let recipe = recipe.parse().map_err(|e: String| wrong(e))?;
@@ -81,26 +68,19 @@ impl Model {
         state: &Bound<'_, PyAny>,
         like: &Bound<'_, Model>,
     ) -> PyResult<Self> {
-        let mut layers = Vec::new();
-        let mut named = 0;
-        while state.contains(format!("layers.{}.weight", layers.len()))? {
-            layers.push(layer(state, layers.len())?);
-            named += 2;
-        }
-        if state.len()? != named {
-            let keys: Vec<String> = state
-                .call_method0("keys")?
-                .try_iter()?
-                .map(|k| k?.extract())
-                .collect::<PyResult<_>>()?;
-            return Err(wrong(format!(
-                "a state dict of a model holds layers.0.weight, layers.0.bias, layers.1.weight, … and nothing else; this one holds {}",
-                keys.join(", ")
-            )));
-        }
+        let convert = state.py().import("peelnet._convert")?;
+        let layers = convert.call_method1("layers", (state,))?;
+        let layers: Vec<(PyReadonlyArray2<'_, f32>, PyReadonlyArray1<'_, f32>)> =
+            layers.extract()?;
+        let layers = layers.iter().map(|(weights, bias)| Layer {
+            inputs: weights.shape()[1],
+            outputs: weights.shape()[0],
+            weights: weights.as_array().iter().copied().collect(),
+            bias: bias.as_array().to_vec(),
+        });
         let mut model = like.get().0.clone();
         let Mlp { hidden, output, .. } = model.mlp;
-        let mlp = Mlp::new(layers, hidden, output).map_err(|e| wrong(e.to_string()))?;
+        let mlp = Mlp::new(layers.collect(), hidden, output).map_err(|e| wrong(e.to_string()))?;
         if mlp != model.mlp {
             model.mlp = mlp;
             model.meta.losses = peelnet::model::Losses::default();
@@ -114,7 +94,9 @@ impl Model {
     #[pyo3(signature = (path, *, force=false))]
     fn save(&self, path: PathBuf, force: bool) -> PyResult<()> {
         if !is_remote(&path) {
-            may_write(&path, peelnet::model::KIND, force)?;
+            Outputs::new(("force=True", force), NO_INPUTS)
+                .file("path", &path, peelnet::model::KIND)
+                .map_err(raised)?;
         }
         peelnet::save_model(&self.0, path).map_err(raised)
     }
@@ -140,13 +122,10 @@ impl Model {
     }
 
     /// `weights()` as torch tensors; needs torch.
-    fn state_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let from_numpy = py.import("torch")?.getattr("from_numpy")?;
-        let state = PyDict::new(py);
-        for (name, array) in self.weights(py)? {
-            state.set_item(name, from_numpy.call1((array,))?)?;
-        }
-        Ok(state)
+    fn state_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let weights = self.weights(py)?;
+        let convert = py.import("peelnet._convert")?;
+        convert.call_method1("state_dict", (weights,))
     }
 
     /// The network's answers.
@@ -246,70 +225,11 @@ impl Model {
     }
 }
 
-/// A layer of a state dict.
-fn layer(state: &Bound<'_, PyAny>, index: usize) -> PyResult<Layer> {
-    let py = state.py();
-    let asarray = py.import("numpy")?.getattr("asarray")?;
-    let float32 = PyDict::new(py);
-    float32.set_item("dtype", "float32")?;
-    let array = |part: &str, axes: usize| -> PyResult<(Vec<usize>, Vec<f32>)> {
-        let name = format!("layers.{index}.{part}");
-        let mut value = state.get_item(&name)?;
-        if value.hasattr("detach")? {
-            value = value.call_method0("detach")?.call_method0("cpu")?;
-        }
-        let array = asarray.call((value,), Some(&float32))?;
-        let array: PyReadonlyArrayDyn<'_, f32> = array.extract()?;
-        if array.shape().len() != axes {
-            return Err(wrong(format!(
-                "{name} has {} axes instead of {axes}",
-                array.shape().len()
-            )));
-        }
-        Ok((
-            array.shape().to_vec(),
-            array.as_array().iter().copied().collect(),
-        ))
-    };
-    let (shape, weights) = array("weight", 2)?;
-    let (_, bias) = array("bias", 1)?;
-    Ok(Layer {
-        inputs: shape[1],
-        outputs: shape[0],
-        weights,
-        bias,
-    })
-}
+impl FromFile for Model {
+    const IS: &str = "a model is a Model or the path of its file";
 
-/// A model, or its file.
-pub enum ModelArg {
-    Loaded(Box<peelnet::Model>),
-    Path(PathBuf),
-}
-
-impl<'a, 'py> FromPyObject<'a, 'py> for ModelArg {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        if let Ok(model) = object.cast::<Model>() {
-            return Ok(Self::Loaded(Box::new(model.get().0.clone())));
-        }
-        let path = object.extract::<PathBuf>();
-        path.map(Self::Path)
-            .map_err(|_| PyTypeError::new_err("a model is a Model or the path of its file"))
-    }
-}
-
-impl ModelArg {
-    /// The model.
-    ///
-    /// # Errors
-    /// A file that does not load.
-    pub fn load(self) -> PyResult<peelnet::Model> {
-        match self {
-            Self::Loaded(model) => Ok(*model),
-            Self::Path(path) => peelnet::load_model(path).map_err(raised),
-        }
+    fn from_file(_: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Self::load(path)
     }
 }
 
@@ -328,30 +248,15 @@ impl ModelArg {
 #[pyo3(signature = (model, language="wgsl", *, precision="f32", verify=true, adapter="auto"))]
 pub fn export(
     py: Python<'_>,
-    model: ModelArg,
+    model: Argument<Model>,
     language: &str,
     precision: &str,
     verify: bool,
     adapter: &str,
 ) -> PyResult<String> {
-    let language = match language {
-        "wgsl" => Language::Wgsl,
-        "glsl-es" => Language::GlslEs,
-        "glsl" => Language::Glsl,
-        "hlsl" => Language::Hlsl,
-        "msl" => Language::Msl,
-        other => {
-            return Err(wrong(format!(
-                "language '{other}': there are wgsl, glsl-es, glsl, hlsl, msl"
-            )));
-        }
-    };
-    let precision = match precision {
-        "f32" => Precision::F32,
-        "f16" => Precision::F16,
-        other => return Err(wrong(format!("precision '{other}': there are f32, f16"))),
-    };
-    let model = model.load()?;
+    let language = named("language", LANGUAGES, language).map_err(wrong)?;
+    let precision = named("precision", PRECISIONS, precision).map_err(wrong)?;
+    let Model(model) = model.load(py)?;
     let options = Options {
         language,
         precision,

@@ -1,18 +1,19 @@
 //! Frames as numpy arrays.
 
 use crate::{
+    argument::Argument,
     failure::{failed, raised, warn, wrong},
     gpu,
-    model::ModelArg,
-    scene::{Camera, SceneArg},
-    watch::watch,
+    model::Model,
+    scene::{Camera, Scene},
+    watch::{Reporter, watch},
 };
 use numpy::{IntoPyArray as _, PyArray3, ndarray::Array3};
 use peelnet::{
-    Gpu, LearnedWeight, MethodOptions, MethodSpec, Model, Recipe, Renderer, export,
+    Failure, MethodOptions, MethodSpec, Renderer, model_for,
     render::{Frame, METHODS},
+    view_of, weight_of,
 };
-use peelnet_files::{counted, printable};
 use pyo3::prelude::*;
 
 /// The size of a frame, checked.
@@ -45,64 +46,6 @@ pub fn method(name: &str) -> PyResult<MethodSpec> {
     name.parse().map_err(raised)
 }
 
-/// A model's shader text, verified on the GPU.
-///
-/// # Errors
-/// A model that cannot be exported, or a text that computes something else.
-pub fn text_of(gpu: &Gpu, model: &Model) -> Result<LearnedWeight, export::ExportError> {
-    let wgsl = export::wgsl(model)?;
-    export::verify(gpu, model, &wgsl)?;
-    Ok(LearnedWeight {
-        recipe: model.meta.recipe,
-        wgsl,
-    })
-}
-
-/// The model that a method draws with: the one given, or the shipped one; none for a method that needs none.
-fn model_of(method: &MethodSpec, model: Option<ModelArg>) -> PyResult<Option<Model>> {
-    if !method.needs_model() {
-        return match model {
-            None => Ok(None),
-            Some(_) => Err(wrong(format!(
-                "method {} draws without a network; leave model out, or choose a learned method",
-                method.name()
-            ))),
-        };
-    }
-    let recipe = Recipe::of_method(method.name())
-        .ok_or_else(|| failed(format!("method {} belongs to no recipe", method.name())))?;
-    let model = match model {
-        None => Model::shipped(recipe).map_err(raised)?,
-        Some(model) => model.load()?,
-    };
-    if model.meta.recipe != recipe {
-        return Err(wrong(format!(
-            "the model's recipe is {}, but method {} draws with recipe {recipe}; use method {}",
-            model.meta.recipe,
-            method.name(),
-            model.meta.recipe.method
-        )));
-    }
-    Ok(Some(model))
-}
-
-fn draw(
-    gpu: &Gpu,
-    scene: &peelnet::Scene,
-    camera: &peelnet::Camera,
-    method: &MethodSpec,
-    model: Option<&Model>,
-    (size, samples): ([u32; 2], u32),
-) -> PyResult<Frame> {
-    let learned = model.map(|m| text_of(gpu, m)).transpose().map_err(raised)?;
-    let renderer = Renderer::new(gpu, scene).map_err(raised)?;
-    let options = MethodOptions::sized(size)
-        .sampled(samples)
-        .with(learned.as_ref());
-    let mut prepared = renderer.method(method, options).map_err(raised)?;
-    renderer.image(&mut prepared, camera).map_err(raised)
-}
-
 /// Draws one frame of a scene with one method.
 ///
 /// Args:
@@ -126,14 +69,14 @@ fn draw(
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn render<'py>(
     py: Python<'py>,
-    scene: SceneArg,
+    scene: Argument<Scene>,
     method: &str,
     size: (u32, u32),
     view: Option<u32>,
     camera: Option<Bound<'py, Camera>>,
     time: Option<f32>,
     samples: u32,
-    model: Option<ModelArg>,
+    model: Option<Argument<Model>>,
     dtype: &str,
     adapter: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -151,44 +94,22 @@ pub fn render<'py>(
     let scene = scene.scene;
     let camera = match (view, camera) {
         (Some(_), Some(_)) => return Err(wrong("view and camera exclude each other")),
-        (None, Some(camera)) => camera.get().0,
-        (view, None) => {
-            let view = view.unwrap_or(0);
-            *scene.views.get(view as usize).ok_or_else(|| {
-                let views = counted(scene.views.len() as u64, "view");
-                let name = printable(&scene.name);
-                wrong(format!("view {view}: {name} has {views}, numbered from 0"))
-            })?
-        }
+        (None, Some(camera)) => (*camera.get()).into(),
+        (view, None) => *view_of(&scene, view.unwrap_or(0)).map_err(raised)?,
     };
-    let model = model_of(&spec, model)?;
+    let given = model.map(|m| m.load(py)).transpose()?.map(|m| m.0);
+    let model = model_for(&spec, given).map_err(raised)?;
     let gpu = gpu::open(py, adapter)?;
-    let frame = watch(
-        py,
-        |_, _: &crate::watch::Reporter<()>| {
-            draw(
-                &gpu,
-                &scene,
-                &camera,
-                &spec,
-                model.as_ref(),
-                (size, samples),
-            )
-        },
-        |_, ()| Ok(()),
-    )??;
-    for (what, count) in [
-        ("fragment", frame.stats.lost),
-        ("pixel", frame.image.non_finite() as u64),
-    ] {
-        if count > 0 {
-            let why = if what == "pixel" {
-                "not finite"
-            } else {
-                "not in the image"
-            };
-            warn(py, &format!("{spec}: {why}: {}", counted(count, what)))?;
-        }
+    let draw = || -> Result<Frame, Failure> {
+        let learned = model.map(|m| weight_of(&gpu, &m)).transpose()?;
+        let renderer = Renderer::new(&gpu, &scene)?;
+        let options = MethodOptions::sized(size).sampled(samples);
+        let mut prepared = renderer.method(&spec, options.with(learned.as_ref()))?;
+        Ok(renderer.image(&mut prepared, &camera)?)
+    };
+    let frame = watch(py, |_, _: &Reporter<()>| draw(), |_, ()| Ok(()))?.map_err(raised)?;
+    for warning in frame.warnings() {
+        warn(py, &format!("{spec}: {warning}"))?;
     }
     let shape = (size[1] as usize, size[0] as usize, 4);
     array(py, shape, frame.image, dtype)

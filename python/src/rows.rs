@@ -1,10 +1,11 @@
 //! Fragments as rows: in memory as Arrow, or a dataset's folder.
 
 use crate::{
+    argument::{Arguments, FromFile},
     failure::{failed, raised, warn, wrong},
     gpu,
     render::sized,
-    scene::SceneArgs,
+    scene::{Scene, loaded},
     watch::{Bar, Reporter, watch},
 };
 use arrow_array::{
@@ -14,9 +15,9 @@ use arrow_array::{
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
 use numpy::{Element, IntoPyArray as _};
 use peelnet::{
-    Gpu, Scene,
+    Gpu,
     dataset::{self, Column, ColumnKind, FragmentBatch},
-    extract::{self, ExtractOptions, PeelError, Views, items},
+    extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, Views, items},
 };
 use peelnet_files::{counted, thousands};
 use pyo3::{
@@ -188,16 +189,13 @@ impl Rows {
 
 /// A dataset's folder: a whole one, or one that holds all shards of a run.
 #[pyclass(frozen, module = "peelnet")]
+#[derive(Clone)]
 pub struct Dataset {
     path: PathBuf,
-    dataset: dataset::Dataset,
+    pub dataset: dataset::Dataset,
 }
 
 impl Dataset {
-    pub fn inner(&self) -> &dataset::Dataset {
-        &self.dataset
-    }
-
     fn open(path: PathBuf) -> PyResult<Self> {
         let dataset = dataset::Dataset::open(&path).map_err(raised)?;
         Ok(Self { path, dataset })
@@ -208,7 +206,7 @@ impl Dataset {
 impl Dataset {
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| Self::open(path))
+        Self::from_file(py, path)
     }
 
     /// The folder.
@@ -273,45 +271,30 @@ impl Dataset {
 /// Rows of a batch that is read from a folder.
 const BATCH_ROWS: usize = 1 << 18;
 
-struct Told {
-    done: u64,
-    total: u64,
-    rows: u64,
-    seconds: f64,
-}
-
-impl Told {
-    fn show(&self, bar: &mut Bar<'_>) -> PyResult<()> {
-        let rate = self.rows as f64 / self.seconds.max(1e-3);
-        let (rows, rate) = (thousands(self.rows), thousands(rate as u64));
-        bar.set(
-            self.done,
-            self.total,
-            &format!("{rows} rows, {rate} rows/s"),
-        )
-    }
+fn show(bar: &mut Bar<'_>, progress: Progress) -> PyResult<()> {
+    let (done, total) = (progress.items_done, progress.items);
+    bar.set(done.into(), total.into(), &progress.text())
 }
 
 fn in_memory(
     gpu: &Gpu,
-    scenes: &[Scene],
+    scenes: &[peelnet::Scene],
     options: &ExtractOptions,
     stop: &AtomicBool,
-    reporter: &Reporter<Told>,
+    reporter: &Reporter<Progress>,
 ) -> PyResult<Rows> {
     let start = Instant::now();
     let all = items::items(scenes, options.views, options.augment).map_err(raised)?;
+    let all = all.iter().map(|item| item.index);
     let mine: Vec<u32> = all
-        .iter()
-        .map(|item| item.index)
         .filter(|&i| options.shard.is_none_or(|s| s.contains(i)))
         .collect();
     let schema = schema();
     let (mut batches, mut rows) = (Vec::new(), 0);
     let say = |done: usize, rows: u64| {
-        reporter.say(Told {
-            done: done as u64,
-            total: mine.len() as u64,
+        reporter.say(Progress {
+            items_done: done as u32,
+            items: mine.len() as u32,
             rows,
             seconds: start.elapsed().as_secs_f64(),
         });
@@ -333,11 +316,7 @@ fn in_memory(
 
 enum Done {
     Rows(Rows),
-    /// How many fragments were left out, and whether the dataset in it is whole.
-    Folder {
-        lost: u64,
-        whole: bool,
-    },
+    Folder(Box<ExtractReport>),
 }
 
 /// Peels scenes: every transparent fragment of every pixel becomes a row.
@@ -366,7 +345,7 @@ enum Done {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn extract_rows<'py>(
     py: Python<'py>,
-    scenes: SceneArgs,
+    scenes: Arguments<Scene>,
     out: Option<PathBuf>,
     size: (u32, u32),
     views: Option<u32>,
@@ -406,7 +385,7 @@ pub fn extract_rows<'py>(
         command: "peelnet.extract of the Python package".to_owned(),
         ..ExtractOptions::new(out.clone().unwrap_or_default())
     };
-    let scenes = scenes.load(py)?;
+    let scenes = loaded(scenes, py)?;
     let gpu = gpu::open(py, adapter)?;
     let mut bar = Bar::new(progress)?;
     let result = watch(
@@ -415,36 +394,25 @@ pub fn extract_rows<'py>(
             if out.is_none() {
                 return in_memory(&gpu, &scenes, &options, stop, reporter).map(Done::Rows);
             }
-            let report = extract::extract(&gpu, &scenes, &options, stop, &mut |p| {
-                reporter.say(Told {
-                    done: p.items_done.into(),
-                    total: p.items.into(),
-                    rows: p.rows,
-                    seconds: p.seconds,
-                });
-            });
+            let mut say = |p: &Progress| reporter.say(*p);
+            let report = extract::extract(&gpu, &scenes, &options, stop, &mut say);
             let report = report.map_err(raised)?;
-            Ok(Done::Folder {
-                lost: report.lost,
-                whole: report.manifest.is_whole(),
-            })
+            Ok(Done::Folder(Box::new(report)))
         },
-        |_, told: Told| told.show(&mut bar),
+        |_, progress| show(&mut bar, progress),
     )
     .and_then(|result| result);
     match bar.close(result)? {
         Done::Rows(rows) => Ok(Bound::new(py, rows)?.into_any()),
-        Done::Folder { lost, whole } => {
-            if lost > 0 {
-                let lost = counted(lost, "fragment");
-                warn(
-                    py,
-                    &format!(
-                        "left out by {peel} peeling: {lost}; sbuffer peeling without max_passes keeps all"
-                    ),
-                )?;
+        Done::Folder(report) => {
+            if report.lost > 0 {
+                let lost = counted(report.lost, "fragment");
+                let text = format!(
+                    "left out by {peel} peeling: {lost}; sbuffer peeling without max_passes keeps all"
+                );
+                warn(py, &text)?;
             }
-            if !whole {
+            if !report.manifest.is_whole() {
                 return Ok(py.None().into_bound(py));
             }
             let dataset = py.detach(|| Dataset::open(options.out))?;
@@ -468,36 +436,10 @@ pub fn seal(py: Python<'_>, path: PathBuf) -> PyResult<Dataset> {
     })
 }
 
-/// A dataset, or its folder.
-pub enum DatasetArg {
-    Open(Box<dataset::Dataset>),
-    Path(PathBuf),
-}
+impl FromFile for Dataset {
+    const IS: &str = "data is a Dataset or a dataset's folder: extract(…, out=folder) makes one";
 
-impl<'a, 'py> FromPyObject<'a, 'py> for DatasetArg {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        if let Ok(dataset) = object.cast::<Dataset>() {
-            return Ok(Self::Open(Box::new(dataset.get().inner().clone())));
-        }
-        object.extract::<PathBuf>().map(Self::Path).map_err(|_| {
-            pyo3::exceptions::PyTypeError::new_err(
-                "data is a Dataset or a dataset's folder: extract(…, out=folder) makes one",
-            )
-        })
-    }
-}
-
-impl DatasetArg {
-    /// The dataset.
-    ///
-    /// # Errors
-    /// A folder that holds none.
-    pub fn open(self) -> PyResult<dataset::Dataset> {
-        match self {
-            Self::Open(dataset) => Ok(*dataset),
-            Self::Path(path) => dataset::Dataset::open(path).map_err(raised),
-        }
+    fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        py.detach(|| Self::open(path))
     }
 }

@@ -1,8 +1,11 @@
 //! Scenes and cameras.
 
-use crate::failure::{raised, warn};
+use crate::{
+    argument::{Arguments, FromFile},
+    failure::{raised, warn, wrong},
+};
 use peelnet::scene::suite;
-use pyo3::{exceptions::PyTypeError, prelude::*};
+use pyo3::prelude::*;
 use std::{
     collections::HashMap,
     io,
@@ -11,9 +14,48 @@ use std::{
 };
 
 /// A perspective camera. Lengths are in scene units, `fov_y_degrees` is the vertical field of view.
-#[pyclass(frozen, module = "peelnet")]
+#[pyclass(frozen, module = "peelnet", get_all)]
 #[derive(Clone, Copy)]
-pub struct Camera(pub peelnet::Camera);
+pub struct Camera {
+    /// Eye (x, y, z), scene units.
+    position: (f32, f32, f32),
+    /// Point looked at (x, y, z), scene units.
+    target: (f32, f32, f32),
+    /// Up direction (x, y, z), any length.
+    up: (f32, f32, f32),
+    /// Vertical field of view, degrees.
+    fov_y_degrees: f32,
+    /// Near clip distance, scene units.
+    near: f32,
+    /// Far clip distance, scene units.
+    far: f32,
+}
+
+impl From<peelnet::Camera> for Camera {
+    fn from(c: peelnet::Camera) -> Self {
+        Self {
+            position: c.position.into(),
+            target: c.target.into(),
+            up: c.up.into(),
+            fov_y_degrees: c.fov_y_degrees,
+            near: c.near,
+            far: c.far,
+        }
+    }
+}
+
+impl From<Camera> for peelnet::Camera {
+    fn from(c: Camera) -> Self {
+        Self {
+            position: c.position.into(),
+            target: c.target.into(),
+            up: c.up.into(),
+            fov_y_degrees: c.fov_y_degrees,
+            near: c.near,
+            far: c.far,
+        }
+    }
+}
 
 #[pymethods]
 impl Camera {
@@ -28,74 +70,38 @@ impl Camera {
         far: f32,
     ) -> PyResult<Self> {
         if !(fov_y_degrees > 0.0 && fov_y_degrees < 180.0) {
-            return Err(crate::failure::wrong(format!(
+            return Err(wrong(format!(
                 "fov_y_degrees: {fov_y_degrees} must lie between 0 and 180 degrees"
             )));
         }
         if !(near > 0.0 && near < far && far.is_finite()) {
-            return Err(crate::failure::wrong(format!(
+            return Err(wrong(format!(
                 "near {near} and far {far}: near must be above 0 and below far"
             )));
         }
         let numbers = position.iter().chain(&target).chain(&up);
         if !numbers.copied().all(f32::is_finite) || position == target {
-            return Err(crate::failure::wrong(
+            return Err(wrong(
                 "position, target and up must be finite, and position other than target",
             ));
         }
-        Ok(Self(peelnet::Camera {
+        Ok(Self {
             position: position.into(),
             target: target.into(),
             up: up.into(),
             fov_y_degrees,
             near,
             far,
-        }))
-    }
-
-    /// Eye (x, y, z), scene units.
-    #[getter]
-    fn position(&self) -> (f32, f32, f32) {
-        self.0.position.into()
-    }
-
-    /// Point looked at (x, y, z), scene units.
-    #[getter]
-    fn target(&self) -> (f32, f32, f32) {
-        self.0.target.into()
-    }
-
-    /// Up direction (x, y, z), any length.
-    #[getter]
-    fn up(&self) -> (f32, f32, f32) {
-        self.0.up.into()
-    }
-
-    /// Vertical field of view, degrees.
-    #[getter]
-    fn fov_y_degrees(&self) -> f32 {
-        self.0.fov_y_degrees
-    }
-
-    /// Near clip distance, scene units.
-    #[getter]
-    fn near(&self) -> f32 {
-        self.0.near
-    }
-
-    /// Far clip distance, scene units.
-    #[getter]
-    fn far(&self) -> f32 {
-        self.0.far
+        })
     }
 
     /// This camera, turned about `up` through its target by an angle in degrees.
     fn orbited(&self, degrees: f32) -> Self {
-        Self(self.0.orbited(degrees))
+        peelnet::Camera::from(*self).orbited(degrees).into()
     }
 
     fn __repr__(&self) -> String {
-        let c = &self.0;
+        let c = peelnet::Camera::from(*self);
         format!(
             "Camera({}, {}, up={}, fov_y_degrees={}, near={}, far={})",
             c.position, c.target, c.up, c.fov_y_degrees, c.near, c.far
@@ -202,7 +208,7 @@ impl Scene {
     /// The cameras of the scene's views.
     #[getter]
     fn views(&self) -> Vec<Camera> {
-        self.scene.views.iter().copied().map(Camera).collect()
+        self.scene.views.iter().map(|&c| c.into()).collect()
     }
 
     /// Number of triangles.
@@ -245,67 +251,21 @@ impl Scene {
     }
 }
 
-/// A scene, or what one is loaded from.
-pub enum SceneArg {
-    Loaded(Scene),
-    Path(PathBuf),
-}
+impl FromFile for Scene {
+    const IS: &str = "a scene is a Scene, a path, or the name of a shipped scene";
 
-impl<'a, 'py> FromPyObject<'a, 'py> for SceneArg {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        if let Ok(scene) = object.cast::<Scene>() {
-            return Ok(Self::Loaded(scene.get().clone()));
-        }
-        let path = object.extract::<PathBuf>();
-        path.map(Self::Path).map_err(|_| {
-            PyTypeError::new_err("a scene is a Scene, a path, or the name of a shipped scene")
-        })
+    fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Self::of(py, Origin::Path(path), None)
     }
 }
 
-impl SceneArg {
-    /// The scene.
-    ///
-    /// # Errors
-    /// One that does not load.
-    pub fn load(self, py: Python<'_>) -> PyResult<Scene> {
-        match self {
-            Self::Loaded(scene) => Ok(scene),
-            Self::Path(path) => Scene::of(py, Origin::Path(path), None),
-        }
-    }
-}
-
-/// One scene, or several.
-pub struct SceneArgs(Vec<SceneArg>);
-
-impl<'a, 'py> FromPyObject<'a, 'py> for SceneArgs {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        if let Ok(one) = object.extract::<SceneArg>() {
-            return Ok(Self(vec![one]));
-        }
-        let all: PyResult<Vec<SceneArg>> = object
-            .try_iter()
-            .map_err(|_| PyTypeError::new_err("scenes are a scene or a list of scenes"))?
-            .map(|item| item?.extract())
-            .collect();
-        all.map(Self)
-    }
-}
-
-impl SceneArgs {
-    /// The scenes.
-    ///
-    /// # Errors
-    /// The first that does not load.
-    pub fn load(self, py: Python<'_>) -> PyResult<Vec<peelnet::Scene>> {
-        let scenes = self.0.into_iter();
-        scenes.map(|s| Ok((*s.load(py)?.scene).clone())).collect()
-    }
+/// The scenes of an argument.
+///
+/// # Errors
+/// The first that does not load.
+pub fn loaded(scenes: Arguments<Scene>, py: Python<'_>) -> PyResult<Vec<peelnet::Scene>> {
+    let scenes = scenes.load(py)?.into_iter();
+    Ok(scenes.map(|s| Arc::unwrap_or_clone(s.scene)).collect())
 }
 
 /// The names of the scenes that ship, which `Scene(name)` loads.

@@ -1,28 +1,21 @@
 //! Training, with a callback each epoch.
 
 use crate::{
-    failure::{failed, raised, wrong},
-    model::{Model, may_write},
-    rows::DatasetArg,
+    argument::Arguments,
+    failure::{raised, wrong},
+    model::{Model, NO_INPUTS},
+    rows::Dataset,
     watch::{Bar, Reporter, watch},
 };
 use peelnet::{
-    Recipe,
-    dataset::{Dataset, SplitBy, is_remote},
-    train::{
-        CHECKPOINT_FILES, Config, CurveFormat, DEFAULT_BUFFER_ROWS, End, EpochReport, Outcome,
-        OutputLock, RunOptions, Schedule, Source, StreamedData, TrainingData, checkpoint_folder,
-        held_out_errors,
-    },
+    Recipe, SCHEDULES, SPLITS,
+    fit::{ModelPlace, Step, fit},
+    named,
+    train::{Config, DEFAULT_BUFFER_ROWS, EpochReport, RunOptions},
 };
-use peelnet_files::{error_line, shown, thousands};
-use pyo3::{exceptions::PyTypeError, prelude::*};
-use std::{
-    num::NonZeroUsize,
-    path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
-};
-use tempfile::TempDir;
+use peelnet_files::Outputs;
+use pyo3::prelude::*;
+use std::{num::NonZeroUsize, path::PathBuf};
 
 /// One finished epoch of a training.
 #[pyclass(frozen, module = "peelnet", get_all)]
@@ -90,99 +83,11 @@ impl Training {
     }
 }
 
-/// One dataset, or several.
-pub struct DatasetArgs(Vec<DatasetArg>);
-
-impl<'a, 'py> FromPyObject<'a, 'py> for DatasetArgs {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        let one = object.extract::<DatasetArg>();
-        if object.is_instance_of::<crate::rows::Rows>() {
-            return one.map(|one| Self(vec![one]));
-        }
-        if let Ok(one) = one {
-            return Ok(Self(vec![one]));
-        }
-        object
-            .try_iter()
-            .map_err(|_| PyTypeError::new_err("data is a Dataset, a folder, or a list of them"))?
-            .map(|item| item?.extract())
-            .collect::<PyResult<_>>()
-            .map(Self)
-    }
-}
-
-struct Run<'a> {
-    config: &'a Config,
-    datasets: Vec<DatasetArg>,
-    out: PathBuf,
-    resume: bool,
-    loss_curve: Vec<PathBuf>,
-    threads: Option<NonZeroUsize>,
-}
-
-fn fit(run: Run<'_>, stop: &AtomicBool, reporter: &Reporter<Epoch>) -> PyResult<Outcome> {
-    let datasets: Vec<Dataset> = run
-        .datasets
-        .into_iter()
-        .map(DatasetArg::open)
-        .collect::<PyResult<_>>()?;
-    let lock = OutputLock::take(&run.out).map_err(raised)?;
-    let (held, streamed);
-    let source: Source<'_> = if run.config.buffer_rows.is_some() {
-        let folder = checkpoint_folder(&run.out);
-        streamed = StreamedData::from_datasets(run.config, &datasets, &folder, stop, |_, _| ())
-            .map_err(raised)?;
-        (&streamed).into()
-    } else {
-        held = TrainingData::from_datasets(run.config, &datasets).map_err(raised)?;
-        (&held).into()
-    };
-    let mut options = RunOptions::new(&run.out, stop);
-    options.resume = run.resume;
-    options.loss_curve = run.loss_curve;
-    options.threads = run.threads;
-    options.lock = Some(&lock);
-    let ask = |e: &EpochReport| reporter.ask(e.into());
-    let mut outcome = peelnet::train::train(run.config, source, &options, ask).map_err(raised)?;
-    if outcome.end != End::Interrupted && !stop.load(Ordering::Relaxed) {
-        let held_out = held_out_errors(&outcome.model, &datasets).map_err(raised)?;
-        if !held_out.is_empty() {
-            outcome.model.meta.held_out = held_out;
-            outcome.model.save(&options.out).map_err(raised)?;
-        }
-    }
-    Ok(outcome)
-}
-
-/// Writes a model to an object store. Where that fails, the folder it was made in stays: hours of training are not lost with a connection.
-fn send(model: &peelnet::Model, place: &Path, made_in: Option<TempDir>) -> PyResult<()> {
-    peelnet::save_model(model, place).map_err(|e| match made_in {
-        Some(folder) => failed(format!(
-            "{}; the model is kept: {}",
-            error_line(&e),
-            shown(&folder.keep().join("model.safetensors"))
-        )),
-        None => raised(e),
-    })
-}
-
-fn schedule_of(name: &str) -> PyResult<Schedule> {
-    match name {
-        "constant" => Ok(Schedule::Constant),
-        "one-cycle" => Ok(Schedule::ONE_CYCLE),
-        other => Err(wrong(format!(
-            "schedule '{other}': there are constant, one-cycle"
-        ))),
-    }
-}
-
 /// Trains a network on datasets.
 ///
 /// Args:
 ///     data: A Dataset or its folder, or a list of them. Rows of scenes that are marked held-out are never trained on.
-///     recipe: "thesis", "small", "medium", "large", "nmt" or "dfaoit".
+///     recipe: "thesis", "small", "medium", "large", "anchored-small", "anchored-medium", "nmt" or "dfaoit".
 ///     out: The model file to write; its checkpoint is the folder `out + ".checkpoint"`, and nothing for an `s3://…`. Without `out`
 ///         nothing is kept.
 ///     epochs: Passes over the training rows.
@@ -214,7 +119,7 @@ fn schedule_of(name: &str) -> PyResult<Schedule> {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn train<'py>(
     py: Python<'py>,
-    data: DatasetArgs,
+    data: Arguments<Dataset>,
     recipe: &str,
     out: Option<PathBuf>,
     epochs: Option<u32>,
@@ -237,93 +142,66 @@ pub fn train<'py>(
     force: bool,
 ) -> PyResult<Training> {
     let recipe: Recipe = recipe.parse().map_err(|e: String| wrong(e))?;
-    let mut config = Config::for_recipe(recipe);
-    config.seed = seed;
-    config.epochs = epochs.unwrap_or(config.epochs);
-    config.batch = batch.unwrap_or(config.batch);
-    config.learning_rate = lr.unwrap_or(config.learning_rate);
-    config.schedule = schedule.map_or(Ok(config.schedule), schedule_of)?;
-    config.hidden = hidden.unwrap_or(config.hidden);
-    config.patience = patience.or(config.patience);
-    config.loss = loss.parse().map_err(|e: String| wrong(e))?;
-    config.max_rows = max_rows.unwrap_or(config.max_rows);
-    config.buffer_rows = stream.then(|| buffer_rows.unwrap_or(DEFAULT_BUFFER_ROWS));
-    config.split = match split {
-        "scene" => SplitBy::Scene,
-        "pixel" => SplitBy::Pixel,
-        other => return Err(wrong(format!("split '{other}': there are scene, pixel"))),
+    let defaults = Config::for_recipe(recipe);
+    let schedule = schedule.map(|name| named("schedule", SCHEDULES, name));
+    let config = Config {
+        seed,
+        epochs: epochs.unwrap_or(defaults.epochs),
+        batch: batch.unwrap_or(defaults.batch),
+        learning_rate: lr.unwrap_or(defaults.learning_rate),
+        schedule: schedule
+            .transpose()
+            .map_err(wrong)?
+            .unwrap_or(defaults.schedule),
+        hidden: hidden.unwrap_or(defaults.hidden),
+        patience: patience.or(defaults.patience),
+        loss: loss.parse().map_err(|e: String| wrong(e))?,
+        max_rows: max_rows.unwrap_or(defaults.max_rows),
+        buffer_rows: stream.then(|| buffer_rows.unwrap_or(DEFAULT_BUFFER_ROWS)),
+        split: named("split", SPLITS, split).map_err(wrong)?,
+        ..defaults
     };
     config.check().map_err(raised)?;
-    let (out, stored): (Option<PathBuf>, _) = match out {
-        Some(out) if is_remote(&out) => (None, Some(out)),
-        out => (out, None),
-    };
-    if let Some(stored) = &stored {
-        peelnet::check_model_place(stored).map_err(raised)?;
-    }
-    let scratch = match &out {
-        Some(out) => {
-            may_write(out, peelnet::model::KIND, force)?;
-            for (name, kind) in CHECKPOINT_FILES {
-                may_write(&checkpoint_folder(out).join(name), kind, force)?;
-            }
-            None
-        }
-        None if resume => {
-            return Err(wrong(
-                "resume needs out, a file beside which the checkpoint lies",
-            ));
-        }
-        None => Some(
-            tempfile::tempdir()
-                .map_err(|e| failed(format!("cannot create a temporary folder: {e}")))?,
-        ),
-    };
     let loss_curve = loss_curve.unwrap_or_default();
-    for path in &loss_curve {
-        may_write(path, CurveFormat::of(path).map_err(raised)?.kind(), force)?;
-    }
-    let path = match (&scratch, &out) {
-        (Some(folder), _) => folder.path().join("model.safetensors"),
-        (None, out) => out.clone().unwrap_or_default(),
-    };
-    let run = Run {
-        config: &config,
-        datasets: data.0,
-        out: path,
-        resume,
-        loss_curve,
-        threads,
-    };
+    let mut outputs = Outputs::new(("force=True", force), NO_INPUTS);
+    let names = ["out", "loss_curve", "resume"];
+    let place = ModelPlace::new(out.as_deref(), resume, &loss_curve, &mut outputs, names);
+    let place = place.map_err(raised)?;
+    let datasets = data.load(py)?.into_iter();
+    let datasets: Vec<_> = datasets.map(|d| d.dataset).collect();
     let mut bar = Bar::new(progress)?;
     let result = watch(
         py,
-        |stop, reporter| fit(run, stop, reporter),
-        |py, epoch: Epoch| {
-            let rate = thousands(epoch.rows_per_s as u64);
-            let held_out = epoch.held_out_loss;
-            let held_out = held_out.map_or_else(String::new, |l| format!(", held out {l:.6}"));
-            let text = format!("loss {:.6}{held_out}, {rate} rows/s", epoch.train_loss);
+        |stop, reporter: &Reporter<EpochReport>| {
+            let mut options = RunOptions::new(place.file(), stop);
+            options.resume = resume;
+            options.loss_curve = loss_curve;
+            options.threads = threads;
+            fit(&config, &datasets, &options, &mut |step| {
+                if let Step::Epoch(epoch) = step {
+                    reporter.ask(epoch.clone());
+                }
+            })
+        },
+        |py, epoch| {
+            let text = epoch.progress();
             bar.set(epoch.epoch.into(), epoch.epochs.into(), &text)?;
             match &callback {
-                Some(callback) => callback.call1((Bound::new(py, epoch)?,)).map(|_| ()),
+                Some(callback) => {
+                    let epoch = Bound::new(py, Epoch::from(&epoch))?;
+                    callback.call1((epoch,)).map(|_| ())
+                }
                 None => Ok(()),
             }
         },
     )
-    .and_then(|result| result);
+    .and_then(|result| result.map_err(raised));
     let outcome = bar.close(result)?;
-    if let Some(place) = &stored {
-        send(&outcome.model, place, scratch)?;
-    }
+    place.deliver(&outcome.model).map_err(raised)?;
     Ok(Training {
         model: Py::new(py, Model(outcome.model))?,
         history: outcome.history.iter().map(Epoch::from).collect(),
-        end: match outcome.end {
-            End::Finished => "finished",
-            End::StoppedEarly => "stopped-early",
-            End::Interrupted => "interrupted",
-        },
+        end: outcome.end.name(),
         model_epoch: outcome.model_epoch,
         resumed_from: outcome.resumed_from,
     })

@@ -1,22 +1,22 @@
 //! The commands and their flags. The names are fixed: scripts call them.
 
-mod seal;
 #[cfg(test)]
 mod tests;
-mod view;
 
-pub use seal::SealArgs;
-pub use view::ViewArgs;
-
-use crate::parse::{MethodList, Size, ViewCount, fraction, positive, samples};
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use peelnet_dataset::{Format, Shard};
+use crate::values::{fraction, methods, one_of, positive, samples, size, views};
+use clap::{Args, Parser, Subcommand};
+use peelnet::{LANGUAGES, PRECISIONS, SCHEDULES, SPLITS};
+use peelnet_dataset::{Format, Shard, SplitBy};
+use peelnet_export::{Language, Precision};
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
 use peelnet_peel::Peel;
-use peelnet_render::MethodSpec;
-use peelnet_train::PixelLoss;
+use peelnet_render::{LayerFormula, MethodSpec};
+use peelnet_train::{PixelLoss, Schedule};
 use std::path::PathBuf;
+
+/// A value that may be absent although its flag always has one, such as `all`.
+type OrAll<T> = Option<T>;
 
 /// Learned order-independent transparency: peel scenes, train a network on their fragments, export it as shader
 /// code, and draw with it.
@@ -120,8 +120,8 @@ pub struct RunArgs {
     #[arg(long)]
     pub full: bool,
     /// Frame size [default: 512x384, with --full 1024x768]
-    #[arg(long, value_name = "WxH")]
-    pub size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
     /// Approximate number of rows to train on; pixels are sampled to reach it [default: 300000, with --full 1500000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub rows: Option<u64>,
@@ -160,11 +160,11 @@ pub struct ExtractArgs {
     #[arg(long, value_name = "DATASET")]
     pub out: PathBuf,
     /// Frame size in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x768")]
-    pub size: Size,
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
+    pub size: [u32; 2],
     /// Views of each scene
-    #[arg(long, value_name = "N|all", default_value = "all")]
-    pub views: ViewCount,
+    #[arg(long, value_name = "N|all", default_value = "all", value_parser = views)]
+    pub views: OrAll<u32>,
     /// File format: csv, parquet or npy
     #[arg(long, value_name = "FORMAT", default_value = "parquet")]
     pub format: Format,
@@ -191,6 +191,20 @@ pub struct ExtractArgs {
     pub resume: bool,
 }
 
+/// `peelnet seal`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet seal d
+  peelnet seal d --json | jq .hash
+
+Parts are written by peelnet extract --shard and --resume; whoever writes the last one seals the dataset. This command does it where that
+writer was stopped, and reports what is missing or wrong, with the part and its worker. A sealed dataset stays as it is.")]
+pub struct SealArgs {
+    /// The dataset
+    #[arg(value_name = "DATASET")]
+    pub dataset: PathBuf,
+}
+
 /// `peelnet train`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
@@ -206,7 +220,7 @@ pub struct TrainArgs {
     /// The model file to write, or its address; the checkpoint of a file is the folder MODEL.checkpoint
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
-    /// What to train: thesis, small, medium, large, nmt or dfaoit
+    /// What to train: thesis, small, medium, large, anchored-small, anchored-medium, nmt or dfaoit
     #[arg(long, value_name = "RECIPE", default_value = "thesis")]
     pub recipe: Recipe,
     /// Passes over the training rows [default: the recipe's]
@@ -222,8 +236,8 @@ pub struct TrainArgs {
     #[arg(long, value_name = "X", value_parser = positive)]
     pub lr: Option<f64>,
     /// Learning rate over the run: constant, or one cycle that rises for a fifth of the steps and falls to nothing [default: the recipe's]
-    #[arg(long, value_name = "SCHEDULE")]
-    pub schedule: Option<LearningSchedule>,
+    #[arg(long, value_name = "SCHEDULE", value_parser = one_of(SCHEDULES))]
+    pub schedule: Option<Schedule>,
     /// What small, medium and large minimise: image, contributions, weighted-transmittance or transmittance
     #[arg(long, value_name = "LOSS", default_value = "image")]
     pub loss: PixelLoss,
@@ -247,53 +261,11 @@ pub struct TrainArgs {
     #[arg(long, value_name = "N", requires = "stream", default_value_t = peelnet_train::DEFAULT_BUFFER_ROWS)]
     pub buffer_rows: u64,
     /// What stays together when rows are set aside for testing: scenes (one scene alone is split by pixel), or pixels of all scenes alike
-    #[arg(long, value_name = "BY", default_value = "scene")]
-    pub split: SplitChoice,
+    #[arg(long, value_name = "BY", default_value = "scene", value_parser = one_of(SPLITS))]
+    pub split: SplitBy,
     /// Stop after N epochs without a lower held-out loss and keep the best
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub patience: Option<u32>,
-}
-
-/// What stays together when rows are set aside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SplitChoice {
-    /// Whole scenes
-    Scene,
-    /// Whole pixels
-    Pixel,
-}
-
-/// How a learning rate changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LearningSchedule {
-    /// Not at all
-    Constant,
-    /// Up, and down to nothing
-    OneCycle,
-}
-
-/// Languages of exported shaders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Lang {
-    /// WebGPU
-    Wgsl,
-    /// GLSL ES 3.00: WebGL 2
-    GlslEs,
-    /// GLSL 4.50: OpenGL, Vulkan
-    Glsl,
-    /// Shader model 6.0: Direct3D
-    Hlsl,
-    /// Metal 2.4
-    Msl,
-}
-
-/// Precisions of exported shaders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Precision {
-    /// 32-bit floats
-    F32,
-    /// 16-bit floats
-    F16,
 }
 
 /// `peelnet export`.
@@ -311,11 +283,11 @@ pub struct ExportArgs {
     /// The shader file to write
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Shading language
-    #[arg(long, value_enum, default_value = "wgsl")]
-    pub lang: Lang,
-    /// Arithmetic of the function
-    #[arg(long, value_enum, default_value = "f32")]
+    /// Shading language: WebGPU's WGSL, GLSL ES 3.00 (WebGL 2), GLSL 4.50 (OpenGL, Vulkan), HLSL (shader model 6.0) or MSL (Metal 2.4)
+    #[arg(long, default_value = "wgsl", value_parser = one_of(LANGUAGES))]
+    pub lang: Language,
+    /// Arithmetic of the function, 32-bit or 16-bit floats
+    #[arg(long, default_value = "f32", value_parser = one_of(PRECISIONS))]
     pub precision: Precision,
 }
 
@@ -327,6 +299,11 @@ const RENDER_EXAMPLES: &str = "Examples:
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
 A learned method without --model uses the shipped model.";
+
+const LAYER_FORMULAS: &[(&str, LayerFormula)] = &[
+    ("front", LayerFormula::Front),
+    ("printed", LayerFormula::Printed),
+];
 
 /// `peelnet render`.
 #[derive(Clone, Debug, Args)]
@@ -348,8 +325,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub view: u32,
     /// Frame size in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x768")]
-    pub size: Size,
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
+    pub size: [u32; 2],
     /// Samples a pixel: 1, or 4 where multisampling has them; each is composited by itself. A frame of 4 is drawn four times
     #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with = "highlight")]
     pub samples: u32,
@@ -362,18 +339,60 @@ pub struct RenderArgs {
     /// With --highlight: omit surfaces whose layer is not deeper than that of the surface in front, such as an object's far side
     #[arg(long, requires = "highlight")]
     pub increasing: bool,
-    /// With --highlight: which other surfaces are seen
-    #[arg(long, value_name = "FORMULA", value_enum, default_value_t = LayersChoice::Front, requires = "highlight")]
-    pub layers: LayersChoice,
+    /// With --highlight: which other surfaces are seen: those in front of it, which share half of the pixel, or all of them, by the formula
+    /// of the ageing renderer (2018) as it is printed
+    #[arg(long, value_name = "FORMULA", default_value = "front", value_parser = one_of(LAYER_FORMULAS), requires = "highlight")]
+    pub layers: LayerFormula,
 }
 
-/// Which surfaces are seen besides the highlighted one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LayersChoice {
-    /// Those in front of it share half of the pixel
-    Front,
-    /// All of them, by the formula of the ageing renderer (2018) as it is printed
-    Printed,
+/// `peelnet view`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:
+  peelnet view                                           a shipped scene; drop files of your own onto the window
+  peelnet view mesh.glb --method deep-large
+  peelnet view boxes-held --method deep-thesis --model m.safetensors     reads the file again while it is trained
+  peelnet view cups --method mboit4 --size 1280x800 --frames 10 --screenshot window.png
+  peelnet view cups --method mboit4 --size 640x480 --bare --screenshot picture.png
+  peelnet view foliage-held --method wboit-eq9 --compare error --against deep-medium
+
+The program has a viewer where it was built with it: cargo build --release --package peelnet --features view")]
+pub struct ViewArgs {
+    /// Scene file, mesh file, or name of a shipped scene
+    #[arg(value_name = "SCENE", default_value = "cups")]
+    pub scene: PathBuf,
+    /// How to draw at first; see render --help
+    #[arg(long, value_name = "METHOD", default_value = "deep-medium")]
+    pub method: MethodSpec,
+    /// Model file of a learned method; read again whenever it changes
+    #[arg(long, value_name = "MODEL")]
+    pub model: Option<PathBuf>,
+    /// Which view of the scene, from 0
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub view: u32,
+    /// Eye and target, and the field of view in degrees, in place of the view's own
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z[,DEGREES]", allow_hyphen_values = true)]
+    pub camera: Option<String>,
+    /// Time in the scene's timeline
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+    /// How two methods are compared at first: one, split, beside, flicker, error or layers
+    #[arg(long, value_name = "MODE", default_value = "one", value_parser = ["one", "split", "beside", "flicker", "error", "layers"])]
+    pub compare: String,
+    /// What the method is compared with
+    #[arg(long, value_name = "METHOD", default_value = "abuffer")]
+    pub against: MethodSpec,
+    /// Size of the window's content in pixels
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x800")]
+    pub size: [u32; 2],
+    /// The picture alone, without panels
+    #[arg(long)]
+    pub bare: bool,
+    /// For scripts: draw N frames and end
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub frames: Option<u64>,
+    /// For scripts: save what the window shows after the last frame, and end
+    #[arg(long, value_name = "FILE.png")]
+    pub screenshot: Option<PathBuf>,
 }
 
 /// `peelnet bench`.
@@ -421,8 +440,8 @@ pub struct BenchArgs {
     #[arg(long, conflicts_with_all = ["scaling", "effects", "redraw", "views", "resume"])]
     pub path: bool,
     /// Methods to compare, separated by commas; parameters follow a colon
-    #[arg(long, value_name = "all|A,B", default_value = "all")]
-    pub methods: MethodList,
+    #[arg(long, value_name = "all|A,B", default_value = "all", value_parser = methods)]
+    pub methods: OrAll<Vec<MethodSpec>>,
     /// Model files of learned methods, separated by commas
     #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',')]
     pub models: Vec<PathBuf>,
@@ -436,14 +455,14 @@ pub struct BenchArgs {
     )]
     pub frames: u32,
     /// Frame size in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x768")]
-    pub size: Size,
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
+    pub size: [u32; 2],
     /// Samples a pixel, 1 or 4, of all methods and of the exact image; a frame of 4 is drawn four times
     #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with_all = ["scaling", "effects"])]
     pub samples: u32,
     /// Views of each scene
-    #[arg(long, value_name = "N|all", default_value = "all")]
-    pub views: ViewCount,
+    #[arg(long, value_name = "N|all", default_value = "all", value_parser = views)]
+    pub views: OrAll<u32>,
     /// Resume an interrupted run with the same settings; finished views are not drawn again
     #[arg(long)]
     pub resume: bool,
@@ -461,8 +480,8 @@ Exit code 1 if a property fails that is not declared as a flaw on this adapter, 
 stress.csv, stress.md, stress.html, and pictures of what fails in images/.")]
 pub struct StressArgs {
     /// Methods, separated by commas; all means every method in every precision
-    #[arg(long, value_name = "all|A,B", default_value = "all")]
-    pub methods: MethodList,
+    #[arg(long, value_name = "all|A,B", default_value = "all", value_parser = methods)]
+    pub methods: OrAll<Vec<MethodSpec>>,
     /// Model files of learned methods, separated by commas; without --methods only these are judged
     #[arg(
         long,
@@ -507,11 +526,11 @@ pub struct RecommendArgs {
     /// Frame size in pixels, if measured now
     #[arg(
         long,
-        value_name = "WxH",
+        value_name = "WxH", value_parser = size,
         default_value = "1024x768",
         conflicts_with = "results"
     )]
-    pub size: Size,
+    pub size: [u32; 2],
     /// Timed frames per method and view, if measured now
     #[arg(
         long,

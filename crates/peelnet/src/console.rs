@@ -1,7 +1,7 @@
 //! Output: results to stdout, messages to stderr. Whatever is printed passes through here, so that no text from a file or an argument
 //! reaches a terminal unescaped.
 
-use crate::failure::Failure;
+use peelnet::Failure;
 use peelnet_files::{printable_json, printable_lines};
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -62,7 +62,7 @@ impl Console {
         };
         match written {
             Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Failure::Failed(format!("cannot write to stdout: {e}")))
+                Err(Failure::failed(format!("cannot write to stdout: {e}")))
             }
             _ => Ok(()),
         }

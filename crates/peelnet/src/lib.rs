@@ -69,10 +69,31 @@
 //! - `cli` (default): the program `peelnet` and what only it needs. Libraries turn default features off.
 //! - `train`: [`train`], and with it burn, which takes the longest to compile. Part of `cli`.
 
-pub mod cause;
-mod model_files;
+mod failure;
+#[cfg(feature = "train")]
+pub mod fit;
+mod names;
+mod networks;
 
-pub use model_files::{check_model_place, load_model, save_model};
+use peelnet_files::{counted, printable};
+
+pub use failure::Failure;
+#[cfg(feature = "train")]
+pub use names::SCHEDULES;
+pub use names::{LANGUAGES, PRECISIONS, SPLITS, named};
+pub use networks::{Compared, check_model_place, load_model, model_for, save_model, weight_of};
+
+/// A view of a scene, from 0.
+///
+/// # Errors
+/// A number that the scene does not have.
+pub fn view_of(scene: &Scene, view: u32) -> Result<&Camera, Failure> {
+    scene.views.get(view as usize).ok_or_else(|| {
+        let views = counted(scene.views.len() as u64, "view");
+        let name = printable(&scene.name);
+        Failure::wrong(format!("view {view}: {name} has {views}, numbered from 0"))
+    })
+}
 
 #[doc(inline)]
 pub use peelnet_gpu::{AdapterRequest, Gpu};

@@ -2,21 +2,18 @@
 //!
 //! [`cli`] declares the flags; every command is one file of [`commands`], which calls the libraries and prints.
 //! Results go to stdout and messages to stderr, both through [`console`]; progress bars ([`progress`]) show on a
-//! terminal only. Whatever fails becomes a [`failure::Failure`]: one line, and the exit code 1, or 2 for wrong
+//! terminal only. Whatever fails becomes a [`peelnet::Failure`]: one line, and the exit code 1, or 2 for wrong
 //! usage. A signal ends every command within two seconds ([`interrupt`]), and files are complete or absent. What a command writes is
-//! checked before it begins ([`outputs`]).
+//! checked before it begins ([`peelnet_files::Outputs`]).
 
 mod cli;
 mod commands;
 mod console;
-mod failure;
 mod interrupt;
-mod learned;
 mod methods_text;
-mod outputs;
-mod parse;
 mod progress;
 mod summary_text;
+mod values;
 
 use clap::Parser as _;
 use std::process::ExitCode;
@@ -41,7 +38,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             console::error(&failure.to_string());
-            ExitCode::from(failure.exit_code())
+            ExitCode::from(if failure.is_wrong_value { 2 } else { 1 })
         }
     };
     interrupt::exit_code(code)

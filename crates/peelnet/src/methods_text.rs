@@ -38,24 +38,3 @@ pub fn methods() -> String {
     line(6, SCALE.name, SCALE.about);
     text
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_method_has_its_line() {
-        let text = methods();
-        for method in METHODS {
-            let usage = method.usage();
-            let named = |l: &str| l.split_whitespace().next() == Some(&usage);
-            assert!(text.lines().any(named), "{usage}");
-        }
-        let words: Vec<&str> = text.split_whitespace().collect();
-        for parameter in METHODS.iter().flat_map(|m| m.parameters) {
-            let mut about = parameter.about().split_whitespace();
-            assert!(about.all(|word| words.contains(&word)), "{parameter:?}");
-        }
-        assert!(text.lines().all(|l| l.chars().count() <= WIDTH));
-    }
-}

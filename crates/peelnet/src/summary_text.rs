@@ -3,7 +3,7 @@
 use peelnet_dataset::Summary;
 use peelnet_dataset::summary::Bin;
 use peelnet_files::{Kind, printable, thousands};
-use std::fmt::Write as _;
+use std::fmt::Display;
 
 /// Characters of the longest bar of a histogram.
 const BAR: f64 = 40.0;
@@ -18,45 +18,49 @@ pub const KIND: Kind = Kind {
     },
 };
 
+/// Text of many lines.
+#[derive(Default)]
+pub struct Lines(pub String);
+
+impl Lines {
+    /// Adds a line.
+    pub fn line(&mut self, text: impl Display) {
+        self.0.push_str(&format!("{text}\n"));
+    }
+
+    /// Adds a line with a name before it.
+    pub fn field(&mut self, name: &str, value: impl Display) {
+        self.line(format_args!("{name:<11} {value}"));
+    }
+}
+
 /// The whole summary.
 pub fn summary_text(summary: &Summary) -> String {
-    let mut t = String::new();
-    let _ = writeln!(t, "rows        {}", thousands(summary.rows));
-    let _ = writeln!(t, "pixels      {}", thousands(summary.pixels));
-    let _ = writeln!(t, "hash        {}", summary.hash);
-    let _ = writeln!(
-        t,
-        "left out    {} fragments",
-        thousands(summary.lost_fragments)
+    let mut t = Lines::default();
+    t.field("rows", thousands(summary.rows));
+    t.field("pixels", thousands(summary.pixels));
+    t.field("hash", &summary.hash);
+    let lost = thousands(summary.lost_fragments);
+    t.field("left out", format!("{lost} fragments"));
+    let ties = thousands(summary.coplanar_ties);
+    t.field(
+        "coplanar",
+        format!("{ties} pairs of neighbouring fragments at one depth"),
     );
-    let _ = writeln!(
-        t,
-        "coplanar    {} pairs of neighbouring fragments at one depth",
-        thousands(summary.coplanar_ties)
-    );
-    t.push_str("\nscenes\n");
+    t.line("\nscenes");
     for scene in &summary.scenes {
         let held_out = if scene.held_out { "  (held out)" } else { "" };
-        let _ = writeln!(
-            t,
-            "  {:<28} {:>14} rows{held_out}",
-            printable(&scene.name),
-            thousands(scene.rows)
-        );
+        let (name, rows) = (printable(&scene.name), thousands(scene.rows));
+        t.line(format!("  {name:<28} {rows:>14} rows{held_out}"));
     }
     if !summary.columns.is_empty() {
-        t.push_str("\ncolumns                     smallest        largest\n");
-        for column in &summary.columns {
-            let _ = writeln!(
-                t,
-                "  {:<18} {:>15} {:>14}",
-                column.name,
-                figure(column.min),
-                figure(column.max)
-            );
-        }
+        t.line("\ncolumns                     smallest        largest");
     }
-    t.push_str("\nfragments per pixel\n");
+    for column in &summary.columns {
+        let (min, max) = (figure(column.min), figure(column.max));
+        t.line(format!("  {:<18} {min:>15} {max:>14}", column.name));
+    }
+    t.line("\nfragments per pixel");
     histogram(&mut t, &summary.fragments_per_pixel, "pixels", |bin| {
         if bin.from < bin.to {
             format!("{:.0}–{:.0}", bin.from, bin.to)
@@ -64,41 +68,37 @@ pub fn summary_text(summary: &Summary) -> String {
             format!("{:.0}", bin.from)
         }
     });
-    t.push_str("\nalpha\n");
+    t.line("\nalpha");
     histogram(&mut t, &summary.alpha, "rows", |bin| {
         format!("{:.2}–{:.2}", bin.from, bin.to)
     });
-    t.push_str("\nchecks\n");
+    t.line("\nchecks");
     for check in &summary.checks {
-        let verdict = if check.violations == 0 {
-            "holds".to_owned()
-        } else {
-            format!("VIOLATED by {} rows", thousands(check.violations))
+        let verdict = match check.violations {
+            0 => "holds".to_owned(),
+            n => format!("VIOLATED by {} rows", thousands(n)),
         };
-        let _ = writeln!(
-            t,
+        t.line(format!(
             "  {:<16} {verdict}: {} (worst {}, {:.2} of the tolerance)",
             check.name,
             check.formula,
             figure(check.worst),
             check.worst_ratio
-        );
+        ));
     }
     if summary.parts_not_checked > 0 {
-        let _ = writeln!(
-            t,
+        t.line(format!(
             "  {} parts were not checked, because peeling left fragments out of them",
             summary.parts_not_checked
-        );
+        ));
     }
     for v in &summary.violations {
-        let _ = writeln!(
-            t,
+        t.line(format!(
             "  {} row {}: {} is {}, recomputed {} (tolerance {:.1e})",
             v.file, v.row, v.check, v.found, v.expected, v.tolerance
-        );
+        ));
     }
-    t
+    t.0
 }
 
 /// A number in at most ten characters or so.
@@ -112,19 +112,16 @@ fn figure(v: f64) -> String {
     }
 }
 
-fn histogram(t: &mut String, bins: &[Bin], unit: &str, label: impl Fn(&Bin) -> String) {
+fn histogram(t: &mut Lines, bins: &[Bin], unit: &str, label: impl Fn(&Bin) -> String) {
     let most = bins.iter().map(|b| b.count).max().unwrap_or(0).max(1) as f64;
     // Empty bins at both ends are left out.
     let first = bins.iter().position(|b| b.count > 0).unwrap_or(0);
     let last = bins.iter().rposition(|b| b.count > 0).map_or(0, |k| k + 1);
     for bin in &bins[first..last.max(first)] {
         let bar = "#".repeat((bin.count as f64 / most * BAR).ceil() as usize);
-        let line = format!(
-            "  {:>12} {:>14} {unit}  {bar}",
-            label(bin),
-            thousands(bin.count)
-        );
-        let _ = writeln!(t, "{}", line.trim_end());
+        let (label, count) = (label(bin), thousands(bin.count));
+        let line = format!("  {label:>12} {count:>14} {unit}  {bar}");
+        t.line(line.trim_end());
     }
 }
 
@@ -134,35 +131,23 @@ mod tests {
 
     #[test]
     fn histograms_leave_empty_ends_out() {
-        let bin = |from: f64, count| Bin {
-            from,
-            to: from,
-            count,
-        };
-        let mut t = String::new();
-        histogram(
-            &mut t,
-            &[
-                bin(1.0, 0),
-                bin(2.0, 4),
-                bin(3.0, 0),
-                bin(4.0, 1),
-                bin(5.0, 0),
-            ],
-            "pixels",
-            |b| format!("{:.0}", b.from),
-        );
-        assert_eq!(t.lines().count(), 3, "{t}");
-        assert!(t.contains(&"#".repeat(40)), "{t}");
-        let mut nothing = String::new();
-        histogram(&mut nothing, &[], "pixels", |_| String::new());
-        assert_eq!(nothing, "");
+        for (counts, lines) in [(&[0, 4, 0, 1, 0][..], 3), (&[], 0)] {
+            let bin = |(from, &count): (u8, &u64)| Bin {
+                from: from.into(),
+                to: from.into(),
+                count,
+            };
+            let bins: Vec<Bin> = (1..).zip(counts).map(bin).collect();
+            let mut t = Lines::default();
+            histogram(&mut t, &bins, "pixels", |b| figure(b.from));
+            assert_eq!(t.0.lines().count(), lines, "{}", t.0);
+            assert_eq!(t.0.contains(&"#".repeat(40)), lines > 0, "{}", t.0);
+        }
     }
 
     #[test]
     fn figures() {
-        assert_eq!(figure(12.0), "12");
-        assert_eq!(figure(0.25), "0.25000");
-        assert_eq!(figure(1.5e-8), "1.500e-8");
+        let found = [12.0, 0.25, 1.5e-8].map(figure);
+        assert_eq!(found, ["12", "0.25000", "1.500e-8"]);
     }
 }

@@ -27,20 +27,6 @@ fn pixels(path: &Path) -> image::RgbaImage {
     image::open(path).unwrap().into_rgba8()
 }
 
-/// Every example has a test here.
-#[test]
-fn every_example_is_run() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    let tested = include_str!("examples.rs");
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() || path.extension().is_some_and(|e| e == "rs") {
-            let name = path.file_stem().unwrap().to_str().unwrap();
-            assert!(tested.contains(&format!("example(\"{name}\"")), "{name}");
-        }
-    }
-}
-
 #[test]
 fn a_gltf_file_is_drawn() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,138 +3,104 @@
 
 mod common;
 
-use common::SCENE as ONE_VIEW;
+use common::{Folder, SCENE};
 use serde_json::Value;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 /// Two views of the scene.
 fn scene() -> String {
-    format!("{ONE_VIEW}[orbit]\nviews = 2\n")
+    format!("{SCENE}[orbit]\nviews = 2\n")
 }
 
-fn command(line: &str, worker: &str, folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_peelnet"));
-    command.args(line.split_whitespace()).current_dir(folder);
-    command.args(["--json", "--adapter", "software"]);
+fn command(folder: &Folder, line: &str, worker: &str) -> Command {
+    let mut command = folder.command(&format!("{line} --json --adapter software"));
     command.env("PEELNET_WORKER", worker);
-    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
-    }
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 
-fn json(output: &Output) -> Value {
+fn run(folder: &Folder, line: &str, worker: &str) -> Value {
+    let output = command(folder, line, worker).output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{text}");
+    assert!(output.status.success(), "{line}: {text}");
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn run(line: &str, worker: &str, folder: &Path) -> Value {
-    json(&command(line, worker, folder).output().unwrap())
-}
-
-fn fails(line: &str, worker: &str, folder: &Path) -> String {
-    let output = command(line, worker, folder).output().unwrap();
+/// An error with these words in it.
+fn fails(folder: &Folder, line: &str, worker: &str, words: &[&str]) {
+    let output = command(folder, line, worker).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{line}");
-    assert!(output.stdout.is_empty(), "{line}");
-    String::from_utf8(output.stderr).unwrap()
-}
-
-fn has(message: &str, words: &[&str]) {
+    let text = String::from_utf8(output.stderr).unwrap();
+    let errors = text.lines().filter(|l| l.starts_with("error"));
+    assert_eq!(errors.count(), 1, "{line}: {text}");
     for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
+        assert!(text.contains(word), "{line}: {word:?} is not in: {text}");
     }
 }
 
 /// Shards of two processes at once, the same scene under another path, another number of shards for what is missing: one hash.
 #[test]
 fn shards_of_processes_are_the_whole() {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = dir.path();
-    std::fs::write(folder.join("s.toml"), scene()).unwrap();
-    std::fs::create_dir(folder.join("elsewhere")).unwrap();
-    std::fs::write(folder.join("elsewhere/s.toml"), scene()).unwrap();
+    let folder = Folder::new(&[("s.toml", &scene()), ("elsewhere/s.toml", &scene())]);
     let line = "extract s.toml --size 32x24 --augment 2 --out";
-    let whole = run(&format!("{line} whole"), "one", folder);
-    assert_eq!(whole["sealed"], true);
-    let parts = whole["parts"].as_u64().unwrap();
-    assert!(parts >= 6, "{parts} parts");
-
+    let whole = run(&folder, &format!("{line} whole"), "one");
+    assert_eq!(
+        (&whole["sealed"], &whole["parts"]),
+        (&true.into(), &6.into())
+    );
     let moved = line.replace("s.toml", "elsewhere/s.toml");
-    let children: Vec<_> = [(line, 1), (&moved, 2)]
-        .into_iter()
-        .map(|(line, k)| {
-            command(
-                &format!("{line} d --shard {k}/3"),
-                &format!("node-{k}"),
-                folder,
-            )
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
+    let children = [(line, 1), (&moved, 2)].map(|(line, k)| {
+        let line = format!("{line} d --shard {k}/3");
+        command(&folder, &line, &format!("node-{k}"))
             .spawn()
             .unwrap()
-        })
-        .collect();
+    });
     for child in children {
-        let answer = json(&child.wait_with_output().unwrap());
+        let output = child.wait_with_output().unwrap();
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(answer["sealed"], false);
     }
-    has(
-        &fails("inspect d", "one", folder),
-        &["2 of 6 parts are missing", "--resume", "peelnet seal"],
-    );
-    has(
-        &fails("seal d", "one", folder),
-        &["2 of 6 parts are missing"],
-    );
+    let missing = ["2 of 6 parts are missing", "--resume", "peelnet seal"];
+    fails(&folder, "inspect d", "one", &missing);
+    fails(&folder, "seal d", "one", &missing[..1]);
     // Without the third shard: what is missing is done by two others.
-    run(&format!("{line} d --shard 1/2"), "node-3", folder);
-    let last = run(&format!("{line} d --resume"), "node-4", folder);
+    run(&folder, &format!("{line} d --shard 1/2"), "node-3");
+    let last = run(&folder, &format!("{line} d --resume"), "node-4");
     assert_eq!(last["sealed"], true);
-    assert_eq!(last["hash"], whole["hash"]);
     assert!(last["parts_written"].as_u64().unwrap() <= 2);
-    let sealed = run("seal d", "one", folder);
-    assert_eq!(sealed["hash"], whole["hash"]);
+    let sealed = run(&folder, "seal d", "one");
     assert_eq!(sealed["rows"], whole["rows"]);
-    run("inspect d", "one", folder);
-    let nothing = run(&format!("{line} d --resume"), "node-5", folder);
+    run(&folder, "inspect d", "one");
+    let nothing = run(&folder, &format!("{line} d --resume"), "node-5");
     assert_eq!(nothing["parts_written"], 0);
-    assert_eq!(nothing["hash"], whole["hash"]);
+    for answer in [last, sealed, nothing] {
+        assert_eq!(answer["hash"], whole["hash"]);
+    }
 }
 
 #[test]
 fn another_command_line_is_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = dir.path();
-    std::fs::write(folder.join("s.toml"), scene()).unwrap();
-    run(
-        "extract s.toml --size 16x12 --out d --shard 1/2",
-        "node-a",
-        folder,
-    );
     let changed = scene().replace("[camera]", "# another text\n[camera]");
-    std::fs::write(folder.join("t.toml"), &changed).unwrap();
+    let folder = Folder::new(&[("s.toml", &scene()), ("t.toml", &changed)]);
+    let extract = "extract s.toml --size 16x12 --out d";
+    run(&folder, &format!("{extract} --shard 1/2"), "node-a");
     for (line, words) in [
         (
             "extract s.toml --size 16x16 --out d --shard 2/2",
             "size is 16x12",
         ),
+        (&format!("{extract} --seed 9 --resume"), "seed is 1"),
         (
-            "extract s.toml --size 16x12 --seed 9 --out d --resume",
-            "seed is 1",
-        ),
-        (
-            "extract s.toml --size 16x12 --max-passes 2 --out d --resume",
+            &format!("{extract} --max-passes 2 --resume"),
             "limit of passes is all",
         ),
         (
-            "extract s.toml --size 16x12 --views 1 --out d --resume",
+            &format!("{extract} --views 1 --resume"),
             "list of cameras is",
         ),
         ("extract t.toml --size 16x12 --out d --resume", "scene 0 is"),
         (
-            "extract s.toml --size 16x12 --format npy --out d --shard 2/2",
+            &format!("{extract} --format npy --shard 2/2"),
             "format is parquet",
         ),
         (
@@ -142,42 +108,31 @@ fn another_command_line_is_refused() {
             "adapter class is software",
         ),
     ] {
-        let message = fails(line, "node-b", folder);
-        has(
-            &message,
-            &[words, "node-a", "node-b", "use the same command"],
-        );
-        assert_eq!(
-            message.lines().filter(|l| l.starts_with("error")).count(),
-            1
-        );
+        let words = [words, "node-a", "node-b", "use the same command"];
+        fails(&folder, line, "node-b", &words);
     }
     // Other paths, other words: the same plan.
-    std::fs::rename(folder.join("s.toml"), folder.join("t.toml")).unwrap();
-    let last = run(
-        "extract t.toml --seed 1 --out d --size 16x12 --shard 2/2",
-        "node-b",
-        folder,
-    );
-    assert_eq!(last["sealed"], true);
+    std::fs::rename(folder.at("s.toml"), folder.at("t.toml")).unwrap();
+    let line = "extract t.toml --seed 1 --out d --size 16x12 --shard 2/2";
+    assert_eq!(run(&folder, line, "node-b")["sealed"], true);
 }
 
 #[test]
 fn synthetic_lists_are_resumed() {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = dir.path();
+    let folder = Folder::new(&[]);
     let line = "extract --synthetic 3000 --seed 4 --out";
-    let whole = run(&format!("{line} a"), "one", folder);
-    run(&format!("{line} b --resume"), "one", folder);
-    let remove = |name: &str| std::fs::remove_file(folder.join("b").join(name)).unwrap();
-    remove("_peelnet/manifest.json");
-    remove("_peelnet/parts/00001.json");
-    remove("fragments-00001-synthetic-v1.parquet");
-    has(
-        &fails("train b --out m", "one", folder),
-        &["1 of 3 parts are missing", "the first is 1"],
-    );
-    let rest = run(&format!("{line} b --resume"), "two", folder);
+    let whole = run(&folder, &format!("{line} a"), "one");
+    run(&folder, &format!("{line} b --resume"), "one");
+    for name in [
+        "_peelnet/manifest.json",
+        "_peelnet/parts/00001.json",
+        "fragments-00001-synthetic-v1.parquet",
+    ] {
+        std::fs::remove_file(folder.at("b").join(name)).unwrap();
+    }
+    let missing = ["1 of 3 parts are missing", "the first is 1"];
+    fails(&folder, "train b --out m", "one", &missing);
+    let rest = run(&folder, &format!("{line} b --resume"), "two");
     assert_eq!(rest["parts_written"], 1);
     assert_eq!(rest["hash"], whole["hash"]);
 }

@@ -3,8 +3,7 @@
 
 mod common;
 
-use common::{SCENE, peelnet};
-use std::ffi::OsStr;
+use common::{Folder, SCENE};
 use std::process::Output;
 
 /// Clears a screen, starts lines that look like ours, and turns the writing direction, in every way a terminal knows.
@@ -15,10 +14,8 @@ fn assert_plain(output: &Output, what: &str) -> bool {
     let mut escaped = false;
     for stream in [&output.stdout, &output.stderr] {
         let text = String::from_utf8_lossy(stream);
-        let hidden = text
-            .chars()
-            .find(|c| (c.is_control() && *c != '\n') || matches!(c, '\u{202a}'..='\u{202e}'));
-        assert_eq!(hidden, None, "{what}: {text:?}");
+        let acts = |c: char| c.is_control() && c != '\n' || ('\u{202a}'..='\u{202e}').contains(&c);
+        assert!(!text.contains(acts), "{what}: {text:?}");
         escaped |= text.contains("\\u{1b}[2J") || text.contains("\\u001b[2J");
     }
     escaped
@@ -26,23 +23,22 @@ fn assert_plain(output: &Output, what: &str) -> bool {
 
 #[test]
 fn names_in_files_are_printed_escaped() {
-    let dir = tempfile::tempdir().unwrap();
-    let name = serde_json::to_string(HOSTILE)
-        .unwrap()
-        .replace('\u{9b}', "\\u009b");
-    let name = name
-        .replace('\u{85}', "\\u0085")
-        .replace('\u{202e}', "\\u202e");
-    let scene = SCENE.replace("\"two\"", &name);
-    let scene = scene.replace("[[object]]\n", &format!("[[object]]\nname = {name}\n"));
-    std::fs::write(dir.path().join("s.toml"), scene).unwrap();
+    let folder = Folder::new(&[]);
+    let escaped = |c: char| match c {
+        ' '..='~' => c.to_string(),
+        _ => format!("\\u{:04x}", u32::from(c)),
+    };
+    let name: String = HOSTILE.chars().map(escaped).collect();
+    let scene = SCENE.replace("\"two\"", &format!("\"{name}\""));
+    let named = format!("[[object]]\nname = \"{name}\"\n");
+    folder.write("s.toml", scene.replace("[[object]]\n", &named));
     let mut model = peelnet::Model::shipped(peelnet::Recipe::SMALL).unwrap();
     model.meta.tool_version = HOSTILE.to_owned();
     model.meta.held_out.insert(HOSTILE.to_owned(), 0.5);
     for input in &mut model.meta.inputs {
         input.unit = HOSTILE.to_owned();
     }
-    model.save(dir.path().join("m.safetensors")).unwrap();
+    model.save(folder.at("m.safetensors")).unwrap();
     for line in [
         "inspect s.toml",
         "inspect s.toml --json",
@@ -56,50 +52,34 @@ fn names_in_files_are_printed_escaped() {
         "bench s.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b --json",
         "export m.safetensors --out -",
     ] {
-        let arguments: Vec<&str> = line.split_whitespace().collect();
-        let output = peelnet(dir.path(), &arguments);
-        let shown = assert_plain(&output, line);
-        assert!(
-            shown || line.starts_with("render") || line.starts_with("extract"),
-            "{line}"
-        );
+        let shown = assert_plain(&folder.command(line).output().unwrap(), line);
+        let names_none = line.starts_with("render") || line.starts_with("extract");
+        assert!(shown || names_none, "{line}");
     }
-    for file in [
-        "b/report.html",
-        "b/table.md",
-        "b/results.json",
-        "b/results.csv",
-    ] {
-        let text = std::fs::read_to_string(dir.path().join(file)).unwrap();
-        let escape = text.find('\u{1b}').filter(|_| !file.ends_with(".csv"));
-        assert_eq!(escape, None, "{file}");
+    for file in ["b/report.html", "b/table.md", "b/results.json"] {
+        assert!(!folder.read(file).contains(&0x1b), "{file}");
     }
 }
 
 /// The names of files are whatever somebody called them.
 #[test]
 fn arguments_are_printed_escaped() {
-    let dir = tempfile::tempdir().unwrap();
+    let folder = Folder::new(&[]);
     for before in [
-        &["render"][..],
-        &["inspect"],
-        &["export", "--out", "w.wgsl"],
-        &["train", "--out", "m"],
-        &["render", "s", "--out", "a.png", "--method"],
-        &["extract", "s", "--out", "d", "--format"],
-        &["stress", "--cases"],
-        &["doctor", "--adapter"],
+        "render --out a.png",
+        "inspect",
+        "export --out w.wgsl",
+        "train --out m",
+        "render s --out a.png --method",
+        "extract s --out d --format",
+        "stress --cases",
+        "doctor --adapter",
     ] {
-        let arguments: Vec<&str> = before.iter().copied().chain([HOSTILE]).collect();
-        let mut arguments = arguments;
-        if before == ["render"] {
-            arguments.extend(["--out", "a.png"]);
-        }
-        let output = peelnet(dir.path(), &arguments);
-        assert!(!output.status.success(), "{before:?}");
+        let output = folder.command(before).arg(HOSTILE).output().unwrap();
+        assert!(!output.status.success(), "{before}");
         // The parser of arguments leaves out what it knows as colours.
-        let shown = assert_plain(&output, &format!("{before:?}"));
-        assert!(shown || before.len() > 3, "{before:?}");
+        let shown = assert_plain(&output, before);
+        assert!(shown || before.contains(" s "), "{before}");
     }
 }
 
@@ -107,58 +87,35 @@ fn arguments_are_printed_escaped() {
 #[cfg(unix)]
 #[test]
 fn paths_that_are_no_text_do_not_end_a_command() {
-    use std::os::unix::ffi::OsStrExt as _;
-    let dir = tempfile::tempdir().unwrap();
-    let odd = OsStr::from_bytes(b"caf\xe9");
-    let at = |ending: &str| {
-        let mut name = odd.to_owned();
-        name.push(ending);
-        name
+    use std::ffi::OsString;
+    use std::os::unix::ffi::OsStringExt as _;
+    let folder = Folder::new(&[]);
+    // In the lines here, `@` stands for it.
+    let odd = |word: &str| {
+        let parts: Vec<&[u8]> = word.split('@').map(str::as_bytes).collect();
+        OsString::from_vec(parts.join(&b"caf\xe9"[..]))
     };
     let scene = peelnet_data::find("cups").unwrap().text;
-    std::fs::write(dir.path().join(at(".toml")), scene).unwrap();
+    std::fs::write(folder.path().join(odd("@.toml")), scene).unwrap();
     let model = peelnet::Model::shipped(peelnet::Recipe::SMALL).unwrap();
-    model.save(dir.path().join(at(".safetensors"))).unwrap();
-    let [toml, network, image, shader, rows, trained] =
-        [".toml", ".safetensors", ".png", ".wgsl", "-d", "-m"].map(at);
-    let text = OsStr::new;
-    let lines: [&[&OsStr]; 6] = [
-        &[
-            text("render"),
-            &toml,
-            text("--size"),
-            text("8x8"),
-            text("--out"),
-            &image,
-        ],
-        &[text("export"), &network, text("--out"), &shader],
-        &[text("inspect"), &toml],
-        &[text("inspect"), &network],
-        &[
-            text("extract"),
-            text("--synthetic"),
-            text("300"),
-            text("--out"),
-            &rows,
-        ],
-        &[
-            text("train"),
-            &rows,
-            text("--epochs"),
-            text("1"),
-            text("--out"),
-            &trained,
-        ],
-    ];
-    for line in lines {
-        for json in [false, true] {
-            let more = json.then_some(text("--json"));
-            let arguments: Vec<&OsStr> = line.iter().copied().chain(more).collect();
-            let output = peelnet(dir.path(), &arguments);
+    model
+        .save(folder.path().join(odd("@.safetensors")))
+        .unwrap();
+    for line in [
+        "render @.toml --size 8x8 --out @.png",
+        "export @.safetensors --out @.wgsl",
+        "inspect @.toml",
+        "inspect @.safetensors",
+        "extract --synthetic 300 --out @-d",
+        "train @-d --epochs 1 --out @-m",
+    ] {
+        for line in [line, &format!("{line} --json")] {
+            let words: Vec<OsString> = line.split(' ').map(odd).collect();
+            let output = folder.command_of(&words).output().unwrap();
             let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{arguments:?}: {said}");
+            assert!(output.status.success(), "{line}: {said}");
             let result = String::from_utf8_lossy(&output.stdout);
-            assert!(result.contains('\u{fffd}'), "{arguments:?}: {result}");
+            assert!(result.contains('\u{fffd}'), "{line}: {result}");
         }
     }
 }

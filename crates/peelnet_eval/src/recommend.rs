@@ -1,6 +1,9 @@
 //! The best method within a budget.
 
-use crate::front::Point;
+use crate::{
+    Row,
+    front::{Mean, Point, points},
+};
 
 /// What must hold; `None` sets no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +25,18 @@ pub struct Recommendation<'a> {
     pub runner_up: Option<&'a Point>,
     /// One sentence.
     pub why: String,
+}
+
+/// The points of a scene among the rows; where it is not among them those over all scenes, and a warning that says so.
+pub fn judged(rows: &[Row], scene: &str) -> (Vec<Point>, Option<String>) {
+    let own = points(rows, Some(scene), Mean::Geometric);
+    if !own.is_empty() {
+        return (own, None);
+    }
+    let warning = format!(
+        "scene '{scene}' is not among the results: judged by the geometric means over all scenes of them"
+    );
+    (points(rows, None, Mean::Geometric), Some(warning))
 }
 
 impl Budget {

@@ -101,7 +101,7 @@ pub enum ExportError {
     #[error("the description cannot be written as JSON: {0}")]
     Json(String),
     /// The GPU.
-    #[error(transparent)]
+    #[error("{0}")]
     Gpu(#[from] peelnet_gpu::GpuError),
     /// A language in which half floats need more than a text of functions.
     #[error(

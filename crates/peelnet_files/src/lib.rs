@@ -3,16 +3,15 @@
 //! arguments are shown without what they could do to a terminal or a shader ([`printable`]).
 
 mod input;
-mod kind;
 mod output;
 mod text;
-mod unfinished;
 
 pub use input::{check_size, open, read, read_head};
-pub use kind::{Kind, Standing};
-pub use output::{Destination, STDOUT, check_folder, destination, folder_of, write_whole};
+pub use output::{
+    Destination, Kind, Moving, Outputs, Refused, STDOUT, Standing, Unfinished, check_is_folder,
+    destination, folder_of, remove_unfinished, write_whole,
+};
 pub use text::{
     MAX_SHOWN, counted, error_line, hex, one_line, printable, printable_json, printable_lines,
     shown, thousands,
 };
-pub use unfinished::{Moving, Unfinished, remove_unfinished};

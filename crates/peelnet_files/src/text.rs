@@ -9,28 +9,15 @@ pub const MAX_SHOWN: usize = 200;
 /// what could move the cursor, end a line or hide text is escaped as `\u{…}`, and what follows the first
 /// [`MAX_SHOWN`] characters is left out with an ellipsis.
 pub fn printable(text: &str) -> Cow<'_, str> {
-    let is_short = text.len() <= MAX_SHOWN || text.chars().nth(MAX_SHOWN).is_none();
-    if is_short && !text.chars().any(is_hidden) {
-        return Cow::Borrowed(text);
+    match text.char_indices().nth(MAX_SHOWN) {
+        None => one_line(text),
+        Some((end, _)) => Cow::Owned(one_line(&text[..end]).into_owned() + "…"),
     }
-    let mut shown = String::new();
-    for c in text.chars().take(MAX_SHOWN) {
-        push(&mut shown, c);
-    }
-    if !is_short {
-        shown.push('…');
-    }
-    Cow::Owned(shown)
 }
 
 /// Text of any length for one line: what [`printable`] escapes is escaped, nothing is left out. For paths, and for cells of a table.
 pub fn one_line(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(is_hidden) {
-        return Cow::Borrowed(text);
-    }
-    let mut shown = String::new();
-    text.chars().for_each(|c| push(&mut shown, c));
-    Cow::Owned(shown)
+    escaped(text, |c| !is_hidden(c), |c| c.escape_unicode().to_string())
 }
 
 /// An error and its sources in one line. A source whose text its parent already contains is left out.
@@ -79,44 +66,39 @@ pub fn thousands(count: u64) -> String {
 
 /// Text of several lines with all that [`printable`] escapes escaped, but line ends: for whole messages, whose length is theirs to choose.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(|c| c != '\n' && is_hidden(c)) {
-        return Cow::Borrowed(text);
-    }
-    let mut shown = String::new();
-    for c in text.chars() {
-        if c == '\n' {
-            shown.push(c);
-        } else {
-            push(&mut shown, c);
-        }
-    }
-    Cow::Owned(shown)
+    escaped(text, is_shown_in_lines, |c| c.escape_unicode().to_string())
 }
 
 /// JSON with every such character escaped as JSON does: outside strings it holds none but line ends.
 pub fn printable_json(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(|c| c != '\n' && is_hidden(c)) {
+    escaped(text, is_shown_in_lines, |c| {
+        let units = c.encode_utf16(&mut [0; 2]).to_vec().into_iter();
+        units.map(|unit| format!("\\u{unit:04x}")).collect()
+    })
+}
+
+fn is_shown_in_lines(c: char) -> bool {
+    c == '\n' || !is_hidden(c)
+}
+
+/// A text in which all but some characters are replaced.
+fn escaped(
+    text: &str,
+    is_kept: impl Fn(char) -> bool,
+    escape: impl Fn(char) -> String,
+) -> Cow<'_, str> {
+    if text.chars().all(&is_kept) {
         return Cow::Borrowed(text);
     }
     let mut shown = String::new();
     for c in text.chars() {
-        if c != '\n' && is_hidden(c) {
-            for unit in c.encode_utf16(&mut [0; 2]) {
-                shown.push_str(&format!("\\u{unit:04x}"));
-            }
-        } else {
+        if is_kept(c) {
             shown.push(c);
+        } else {
+            shown.push_str(&escape(c));
         }
     }
     Cow::Owned(shown)
-}
-
-fn push(shown: &mut String, c: char) {
-    if is_hidden(c) {
-        shown.extend(c.escape_unicode());
-    } else {
-        shown.push(c);
-    }
 }
 
 /// Whether a character does something else than show itself: controls, separators of lines, marks of direction, and what has no width.

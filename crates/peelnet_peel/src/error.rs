@@ -5,16 +5,16 @@ use std::path::PathBuf;
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum PeelError {
     /// A scene, a frame, or the fragments of one.
-    #[error(transparent)]
+    #[error("{0}")]
     Raster(#[from] peelnet_raster::RasterError),
     /// Coloured transmission: rows hold one transmittance.
     #[error(
         "a dataset keeps one transmittance a fragment, and this scene's transmission is coloured: make transmission_color grey"
     )]
     Tinted,
-    #[error(transparent)]
+    #[error("{0}")]
     Gpu(#[from] peelnet_gpu::GpuError),
-    #[error(transparent)]
+    #[error("{0}")]
     Dataset(#[from] peelnet_dataset::DatasetError),
     #[error("no scene to extract")]
     NoScene,

@@ -10,6 +10,7 @@ use peelnet_dataset::{
     CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, PartInfo, SceneEntry,
     Shard, worker_name,
 };
+use peelnet_files::thousands;
 use peelnet_gpu::Gpu;
 use peelnet_raster::PixelSample;
 use peelnet_scene::{Camera, Census, Scene};
@@ -92,6 +93,15 @@ pub struct Progress {
     pub rows: u64,
     /// Seconds since the start.
     pub seconds: f64,
+}
+
+impl Progress {
+    /// What a progress bar says.
+    pub fn text(&self) -> String {
+        let rate = self.rows as f64 / self.seconds.max(1e-3);
+        let (rows, rate) = (thousands(self.rows), thousands(rate as u64));
+        format!("{rows} rows, {rate} rows/s")
+    }
 }
 
 /// What an extraction did.

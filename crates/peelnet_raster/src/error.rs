@@ -2,7 +2,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum RasterError {
     /// The GPU.
-    #[error(transparent)]
+    #[error("{0}")]
     Gpu(#[from] peelnet_gpu::GpuError),
     /// A shader did not link.
     #[error(transparent)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The GPU.
-    #[error(transparent)]
+    #[error("{0}")]
     Gpu(#[from] peelnet_gpu::GpuError),
     /// A shader did not link.
     #[error(transparent)]

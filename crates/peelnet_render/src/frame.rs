@@ -1,6 +1,7 @@
 //! What becomes of a frame: its image, its times and what the method reports.
 
 use crate::{image::Image, methods::compositor::FrameStats};
+use peelnet_files::counted;
 use peelnet_gpu::{record::PassTime, wgpu};
 use peelnet_raster::BACKGROUND_PASS;
 
@@ -15,6 +16,22 @@ pub struct Frame {
     pub stats: FrameStats,
     /// Clock time from the first command to the last result, read-back of the image not included.
     pub wall_micros: f64,
+}
+
+impl Frame {
+    /// What is wrong with the picture.
+    pub fn warnings(&self) -> Vec<String> {
+        let lost = counted(self.stats.lost, "fragment");
+        let not_finite = self.image.non_finite() as u64;
+        let odd = counted(not_finite, "pixel");
+        [
+            (self.stats.lost, format!("not in the image: {lost}")),
+            (not_finite, format!("not finite: {odd}")),
+        ]
+        .into_iter()
+        .filter_map(|(count, text)| (count > 0).then_some(text))
+        .collect()
+    }
 }
 
 /// A frame that was drawn for its time alone.

@@ -38,7 +38,7 @@ pub enum TrainError {
         value: f32,
     },
     /// The dataset could not be read.
-    #[error(transparent)]
+    #[error("{0}")]
     Dataset(#[from] peelnet_dataset::DatasetError),
     /// A loss curve has an ending that is neither `.csv` nor `.svg`.
     #[error("{}: a loss curve ends in .csv or .svg", .0.display())]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use peelnet_files::thousands;
 use peelnet_model::Model;
 
 /// One finished epoch.
@@ -23,6 +24,17 @@ pub struct EpochReport {
     pub best: bool,
 }
 
+impl EpochReport {
+    /// What a progress bar says of the epoch.
+    pub fn progress(&self) -> String {
+        let held_out = self
+            .held_out_loss
+            .map_or_else(String::new, |loss| format!(", held out {loss:.6}"));
+        let rate = thousands(self.rows_per_s as u64);
+        format!("loss {:.6}{held_out}, {rate} rows/s", self.train_loss)
+    }
+}
+
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
@@ -32,6 +44,17 @@ pub enum End {
     StoppedEarly,
     /// It was asked to stop. The checkpoint holds the last whole epoch; the model file was not written.
     Interrupted,
+}
+
+impl End {
+    /// Its name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::StoppedEarly => "stopped-early",
+            Self::Interrupted => "interrupted",
+        }
+    }
 }
 
 /// A run that ended without an error.

@@ -1,50 +1,62 @@
-//! `peelnet bench`: error against time for many methods.
+//! `peelnet bench`: error against time for many methods, and with its flags how that grows, what effects cost, and methods along a path.
 
-use super::{Context, bench_designs, bench_effects, bench_path};
+use super::{Context, bench_designs, command_line};
 use crate::cli::BenchArgs;
-use crate::failure::{Failure, one_line};
-use crate::learned;
-use crate::outputs::Outputs;
-use crate::parse::{MethodList, command_line, shown};
 use crate::progress::Bar;
+use peelnet::{Compared, Failure};
 use peelnet_eval::{
     EvalError, Machine, Partial,
-    bench::{self, Bench, bench_watched},
+    bench::{Bench, Progress, bench_watched},
     compare::Plan,
+    effects::{self, Effects},
     front::BASE,
+    path::{self, Along},
     scaling::{self, Scaling},
     settings_hash,
 };
+use peelnet_files::{Outputs, error_line, shown};
 use peelnet_gpu::Gpu;
-use peelnet_model::{Model, ModelError, Recipe};
-use peelnet_render::{LearnedWeight, MethodSpec};
+use peelnet_render::{LearnedWeight, MethodSpec, Role};
 use peelnet_report::Results;
-use peelnet_scene::Scene;
+use peelnet_scene::{Scene, suite};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+
+/// Effects are measured with it where no method is named: one pass, nothing that could hide what an effect costs.
+pub(super) const EFFECTS_METHOD: &str = Role::WeightedBlending.method();
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if !args.designs.is_empty() {
         return bench_designs::run(context, args);
     }
     if args.effects {
-        return bench_effects::run(context, args);
+        return measure_effects(context, args);
     }
     if args.scaling {
         return scale(context, args);
     }
     if args.path {
-        return bench_path::run(context, args);
+        return along_path(context, args);
     }
     let mut outputs = outputs(context, args, Results::<Bench>::FILES)?;
     outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
     let results = if args.redraw {
-        outputs.begin(&[])?;
+        context.begin(outputs, &[])?;
         read(&args.out)?
     } else {
         let scenes = context.scenes(&args.scenes)?;
-        outputs.begin(&scenes)?;
-        measure(context, args, &scenes, Some(&args.out))?
+        context.begin(outputs, &scenes)?;
+        let comparison = Comparison {
+            methods: args.methods.as_deref(),
+            models: &args.models,
+            size: args.size,
+            samples: args.samples,
+            views: args.views,
+            frames: args.frames,
+            out: Some(&args.out),
+            resume: args.resume,
+        };
+        comparison.measure(context, &scenes)?
     };
     results.write(&args.out)?;
     // Drawing older results again ends no interrupted run.
@@ -57,39 +69,41 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
 }
 
 /// The files and the pictures that a bench of any kind writes.
-///
-/// # Errors
-/// A foreign file among them, or a folder that cannot be written.
-pub(super) fn outputs<'a>(
-    context: &'a Context<'a>,
-    args: &BenchArgs,
-    files: &[&str],
-) -> Result<Outputs<'a>, Failure> {
-    let inputs = args.scenes.iter().chain(&args.models);
-    let mut outputs = Outputs::new(context, inputs);
-    outputs.results("--out", &args.out, files)?;
-    outputs.pictures("--out", &args.out.join("images"))?;
+fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Outputs, Failure> {
+    let mut outputs = context.outputs(args.scenes.iter().chain(&args.models));
+    context.results(&mut outputs, &args.out, files)?;
     Ok(outputs)
+}
+
+/// Shows the frames of a comparison on a bar, and warns of methods that are left out.
+pub(super) fn show<'a>(context: &'a Context<'_>, bar: &'a Bar) -> impl FnMut(Progress<'_>) + 'a {
+    move |event: Progress<'_>| match event {
+        Progress::Drawn {
+            done,
+            total,
+            scene,
+            method,
+        } => bar.set(done, total, format!("{scene} with {method}")),
+        Progress::LeftOut { scene, method, why } => context
+            .console
+            .warn(format!("{method} is left out of {scene}: {why}")),
+    }
 }
 
 /// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    outputs(context, args, Results::<Scaling>::FILES)?.begin(&[])?;
+    let outputs = outputs(context, args, Results::<Scaling>::FILES)?;
+    context.begin(outputs, &[])?;
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
-    let Chosen {
-        methods, learned, ..
-    } = chosen(context, &gpu, &args.methods, &args.models, one_of_each)?;
+    let named = args.methods.as_deref();
+    let (Compared { methods, .. }, learned) =
+        compared(context, &gpu, named, &args.models, one_of_each)?;
     let bar = Bar::new(context.console, "scaling", 0);
     let mut show = |done, total, method: &str| bar.set(done, total, method.to_owned());
-    let (rows, left_out) = scaling::measure(
-        &gpu,
-        &methods,
-        &learned,
-        args.frames,
-        context.stop,
-        &mut show,
-    )?;
+    let frames = args.frames;
+    let (rows, left_out) =
+        scaling::measure(&gpu, &methods, &learned, frames, context.stop, &mut show)?;
     drop(bar);
     let scaling = Scaling::new(rows, left_out);
     let results = Results::new(Machine::of(&gpu), command_line(), scaling);
@@ -99,73 +113,159 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         .result(|| results.table().plain(), || json!(results))
 }
 
-/// Compares as the arguments say; pictures and the rows of finished views go to `out`.
-///
-/// # Errors
-/// Whatever stopped it.
-pub(super) fn measure(
-    context: &Context<'_>,
-    args: &BenchArgs,
-    scenes: &[Scene],
-    out: Option<&Path>,
-) -> Result<Results<Bench>, Failure> {
+/// What effects cost.
+fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    let outputs = outputs(context, args, Results::<Effects>::FILES)?;
+    let scenes = if args.scenes.is_empty() {
+        context.shipped(suite::EFFECTS)?
+    } else {
+        context.scenes(&args.scenes)?
+    };
+    context.begin(outputs, &scenes)?;
+    let method = args.methods.iter().flatten().next().cloned();
+    let settings = effects::Settings {
+        method: method.map_or_else(|| EFFECTS_METHOD.parse(), Ok)?,
+        size: args.size,
+        frames: args.frames.max(1),
+    };
     let gpu = context.gpu()?;
-    let Chosen {
-        mut methods,
-        learned,
-        models,
-    } = chosen(
-        context,
-        &gpu,
-        &args.methods,
-        &args.models,
-        MethodSpec::compared,
-    )?;
-    // What times are ratios to.
-    let base: MethodSpec = BASE.parse()?;
-    if !methods.contains(&base) {
-        methods.push(base);
+    let bar = Bar::new(context.console, "effects", 0);
+    let mut done = 0;
+    let found = effects::measure(&gpu, &scenes, &settings, &args.out, context.stop, |what| {
+        done += 1;
+        bar.set(done, 0, what.to_owned());
+    })?;
+    drop(bar);
+    let results = Results::new(Machine::of(&gpu), command_line(), found);
+    results.write(&args.out)?;
+    let text = || {
+        let tables: Vec<String> = results.tables().map(|(_, table)| table.plain()).collect();
+        tables.join("\n")
+    };
+    context.console.result(text, || json!(results))
+}
+
+/// Methods along a camera path, with moving objects.
+fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+    if args.frames == 0 {
+        return Err(Failure::wrong("--frames 0: a path has at least one frame"));
     }
-    let images = out.map(|folder| folder.join("images"));
-    let plan = Plan {
-        size: args.size.0,
+    let outputs = outputs(context, args, Results::<Along>::FILES)?;
+    let scenes = context.scenes(&args.scenes)?;
+    context.begin(outputs, &scenes)?;
+    let gpu = context.gpu()?;
+    // A path costs as much as sixty views.
+    let named = args.methods.as_deref();
+    let (Compared { methods, .. }, learned) =
+        compared(context, &gpu, named, &args.models, one_of_each)?;
+    let images = args.out.join("images");
+    let settings = path::Settings {
+        size: args.size,
         samples: args.samples,
+        frames: args.frames,
         methods: &methods,
         learned: &learned,
-        models: &models,
-        lenient: matches!(args.methods, MethodList::All),
-        views: args.views.limit(),
-        frames: args.frames,
-        images: images.as_deref(),
+        lenient: args.methods.is_none(),
+        images: Some(&images),
     };
-    let settings = settings(&gpu, args, &plan, scenes);
-    let hash = settings_hash(&settings);
-    let partial = match out {
-        Some(folder) if args.resume => {
-            if let Some(finished) = finished(context, folder, &hash)? {
-                return Ok(finished);
-            }
-            Partial::resume(folder, settings)?
-        }
-        _ => Partial::new(out, settings),
-    };
-    let bar = Bar::new(context.console, "bench", 0);
-    let mut show = |event: bench::Progress<'_>| match event {
-        bench::Progress::Drawn {
-            done,
-            total,
-            scene,
-            method,
-        } => bar.set(done, total, format!("{scene} with {method}")),
-        bench::Progress::LeftOut { scene, method, why } => context
-            .console
-            .warn(format!("{method} is left out of {scene}: {why}")),
-    };
-    let mut measured = bench_watched(&gpu, scenes, &plan, partial, context.stop, &mut show)?;
-    measured.settings = Some(hash);
+    let bar = Bar::new(context.console, "path", 0);
+    let found = path::measure(
+        &gpu,
+        &scenes,
+        &settings,
+        context.stop,
+        &mut show(context, &bar),
+    )?;
     drop(bar);
     context.warn_of_memory(&gpu);
-    Ok(Results::new(Machine::of(&gpu), command_line(), measured))
+    let results = Results::new(Machine::of(&gpu), command_line(), found);
+    results.write(&args.out)?;
+    context
+        .console
+        .result(|| results.table().plain(), || json!(results))
+}
+
+/// What is compared, and how.
+pub(super) struct Comparison<'a> {
+    /// The methods, all without any.
+    pub(super) methods: Option<&'a [MethodSpec]>,
+    /// Model files of learned methods.
+    pub(super) models: &'a [PathBuf],
+    pub(super) size: [u32; 2],
+    pub(super) samples: u32,
+    pub(super) views: Option<u32>,
+    pub(super) frames: u32,
+    /// Where pictures and the rows of finished views go.
+    pub(super) out: Option<&'a Path>,
+    pub(super) resume: bool,
+}
+
+impl Comparison<'_> {
+    /// Compares the methods on scenes.
+    ///
+    /// # Errors
+    /// Whatever stopped it.
+    pub(super) fn measure(
+        &self,
+        context: &Context<'_>,
+        scenes: &[Scene],
+    ) -> Result<Results<Bench>, Failure> {
+        let gpu = context.gpu()?;
+        let every = MethodSpec::compared;
+        let (mut chosen, learned) = compared(context, &gpu, self.methods, self.models, every)?;
+        // What times are ratios to.
+        let base: MethodSpec = BASE.parse()?;
+        if !chosen.methods.contains(&base) {
+            chosen.methods.push(base);
+        }
+        let images = self.out.map(|folder| folder.join("images"));
+        let plan = Plan {
+            size: self.size,
+            samples: self.samples,
+            methods: &chosen.methods,
+            learned: &learned,
+            models: &chosen.models,
+            lenient: self.methods.is_none(),
+            views: self.views.map(|n| n as usize),
+            frames: self.frames,
+            images: images.as_deref(),
+        };
+        // What must be the same for an interrupted run to be resumed.
+        let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
+        let settings = json!({
+            "machine": Machine::of(&gpu),
+            "size": plan.size,
+            "samples": plan.samples,
+            "frames": plan.frames,
+            "views": plan.views,
+            "methods": names,
+            "models": plan.learned.iter().map(|l| &l.wgsl).collect::<Vec<_>>(),
+            "scenes": scenes.iter().map(|s| &s.hash).collect::<Vec<_>>(),
+        });
+        let hash = settings_hash(&settings);
+        let partial = match self.out {
+            Some(folder) if self.resume => {
+                if let Some(finished) = finished(context, folder, &hash)? {
+                    return Ok(finished);
+                }
+                Partial::resume(folder, settings)?
+            }
+            out => Partial::new(out, settings),
+        };
+        let bar = Bar::new(context.console, "bench", 0);
+        let mut measured = bench_watched(
+            &gpu,
+            scenes,
+            &plan,
+            partial,
+            context.stop,
+            &mut show(context, &bar),
+        )?;
+        drop(bar);
+        measured.settings = Some(hash);
+        context.warn_of_memory(&gpu);
+        Ok(Results::new(Machine::of(&gpu), command_line(), measured))
+    }
 }
 
 /// The results in a folder of a run with these settings that came to its end; nothing where no run ended there.
@@ -202,106 +302,38 @@ fn finished(
     Ok(Some(results))
 }
 
-/// What must be the same for an interrupted run to be resumed.
-fn settings(gpu: &Gpu, args: &BenchArgs, plan: &Plan<'_>, scenes: &[Scene]) -> serde_json::Value {
-    let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
-    json!({
-        "machine": Machine::of(gpu),
-        "size": plan.size,
-        "samples": plan.samples,
-        "frames": plan.frames,
-        "views": format!("{:?}", args.views),
-        "methods": names,
-        "models": plan.learned.iter().map(|l| &l.wgsl).collect::<Vec<_>>(),
-        "scenes": scenes.iter().map(|s| &s.hash).collect::<Vec<_>>(),
-    })
-}
-
-/// What is compared.
-pub(super) struct Chosen {
-    pub(super) methods: Vec<MethodSpec>,
-    /// Weights of the learned ones among them.
-    pub(super) learned: Vec<LearnedWeight>,
-    /// The models of those weights, those that were named first.
-    pub(super) models: Vec<Model>,
-}
-
 /// Every method with one setting, the first of its curve.
-pub(super) fn one_of_each() -> Vec<MethodSpec> {
+fn one_of_each() -> Vec<MethodSpec> {
     let mut all = MethodSpec::curve();
     all.dedup_by_key(|m| m.name());
     all
 }
 
-/// The methods to compare, with the models of the learned ones among them.
+/// The methods to compare, with the models of the learned ones among them and their texts; says which networks they are.
 ///
 /// # Errors
 /// A model that cannot be loaded or exported, two of one recipe, or a method that was named and has none.
-pub(super) fn chosen(
+pub(super) fn compared(
     context: &Context<'_>,
     gpu: &Gpu,
-    methods: &MethodList,
-    named: &[PathBuf],
-    every: impl Fn() -> Vec<MethodSpec>,
-) -> Result<Chosen, Failure> {
-    let mut models: Vec<Model> = Vec::new();
-    for path in named {
-        let model = peelnet::load_model(path)?;
-        if models.iter().any(|m| m.meta.recipe == model.meta.recipe) {
-            return Err(Failure::Usage(format!(
-                "--models: {} is a second model of recipe {}; one run compares one of each",
-                shown(path),
-                model.meta.recipe
-            )));
-        }
-        models.push(model);
-    }
-    let mut wanted = match methods {
-        MethodList::These(list) => list.clone(),
-        MethodList::All => every(),
-    };
-    let all = matches!(methods, MethodList::All);
-    let mut missing: Vec<&str> = Vec::new();
-    for recipe in Recipe::ALL {
-        let name = recipe.method;
-        if !wanted.iter().any(|m| m.name() == name)
-            || models.iter().any(|m| m.meta.recipe == recipe)
-        {
-            continue;
-        }
-        match Model::shipped(recipe) {
-            Ok(model) => models.push(model),
-            // Only what was named must be there.
-            Err(ModelError::NotShipped(_)) if all => missing.push(name),
-            Err(e) => return Err(e.into()),
-        }
-    }
-    if !missing.is_empty() {
-        wanted.retain(|m| !missing.contains(&m.name()));
+    named: Option<&[MethodSpec]>,
+    files: &[PathBuf],
+    every: impl FnOnce() -> Vec<MethodSpec>,
+) -> Result<(Compared, Vec<LearnedWeight>), Failure> {
+    let models = files.iter().map(peelnet::load_model);
+    let models = models.collect::<Result<_, _>>()?;
+    let compared = Compared::new(named.map(<[_]>::to_vec), models, every)?;
+    if !compared.left_out.is_empty() {
         context.console.warn(format!(
             "no model is shipped for {}: left out; name model files with --models",
-            missing.join(", ")
+            compared.left_out.join(", ")
         ));
     }
-    for model in &models {
-        let name = model.meta.recipe.method;
-        if !wanted.iter().any(|m| m.name() == name) {
-            wanted.push(name.parse()?);
-        }
+    for (k, model) in compared.models.iter().enumerate() {
+        context.say_network(model, files.get(k).map(PathBuf::as_path))?;
     }
-    for (k, model) in models.iter().enumerate() {
-        let file = named.get(k).map(PathBuf::as_path);
-        context.console.message(learned::about(model, file)?);
-    }
-    let learned = models
-        .iter()
-        .map(|model| learned::text_of(gpu, model))
-        .collect::<Result<_, _>>()?;
-    Ok(Chosen {
-        methods: wanted,
-        learned,
-        models,
-    })
+    let learned = compared.weights(gpu)?;
+    Ok((compared, learned))
 }
 
 /// A bench's `results.json`, or the folder that holds it.
@@ -315,9 +347,9 @@ pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
         path.to_owned()
     };
     Results::read(&file).map_err(|e| {
-        Failure::Failed(format!(
-            "{}; make it with: peelnet bench SCENE --out DIR",
-            one_line(&e)
+        let text = error_line(&e);
+        Failure::failed(format!(
+            "{text}; make it with: peelnet bench SCENE --out DIR"
         ))
     })
 }

@@ -1,11 +1,9 @@
 //! `peelnet bench --designs`: what designs of slabs are worth.
 
-use super::Context;
+use super::{Context, command_line, json_path};
 use crate::cli::BenchArgs;
-use crate::failure::Failure;
-use crate::outputs::Outputs;
-use crate::parse::{command_line, json_path, shown};
 use crate::progress::Bar;
+use peelnet::Failure;
 use peelnet_dataset::{Dataset, SplitBy};
 use peelnet_eval::{
     Machine,
@@ -14,7 +12,7 @@ use peelnet_eval::{
         View,
     },
 };
-use peelnet_files::{Unfinished, printable};
+use peelnet_files::{Unfinished, printable, shown};
 use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
 use peelnet_scene::Scene;
@@ -24,8 +22,8 @@ use std::collections::BTreeSet;
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let inputs = args.scenes.iter().chain(&args.designs);
-    let mut outputs = Outputs::new(context, inputs.chain(&args.designs_file));
-    outputs.results("--out", &args.out, Results::<Designs>::FILES)?;
+    let mut outputs = context.outputs(inputs.chain(&args.designs_file));
+    context.results(&mut outputs, &args.out, Results::<Designs>::FILES)?;
     let entries = match &args.designs_file {
         Some(path) => designs::read(path)?,
         None => designs::shipped()?,
@@ -35,22 +33,19 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         config.check()?;
     }
     let scenes = context.scenes(&args.scenes)?;
-    outputs.begin(&scenes)?;
-    let datasets = args
-        .designs
-        .iter()
-        .map(Dataset::open)
-        .collect::<Result<Vec<_>, _>>()?;
+    context.begin(outputs, &scenes)?;
+    let datasets = args.designs.iter().map(Dataset::open);
+    let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
     let trained_on = check_scenes(context, &scenes, &datasets)?;
     let gpu = context.gpu()?;
     let bar = Bar::new(context.console, "designs", entries.len() as u64);
     bar.set(0, entries.len() as u64, "peeling".to_owned());
-    let size = args.size.0;
-    let views = designs::peel(&gpu, &scenes, size, args.views.limit(), context.stop)?;
+    let most = args.views.map(|n| n as usize);
+    let views = designs::peel(&gpu, &scenes, args.size, most, context.stop)?;
     context.warn_of_memory(&gpu);
     let judge = Judge::new(&views)?;
     let scratch = tempfile::tempdir()
-        .map_err(|e| Failure::Failed(format!("cannot create a temporary folder: {e}")))?;
+        .map_err(|e| Failure::failed(format!("cannot create a temporary folder: {e}")))?;
     let _unfinished = Unfinished::new(scratch.path());
     let mut rows = Vec::new();
     for (k, (entry, config)) in entries.iter().zip(&configs).enumerate() {
@@ -58,21 +53,21 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         let data = TrainingData::from_datasets(config, &datasets)?;
         context.check_interrupt()?;
         if k == 0 {
-            super::train::warn_of_rows(context, &data, config);
+            super::train::warn_of_rows(context, data.used, config);
         }
         let options = RunOptions::new(scratch.path().join("model.safetensors"), context.stop);
         let outcome = train(config, &data, &options, |_| {})?;
         if outcome.end == End::Interrupted {
-            return Err(Failure::Interrupted);
+            return Err(Failure::failed(crate::interrupt::MESSAGE));
         }
         let examples = data.training_examples() as u64;
         // Two designs' examples are never in memory at once.
         drop(data);
         let measured = |model| -> Result<Score, Failure> {
             let measured = views.iter().map(|view| entry.measure(view, model));
-            let measured: Vec<Measured> = measured.collect();
+            let score = judge.score(&measured.collect::<Vec<_>>());
             context.check_interrupt()?;
-            Ok(judge.score(&measured))
+            Ok(score)
         };
         let (network, middle) = (measured(Some(&outcome.model))?, measured(None)?);
         rows.push(Row {
@@ -127,7 +122,7 @@ fn check_scenes(
         for part in manifest.parts.iter().filter(|p| !dataset.is_held_out(p)) {
             let name = &manifest.scenes[part.scene as usize].name;
             if scenes.iter().any(|scene| scene.name == *name) {
-                return Err(Failure::Usage(format!(
+                return Err(Failure::wrong(format!(
                     "--designs {}: the dataset holds scene '{}', which would judge what was trained on it; extract a dataset without it, or name \
                      another scene",
                     shown(dataset.path()),

@@ -1,11 +1,12 @@
 //! `peelnet doctor`: adapters, features, what will be used and why.
 
 use super::Context;
-use crate::failure::Failure;
+use crate::summary_text::Lines;
+use peelnet::Failure;
+use peelnet_files::error_line;
 use peelnet_gpu::adapter::{AdapterReport, INSTALL_HINT, report};
 use peelnet_gpu::{AdapterRequest, Gpu};
 use serde_json::json;
-use std::fmt::Write as _;
 
 pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {
     let adapters = report();
@@ -21,7 +22,7 @@ pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {
                 "arch": std::env::consts::ARCH,
                 "cores": std::thread::available_parallelism().map_or(1, usize::from),
                 "used": used,
-                "error": opened.as_ref().err().map(|e| crate::failure::one_line(e)),
+                "error": opened.as_ref().err().map(|e| error_line(e)),
                 "install": adapters.is_empty().then_some(INSTALL_HINT),
                 "adapters": adapters,
             })
@@ -32,64 +33,47 @@ pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {
 }
 
 fn text(adapters: &[AdapterReport], used: Option<&str>, request: &AdapterRequest) -> String {
-    let mut t = format!(
-        "peelnet {} on {} {}, {} cores\n",
+    let mut t = Lines::default();
+    t.line(format!(
+        "peelnet {} on {} {}, {} cores",
         env!("CARGO_PKG_VERSION"),
         std::env::consts::OS,
         std::env::consts::ARCH,
         std::thread::available_parallelism().map_or(1, usize::from)
-    );
+    ));
     if adapters.is_empty() {
-        let _ = writeln!(
-            t,
-            "\nno GPU adapter: no Vulkan driver is installed\n{INSTALL_HINT}"
-        );
-        return t;
+        t.line("\nno GPU adapter: no Vulkan driver is installed");
+        t.line(INSTALL_HINT);
     }
     for adapter in adapters {
         let is_used = used == Some(adapter.name.as_str());
-        let _ = writeln!(
-            t,
-            "\n{} {} ({}, {})",
-            if is_used { "*" } else { " " },
-            adapter.name,
-            adapter.kind,
-            adapter.backend
-        );
-        let _ = writeln!(t, "    driver            {}", adapter.driver);
+        let mark = if is_used { '*' } else { ' ' };
+        let (kind, backend) = (&adapter.kind, &adapter.backend);
+        t.line(format!("\n{mark} {} ({kind}, {backend})", adapter.name));
+        t.line(format!("    {:<17} {}", "driver", adapter.driver));
         let why = match (is_used, request) {
             (true, AdapterRequest::Auto) => format!("used: {}", adapter.why),
             (true, _) => "used: --adapter asks for it".to_owned(),
             (false, AdapterRequest::Auto) => format!("not used: {}", adapter.why),
             (false, _) => "not used: --adapter asks for another".to_owned(),
         };
-        let _ = writeln!(t, "    {why}");
-        let _ = writeln!(
-            t,
-            "    storage binding   {} MiB at most: larger frames are drawn in tiles",
-            adapter.max_storage_binding >> 20
+        t.line(format!("    {why}"));
+        let mut field = |name: &str, text: &str| t.line(format!("    {name:<17} {text}"));
+        let mebibytes = adapter.max_storage_binding >> 20;
+        field(
+            "storage binding",
+            &format!("{mebibytes} MiB at most: larger frames are drawn in tiles"),
         );
-        let _ = writeln!(
-            t,
-            "    largest frame     {} pixels a side",
-            adapter.max_texture_side
-        );
-        let _ = writeln!(
-            t,
-            "    features          {}",
-            or_none(&adapter.features.join(", "))
-        );
+        let side = adapter.max_texture_side;
+        field("largest frame", &format!("{side} pixels a side"));
+        let features = match adapter.features.join(", ") {
+            none if none.is_empty() => "none".to_owned(),
+            features => features,
+        };
+        field("features", &features);
         for missing in &adapter.missing {
-            let _ = writeln!(
-                t,
-                "    missing           {}: {}",
-                missing.name, missing.without
-            );
+            field("missing", &format!("{}: {}", missing.name, missing.without));
         }
     }
-    t
-}
-
-fn or_none(text: &str) -> &str {
-    if text.is_empty() { "none" } else { text }
+    t.0
 }

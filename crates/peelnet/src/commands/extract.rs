@@ -1,16 +1,14 @@
-//! `peelnet extract`: scenes into a dataset.
+//! `peelnet extract` and `peelnet seal`: scenes into a dataset.
 
-use super::Context;
-use crate::cli::ExtractArgs;
-use crate::failure::Failure;
-use crate::outputs::is_folder;
-use crate::parse::{ViewCount, command_line, json_path, shown};
+use super::{Context, command_line, json_path};
+use crate::cli::{ExtractArgs, SealArgs};
 use crate::progress::Bar;
+use peelnet::Failure;
 use peelnet_dataset::is_remote;
-use peelnet_files::{counted, printable, thousands};
+use peelnet_files::{check_is_folder, counted, printable, shown, thousands};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{
-    ExtractOptions, ExtractReport, Views, extract,
+    ExtractOptions, ExtractReport, Progress, Views, extract,
     synthetic::{SyntheticOptions, synthetic},
 };
 use peelnet_scene::Scene;
@@ -18,23 +16,32 @@ use serde_json::json;
 use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
-    if !is_remote(&args.out) {
-        is_folder("--out", &args.out)?;
+    let out = &args.out;
+    if !is_remote(out) {
+        check_is_folder("--out", out)?;
     }
-    if peelnet_dataset::replaces(&args.out, args.resume || args.shard.is_some())? {
-        context
-            .console
-            .message(format!("replacing {} (a dataset)", shown(&args.out)));
+    if peelnet_dataset::replaces(out, args.resume || args.shard.is_some())? {
+        let message = format!("replacing {} (a dataset)", shown(out));
+        context.console.message(message);
     }
-    let before = finished(&args.out);
-    let report = report(context, args).inspect_err(|_| hint(context, &args.out, before))?;
-    let folder = &args.out;
+    let (before, _) = finished(out);
+    let report = report(context, args).inspect_err(|_| {
+        // What stays of a run that failed, if it finished anything.
+        let (done, of) = finished(out);
+        if done > before {
+            context.console.message(format!(
+                "{}: {done} of {} stay; the same command with --resume writes the others",
+                shown(out),
+                counted(of.into(), "part")
+            ));
+        }
+    })?;
+    let m = &report.manifest;
     context.console.result(
-        || text(folder, &report),
+        || text(out, &report),
         || {
-            let m = &report.manifest;
             json!({
-                "out": json_path(folder),
+                "out": json_path(out),
                 "rows": m.rows,
                 "pixels": m.pixels,
                 "parts": m.parts.len(),
@@ -55,82 +62,76 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     )
 }
 
+/// Finished parts into one dataset.
+pub(super) fn seal(context: &Context<'_>, args: &SealArgs) -> Result<(), Failure> {
+    let m = peelnet_dataset::seal(&args.dataset)?;
+    let text = || {
+        format!(
+            "{}: sealed, {} of {} in {}, hash {}",
+            shown(&args.dataset),
+            counted(m.rows, "row"),
+            counted(m.pixels, "pixel"),
+            counted(m.parts.len() as u64, "part"),
+            m.hash
+        )
+    };
+    context.console.result(text, || {
+        json!({
+            "dataset": json_path(&args.dataset),
+            "rows": m.rows,
+            "pixels": m.pixels,
+            "parts": m.parts.len(),
+            "hash": m.hash,
+            "plan": m.plan,
+            "lost_fragments": m.lost_fragments,
+            "coplanar_ties": m.coplanar_ties,
+            "rows_by_scene": m.rows_by_scene(),
+            "adapter": m.adapter,
+        })
+    })
+}
+
 /// How many parts of a dataset that is not sealed are finished, and how many it will have.
 fn finished(folder: &Path) -> (u32, u32) {
     let parts = peelnet_dataset::unsealed_parts(folder);
     parts.ok().flatten().unwrap_or_default()
 }
 
-/// Says what stays of a run that failed, if it finished anything.
-fn hint(context: &Context<'_>, folder: &Path, before: (u32, u32)) {
-    let (done, of) = finished(folder);
-    if done > before.0 {
-        context.console.message(format!(
-            "{}: {done} of {} stay; the same command with --resume writes the others",
-            shown(folder),
-            counted(of.into(), "part")
-        ));
-    }
-}
-
 /// Peels, or makes lists up.
 fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Failure> {
     if let Some(lists) = args.synthetic {
-        make_up(
-            context,
-            &SyntheticOptions {
-                out: args.out.clone(),
-                lists,
-                format: args.format,
-                seed: args.seed,
-                resume: args.resume,
-                command: command_line(),
-            },
-        )
-    } else {
-        let scenes = context.scenes(&args.scenes)?;
-        let gpu = context.gpu()?;
-        let options = ExtractOptions {
+        let options = SyntheticOptions {
             out: args.out.clone(),
-            size: args.size.0,
-            views: match args.views {
-                ViewCount::All => Views::All,
-                ViewCount::First(n) => Views::First(n),
-            },
+            lists,
             format: args.format,
-            peel: args.peel,
-            max_passes: args.max_passes,
-            pixels: args.pixels,
-            augment: args.augment,
             seed: args.seed,
-            shard: args.shard,
             resume: args.resume,
             command: command_line(),
-            budget: None,
         };
-        peel(context, &gpu, &scenes, &options)
+        let bar = Bar::new(context.console, "synthetic", 1);
+        return Ok(synthetic(&options, context.stop, &mut |p| show(&bar, p))?);
     }
+    let scenes = context.scenes(&args.scenes)?;
+    let gpu = context.gpu()?;
+    let options = ExtractOptions {
+        size: args.size,
+        views: args.views.map_or(Views::All, Views::First),
+        format: args.format,
+        peel: args.peel,
+        max_passes: args.max_passes,
+        pixels: args.pixels,
+        augment: args.augment,
+        seed: args.seed,
+        shard: args.shard,
+        resume: args.resume,
+        command: command_line(),
+        ..ExtractOptions::new(&args.out)
+    };
+    peel(context, &gpu, &scenes, &options)
 }
 
-/// Generates lists with a progress bar.
-fn make_up(context: &Context<'_>, options: &SyntheticOptions) -> Result<ExtractReport, Failure> {
-    let bar = Bar::new(context.console, "synthetic", 1);
-    let report = synthetic(options, context.stop, &mut |p| show(&bar, p))?;
-    drop(bar);
-    Ok(report)
-}
-
-fn show(bar: &Bar, p: &peelnet_peel::Progress) {
-    let rate = p.rows as f64 / p.seconds.max(1e-3);
-    bar.set(
-        p.items_done.into(),
-        p.items.into(),
-        format!(
-            "{} rows, {} rows/s",
-            thousands(p.rows),
-            thousands(rate as u64)
-        ),
-    );
+fn show(bar: &Bar, p: &Progress) {
+    bar.set(p.items_done.into(), p.items.into(), p.text());
 }
 
 /// Peels with a progress bar, and warns of what peeling left out.
@@ -140,13 +141,14 @@ pub(super) fn peel(
     scenes: &[Scene],
     options: &ExtractOptions,
 ) -> Result<ExtractReport, Failure> {
-    context.console.message(format!(
-        "peeling {} at {}x{} on {}",
-        names(scenes),
-        options.size[0],
-        options.size[1],
-        gpu.info.name
-    ));
+    let names = match scenes {
+        [one] => format!("scene {}", printable(&one.name)),
+        many => counted(many.len() as u64, "scene"),
+    };
+    let [width, height] = options.size;
+    let adapter = &gpu.info.name;
+    let message = format!("peeling {names} at {width}x{height} on {adapter}");
+    context.console.message(message);
     let bar = Bar::new(context.console, "extract", 1);
     let report = extract(gpu, scenes, options, context.stop, &mut |p| show(&bar, p));
     drop(bar);
@@ -165,21 +167,18 @@ pub(super) fn peel(
 /// What an extraction did, in one line.
 pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
     let seconds = report.wall_micros / 1e6;
-    let lost = if report.lost > 0 {
-        format!(", LOST by peeling: {}", counted(report.lost, "fragment"))
-    } else {
-        String::new()
-    };
     let m = &report.manifest;
-    let whole = if m.is_whole() {
-        String::new()
-    } else {
-        format!(" of {} (not all are there yet)", m.work_items)
+    let whole = match m.is_whole() {
+        true => String::new(),
+        false => format!(" of {} (not all are there yet)", m.work_items),
     };
-    let written = if (report.parts as usize) < m.parts.len() {
-        format!(", {} written now", counted(report.parts.into(), "part"))
-    } else {
-        String::new()
+    let written = match (report.parts as usize) < m.parts.len() {
+        true => format!(", {} written now", counted(report.parts.into(), "part")),
+        false => String::new(),
+    };
+    let lost = match report.lost {
+        0 => String::new(),
+        n => format!(", LOST by peeling: {}", counted(n, "fragment")),
     };
     format!(
         "{}: {} of {} in {}{whole}{written}, {seconds:.1} s ({} rows/s, {:.1} s of GPU time), {}{lost}",
@@ -191,12 +190,4 @@ pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
         report.gpu_micros / 1e6,
         counted(report.coplanar, "coplanar pair"),
     )
-}
-
-/// The scenes for a message.
-fn names(scenes: &[Scene]) -> String {
-    match scenes {
-        [one] => format!("scene {}", printable(&one.name)),
-        many => counted(many.len() as u64, "scene"),
-    }
 }

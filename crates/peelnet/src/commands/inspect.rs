@@ -1,55 +1,54 @@
 //! `peelnet inspect`: what a scene, a dataset or a model is.
 
-use super::{Context, bench_effects::METHOD};
+use super::{Context, bench::EFFECTS_METHOD, few, json_path, losses};
 use crate::cli::InspectArgs;
-use crate::failure::{Failure, one_line};
-use crate::parse::{json_path, shown};
-use crate::summary_text::summary_text;
+use crate::summary_text::{Lines, summary_text};
+use peelnet::Failure;
 use peelnet_dataset::{Dataset, Summary, is_remote};
 use peelnet_eval::effects::{self, Cost, Settings};
-use peelnet_files::{counted, one_line as escaped, printable, thousands};
+use peelnet_files::{counted, one_line, printable, shown, thousands};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
 use peelnet_scene::{Census, Effect, Scene, file::ENDINGS, suite};
 use serde_json::json;
-use std::path::Path;
-use std::{collections::HashMap, fmt::Write as _};
+use std::{collections::HashMap, path::Path};
 
 /// Frame in which a scene's fragments are counted: view 0 at the size that `extract` and `render` use by default.
 const COUNTED_AT: [u32; 2] = [1024, 768];
 
+/// Frame in which effects are timed.
+const TIMED_AT: [u32; 2] = [512, 384];
+
+/// Timed frames with and without each effect, in turn.
+const TIMED_FRAMES: u32 = 7;
+
 pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failure> {
     let path = &args.what;
-    let ending = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
+    let ending = path.extension().and_then(|e| e.to_str());
+    let ending = ending.unwrap_or_default().to_lowercase();
+    let is_model = ending == "safetensors";
     let ships = path.to_str().and_then(suite::find).is_some();
-    if is_remote(path) && ending.eq_ignore_ascii_case("safetensors") {
-        model(context, path)
-    } else if is_remote(path) {
+    if is_remote(path) {
+        return if is_model {
+            model(context, path)
+        } else {
+            dataset(context, path)
+        };
+    }
+    if path.is_dir() {
+        context.say_not_shipped("folder", path);
         dataset(context, path)
-    } else if path.is_dir() {
-        if ships {
-            context.console.message(format!(
-                "{}: the folder here, not the shipped scene of this name",
-                shown(path)
-            ));
-        }
-        dataset(context, path)
-    } else if !path.exists() && ships {
-        scene(context, path, args.time)
-    } else if !path.exists() {
-        Err(Failure::Failed(format!(
-            "{}: there is no such file or folder",
-            shown(path)
+    } else if !path.exists() && !ships {
+        let path = shown(path);
+        Err(Failure::failed(format!(
+            "{path}: there is no such file or folder"
         )))
-    } else if ENDINGS.iter().any(|e| ending.eq_ignore_ascii_case(e)) {
+    } else if !path.exists() || ENDINGS.contains(&ending.as_str()) {
         scene(context, path, args.time)
-    } else if ending.eq_ignore_ascii_case("safetensors") {
+    } else if is_model {
         model(context, path)
     } else {
-        Err(Failure::Usage(format!(
+        Err(Failure::wrong(format!(
             "{}: neither a scene (.{}), a dataset (a folder) nor a model (.safetensors)",
             shown(path),
             ENDINGS.join(", .")
@@ -62,122 +61,126 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     dataset.verify()?;
     let summary = Summary::of(&dataset)?;
     let m = dataset.manifest();
-    context.console.result(
-        || {
-            let called = m.scenes.iter().filter(|s| !s.effects.is_empty());
-            let census = called.map(|s| format!("  {:<33} {}\n", printable(&s.name), escaped(&s.effects.join(", "))));
-            let census: String = census.collect();
-            let census = if census.is_empty() {
-                census
-            } else {
-                format!("\neffects that the scenes needed\n{census}")
-            };
+    let text = || {
+        let mut t = Lines::default();
+        t.field("dataset", shown(path));
+        t.field(
+            "written by",
             format!(
-                "dataset     {}\nwritten by  peelnet {} on {} ({} peeling, {} of the pixels, seed {})\ncommand     {}\n{}{census}",
-                shown(path),
+                "peelnet {} on {} ({} peeling, {} of the pixels, seed {})",
                 printable(&m.tool_version),
                 printable(&m.adapter),
                 printable(&m.peel),
                 m.pixels_fraction,
                 m.seed,
-                escaped(&m.command),
-                summary_text(&summary)
-            )
-        },
-        || {
-            let mut value = json!(summary);
-            value["kind"] = "dataset".into();
-            value["path"] = json_path(path).into();
-            value["passes"] = summary.passes().into();
-            value["format"] = json!(m.format);
-            value["tool_version"] = json!(m.tool_version);
-            value["adapter"] = json!(m.adapter);
-            value["command"] = json!(m.command);
-            value["seed"] = json!(m.seed);
-            let effects = m.scenes.iter().map(|s| (s.name.clone(), json!(s.effects)));
-            value["effects"] = effects.collect::<serde_json::Map<_, _>>().into();
-            value
-        },
-    )?;
+            ),
+        );
+        t.field("command", one_line(&m.command));
+        let mut census = m.scenes.iter().filter(|s| !s.effects.is_empty()).peekable();
+        if census.peek().is_some() {
+            t.line("\neffects that the scenes needed");
+        }
+        for scene in census {
+            let effects = scene.effects.join(", ");
+            let name = printable(&scene.name);
+            t.line(format!("  {name:<33} {}", one_line(&effects)));
+        }
+        t.line("");
+        t.0 + &summary_text(&summary)
+    };
+    context.console.result(text, || {
+        let mut value = json!(summary);
+        let effects = m.scenes.iter().map(|s| (s.name.clone(), json!(s.effects)));
+        for (key, more) in [
+            ("kind", "dataset".into()),
+            ("path", json_path(path).into()),
+            ("passes", summary.passes().into()),
+            ("format", json!(m.format)),
+            ("tool_version", json!(m.tool_version)),
+            ("adapter", json!(m.adapter)),
+            ("command", json!(m.command)),
+            ("seed", json!(m.seed)),
+            ("effects", effects.collect::<serde_json::Map<_, _>>().into()),
+        ] {
+            value[key] = more;
+        }
+        value
+    })?;
     if summary.passes() {
         return Ok(());
     }
-    Err(Failure::Failed(format!(
+    Err(Failure::failed(format!(
         "{}: rows disagree with one another (see the checks); extract the dataset again",
         shown(path)
     )))
 }
 
-/// Frame in which effects are timed.
-const TIMED_AT: [u32; 2] = [512, 384];
-
-/// Timed frames with and without each effect, in turn.
-const TIMED_FRAMES: u32 = 7;
-
-/// Triangles, and those of transparent surfaces.
-fn triangles(scene: &Scene) -> [u64; 2] {
-    let mut counts = [0, 0];
-    for object in &scene.objects {
-        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
-            let n = part.triangles.len() as u64;
-            counts[0] += n;
-            counts[1] += if material.is_opaque() { 0 } else { n };
-        }
-    }
-    counts
+/// What is known of a scene.
+struct Known {
+    scene: Scene,
+    census: Census,
+    /// Triangles, and those of transparent surfaces.
+    triangles: [u64; 2],
+    /// What an exact frame counted.
+    counted: Option<FrameStats>,
+    /// Bytes of the shader text of all surfaces.
+    shader: usize,
+    /// How many of them each effect brings.
+    brought: HashMap<&'static str, i64>,
+    costs: Vec<Cost>,
 }
 
 fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> {
-    let scene = context.scene(path)?;
-    let census = Census::of(&scene);
-    let [all, transparent] = triangles(&scene);
-    let counted = match count(context, &scene) {
-        Ok(stats) => Some(stats),
-        Err(failure) => {
-            // The rest is known without a GPU.
-            context
-                .console
-                .warn(format!("fragments were not counted: {failure}"));
-            None
+    let scene = context.scene(path, None)?;
+    let mut triangles = [0, 0];
+    for object in &scene.objects {
+        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+            let n = part.triangles.len() as u64;
+            triangles[0] += n;
+            triangles[1] += if material.is_opaque() { 0 } else { n };
         }
-    };
-    // Shader text of all surfaces, and how much of it each effect brings.
+    }
+    let counted = count(context, &scene).map_err(|failure| {
+        // The rest is known without a GPU.
+        let warning = format!("fragments were not counted: {failure}");
+        context.console.warn(warning);
+    });
     let shader = shader_bytes(&scene)?;
     let brought = Effect::ALL.map(|effect| {
         let without = shader_bytes(&scene.without(effect)).unwrap_or(shader);
         (effect.name(), shader as i64 - without as i64)
     });
-    let brought: HashMap<&str, i64> = brought.into_iter().collect();
-    let costs = if time {
+    let mut costs = Vec::new();
+    if time {
         let settings = Settings {
-            method: METHOD.parse()?,
+            method: EFFECTS_METHOD.parse()?,
             size: TIMED_AT,
             frames: TIMED_FRAMES,
         };
-        effects::costs(&context.gpu()?, &scene, &settings)?
-    } else {
-        Vec::new()
-    };
+        costs = effects::costs(&context.gpu()?, &scene, &settings)?;
+    }
     context.check_interrupt()?;
+    let known = Known {
+        census: Census::of(&scene),
+        scene,
+        triangles,
+        counted: counted.ok(),
+        shader,
+        brought: brought.into_iter().collect(),
+        costs,
+    };
+    let Known { scene, census, .. } = &known;
+    let counted = known.counted.as_ref();
     context.console.result(
-        || {
-            scene_text(
-                &scene,
-                &census,
-                [all, transparent],
-                counted.as_ref(),
-                (shader, &brought),
-                &costs,
-            )
-        },
+        || scene_text(&known),
         || {
             json!({
                 "kind": "scene",
                 "effects": census.effects,
                 "shader_bytes": shader,
-                "shader_bytes_brought": brought,
+                "shader_bytes_brought": known.brought,
                 "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
-                "costs": costs,
+                "costs": known.costs,
                 "path": json_path(path),
                 "name": scene.name,
                 "hash": scene.hash,
@@ -185,10 +188,10 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
                 "views": scene.views.len(),
                 "lights": scene.lights.len(),
                 "objects": scene.objects.len(),
-                "triangles": all,
-                "transparent_triangles": transparent,
-                "fragments": counted.as_ref().and_then(|s| s.fragments),
-                "max_layers": counted.as_ref().and_then(|s| s.max_layers),
+                "triangles": triangles[0],
+                "transparent_triangles": triangles[1],
+                "fragments": counted.and_then(|s| s.fragments),
+                "max_layers": counted.and_then(|s| s.max_layers),
                 "counted_at": {"view": 0, "width": COUNTED_AT[0], "height": COUNTED_AT[1]},
                 "warnings": scene.warnings,
             })
@@ -199,89 +202,73 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
 /// Draws view 0 exactly, which counts its fragments.
 fn count(context: &Context<'_>, scene: &Scene) -> Result<FrameStats, Failure> {
     let gpu = context.gpu()?;
-    let camera = scene
-        .views
-        .first()
-        .ok_or_else(|| Failure::Failed("the scene has no view".to_owned()))?;
+    let camera = peelnet::view_of(scene, 0)?;
     let renderer = Renderer::new(&gpu, scene)?;
     let exact: MethodSpec = peelnet_eval::compare::EXACT.parse()?;
     let mut prepared = renderer.method(&exact, MethodOptions::sized(COUNTED_AT))?;
     Ok(renderer.image(&mut prepared, camera)?.stats)
 }
 
-fn scene_text(
-    scene: &Scene,
-    census: &Census,
-    [all, transparent]: [u64; 2],
-    counted: Option<&FrameStats>,
-    (shader, brought): (usize, &HashMap<&str, i64>),
-    costs: &[Cost],
-) -> String {
-    let mut t = format!("scene       {}\n", printable(&scene.name));
-    let _ = writeln!(t, "file        {}", shown(&scene.source));
-    let _ = writeln!(t, "hash        {}", scene.hash);
-    let held_out = if scene.held_out {
-        "yes: never trained on"
-    } else {
-        "no"
-    };
-    let _ = writeln!(t, "held out    {held_out}");
-    let _ = writeln!(t, "views       {}", scene.views.len());
-    let _ = writeln!(t, "lights      {}", scene.lights.len());
-    let _ = writeln!(t, "objects     {}", scene.objects.len());
-    let _ = writeln!(
-        t,
-        "triangles   {}, of which {} transparent",
-        thousands(all),
-        thousands(transparent)
+fn scene_text(known: &Known) -> String {
+    let Known { scene, census, .. } = known;
+    let mut t = Lines::default();
+    t.field("scene", printable(&scene.name));
+    t.field("file", shown(&scene.source));
+    t.field("hash", &scene.hash);
+    let held_out = ["no", "yes: never trained on"][usize::from(scene.held_out)];
+    t.field("held out", held_out);
+    t.field("views", scene.views.len());
+    t.field("lights", scene.lights.len());
+    t.field("objects", scene.objects.len());
+    let [all, transparent] = known.triangles.map(thousands);
+    t.field(
+        "triangles",
+        format!("{all}, of which {transparent} transparent"),
     );
+    let counted = known.counted.as_ref();
     if let Some((n, most)) = counted.and_then(|s| Some((s.fragments?, s.max_layers?))) {
-        let _ = writeln!(
-            t,
-            "fragments   {} in view 0 at {}x{}, up to {most} a pixel",
-            thousands(n),
-            COUNTED_AT[0],
-            COUNTED_AT[1]
+        let [width, height] = COUNTED_AT;
+        let n = thousands(n);
+        t.field(
+            "fragments",
+            format!("{n} in view 0 at {width}x{height}, up to {most} a pixel"),
         );
     }
-    let _ = writeln!(
-        t,
-        "pipelines   at most {} in a pass over the surfaces, linked from {} bytes of shader text (blended)",
-        census.variants.len(),
-        thousands(shader as u64)
+    t.field(
+        "pipelines",
+        format!(
+            "at most {} in a pass over the surfaces, linked from {} bytes of shader text (blended)",
+            census.variants.len(),
+            thousands(known.shader as u64)
+        ),
     );
-    t.push_str("\neffect                  on   needed by\n");
+    t.line("\neffect                  on   needed by");
     for effect in &census.effects {
         let on = if effect.on { "yes" } else { "–" };
-        let _ = writeln!(t, "{:<23} {on:<4} {}", effect.name, few(&effect.why));
+        let why = few(&effect.why, 4);
+        t.line(format!("{:<23} {on:<4} {why}", effect.name));
         if effect.on {
-            let bytes = brought.get(effect.name).filter(|bytes| **bytes != 0);
-            let bytes = bytes.map_or_else(String::new, |bytes| {
-                format!("; {bytes:+} bytes of shader text")
-            });
-            let _ = writeln!(t, "{:<28} adds {}{bytes}", "", effect.adds);
+            let bytes = known.brought.get(effect.name).filter(|bytes| **bytes != 0);
+            let bytes = bytes.map(|bytes| format!("; {bytes:+} bytes of shader text"));
+            let bytes = bytes.unwrap_or_default();
+            t.line(format!("{:<28} adds {}{bytes}", "", effect.adds));
         }
     }
-    if !costs.is_empty() {
+    if !known.costs.is_empty() {
         let [width, height] = TIMED_AT;
-        let _ = writeln!(
-            t,
+        t.line(format!(
             "\neffect                  with ms  without ms  ratio  passes  bytes a pixel   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
-        );
-        for c in costs {
-            let _ = writeln!(
-                t,
-                "{:<23} {:>7.2} {:>11.2} {:>6.2} {:>7} {:>14}",
-                c.effect,
-                c.ms_with,
-                c.ms_without,
-                c.ratio,
-                beside(f64::from(c.passes_with), f64::from(c.passes_without)),
-                beside(c.bytes_with, c.bytes_without),
-            );
-        }
+        ));
     }
-    t
+    for c in &known.costs {
+        let passes = beside(c.passes_with.into(), c.passes_without.into());
+        let bytes = beside(c.bytes_with, c.bytes_without);
+        t.line(format!(
+            "{:<23} {:>7.2} {:>11.2} {:>6.2} {passes:>7} {bytes:>14}",
+            c.effect, c.ms_with, c.ms_without, c.ratio,
+        ));
+    }
+    t.0
 }
 
 /// A figure with an effect, and that without where it differs.
@@ -293,22 +280,11 @@ fn beside(with: f64, without: f64) -> String {
     }
 }
 
-/// The first names, and how many more there are.
-fn few(names: &[String]) -> String {
-    const SHOWN: usize = 4;
-    let shown = names.iter().take(SHOWN).map(|name| printable(name));
-    let shown = shown.collect::<Vec<_>>().join(", ");
-    match names.len().saturating_sub(SHOWN) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
-    }
-}
-
 fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     let model = peelnet::load_model(path)?;
     let hash = model
         .hash()
-        .map_err(|e| Failure::Failed(format!("{}: {}", shown(path), one_line(&e))))?;
+        .map_err(|e| Failure::from(e).about(&shown(path)))?;
     context.console.result(
         || model_text(path, &model, &hash),
         || {
@@ -326,56 +302,51 @@ fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
 }
 
 fn model_text(path: &Path, model: &Model, hash: &str) -> String {
-    let meta = &model.meta;
-    let mut t = format!("model       {}\n", shown(path));
-    let _ = writeln!(t, "hash        {hash}");
-    let _ = writeln!(
-        t,
-        "recipe      {} (method {})",
-        meta.recipe, meta.recipe.method
+    let Model { meta, mlp, .. } = model;
+    let mut t = Lines::default();
+    t.field("model", shown(path));
+    t.field("hash", hash);
+    t.field(
+        "recipe",
+        format!("{} (method {})", meta.recipe, meta.recipe.method),
     );
-    let _ = writeln!(
-        t,
-        "network     {}, {} parameters, output {}",
-        model.mlp.topology(),
-        model.mlp.parameters(),
-        meta.output
+    t.field(
+        "network",
+        format!(
+            "{}, {} parameters, output {}",
+            mlp.topology(),
+            mlp.parameters(),
+            meta.output
+        ),
     );
-    let _ = writeln!(
-        t,
-        "trained by  peelnet {}, seed {}, {}",
-        printable(&meta.tool_version),
-        meta.seed,
-        counted(meta.epochs.into(), "epoch")
+    t.field(
+        "trained by",
+        format!(
+            "peelnet {}, seed {}, {}",
+            printable(&meta.tool_version),
+            meta.seed,
+            counted(meta.epochs.into(), "epoch")
+        ),
     );
     match &meta.dataset {
         Some(d) => {
-            let rows = thousands(d.rows);
-            let _ = writeln!(t, "dataset     {rows} rows, hash {}", printable(&d.hash));
+            let (rows, hash) = (thousands(d.rows), printable(&d.hash));
+            t.field("dataset", format!("{rows} rows, hash {hash}"));
             let scenes: Vec<_> = d.scenes.iter().map(|scene| printable(scene)).collect();
-            let _ = writeln!(t, "scenes      {}", scenes.join(", "));
+            t.field("scenes", scenes.join(", "));
         }
-        None => t.push_str("dataset     none: made by hand\n"),
+        None => t.field("dataset", "none: made by hand"),
     }
-    for (name, loss) in [
-        ("training", meta.losses.train),
-        ("validation", meta.losses.validation),
-        ("test", meta.losses.test),
-    ] {
-        if let Some(loss) = loss {
-            let _ = writeln!(t, "loss        {loss:.6} ({name})");
-        }
+    for (name, loss) in losses(model) {
+        t.field("loss", format!("{loss:.6} ({name})"));
     }
     for (scene, error) in &meta.held_out {
         let scene = printable(scene);
-        let _ = writeln!(t, "held out    {scene}: mean error of T {error:.4}");
+        t.field("held out", format!("{scene}: mean error of T {error:.4}"));
     }
-    t.push_str(
-        "\ninputs               unit              offset        scale    seen in training\n",
-    );
+    t.line("\ninputs               unit              offset        scale    seen in training");
     for input in &meta.inputs {
-        let _ = writeln!(
-            t,
+        t.line(format!(
             "  {:<18} {:<14} {:>10.4} {:>12.4}    {} … {}",
             input.name,
             printable(&input.unit),
@@ -383,7 +354,7 @@ fn model_text(path: &Path, model: &Model, hash: &str) -> String {
             input.scale,
             input.min,
             input.max
-        );
+        ));
     }
-    t
+    t.0
 }

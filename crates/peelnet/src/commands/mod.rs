@@ -2,8 +2,6 @@
 
 mod bench;
 mod bench_designs;
-mod bench_effects;
-mod bench_path;
 mod doctor;
 mod export;
 mod extract;
@@ -11,18 +9,20 @@ mod inspect;
 mod recommend;
 mod render;
 mod run;
-mod seal;
 mod stress;
 mod train;
 mod view;
 
 use crate::cli::{Cli, Command, Global};
 use crate::console::Console;
-use crate::failure::{Failure, one_line};
 use crate::interrupt;
-use crate::parse::shown;
 use crate::progress::Bar;
+use peelnet::{Failure, model_for, weight_of};
+use peelnet_files::{Outputs, error_line, printable, shown};
 use peelnet_gpu::Gpu;
+use peelnet_model::Model;
+use peelnet_render::{ImageFormat, LearnedWeight, MethodSpec};
+use peelnet_report::kind_of;
 use peelnet_scene::{
     Scene, SceneError,
     suite::{self, SceneFile},
@@ -57,22 +57,41 @@ impl Context<'_> {
         }
     }
 
+    /// The outputs of a command that reads these files and folders.
+    fn outputs<P: AsRef<Path>>(&self, inputs: impl IntoIterator<Item = P>) -> Outputs {
+        Outputs::new(("--force", self.global.force), inputs)
+    }
+
+    /// The files of a measurement and its pictures in a folder.
+    fn results(&self, outputs: &mut Outputs, out: &Path, files: &[&str]) -> Result<(), Failure> {
+        let files = files.iter().map(|name| (name, kind_of(name)));
+        outputs.folder("--out", out, files)?;
+        let images = out.join("images");
+        outputs.files_like("--out", &images, "png", ImageFormat::Png.kind())?;
+        Ok(())
+    }
+
+    /// Says what will be replaced, before work on these scenes begins.
+    fn begin(&self, outputs: Outputs, scenes: &[Scene]) -> Result<(), Failure> {
+        if outputs.is_stdout_taken() {
+            self.console.give_stdout_away();
+        }
+        let read = scenes.iter().flat_map(|s| &s.files);
+        if let Some(replaced) = outputs.begin(read)? {
+            self.console.message(replaced);
+        }
+        Ok(())
+    }
+
     /// Loads scenes and shows their warnings.
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
-        paths.iter().map(|path| self.scene(path)).collect()
+        paths.iter().map(|path| self.scene(path, None)).collect()
     }
 
-    fn scene(&self, path: &Path) -> Result<Scene, Failure> {
-        self.scene_at(path, None)
-    }
-
-    /// A scene at a time of its timeline.
-    fn scene_at(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
-        if path.is_file() && path.to_str().and_then(suite::find).is_some() {
-            self.console.message(format!(
-                "{}: the file here, not the shipped scene of this name",
-                shown(path)
-            ));
+    /// A scene, at a time of its timeline.
+    fn scene(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
+        if path.is_file() {
+            self.say_not_shipped("file", path);
         }
         let bar = Bar::spinner(self.console, format!("loading {}", shown(path)));
         let scene = suite::open(path, time);
@@ -80,7 +99,7 @@ impl Context<'_> {
         let scene = scene.map_err(|error| match error {
             // The file is as it should be, the flag is not: states of a timeline have numbers.
             SceneError::Value { ref field, .. } if time.is_some() && field == "timeline" => {
-                Failure::Usage(one_line(&error))
+                Failure::wrong(error_line(&error))
             }
             error => error.into(),
         })?;
@@ -88,6 +107,16 @@ impl Context<'_> {
             self.console.warn(warning);
         }
         Ok(scene)
+    }
+
+    /// Says that what is here comes before the shipped scene of the same name.
+    fn say_not_shipped(&self, what: &str, path: &Path) {
+        if path.to_str().and_then(suite::find).is_some() {
+            self.console.message(format!(
+                "{}: the {what} here, not the shipped scene of this name",
+                shown(path)
+            ));
+        }
     }
 
     /// Loads scenes that ship.
@@ -101,13 +130,76 @@ impl Context<'_> {
             .collect()
     }
 
+    /// The text that a method draws with, of a model's file or the shipped one; none for a method that needs no model.
+    fn weight(
+        &self,
+        gpu: &Gpu,
+        method: &MethodSpec,
+        path: Option<&Path>,
+    ) -> Result<Option<LearnedWeight>, Failure> {
+        let given = path.map(peelnet::load_model).transpose()?;
+        let model = model_for(method, given).map_err(|failure| match path {
+            Some(path) => failure.about(&format!("--model {}", shown(path))),
+            None => failure,
+        })?;
+        let Some(model) = model else {
+            return Ok(None);
+        };
+        self.say_network(&model, path)?;
+        Ok(Some(weight_of(gpu, &model)?))
+    }
+
+    /// Says which network draws: the shipped one or that of a file, and its hash.
+    fn say_network(&self, model: &Model, file: Option<&Path>) -> Result<(), Failure> {
+        let hash = model.hash()?;
+        let from = file.map_or_else(|| "the shipped network".to_owned(), shown);
+        let method = model.meta.recipe.method;
+        self.console
+            .message(format!("{method}: {from}, {hash:.12}"));
+        Ok(())
+    }
+
     /// An error if a signal came.
     fn check_interrupt(&self) -> Result<(), Failure> {
         if interrupt::requested() {
-            return Err(Failure::Interrupted);
+            return Err(Failure::failed(interrupt::MESSAGE));
         }
         Ok(())
     }
+}
+
+/// The losses of a model that are known, with the names of their rows.
+fn losses(model: &Model) -> Vec<(&'static str, f64)> {
+    let losses = &model.meta.losses;
+    let named = [
+        ("training", losses.train),
+        ("validation", losses.validation),
+        ("test", losses.test),
+    ];
+    let known = named.into_iter();
+    known.filter_map(|(name, l)| Some((name, l?))).collect()
+}
+
+/// The first names of a list, and how many there are beyond.
+fn few(names: &[String], most: usize) -> String {
+    let shown: Vec<_> = names.iter().take(most).map(|n| printable(n)).collect();
+    match names.len().saturating_sub(most) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
+/// A path for JSON, which has no place for bytes that are no UTF-8.
+fn json_path(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+/// The command line of this process, for provenance: the program's bare name and its arguments, quoted for a shell.
+fn command_line() -> String {
+    let arguments = std::env::args_os()
+        .skip(1)
+        .map(|a| a.to_string_lossy().into_owned());
+    shell_words::join(std::iter::once("peelnet".to_owned()).chain(arguments))
 }
 
 /// Runs the command that was parsed.
@@ -119,12 +211,12 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
         console: Console::new(cli.global.quiet, cli.global.json),
         global: &cli.global,
         stop: interrupt::install()
-            .map_err(|e| Failure::Failed(format!("cannot listen to signals: {e}")))?,
+            .map_err(|e| Failure::failed(format!("cannot listen to signals: {e}")))?,
     };
     match &cli.command {
         Command::Run(args) => run::run(&context, args),
         Command::Extract(args) => extract::run(&context, args),
-        Command::Seal(args) => seal::run(&context, args),
+        Command::Seal(args) => extract::seal(&context, args),
         Command::Train(args) => train::run(&context, args),
         Command::Export(args) => export::run(&context, args),
         Command::Render(args) => render::run(&context, args),

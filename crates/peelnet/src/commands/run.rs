@@ -1,23 +1,20 @@
 //! `peelnet run`: extract, train, export and compare in one go.
 
-use super::{Context, extract, train};
+use super::{Context, bench, command_line, extract, losses, train};
 use crate::cli::RunArgs;
-use crate::failure::Failure;
-use crate::learned;
-use crate::outputs::Outputs;
-use crate::parse::{Size, command_line, shown};
 use crate::progress::Bar;
 use crate::summary_text::{self, summary_text};
+use peelnet::{Failure, weight_of};
 use peelnet_chart::Svg;
-use peelnet_dataset::{Dataset, Format, SplitBy, Summary};
-use peelnet_eval::bench::{self, bench_watched, trained_on};
+use peelnet_dataset::{Dataset, SplitBy, Summary};
+use peelnet_eval::bench::{bench_watched, trained_on};
 use peelnet_eval::compare::{EXACT, Plan};
 use peelnet_eval::front;
 use peelnet_eval::{Machine, Partial, Row};
-use peelnet_files::counted;
+use peelnet_files::{Outputs, counted, shown};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
-use peelnet_peel::{ExtractOptions, Peel, Views};
+use peelnet_peel::ExtractOptions;
 use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, Role};
 use peelnet_report::{Attachments, Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
@@ -48,66 +45,13 @@ const SHOWN_NETWORKS: [Recipe; 2] = [Recipe::MEDIUM, Recipe::LARGE];
 /// The scene of it: held out, and of another kind than those of the run.
 const SHOWN_SCENE: &str = "foliage-held";
 
-/// The sizes of a run.
-struct Sizes {
-    frame: Size,
-    rows: u64,
-    config: Config,
-}
-
-impl Sizes {
-    /// The quick sizes end within minutes on two cores without a GPU; the full ones are the thesis's.
-    fn of(args: &RunArgs) -> Result<Self, Failure> {
-        let (frame, rows) = if args.full {
-            (Size([1024, 768]), 1_500_000)
-        } else {
-            (Size([512, 384]), 300_000)
-        };
-        let mut config = Config::for_recipe(Recipe::THESIS);
-        // The thesis tests on a third of the rows of the scenes that it trains on.
-        config.split = SplitBy::Pixel;
-        config.seed = args.seed;
-        config.epochs = args.epochs.unwrap_or(config.epochs);
-        Ok(Self {
-            frame: args.size.unwrap_or(frame),
-            rows: args.rows.unwrap_or(rows),
-            config,
-        })
-    }
-}
-
-/// Stages with their times.
-struct Clock<'a> {
-    context: &'a Context<'a>,
-    start: Instant,
-    stages: Vec<Stage>,
-}
-
-impl Clock<'_> {
-    /// Ends a stage and begins the next.
-    fn done(&mut self, name: &str, note: String) -> Result<(), Failure> {
-        let seconds = self.start.elapsed().as_secs_f64();
-        self.context
-            .console
-            .message(format!("{name}: {note} ({seconds:.1} s)"));
-        self.stages.push(Stage {
-            name: name.to_owned(),
-            seconds,
-            note,
-        });
-        self.start = Instant::now();
-        self.context.check_interrupt()
-    }
-}
-
 /// The summary of the dataset, for programs and for people.
 const SUMMARY: [&str; 2] = ["dataset-summary.json", "dataset-summary.txt"];
 
 /// Everything that a run writes but its dataset, which has its own way.
-fn outputs<'a>(context: &'a Context<'a>, args: &RunArgs) -> Result<Outputs<'a>, Failure> {
-    let mut outputs = Outputs::new(context, &args.scenes);
-    outputs.results("--out", &args.out, Results::<ThesisRun>::FILES)?;
-    outputs.pictures("--out", &args.out.join("images"))?;
+fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
+    let mut outputs = context.outputs(&args.scenes);
+    context.results(&mut outputs, &args.out, Results::<ThesisRun>::FILES)?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
     let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
     let networks = [
@@ -123,28 +67,40 @@ fn outputs<'a>(context: &'a Context<'a>, args: &RunArgs) -> Result<Outputs<'a>, 
 
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
     let outputs = outputs(context, args)?;
-    let sizes = Sizes::of(args)?;
-    let scenes = scenes(context, args)?;
-    outputs.begin(&scenes)?;
+    let scenes = if args.scenes.is_empty() {
+        let all = suite::SCENES.iter();
+        context.shipped(all.filter(|file| file.name.starts_with(FAMILY)))?
+    } else {
+        context.scenes(&args.scenes)?
+    };
+    context.begin(outputs, &scenes)?;
     if scenes.iter().all(|s| s.held_out) {
-        return Err(Failure::Usage(
-            "every scene is marked held-out, so there is none to train on; add one that is not"
-                .to_owned(),
+        return Err(Failure::wrong(
+            "every scene is marked held-out, so there is none to train on; add one that is not",
         ));
     }
-    let gpu = context.gpu()?;
-    let clock = Clock {
-        context,
-        start: Instant::now(),
-        stages: Vec::new(),
+    // The quick sizes end within minutes on two cores without a GPU; the full ones are the thesis's.
+    let (frame, rows) = match args.full {
+        true => ([1024, 768], 1_500_000),
+        false => ([512, 384], 300_000),
     };
+    let recipe = Config::for_recipe(Recipe::THESIS);
     let mut run = Run {
         context,
         args,
-        sizes,
-        scenes,
-        gpu,
-        clock,
+        frame: args.size.unwrap_or(frame),
+        rows: args.rows.unwrap_or(rows),
+        config: Config {
+            // The thesis tests on a third of the rows of the scenes that it trains on.
+            split: SplitBy::Pixel,
+            seed: args.seed,
+            epochs: args.epochs.unwrap_or(recipe.epochs),
+            ..recipe
+        },
+        scenes: &scenes,
+        gpu: context.gpu()?,
+        start: Instant::now(),
+        stages: Vec::new(),
     };
     let share = run.count()?;
     let (dataset, summary) = run.extract(share)?;
@@ -155,8 +111,8 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let rows = run.compare(learned, &images)?;
     let mut results = Results::of_rows(Machine::of(&run.gpu), command_line(), rows);
     results.measured.settings = run.settings(share, &outcome.model);
-    results.measured.trained_on = trained_on(&run.scenes, [&outcome.model]);
-    results.measured.stages = run.clock.stages;
+    results.measured.trained_on = trained_on(&scenes, [&outcome.model]);
+    results.measured.stages = run.stages;
     results.measured.showcase = showcase;
     results.write(
         &args.out,
@@ -166,10 +122,8 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
             dataset_summary: Some(&summary),
         },
     )?;
-    context.console.message(format!(
-        "the report is {}",
-        shown(&args.out.join("report.html"))
-    ));
+    let report = shown(&args.out.join("report.html"));
+    context.console.message(format!("the report is {report}"));
     context.console.result(|| text(&results), || json!(results))
 }
 
@@ -177,57 +131,75 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
 struct Run<'a> {
     context: &'a Context<'a>,
     args: &'a RunArgs,
-    sizes: Sizes,
-    scenes: Vec<Scene>,
+    frame: [u32; 2],
+    /// To train on, about.
+    rows: u64,
+    config: Config,
+    scenes: &'a [Scene],
     gpu: Gpu,
-    clock: Clock<'a>,
+    /// Of the stage.
+    start: Instant,
+    stages: Vec<Stage>,
 }
 
 impl Run<'_> {
-    /// Counts, and returns the share of the pixels that has about as many rows as were asked for.
+    /// Ends a stage and begins the next.
+    fn done(&mut self, name: &str, note: String) -> Result<(), Failure> {
+        let seconds = self.start.elapsed().as_secs_f64();
+        let message = format!("{name}: {note} ({seconds:.1} s)");
+        self.context.console.message(message);
+        self.stages.push(Stage {
+            name: name.to_owned(),
+            seconds,
+            note,
+        });
+        self.start = Instant::now();
+        self.context.check_interrupt()
+    }
+
+    /// The size of frames for people.
+    fn size(&self) -> String {
+        format!("{}x{}", self.frame[0], self.frame[1])
+    }
+
+    /// Counts the fragments of the training scenes' views, estimated from view 0 of each, and returns the share of the pixels that has
+    /// about as many rows as were asked for.
     fn count(&mut self) -> Result<f64, Failure> {
-        let frame = self.sizes.frame;
-        let fragments = count(&self.gpu, &self.scenes, frame)?;
+        let exact: MethodSpec = EXACT.parse()?;
+        let mut fragments = 0;
+        for scene in self.scenes.iter().filter(|s| !s.held_out) {
+            let Some(camera) = scene.views.first() else {
+                continue;
+            };
+            let renderer = Renderer::new(&self.gpu, scene)?;
+            let mut prepared = renderer.method(&exact, MethodOptions::sized(self.frame))?;
+            let stats = renderer.image(&mut prepared, camera)?.stats;
+            fragments += stats.fragments.unwrap_or(0) * scene.views.len() as u64;
+        }
         if fragments == 0 {
-            return Err(Failure::Failed(
-                "the scenes have no transparent fragment in view 0, so there is nothing to learn from; check cameras and alphas"
-                    .to_owned(),
+            return Err(Failure::failed(
+                "the scenes have no transparent fragment in view 0, so there is nothing to learn from; check cameras and alphas",
             ));
         }
-        let note = format!(
-            "about {} in the training scenes at {frame}",
-            counted(fragments, "fragment")
-        );
-        self.clock.done("count", note)?;
-        Ok((self.sizes.rows as f64 / fragments as f64).min(1.0))
+        let (counted, size) = (counted(fragments, "fragment"), self.size());
+        let note = format!("about {counted} in the training scenes at {size}");
+        self.done("count", note)?;
+        Ok((self.rows as f64 / fragments as f64).min(1.0))
     }
 
     /// Peels, and writes the dataset with its summary.
     fn extract(&mut self, share: f64) -> Result<(Dataset, String), Failure> {
         let out = &self.args.out;
         let folder = out.join("dataset");
-        let report = extract::peel(
-            self.context,
-            &self.gpu,
-            &self.scenes,
-            &ExtractOptions {
-                out: folder.clone(),
-                size: self.sizes.frame.0,
-                views: Views::All,
-                format: Format::Parquet,
-                peel: Peel::SBuffer,
-                max_passes: None,
-                pixels: share,
-                augment: 0,
-                seed: self.args.seed,
-                shard: None,
-                resume: false,
-                command: command_line(),
-                budget: None,
-            },
-        )?;
-        self.clock
-            .done("extract", extract::text(&folder, &report))?;
+        let options = ExtractOptions {
+            size: self.frame,
+            pixels: share,
+            seed: self.args.seed,
+            command: command_line(),
+            ..ExtractOptions::new(&folder)
+        };
+        let report = extract::peel(self.context, &self.gpu, self.scenes, &options)?;
+        self.done("extract", extract::text(&folder, &report))?;
         let dataset = Dataset::open(&folder)?;
         let summary = Summary::of(&dataset)?;
         let text = summary_text(&summary);
@@ -235,13 +207,12 @@ impl Run<'_> {
         write_file(&out.join(SUMMARY[0]), json)?;
         write_file(&out.join(SUMMARY[1]), &text)?;
         if !summary.passes() {
-            return Err(Failure::Failed(format!(
+            return Err(Failure::failed(format!(
                 "{}: rows of the dataset disagree with one another, see dataset-summary.txt",
                 shown(&folder)
             )));
         }
-        self.clock
-            .done("summary", format!("{} checks hold", summary.checks.len()))?;
+        self.done("summary", format!("{} checks hold", summary.checks.len()))?;
         Ok((dataset, text))
     }
 
@@ -252,9 +223,9 @@ impl Run<'_> {
         let mut options = RunOptions::new(&model, self.context.stop);
         options.loss_curve = vec![out.join("loss.csv"), out.join("loss.svg")];
         let datasets = std::slice::from_ref(dataset);
-        let outcome = train::fit(self.context, &self.sizes.config, datasets, &options)?;
+        let outcome = train::fit(self.context, &self.config, datasets, &options)?;
         let note = train::text(&model, &outcome).replace('\n', "; ");
-        self.clock.done("train", note)?;
+        self.done("train", note)?;
         let loss = curve_chart(&outcome.history);
         Ok((outcome, loss))
     }
@@ -265,11 +236,11 @@ impl Run<'_> {
         let options = peelnet_export::Options::default();
         let verification = peelnet_export::export(&self.gpu, model, &path, &options)?;
         let note = format!("{}: {verification}", shown(&path));
-        self.clock.done("export", note)?;
+        self.done("export", note)?;
         Ok(LearnedWeight {
             recipe: model.meta.recipe,
             wgsl: std::fs::read_to_string(&path)
-                .map_err(|e| Failure::Failed(format!("{}: {e}", shown(&path))))?,
+                .map_err(|e| Failure::from(e).about(&shown(&path)))?,
         })
     }
 
@@ -287,14 +258,14 @@ impl Run<'_> {
         };
         let mut learned = vec![trained.clone()];
         for recipe in SHOWN_NETWORKS {
-            learned.push(learned::text_of(&self.gpu, &Model::shipped(recipe)?)?);
+            learned.push(weight_of(&self.gpu, &Model::shipped(recipe)?)?);
         }
         let methods: Vec<MethodSpec> = SHOWN.iter().map(|m| m.parse()).collect::<Result<_, _>>()?;
         let plan = Plan {
             learned: &learned,
             lenient: true,
             images: Some(images),
-            ..Plan::new(self.sizes.frame.0, &methods)
+            ..Plan::new(self.frame, &methods)
         };
         self.draw("showcase", std::slice::from_ref(&scene), &plan)
     }
@@ -309,12 +280,9 @@ impl Run<'_> {
             lenient: true,
             frames: 0,
             images: Some(images),
-            ..Plan::new(self.sizes.frame.0, &methods)
+            ..Plan::new(self.frame, &methods)
         };
-        let scenes = std::mem::take(&mut self.scenes);
-        let rows = self.draw("compare", &scenes, &plan);
-        self.scenes = scenes;
-        rows
+        self.draw("compare", self.scenes, &plan)
     }
 
     /// Draws the scenes by a plan, with a progress bar.
@@ -324,34 +292,29 @@ impl Run<'_> {
         scenes: &[Scene],
         plan: &Plan<'_>,
     ) -> Result<Vec<Row>, Failure> {
-        let frame = self.sizes.frame;
-        let console = self.context.console;
+        let context = self.context;
         let views: usize = scenes.iter().map(|s| s.views.len()).sum();
         let names: Vec<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
-        console.message(format!(
+        context.console.message(format!(
             "{stage}: {} on {} of {}",
             counted(plan.methods.len() as u64, "method"),
             counted(views as u64, "view"),
             names.join(", ")
         ));
-        let bar = Bar::new(console, stage, 0);
-        let mut show = |event: bench::Progress<'_>| match event {
-            bench::Progress::Drawn {
-                done,
-                total,
-                scene,
-                method,
-            } => bar.set(done, total, format!("{scene} with {method}")),
-            bench::Progress::LeftOut { scene, method, why } => {
-                console.warn(format!("{method} is left out of {scene}: {why}"));
-            }
-        };
+        let bar = Bar::new(context.console, stage, 0);
         let partial = Partial::new(None, serde_json::Value::Null);
-        let stop = self.context.stop;
-        let bench = bench_watched(&self.gpu, scenes, plan, partial, stop, &mut show)?;
+        let bench = bench_watched(
+            &self.gpu,
+            scenes,
+            plan,
+            partial,
+            context.stop,
+            &mut bench::show(context, &bar),
+        )?;
         drop(bar);
         let frames = counted(bench.rows.len() as u64, "frame");
-        self.clock.done(stage, format!("{frames} at {frame}"))?;
+        let note = format!("{frames} at {}", self.size());
+        self.done(stage, note)?;
         Ok(bench.rows)
     }
 
@@ -367,7 +330,7 @@ impl Run<'_> {
             }
         };
         let sizes = if self.args.full { "full" } else { "quick" };
-        let c = &self.sizes.config;
+        let c = &self.config;
         let training = format!(
             "recipe {}, {}, {} epochs, batch {}, rate {}, {:.0} % of the pixels of the same scenes held out, seed {}",
             c.recipe,
@@ -378,18 +341,11 @@ impl Run<'_> {
             c.held_out * 100.0,
             c.seed
         );
-        let losses = &model.meta.losses;
-        let losses: Vec<String> = [
-            ("training", losses.train),
-            ("validation", losses.validation),
-            ("test", losses.test),
-        ]
-        .into_iter()
-        .filter_map(|(name, loss)| loss.map(|l| format!("{name} {l:.6}")))
-        .collect();
+        let losses = losses(model).into_iter();
+        let losses: Vec<String> = losses.map(|(name, l)| format!("{name} {l:.6}")).collect();
         [
             ("sizes", sizes.to_owned()),
-            ("frame", self.sizes.frame.to_string()),
+            ("frame", self.size()),
             ("scenes trained on", names(false)),
             ("scenes held out", names(true)),
             ("share of pixels sampled", format!("{share:.4}")),
@@ -399,31 +355,6 @@ impl Run<'_> {
         .map(|(k, v)| (k.to_owned(), v))
         .to_vec()
     }
-}
-
-/// The scenes to work on: those named, or the shipped family.
-fn scenes(context: &Context<'_>, args: &RunArgs) -> Result<Vec<Scene>, Failure> {
-    if !args.scenes.is_empty() {
-        return context.scenes(&args.scenes);
-    }
-    let all = suite::SCENES.iter();
-    context.shipped(all.filter(|file| file.name.starts_with(FAMILY)))
-}
-
-/// Fragments of the training scenes' views, estimated from view 0 of each.
-fn count(gpu: &Gpu, scenes: &[Scene], frame: Size) -> Result<u64, Failure> {
-    let exact: MethodSpec = EXACT.parse()?;
-    let mut fragments = 0;
-    for scene in scenes.iter().filter(|s| !s.held_out) {
-        let Some(camera) = scene.views.first() else {
-            continue;
-        };
-        let renderer = Renderer::new(gpu, scene)?;
-        let mut prepared = renderer.method(&exact, MethodOptions::sized(frame.0))?;
-        let stats = renderer.image(&mut prepared, camera)?.stats;
-        fragments += stats.fragments.unwrap_or(0) * scene.views.len() as u64;
-    }
-    Ok(fragments)
 }
 
 /// The table and the findings.

@@ -1,87 +1,46 @@
 //! `peelnet train`: a dataset into a network.
 
-use super::Context;
-use crate::cli::{LearningSchedule, SplitChoice, TrainArgs};
-use crate::failure::Failure;
-use crate::outputs::Outputs;
-use crate::parse::{json_path, shown};
+use super::{Context, json_path};
+use crate::cli::TrainArgs;
 use crate::progress::Bar;
-use peelnet::{check_model_place, save_model};
-use peelnet_dataset::{Dataset, SplitBy, is_remote};
-use peelnet_files::{Destination, Unfinished, counted, destination, printable, thousands};
-use peelnet_train::{
-    CHECKPOINT_FILES, Config, CurveFormat, DataSplit, End, Outcome, OutputLock, RunOptions,
-    Schedule, Source, StreamedData, TrainingData, UsedRows, checkpoint_folder, held_out_errors,
-    train,
-};
+use peelnet::Failure;
+use peelnet::fit::{self, Examples, ModelPlace, Step};
+use peelnet_dataset::Dataset;
+use peelnet_files::{counted, printable, shown, thousands};
+use peelnet_train::{Config, DataSplit, End, Outcome, RunOptions, UsedRows};
 use serde_json::json;
 use std::path::Path;
 
 pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
     let config = config(args)?;
-    let mut outputs = Outputs::new(context, &args.datasets);
-    let is_stored = is_remote(&args.out);
-    if is_stored {
-        check_model_place(&args.out)?;
-    } else {
-        outputs.file("--out", &args.out, peelnet_model::KIND)?;
-    }
-    // A training needs a file beside which its state lies, also where the model goes to stdout, a device or an object store.
-    let is_file = !is_stored && matches!(destination(&args.out), Ok(Destination::File(_)));
-    if args.resume && !is_file {
-        return Err(Failure::Usage(format!(
-            "--resume: {} is no file, so no state lies beside it",
-            shown(&args.out)
-        )));
-    }
-    let scratch = if is_file {
-        outputs.folder("--out", &checkpoint_folder(&args.out), CHECKPOINT_FILES)?;
-        None
-    } else {
-        let folder = tempfile::tempdir()
-            .map_err(|e| Failure::Failed(format!("cannot create a temporary folder: {e}")))?;
-        let unfinished = Unfinished::new(folder.path());
-        Some((folder, unfinished))
-    };
-    let out = scratch
-        .as_ref()
-        .map(|(folder, _)| folder.path().join("model.safetensors"));
-    let out = out.as_deref().unwrap_or(&args.out);
-    for path in &args.loss_curve {
-        let format = CurveFormat::of(path)?;
-        outputs.file("--loss-curve", path, format.kind())?;
-    }
-    let datasets = args
-        .datasets
-        .iter()
-        .map(Dataset::open)
-        .collect::<Result<Vec<_>, _>>()?;
-    outputs.begin(&[])?;
-    let mut options = RunOptions::new(out, context.stop);
+    let mut outputs = context.outputs(&args.datasets);
+    let place = ModelPlace::new(
+        Some(&args.out),
+        args.resume,
+        &args.loss_curve,
+        &mut outputs,
+        ["--out", "--loss-curve", "--resume"],
+    )?;
+    let datasets = args.datasets.iter().map(Dataset::open);
+    let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
+    context.begin(outputs, &[])?;
+    let mut options = RunOptions::new(place.file(), context.stop);
     options.resume = args.resume;
     options.loss_curve = args.loss_curve.clone();
     let outcome = fit(context, &config, &datasets, &options)?;
-    if !is_file {
-        save_model(&outcome.model, &args.out).inspect_err(|_| {
-            // Hours of training are not lost with a connection.
-            if let Some((folder, _)) = scratch {
-                let kept = folder.keep().join("model.safetensors");
-                let kept = format!("the model is kept: {}", shown(&kept));
-                context.console.message(kept);
-            }
-        })?;
-    }
+    place.deliver(&outcome.model)?;
+    let meta = &outcome.model.meta;
+    let dataset = meta.dataset.as_ref();
     context.console.result(
         || text(&args.out, &outcome),
         || {
-            let meta = &outcome.model.meta;
             json!({
                 "out": json_path(&args.out),
                 "recipe": meta.recipe,
                 "topology": outcome.model.mlp.topology(),
                 "parameters": outcome.model.mlp.parameters(),
                 "config": meta.config,
-                "end": end_name(outcome.end),
+                "end": outcome.end.name(),
                 "epochs": outcome.history.len(),
                 "model_epoch": outcome.model_epoch,
                 "resumed_from": outcome.resumed_from,
@@ -89,9 +48,9 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
                 "held_out": meta.held_out,
                 "max_rows": (!args.stream).then_some(args.max_rows),
                 "buffer_rows": args.stream.then_some(args.buffer_rows),
-                "rows": meta.dataset.as_ref().map(|d| d.rows),
-                "dataset": meta.dataset.as_ref().map(|d| &d.hash),
-                "set_aside": meta.dataset.as_ref().map(|d| &d.set_aside),
+                "rows": dataset.map(|d| d.rows),
+                "dataset": dataset.map(|d| &d.hash),
+                "set_aside": dataset.map(|d| &d.set_aside),
                 "seed": meta.seed,
                 "seconds": seconds(&outcome),
                 "rows_per_s": rows_per_s(&outcome),
@@ -103,140 +62,99 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
 
 /// The recipe's settings with those of the flags.
 fn config(args: &TrainArgs) -> Result<Config, Failure> {
-    let mut config = Config::for_recipe(args.recipe);
-    config.seed = args.seed;
-    config.epochs = args.epochs.unwrap_or(config.epochs);
-    config.batch = args.batch.map_or(config.batch, |b| b as usize);
-    config.learning_rate = args.lr.unwrap_or(config.learning_rate);
-    config.schedule = match args.schedule {
-        None => config.schedule,
-        Some(LearningSchedule::Constant) => Schedule::Constant,
-        Some(LearningSchedule::OneCycle) => Schedule::ONE_CYCLE,
-    };
-    config.hidden = args.hidden.clone().unwrap_or(config.hidden);
-    config.patience = args.patience.or(config.patience);
-    config.loss = args.loss;
-    config.max_rows = args.max_rows;
-    config.buffer_rows = args.stream.then_some(args.buffer_rows);
-    config.split = match args.split {
-        SplitChoice::Scene => SplitBy::Scene,
-        SplitChoice::Pixel => SplitBy::Pixel,
+    let recipe = Config::for_recipe(args.recipe);
+    let config = Config {
+        seed: args.seed,
+        epochs: args.epochs.unwrap_or(recipe.epochs),
+        batch: args.batch.map_or(recipe.batch, |b| b as usize),
+        learning_rate: args.lr.unwrap_or(recipe.learning_rate),
+        schedule: args.schedule.unwrap_or(recipe.schedule),
+        hidden: args.hidden.clone().unwrap_or(recipe.hidden),
+        patience: args.patience.or(recipe.patience),
+        loss: args.loss,
+        max_rows: args.max_rows,
+        buffer_rows: args.stream.then_some(args.buffer_rows),
+        split: args.split,
+        ..recipe
     };
     config.check()?;
     Ok(config)
 }
 
-/// Trains with a progress bar; the model file has the errors on held-out scenes in it where the datasets hold such.
+/// Trains with a progress bar and says what from.
 pub(super) fn fit(
     context: &Context<'_>,
     config: &Config,
     datasets: &[Dataset],
     options: &RunOptions<'_>,
 ) -> Result<Outcome, Failure> {
-    // Until the model has all of its metadata; before the rows are read, because that can take minutes.
-    let lock = OutputLock::take(&options.out)?;
-    let options = &RunOptions {
-        lock: Some(&lock),
-        ..options.clone()
-    };
-    let (held, streamed);
-    let (source, split, rows, from): (Source<'_>, _, _, _) = if let Some(most) = config.buffer_rows
-    {
-        streamed = stream(context, config, datasets, options, most)?;
-        let data = &streamed;
-        (data.into(), &data.split, data.rows(), &data.source)
-    } else {
-        held = TrainingData::from_datasets(config, datasets)?;
-        warn_of_rows(context, &held, config);
-        let rows = held.rows() as u64;
-        ((&held).into(), &held.split, rows, &held.source)
-    };
-    if let Some(split) = split
-        && config.held_out + config.validation > 0.0
-    {
-        context.console.message(split_text(split));
-    }
-    context.console.message(format!(
-        "training recipe {} on {} of {from}, {}",
-        config.recipe,
-        counted(rows, "row"),
-        counted(config.epochs.into(), "epoch")
-    ));
-    let bar = Bar::new(context.console, "train", config.epochs.into());
-    let outcome = train(config, source, options, |e| {
-        let held_out = e
-            .held_out_loss
-            .map_or_else(String::new, |l| format!(", held out {l:.6}"));
-        bar.set(
-            e.epoch.into(),
-            e.epochs.into(),
-            format!(
-                "loss {:.6}{held_out}, {} rows/s",
-                e.train_loss,
-                thousands(e.rows_per_s as u64)
-            ),
-        );
+    let console = context.console;
+    let mut bar = config
+        .buffer_rows
+        .map(|_| Bar::new(console, "read", datasets.iter().map(Dataset::rows).sum()));
+    let outcome = fit::fit(config, datasets, options, &mut |step| match step {
+        Step::Read(rows, of) => bar.iter().for_each(|bar| bar.set(rows, of, String::new())),
+        Step::Ready(examples) => {
+            bar = None;
+            say(context, config, &examples);
+            bar = Some(Bar::new(console, "train", config.epochs.into()));
+        }
+        Step::Epoch(e) => {
+            let text = e.progress();
+            bar.iter()
+                .for_each(|bar| bar.set(e.epoch.into(), e.epochs.into(), text.clone()));
+        }
     });
     drop(bar);
-    let mut outcome = outcome?;
+    let outcome = outcome?;
     if outcome.end == End::Interrupted {
-        return Err(Failure::Failed(format!(
+        return Err(Failure::failed(format!(
             "interrupted after epoch {} of {}; the state is in {}, continue with --resume",
             outcome.history.len(),
             config.epochs,
             shown(&outcome.checkpoint)
         )));
     }
-    if let Some(from) = outcome.resumed_from {
-        context
-            .console
-            .message(if outcome.history.len() as u32 == from {
-                format!(
-                    "the training had already finished after epoch {from}: nothing was left to do"
-                )
-            } else {
-                format!("continued after epoch {from}")
-            });
-    }
-    let held_out = held_out_errors(&outcome.model, datasets)?;
-    if !held_out.is_empty() {
-        outcome.model.meta.held_out = held_out;
-        outcome.model.save(&options.out)?;
+    match outcome.resumed_from {
+        Some(from) if outcome.history.len() as u32 == from => console.message(format!(
+            "the training had already finished after epoch {from}: nothing was left to do"
+        )),
+        Some(from) => console.message(format!("continued after epoch {from}")),
+        None => {}
     }
     Ok(outcome)
 }
 
-/// Reads the datasets into a scratch file in the checkpoint's folder.
-fn stream(
-    context: &Context<'_>,
-    config: &Config,
-    datasets: &[Dataset],
-    options: &RunOptions<'_>,
-    most: u64,
-) -> Result<StreamedData, Failure> {
-    let folder = checkpoint_folder(&options.out);
-    let bar = Bar::new(
-        context.console,
-        "read",
-        datasets.iter().map(Dataset::rows).sum(),
-    );
-    let data = StreamedData::from_datasets(config, datasets, &folder, options.stop, |rows, of| {
-        bar.set(rows, of, String::new());
-    });
-    drop(bar);
-    let data = data?;
-    context.console.message(format!(
-        "streaming: at most {} in memory at once, {:.1} MiB of scratch space in {}",
-        counted(most, "row"),
-        data.scratch_bytes() as f64 / f64::from(1 << 20),
-        shown(&folder)
+/// What is learnt from, and what the losses of rows that are set aside say.
+fn say(context: &Context<'_>, config: &Config, examples: &Examples<'_>) {
+    let console = context.console;
+    if let Some((bytes, folder)) = &examples.scratch {
+        console.message(format!(
+            "streaming: at most {} in memory at once, {:.1} MiB of scratch space in {}",
+            counted(config.buffer_rows.unwrap_or(0), "row"),
+            *bytes as f64 / f64::from(1 << 20),
+            shown(folder)
+        ));
+    }
+    warn_of_rows(context, examples.used, config);
+    if config.held_out + config.validation > 0.0 {
+        examples
+            .split
+            .iter()
+            .for_each(|split| console.message(split_text(split)));
+    }
+    console.message(format!(
+        "training recipe {} on {} of {}, {}",
+        config.recipe,
+        counted(examples.rows, "row"),
+        examples.source,
+        counted(config.epochs.into(), "epoch")
     ));
-    Ok(data)
 }
 
 /// Says if not all rows are used.
-pub(super) fn warn_of_rows(context: &Context<'_>, data: &TrainingData, config: &Config) {
-    if let Some(UsedRows { used, of }) = data.used.filter(|rows| rows.used < rows.of) {
+pub(super) fn warn_of_rows(context: &Context<'_>, used: Option<UsedRows>, config: &Config) {
+    if let Some(UsedRows { used, of }) = used.filter(|rows| rows.used < rows.of) {
         context.console.warn(format!(
             "{} of {} rows are used, drawn by whole pixels from the seed: at most {} are held in memory (set with --max-rows; --stream uses all)",
             thousands(used),
@@ -246,14 +164,13 @@ pub(super) fn warn_of_rows(context: &Context<'_>, data: &TrainingData, config: &
     }
 }
 
-/// What the losses of rows that are set aside say.
 fn split_text(split: &DataSplit) -> String {
     match split {
         DataSplit::Scenes { validation, test } => {
             let named = [("validation", validation), ("testing", test)];
             let named = named.into_iter().filter(|(_, scenes)| !scenes.is_empty());
             let named: Vec<String> = named
-                .map(|(what, scenes)| format!("{what}: {}", listed(scenes)))
+                .map(|(what, scenes)| format!("{what}: {}", super::few(scenes, 6)))
                 .collect();
             format!("whole scenes are set aside, {}", named.join("; "))
         }
@@ -265,20 +182,6 @@ fn split_text(split: &DataSplit) -> String {
             "{} are split by pixel: the test loss says little of other scenes",
             counted(*scenes as u64, "scene")
         ),
-    }
-}
-
-/// The first names of a list, and how many there are beyond.
-fn listed(names: &[String]) -> String {
-    const SHOWN: usize = 6;
-    let shown: Vec<String> = names
-        .iter()
-        .take(SHOWN)
-        .map(|n| printable(n).to_string())
-        .collect();
-    match names.len().saturating_sub(SHOWN) {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
     }
 }
 
@@ -297,38 +200,23 @@ fn rows_per_s(outcome: &Outcome) -> f64 {
 /// What a training did, in a few lines.
 pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
     let meta = &outcome.model.meta;
-    let loss = |name: &str, loss: Option<f64>| {
-        loss.map_or_else(String::new, |l| format!(", {name} loss {l:.6}"))
-    };
     let mut t = format!(
-        "{}: recipe {}, weights of epoch {} ({}){}{}{}, {:.1} s, {} rows/s",
+        "{}: recipe {}, weights of epoch {} ({})",
         shown(out),
         meta.recipe,
         outcome.model_epoch,
-        match outcome.end {
-            End::Finished => "finished",
-            End::StoppedEarly => "stopped early",
-            End::Interrupted => "interrupted",
-        },
-        loss("training", meta.losses.train),
-        loss("validation", meta.losses.validation),
-        loss("test", meta.losses.test),
-        seconds(outcome),
-        thousands(rows_per_s(outcome) as u64),
+        outcome.end.name().replace('-', " "),
     );
+    for (name, loss) in super::losses(&outcome.model) {
+        t.push_str(&format!(", {name} loss {loss:.6}"));
+    }
+    let rate = thousands(rows_per_s(outcome) as u64);
+    t.push_str(&format!(", {:.1} s, {rate} rows/s", seconds(outcome)));
     for (scene, error) in &meta.held_out {
+        let scene = printable(scene);
         t.push_str(&format!(
-            "\nheld-out scene {}: mean error of T {error:.4}",
-            printable(scene)
+            "\nheld-out scene {scene}: mean error of T {error:.4}"
         ));
     }
     t
-}
-
-const fn end_name(end: End) -> &'static str {
-    match end {
-        End::Finished => "finished",
-        End::StoppedEarly => "stopped-early",
-        End::Interrupted => "interrupted",
-    }
 }

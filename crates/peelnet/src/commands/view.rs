@@ -2,78 +2,67 @@
 
 use super::Context;
 use crate::cli::ViewArgs;
-use crate::failure::Failure;
+use peelnet::Failure;
 
 #[cfg(not(feature = "view"))]
 pub(super) fn run(_: &Context<'_>, _: &ViewArgs) -> Result<(), Failure> {
-    Err(Failure::Failed(
-        "this program was built without the viewer; in the repository: cargo run --release --package peelnet --features view -- view"
-            .into(),
+    Err(Failure::failed(
+        "this program was built without the viewer; in the repository: cargo run --release --package peelnet --features view -- view",
     ))
 }
 
 #[cfg(feature = "view")]
 pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure> {
-    use crate::outputs::Outputs;
-    use crate::parse::shown;
+    use peelnet_files::shown;
     use peelnet_render::ImageFormat;
     use peelnet_view::{Script, Start};
 
     let camera = args.camera.as_deref().map(peelnet_view::camera_numbers);
     let camera = camera
         .transpose()
-        .map_err(|e| Failure::Usage(format!("--camera: {e}")))?;
+        .map_err(|e| Failure::wrong(format!("--camera: {e}")))?;
     if let Some(path) = &args.screenshot {
         if !matches!(ImageFormat::of(path), Ok(ImageFormat::Png)) {
-            return Err(Failure::Usage(format!(
+            return Err(Failure::wrong(format!(
                 "--screenshot {}: is a PNG file; let its name end in .png",
                 shown(path)
             )));
         }
-        let inputs = args.model.iter().chain([&args.scene]);
-        let mut outputs = Outputs::new(context, inputs);
+        let mut outputs = context.outputs(args.model.iter().chain([&args.scene]));
         outputs.file("--screenshot", path, ImageFormat::Png.kind())?;
-        outputs.begin(&[])?;
+        context.begin(outputs, &[])?;
     }
     let is_script = args.frames.is_some() || args.screenshot.is_some();
     // A script has nobody who reads messages in the window: what does not load ends it here.
     let mut loaded = None;
     if is_script {
-        let scene = context.scene_at(&args.scene, args.time)?;
-        if args.view as usize >= scene.views.len() {
-            return Err(Failure::Usage(format!(
-                "--view {}: {} has {}, numbered from 0",
-                args.view,
-                shown(&args.scene),
-                peelnet_files::counted(scene.views.len() as u64, "view")
-            )));
-        }
+        let scene = context.scene(&args.scene, args.time)?;
+        peelnet::view_of(&scene, args.view)?;
         loaded = Some(scene);
     }
     let gpu = context.gpu()?;
     if is_script {
-        crate::learned::weight_of(context.console, &gpu, &args.method, args.model.as_deref())?;
+        context.weight(&gpu, &args.method, args.model.as_deref())?;
     }
     let start = Start {
         loaded,
         model: args.model.clone(),
         view: args.view as usize,
         camera,
-        compare: args.compare.parse().map_err(Failure::Usage)?,
+        compare: args.compare.parse().map_err(Failure::wrong)?,
         against: Some(args.against.clone()),
         time: args.time,
         bare: args.bare,
         script: is_script.then(|| Script::new(args.frames.unwrap_or(1), args.screenshot.clone())),
         ..Start::new(&args.scene, args.method.clone())
     };
-    let costs = peelnet_view::open(&gpu, start, args.size.0).map_err(Failure::Failed)?;
+    let costs = peelnet_view::open(&gpu, start, args.size).map_err(Failure::failed)?;
     if let Some(costs) = costs.filter(|_| args.frames.is_some()) {
         context.console.message(costs);
     }
     if let Some(path) = &args.screenshot {
-        context
-            .console
-            .message(format!("{} is written", shown(path)));
+        let message = format!("{} is written", shown(path));
+        context.console.message(message);
     }
     Ok(())
 }

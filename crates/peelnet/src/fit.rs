@@ -1,0 +1,176 @@
+//! Training as the command line and Python do it: datasets into a model at a path or an address, with the errors on held-out scenes.
+
+use crate::{Failure, check_model_place, save_model};
+use peelnet_dataset::{Dataset, is_remote};
+use peelnet_files::{Destination, Outputs, Unfinished, destination, shown};
+use peelnet_model::Model;
+use peelnet_train::{
+    CHECKPOINT_FILES, Config, CurveFormat, DataSplit, End, EpochReport, Outcome, OutputLock,
+    RunOptions, Source, StreamedData, TrainingData, UsedRows, checkpoint_folder, held_out_errors,
+    train,
+};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// What a training reports.
+#[derive(Debug)]
+pub enum Step<'a> {
+    /// Rows that were written to the scratch file of a streamed training, and of how many.
+    Read(u64, u64),
+    /// The examples are there.
+    Ready(Examples<'a>),
+    /// An epoch ended.
+    Epoch(&'a EpochReport),
+}
+
+/// What a training learns from.
+#[derive(Debug)]
+pub struct Examples<'a> {
+    /// How many there are.
+    pub rows: u64,
+    /// Where they are from.
+    pub source: &'a str,
+    /// How rows were set aside.
+    pub split: Option<&'a DataSplit>,
+    /// How many rows of the datasets are used.
+    pub used: Option<UsedRows>,
+    /// Bytes of the scratch file and where it lies, where the examples are streamed.
+    pub scratch: Option<(u64, PathBuf)>,
+}
+
+/// Trains on datasets; the model file has the errors on held-out scenes in it where the datasets hold such.
+///
+/// # Errors
+/// As [`train`], and a dataset that cannot be read.
+pub fn fit(
+    config: &Config,
+    datasets: &[Dataset],
+    options: &RunOptions<'_>,
+    on: &mut dyn FnMut(Step<'_>),
+) -> Result<Outcome, Failure> {
+    // Until the model has all of its metadata; before the rows are read, because that can take minutes.
+    let lock = OutputLock::take(&options.out)?;
+    let options = &RunOptions {
+        lock: Some(&lock),
+        ..options.clone()
+    };
+    let (held, streamed);
+    let (source, examples): (Source<'_>, Examples<'_>) = if config.buffer_rows.is_some() {
+        let folder = checkpoint_folder(&options.out);
+        streamed =
+            StreamedData::from_datasets(config, datasets, &folder, options.stop, |n, of| {
+                on(Step::Read(n, of));
+            })?;
+        let examples = Examples {
+            rows: streamed.rows(),
+            source: &streamed.source,
+            split: streamed.split.as_ref(),
+            used: None,
+            scratch: Some((streamed.scratch_bytes(), folder)),
+        };
+        ((&streamed).into(), examples)
+    } else {
+        held = TrainingData::from_datasets(config, datasets)?;
+        let examples = Examples {
+            rows: held.rows() as u64,
+            source: &held.source,
+            split: held.split.as_ref(),
+            used: held.used,
+            scratch: None,
+        };
+        ((&held).into(), examples)
+    };
+    on(Step::Ready(examples));
+    let mut outcome = train(config, source, options, |e| on(Step::Epoch(e)))?;
+    if outcome.end != End::Interrupted {
+        let held_out = held_out_errors(&outcome.model, datasets)?;
+        if !held_out.is_empty() {
+            outcome.model.meta.held_out = held_out;
+            outcome.model.save(&options.out)?;
+        }
+    }
+    Ok(outcome)
+}
+
+/// Where a trained model goes. Beside a file lies the training's state; a stream, an address or nothing at all get the model at the end, and
+/// until then it is in a temporary folder.
+#[derive(Debug)]
+pub struct ModelPlace {
+    out: Option<PathBuf>,
+    scratch: Option<(TempDir, Unfinished)>,
+}
+
+impl ModelPlace {
+    /// Checks where the model and the loss curves go.
+    ///
+    /// # Errors
+    /// An output that may not be written, or nothing to resume from.
+    pub fn new(
+        out: Option<&Path>,
+        resume: bool,
+        loss_curves: &[PathBuf],
+        outputs: &mut Outputs,
+        label: [&str; 3],
+    ) -> Result<Self, Failure> {
+        let [out_label, curve_label, resume_label] = label;
+        let mut is_file = false;
+        if let Some(path) = out {
+            if is_remote(path) {
+                check_model_place(path)?;
+            } else {
+                outputs.file(out_label, path, peelnet_model::KIND)?;
+                is_file = matches!(destination(path), Ok(Destination::File(_)));
+            }
+            if is_file {
+                outputs.folder(out_label, &checkpoint_folder(path), CHECKPOINT_FILES)?;
+            }
+        }
+        if resume && !is_file {
+            return Err(Failure::wrong(format!(
+                "{resume_label} needs {out_label} to be a file, beside which the training's state lies"
+            )));
+        }
+        for path in loss_curves {
+            outputs.file(curve_label, path, CurveFormat::of(path)?.kind())?;
+        }
+        let scratch = match is_file {
+            true => None,
+            false => {
+                let folder = tempfile::tempdir().map_err(|e| {
+                    Failure::failed(format!("cannot create a temporary folder: {e}"))
+                })?;
+                let unfinished = Unfinished::new(folder.path());
+                Some((folder, unfinished))
+            }
+        };
+        let out = out.map(Path::to_owned);
+        Ok(Self { out, scratch })
+    }
+
+    /// The file that is trained into.
+    pub fn file(&self) -> PathBuf {
+        match (&self.scratch, &self.out) {
+            (None, Some(out)) => out.clone(),
+            (scratch, _) => {
+                let folder = scratch.as_ref().map(|(folder, _)| folder.path());
+                folder.unwrap_or(Path::new("")).join("model.safetensors")
+            }
+        }
+    }
+
+    /// Hands the finished model over.
+    ///
+    /// # Errors
+    /// A place that cannot be written; then the temporary folder stays: hours of training are not lost with a connection.
+    pub fn deliver(self, model: &Model) -> Result<(), Failure> {
+        let (Some(out), Some((folder, _))) = (self.out, self.scratch) else {
+            return Ok(());
+        };
+        save_model(model, out).map_err(|error| {
+            let kept = folder.keep().join("model.safetensors");
+            let mut failure = Failure::from(error);
+            failure.text += &format!("; the model is kept: {}", shown(&kept));
+            failure
+        })
+    }
+}
