@@ -137,7 +137,7 @@ fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<Normalised> {
         position: [3, 5],
         model: None,
     };
-    let far = |f: &Flaw| f.property == Property::Hull && f.cases.contains(&"far");
+    let far = |f: &Flaw| f.property == Property::Hull && f.cases().any(|case| case == "far");
     let twins = POINTS.iter().filter_map(|spec| {
         Some(Normalised {
             name: spec.to_string(),

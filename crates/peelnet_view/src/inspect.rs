@@ -68,7 +68,7 @@ impl Inspector {
             let mut exact = 1.0;
             let layers = fragments.iter().enumerate().map(|(i, fragment)| {
                 let scene = renderer.scene();
-                let object = fragment.object(scene).map(|(k, _)| &scene.objects[k].name);
+                let object = fragment.object(scene).map(|k| &scene.objects[k].name);
                 let layer = Layer {
                     fragment: *fragment,
                     object: object.map_or_else(String::new, |name| {

@@ -233,7 +233,7 @@ impl Slot {
         let target = Target::cleared(target);
         let drawn = if self.timing.is_none() {
             let mut timer = Timer::new(&stage.gpu);
-            let drawn = renderer.draw_timed(encoder, prepared, camera, &target, &mut timer);
+            let drawn = renderer.draw_timed(encoder, prepared, camera, &target, Some(&mut timer));
             let times = timer.finish(&stage.gpu, encoder);
             self.timing = Some(Task::new(times.read()));
             drawn

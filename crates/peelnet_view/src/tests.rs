@@ -95,10 +95,10 @@ fn every_method_has_its_controls() {
         steps(&mut w);
         for parameter in m.all_parameters() {
             assert!(
-                w.query_all_by_label(parameter.name()).next().is_some(),
+                w.query_all_by_label(parameter.name).next().is_some(),
                 "{}: {}",
                 m.name,
-                parameter.name()
+                parameter.name
             );
         }
         assert_eq!(w.state().first.failure, None, "{}", m.name);

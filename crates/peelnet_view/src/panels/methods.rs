@@ -4,9 +4,8 @@ use crate::{app::App, compare::Mode};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use peelnet_render::{
     METHODS, Method, MethodSpec,
-    methods::{Numbered, Parameter, Precision, Targets},
+    methods::{Numbered, Parameter, Precision, Values},
 };
-use std::ops::Bound;
 
 /// Methods that a GPU draws.
 pub(crate) fn offered() -> impl Iterator<Item = &'static Method> {
@@ -92,11 +91,10 @@ fn parameters(ui: &mut Ui, salt: &str, spec: &mut MethodSpec) {
                 }
                 ui.end_row();
             }
-            let all: Vec<Parameter> = spec.method().all_parameters().collect();
-            for parameter in all {
-                let label = ui.label(parameter.name()).on_hover_text(parameter.about());
-                if let Some(value) = control(ui, salt, &parameter, spec, label.id) {
-                    *spec = changed(spec, parameter.name(), value.as_deref());
+            for parameter in spec.method().all_parameters() {
+                let label = ui.label(parameter.name).on_hover_text(parameter.about);
+                if let Some(value) = control(ui, salt, parameter, spec, label.id) {
+                    *spec = changed(spec, parameter.name, value.as_deref());
                 }
                 ui.end_row();
             }
@@ -131,36 +129,41 @@ fn control(
     spec: &MethodSpec,
     label: egui::Id,
 ) -> Option<Option<String>> {
-    match parameter {
-        Parameter::Number(p) => {
-            let mut x = p.of(spec);
-            let least = match p.least {
-                Bound::Included(x) | Bound::Excluded(x) => x,
-                Bound::Unbounded => f64::MIN,
-            };
+    let (name, about) = (parameter.name, parameter.about);
+    match parameter.values {
+        Values::Number { most, .. } => {
+            let mut x = parameter.number(spec);
             // As fast as the number is large.
             let speed = (x.abs() * 0.01).max(1e-3);
-            let drag = DragValue::new(&mut x).range(least..=p.most).speed(speed);
-            let drag = ui.add(drag).labelled_by(label).on_hover_text(p.about);
+            let drag = DragValue::new(&mut x).range(0.0..=most).speed(speed);
+            let drag = ui.add(drag).labelled_by(label).on_hover_text(about);
             drag.changed().then(|| Some(x.to_string()))
         }
-        Parameter::Whole(p) => {
-            let mut n = p.of(spec);
-            let drag = ui.add(DragValue::new(&mut n).range(0..=p.most));
-            let drag = drag.labelled_by(label).on_hover_text(p.about);
+        Values::Whole {
+            default: Some(_),
+            least,
+            most,
+        } => {
+            let mut n = parameter.count(spec).unwrap_or(least);
+            let drag = ui.add(DragValue::new(&mut n).range(least..=most));
+            let drag = drag.labelled_by(label).on_hover_text(about);
             drag.changed().then(|| Some(n.to_string()))
         }
-        Parameter::Count(p) => {
-            let given = p.given(spec);
-            let (mut is_given, mut n) = (given.is_some(), given.unwrap_or(1));
+        Values::Whole {
+            default: None,
+            least,
+            most,
+        } => {
+            let given = parameter.count(spec);
+            let (mut is_given, mut n) = (given.is_some(), given.unwrap_or(least));
             let mut change = None;
             ui.horizontal(|ui| {
-                let check = ui.checkbox(&mut is_given, "limit").on_hover_text(p.about);
+                let check = ui.checkbox(&mut is_given, "limit").on_hover_text(about);
                 if check.changed() {
                     change = Some(is_given.then(|| n.to_string()));
                 }
                 if given.is_some() {
-                    let drag = ui.add(DragValue::new(&mut n).range(1..=p.most));
+                    let drag = ui.add(DragValue::new(&mut n).range(least..=most));
                     if drag.labelled_by(label).changed() {
                         change = Some(Some(n.to_string()));
                     }
@@ -168,20 +171,16 @@ fn control(
             });
             change
         }
-        Parameter::Word(p) => {
-            let now = p.of(spec);
-            let words = p.words.iter().map(|word| (*word, Some(*word)));
-            chosen(ui, (salt, p.name), now, words, label)
+        Values::Words(words) => {
+            let words = words.iter().map(|word| (*word, Some(*word)));
+            chosen(ui, (salt, name), parameter.word(spec), words, label)
         }
-        Parameter::Targets(_) => {
-            let now = match spec.targets() {
-                None => "its own",
-                Some(Precision::Half) => Targets::WORDS[0].0,
-                Some(Precision::Full) => Targets::WORDS[1].0,
-            };
-            let words = Targets::WORDS.iter().map(|(word, _)| (*word, Some(*word)));
+        Values::Precision => {
+            let now = parameter.word(spec);
+            let now = if now.is_empty() { "its own" } else { now };
+            let words = Precision::WORDS.map(|word| (word, Some(word)));
             let all = std::iter::once(("its own", None)).chain(words);
-            chosen(ui, (salt, Targets::NAME), now, all, label)
+            chosen(ui, (salt, name), now, all, label)
         }
     }
 }
