@@ -28,9 +28,11 @@ mod error;
 pub mod flaw;
 mod frame;
 mod image;
+mod kind;
 pub mod methods;
 mod pixel;
 mod renderer;
+mod samples;
 mod target;
 mod whole;
 

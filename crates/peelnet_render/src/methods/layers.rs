@@ -3,8 +3,9 @@
 
 use super::{
     abuffer::{self, Composite},
-    prelude::*,
+    compositor::Compositor,
 };
+use crate::error::RenderError;
 use peelnet_gpu::Gpu;
 use peelnet_raster::{FrameTargets, SceneBuffers};
 
