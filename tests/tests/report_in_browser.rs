@@ -2,14 +2,16 @@
 
 use peelnet_core::fragment::worked_example;
 use peelnet_eval::{Machine, bench, bench::Bench, compare::Plan};
+use peelnet_render::MethodSpec;
 use peelnet_report::Results;
-use peelnet_tests::{gpu, specs, walls};
+use peelnet_tests::{gpu, walls};
 use std::{path::Path, process::Command};
 
 /// Writes the report of a small bench of two scenes.
 fn write_report(folder: &Path) {
     let gpu = gpu();
-    let methods = specs(["painter-object:sort=off", "mboit4", "wboit-eq9"]);
+    let methods = ["painter-object:sort=off", "mboit4", "wboit-eq9"];
+    let methods: Vec<MethodSpec> = methods.map(|m| m.parse().unwrap()).to_vec();
     let scenes = ["first", "second"].map(|name| {
         let mut scene = walls(&worked_example(), [0.0; 3]);
         scene.name = name.to_owned();
@@ -36,9 +38,14 @@ fn chromium() -> &'static str {
 /// What the page is after its scripts and ours have run.
 fn dom(page: &Path) -> String {
     let profile = tempfile::tempdir().unwrap();
-    let options = "--headless --no-sandbox --disable-gpu --disable-dev-shm-usage --dump-dom";
     let output = Command::new(chromium())
-        .args(options.split(' '))
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-dev-shm-usage",
+            "--dump-dom",
+        ])
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("file://{}", page.display()))
         .output()
@@ -78,15 +85,22 @@ document.body.dataset.found = found.join('; ');
          document.documentElement.dataset.failed = e.message);</script>",
     );
     let path = dir.path().join("watched.html");
-    let checked = watched.replace("</html>", &format!("{CHECK}</html>"));
-    std::fs::write(&path, checked).unwrap();
+    std::fs::write(
+        &path,
+        watched.replace("</html>", &format!("{CHECK}</html>")),
+    )
+    .unwrap();
     let dom = dom(&path);
-    let begin = &dom[..300.min(dom.len())];
-    assert!(!dom.contains("data-failed"), "a script failed: {begin}");
-    let found = dom.split_once("data-found=\"");
-    let (found, _) = found
+    assert!(
+        !dom.contains("data-failed"),
+        "a script failed: {}",
+        &dom[..300.min(dom.len())]
+    );
+    let found = dom
+        .split_once("data-found=\"")
         .and_then(|(_, rest)| rest.split_once('"'))
-        .unwrap_or_else(|| panic!("the check did not run: {begin}"));
+        .map(|(found, _)| found.to_owned())
+        .unwrap_or_else(|| panic!("the check did not run: {}", &dom[..300.min(dom.len())]));
     // Four charts: all scenes in two means, and one a scene.
     assert_eq!(
         found,

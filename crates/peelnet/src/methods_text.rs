@@ -31,7 +31,7 @@ pub fn methods() -> String {
     for method in METHODS {
         line(2, &method.usage(), method.about);
         for parameter in method.parameters {
-            line(6, parameter.name(), parameter.about());
+            line(6, parameter.name, parameter.about);
         }
     }
     line(2, "any method", "");

@@ -6,12 +6,17 @@
 use bytemuck::{Pod, Zeroable};
 use peelnet_gpu::{
     AdapterRequest, Gpu,
-    bind::Bind,
+    bind::{Bind, Bound},
     record::{Recorder, Timer},
     wgpu,
 };
-use peelnet_render::{MethodOptions, Renderer};
+use peelnet_raster::{
+    frame::{attachment, clear_color},
+    fullscreen::FullscreenPass,
+};
+use peelnet_render::{MethodOptions, Renderer, milliseconds};
 use peelnet_scene::{Camera, Effect, Scene, suite};
+use std::error::Error;
 
 const SIZE: [u32; 2] = [512, 384];
 const FRAMES: usize = 61;
@@ -73,33 +78,78 @@ struct Plain<'g> {
     vertices: wgpu::Buffer,
     count: u32,
     camera: wgpu::Buffer,
-    scene: peelnet_gpu::bind::Bound,
+    scene: Bound,
     gather: wgpu::RenderPipeline,
     sums: wgpu::TextureView,
     transmittance: wgpu::TextureView,
     image: wgpu::TextureView,
-    resolved: peelnet_gpu::bind::Bound,
-    resolve: wgpu::RenderPipeline,
-    clear: [f32; 3],
+    resolve: FullscreenPass,
+    clear: [f64; 4],
 }
 
-fn pipeline(
-    gpu: &Gpu,
-    wgsl: &str,
-    layout: &wgpu::BindGroupLayout,
-    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
-    targets: &[Option<wgpu::ColorTargetState>],
-) -> wgpu::RenderPipeline {
-    let module = gpu.shader("plain", wgsl);
-    gpu.device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+fn target(format: wgpu::TextureFormat, blend: wgpu::BlendState) -> Option<wgpu::ColorTargetState> {
+    Some(wgpu::ColorTargetState {
+        format,
+        blend: Some(blend),
+        write_mask: wgpu::ColorWrites::ALL,
+    })
+}
+
+/// `dst · dst_factor + src · src_factor` of all channels.
+const fn blend(src_factor: wgpu::BlendFactor, dst_factor: wgpu::BlendFactor) -> wgpu::BlendState {
+    let component = wgpu::BlendComponent {
+        src_factor,
+        dst_factor,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::BlendState {
+        color: component,
+        alpha: component,
+    }
+}
+
+impl<'g> Plain<'g> {
+    fn new(gpu: &'g Gpu, scene: &Scene) -> Result<Self, Box<dyn Error>> {
+        use wgpu::{BlendFactor as F, TextureFormat as T};
+        let (mut vertices, mut colors) = (Vec::new(), Vec::new());
+        for object in &scene.objects {
+            for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
+                let [r, g, b] = material.color;
+                let triangles = &object.mesh.triangles[part.triangles.clone()];
+                for i in triangles.as_flattened() {
+                    let position = object.mesh.positions[*i as usize];
+                    let position = object.world_from_object.transform_point3(position);
+                    vertices.push(Vertex {
+                        position: position.to_array(),
+                        material: colors.len() as u32,
+                    });
+                }
+                colors.push([r, g, b, material.alpha]);
+            }
+        }
+        let none = wgpu::TextureUsages::empty();
+        let texture = |label, format| gpu.texture(label, format, SIZE, 1, none);
+        let sums = texture("sums", T::Rgba16Float)?;
+        let transmittance = texture("transmittance", T::R16Float)?;
+        // As the renderer's own profiles.
+        let image = texture("image", T::Rgba16Float)?;
+        let camera = gpu.upload("camera", &[[0.0f32; 16]], wgpu::BufferUsages::UNIFORM);
+        let colors = gpu.upload("colors", &colors, wgpu::BufferUsages::STORAGE);
+        let entries = [Bind::Uniform(&camera), Bind::Read(&colors)];
+        let bound = gpu.bind("scene", wgpu::ShaderStages::VERTEX_FRAGMENT, &entries);
+        let module = gpu.shader("plain", SHADER);
+        let gather = wgpu::RenderPipelineDescriptor {
             label: Some("plain"),
-            layout: Some(&gpu.layout(&[Some(layout)])),
+            layout: Some(&gpu.layout(&[Some(&bound.layout)])),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("vertex_main"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers,
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<Vertex>() as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32],
+                })],
             },
             primitive: wgpu::PrimitiveState::default(),
             depth_stencil: None,
@@ -108,139 +158,55 @@ fn pipeline(
                 module: &module,
                 entry_point: Some("fragment_main"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets,
+                targets: &[
+                    target(T::Rgba16Float, blend(F::One, F::One)),
+                    target(T::R16Float, blend(F::Zero, F::OneMinusSrc)),
+                ],
             }),
             multiview_mask: None,
             cache: None,
-        })
-}
-
-impl<'g> Plain<'g> {
-    fn new(gpu: &'g Gpu, scene: &Scene) -> Self {
-        let (mut vertices, mut colors) = (Vec::new(), Vec::new());
-        for object in &scene.objects {
-            for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
-                let [r, g, b] = material.color;
-                for i in object.mesh.triangles[part.triangles.clone()]
-                    .iter()
-                    .flatten()
-                {
-                    let position = object.mesh.positions[*i as usize];
-                    vertices.push(Vertex {
-                        position: object
-                            .world_from_object
-                            .transform_point3(position)
-                            .to_array(),
-                        material: colors.len() as u32,
-                    });
-                }
-                colors.push([r, g, b, material.alpha]);
-            }
-        }
-        let texture = |label, format| {
-            gpu.texture(label, format, SIZE, 1, wgpu::TextureUsages::empty())
-                .unwrap_or_else(|e| panic!("{e}"))
         };
-        use wgpu::{BlendFactor as F, TextureFormat as T};
-        let [sums, transmittance, image] = [
-            texture("sums", T::Rgba16Float),
-            texture("transmittance", T::R16Float),
-            // As the renderer's own profiles.
-            texture("image", T::Rgba16Float),
-        ];
-        let camera = gpu.upload("camera", &[[0.0f32; 16]], wgpu::BufferUsages::UNIFORM);
-        let colors = gpu.upload("colors", &colors, wgpu::BufferUsages::STORAGE);
-        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let bound = gpu.bind(
-            "scene",
-            both,
-            &[Bind::Uniform(&camera), Bind::Read(&colors)],
-        );
-        let component = |src_factor, dst_factor| wgpu::BlendComponent {
-            src_factor,
-            dst_factor,
-            operation: wgpu::BlendOperation::Add,
-        };
-        let target = |format, component| {
-            Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState {
-                    color: component,
-                    alpha: component,
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })
-        };
-        let gather = pipeline(
+        let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
+        let resolve = FullscreenPass::new(
             gpu,
-            SHADER,
-            &bound.layout,
-            &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32],
-            })],
-            &[
-                target(T::Rgba16Float, component(F::One, F::One)),
-                target(T::R16Float, component(F::Zero, F::OneMinusSrc)),
-            ],
-        );
-        let entries = [&sums, &transmittance].map(Bind::Texture);
-        let resolved = gpu.bind("resolve", wgpu::ShaderStages::FRAGMENT, &entries);
-        let image_target = [Some(wgpu::ColorTargetState {
-            format: T::Rgba16Float,
-            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            write_mask: wgpu::ColorWrites::ALL,
-        })];
-        let resolve = pipeline(gpu, RESOLVE, &resolved.layout, &[], &image_target);
-        Self {
+            "plain",
+            &[],
+            &[("plain", RESOLVE)],
+            &[&sums, &transmittance].map(Bind::Texture),
+            &[target(T::Rgba16Float, over)],
+        )?;
+        let [r, g, b] = scene.background.map(f64::from);
+        Ok(Self {
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
             count: vertices.len() as u32,
+            gather: gpu.device.create_render_pipeline(&gather),
             camera,
             scene: bound,
-            gather,
             sums,
             transmittance,
             image,
-            resolved,
             resolve,
-            clear: scene.background,
+            clear: [r, g, b, 1.0],
             gpu,
-        }
+        })
     }
 
     /// Draws a frame and returns its milliseconds.
-    fn time(&self, camera: &Camera) -> f64 {
+    fn time(&self, camera: &Camera) -> Result<f64, Box<dyn Error>> {
         let start = std::time::Instant::now();
         let aspect = SIZE[0] as f32 / SIZE[1] as f32;
         let clip = camera.clip_from_view(aspect) * camera.view_from_world();
-        self.gpu
-            .queue
-            .write_buffer(&self.camera, 0, bytemuck::bytes_of(&clip.to_cols_array()));
-        fn clear(
-            view: &wgpu::TextureView,
-            to: [f32; 4],
-        ) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-            let [r, g, b, a] = to.map(f64::from);
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
-                    store: wgpu::StoreOp::Store,
-                },
-            })
-        }
+        let clip = clip.to_cols_array();
+        let queue = &self.gpu.queue;
+        queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&clip));
         let (mut encoder, mut timer) = (self.gpu.encoder(), Timer::new(self.gpu));
         let mut recorder = Recorder::new(self.gpu, &mut encoder, Some(&mut timer));
-        let [r, g, b] = self.clear;
-        let background = [clear(&self.image, [r, g, b, 1.0])];
+        let background = [clear_color(&self.image, self.clear)];
         drop(recorder.render("background", &background, None));
         {
             let targets = [
-                clear(&self.sums, [0.0; 4]),
-                clear(&self.transmittance, [1.0; 4]),
+                clear_color(&self.sums, [0.0; 4]),
+                clear_color(&self.transmittance, [1.0; 4]),
             ];
             let mut pass = recorder.render("gather", &targets, None);
             pass.set_pipeline(&self.gather);
@@ -248,92 +214,63 @@ impl<'g> Plain<'g> {
             pass.set_vertex_buffer(0, self.vertices.slice(..));
             pass.draw(0..self.count, 0..1);
         }
-        {
-            let mut over = clear(&self.image, [0.0; 4]);
-            if let Some(attachment) = &mut over {
-                attachment.ops.load = wgpu::LoadOp::Load;
-            }
-            let mut pass = recorder.render("resolve", &[over], None);
-            pass.set_pipeline(&self.resolve);
-            pass.set_bind_group(0, &self.resolved.group, &[]);
-            pass.draw(0..3, 0..1);
-        }
+        let over = attachment(&self.image, wgpu::LoadOp::Load);
+        self.resolve.draw(&mut recorder, &[over]);
         let times = timer.finish(self.gpu, &mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
-        let passes = self
-            .gpu
-            .block_on(times.read())
-            .unwrap_or_else(|e| panic!("{e}"));
-        let micros: f64 = passes.iter().map(|p| p.micros).sum();
-        let clock = start.elapsed().as_secs_f64() * 1e6;
-        (if micros > 0.0 { micros } else { clock }) / 1e3
+        queue.submit([encoder.finish()]);
+        let passes = self.gpu.block_on(times.read())?;
+        let clock = start.elapsed().as_secs_f64() * 1e3;
+        Ok(milliseconds(&passes).unwrap_or(clock))
     }
 }
 
-fn main() {
-    let gpu = Gpu::open(&AdapterRequest::Auto).unwrap_or_else(|e| panic!("{e}"));
+fn median(mut all: Vec<f64>) -> f64 {
+    all.sort_by(f64::total_cmp);
+    all[all.len() / 2]
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::open(&AdapterRequest::Auto)?;
     println!(
         "adapter {}, {}x{}, wboit-eq9, medians of {FRAMES} frames in turn",
         gpu.info.name, SIZE[0], SIZE[1]
     );
     for name in ["sixteen-050", "smoke-30", "panes"] {
-        let scene = suite::load(name).unwrap_or_else(|e| panic!("{e}"));
         // Unlit, two-sided, without anything opaque.
         let scene = [Effect::Opaque, Effect::Lighting, Effect::Culling]
             .into_iter()
-            .fold(scene, |scene, effect| scene.without(effect));
+            .fold(suite::load(name)?, |scene, effect| scene.without(effect));
         let camera = scene.views[0];
-        let plain = Plain::new(&gpu, &scene);
-        let renderer = Renderer::new(&gpu, &scene).unwrap_or_else(|e| panic!("{e}"));
+        let plain = Plain::new(&gpu, &scene)?;
+        let renderer = Renderer::new(&gpu, &scene)?;
         assert_eq!(renderer.bindings(), ["camera", "materials"]);
-        let method = "wboit-eq9".parse().unwrap_or_else(|e| panic!("{e}"));
-        let mut prepared = renderer
-            .method(&method, MethodOptions::sized(SIZE))
-            .unwrap_or_else(|e| panic!("{e}"));
-        let mut times = [Vec::new(), Vec::new()];
-        let mut ratios = Vec::new();
-        let ours = |prepared: &mut _| {
-            let timed = renderer.profile(prepared, &camera);
-            let frame = timed.unwrap_or_else(|e| panic!("{e}"));
-            let micros: f64 = frame.times.iter().map(|p| p.micros).sum();
-            (if micros > 0.0 {
-                micros
-            } else {
-                frame.wall_micros
-            }) / 1e3
+        let mut prepared = renderer.method(&"wboit-eq9".parse()?, MethodOptions::sized(SIZE))?;
+        let mut ours = || -> Result<f64, Box<dyn Error>> {
+            let frame = renderer.profile(&mut prepared, &camera)?;
+            Ok(milliseconds(&frame.times).unwrap_or(frame.wall_micros / 1e3))
         };
-        plain.time(&camera);
-        ours(&mut prepared);
+        plain.time(&camera)?;
+        ours()?;
+        let (mut times, mut ratios) = ([Vec::new(), Vec::new()], Vec::new());
         for i in 0..FRAMES {
             // Each goes first as often as the other.
             let (written, drawn) = if i % 2 == 0 {
-                let written = plain.time(&camera);
-                (written, ours(&mut prepared))
+                let written = plain.time(&camera)?;
+                (written, ours()?)
             } else {
-                let drawn = ours(&mut prepared);
-                (plain.time(&camera), drawn)
+                let drawn = ours()?;
+                (plain.time(&camera)?, drawn)
             };
             times[0].push(written);
             times[1].push(drawn);
             ratios.push(drawn / written);
         }
         // Both draw the same.
-        let image = gpu
-            .read_rgba32f(&plain.image)
-            .unwrap_or_else(|e| panic!("{e}"));
-        let frame = renderer
-            .image(&mut prepared, &camera)
-            .unwrap_or_else(|e| panic!("{e}"));
+        let image = gpu.read_rgba32f(&plain.image)?;
+        let frame = renderer.image(&mut prepared, &camera)?;
         let differs = |(a, b): (&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-3);
-        let apart = image
-            .iter()
-            .zip(&frame.image.pixels)
-            .filter(|p| differs(*p))
-            .count();
-        let median = |mut all: Vec<f64>| {
-            all.sort_by(f64::total_cmp);
-            all[all.len() / 2]
-        };
+        let pairs = image.iter().zip(&frame.image.pixels);
+        let apart = pairs.filter(|p| differs(*p)).count();
         let [written, drawn] = times.map(median);
         println!(
             "{name}: {written:.3} ms written for just that, {drawn:.3} ms the renderer: {:.3} times; {apart} of {} pixels differ",
@@ -341,4 +278,5 @@ fn main() {
             image.len()
         );
     }
+    Ok(())
 }

@@ -32,34 +32,15 @@ pub enum RenderError {
     /// A learned method without its network.
     #[error("method {0} draws with a trained network, and none was given")]
     NeedsModel(String),
-    /// A method that has no passes.
-    #[error("{method} cannot be drawn: {why}; bench measures its error")]
-    CpuOnly {
-        /// The method.
-        method: String,
-        /// What is missing.
-        why: &'static str,
-    },
-    /// Coloured transmission, and a method that keeps one transmittance for all channels.
-    #[error(
-        "{method} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of \
-         {tinted}, or make transmission_color grey"
-    )]
-    OneTransmittance {
-        /// The method.
-        method: String,
-        /// The methods that draw coloured transmission.
-        tinted: String,
-    },
+    /// What a method does not draw, or not like that.
+    #[error("{0}")]
+    Refused(String),
     /// A target that a frame cannot be drawn onto.
     #[error("the target cannot be drawn onto: {0}")]
     Target(String),
     /// A number of samples that WebGPU does not have.
     #[error("a pixel has 1 or 4 samples, not {0}")]
     Samples(u32),
-    /// A frame whose counts changed every time it was drawn.
-    #[error("the frame was drawn {0} times and never had room for all of its fragments")]
-    NeverWhole(u32),
     /// An image file could not be written.
     #[error("cannot write image {path}: {message}")]
     Image {

@@ -35,29 +35,10 @@ pub enum Property {
     Half,
 }
 
-impl Property {
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Finite => "finite",
-            Self::Background => "background",
-            Self::Hull => "hull",
-            Self::Single => "single",
-            Self::Order => "order",
-            Self::Exact => "exact",
-            Self::Scale => "scale",
-            Self::Dark => "dark",
-            Self::Opaque => "opaque",
-            Self::Transmittance => "transmittance",
-            Self::Steady => "steady",
-            Self::Half => "half",
-        }
-    }
-}
-
 impl fmt::Display for Property {
+    /// Its name in small letters, as serde writes it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
+        f.pad(&format!("{self:?}").to_lowercase())
     }
 }
 
@@ -69,8 +50,8 @@ impl fmt::Display for Property {
 pub struct Flaw {
     /// The property that does not hold.
     pub property: Property,
-    /// Names of the cases.
-    pub cases: &'static [&'static str],
+    /// Names of the cases, with blanks between them; see [`Flaw::cases`].
+    cases: &'static str,
     /// The parameters with which it does not hold.
     pub when: fn(&MethodSpec) -> bool,
     /// Why, with its source.
@@ -80,6 +61,11 @@ pub struct Flaw {
 }
 
 impl Flaw {
+    /// Names of the cases.
+    pub fn cases(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.cases.split_whitespace()
+    }
+
     /// The flaw that a method declares of a property in a case on an adapter.
     pub fn declared(
         method: &MethodSpec,
@@ -89,18 +75,14 @@ impl Flaw {
     ) -> Option<&'static Self> {
         method.method().flaws.iter().find(|flaw| {
             flaw.property == property
-                && flaw.cases.contains(&case)
+                && flaw.cases().any(|c| c == case)
                 && (flaw.when)(method)
                 && flaw.adapters.contains(adapter)
         })
     }
 
     /// A flaw of a method's mathematics, whatever its parameters.
-    pub(crate) const fn new(
-        property: Property,
-        cases: &'static [&'static str],
-        reason: &'static str,
-    ) -> Self {
+    pub(crate) const fn new(property: Property, cases: &'static str, reason: &'static str) -> Self {
         Self {
             property,
             cases,
@@ -124,7 +106,7 @@ impl Flaw {
     }
 
     /// Sums of hundreds of terms in half floats.
-    pub(crate) const fn swallowed(cases: &'static [&'static str]) -> Self {
+    pub(crate) const fn swallowed(cases: &'static str) -> Self {
         let reason = "half floats: a sum of hundreds of terms swallows what is small beside it";
         Self::new(Property::Hull, cases, reason)
             .when(half_sums)
@@ -132,7 +114,7 @@ impl Flaw {
     }
 
     /// Sums of half floats that depend on the order in which they are rounded.
-    pub(crate) const fn reordered(cases: &'static [&'static str]) -> Self {
+    pub(crate) const fn reordered(cases: &'static str) -> Self {
         let reason =
             "half floats: every order of drawing rounds a sum of many or of large terms otherwise";
         Self::new(Property::Order, cases, reason)
@@ -141,7 +123,7 @@ impl Flaw {
     }
 
     /// Statistics in half floats, whose roundings are magnified where a transmittance is made of them.
-    pub(crate) const fn unsettled(property: Property, cases: &'static [&'static str]) -> Self {
+    pub(crate) const fn unsettled(property: Property, cases: &'static str) -> Self {
         let reason = "16-bit statistics: what is reconstructed from them magnifies their roundings, and every order of drawing has others";
         Self::new(property, cases, reason)
             .when(half_statistics)
@@ -149,7 +131,7 @@ impl Flaw {
     }
 
     /// Sums of large weights in half floats.
-    pub(crate) const fn overflowing(cases: &'static [&'static str]) -> Self {
+    pub(crate) const fn overflowing(cases: &'static str) -> Self {
         let reason = "half floats end at 65,504: after 22 layers of weight 3e3 nothing is left but the coverage (McGuire & Bavoil 2013)";
         Self::new(Property::Hull, cases, reason).when(half_sums)
     }
@@ -157,7 +139,7 @@ impl Flaw {
     /// Weights that do not depend on the layers in front.
     pub(crate) const BLIND: Self = Self::new(
         Property::Opaque,
-        &["alpha-near-one"],
+        "alpha-near-one",
         "a weight of depth alone, or of depth and sums, does not know what lies in front (McGuire & Bavoil 2013, section 5)",
     );
 }

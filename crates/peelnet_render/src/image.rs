@@ -102,25 +102,6 @@ impl Image {
             .count()
     }
 
-    /// The PNG file's bytes: opaque sRGB, 8 bits a channel.
-    ///
-    /// # Errors
-    /// If the encoder fails.
-    pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
-        let failed = |e: png::EncodingError| failed(Path::new("in memory"), &e);
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Fast);
-        let [keyword, text] = SOFTWARE.map(str::to_owned);
-        encoder.add_text_chunk(keyword, text).map_err(failed)?;
-        let mut writer = encoder.write_header().map_err(failed)?;
-        writer.write_image_data(&self.to_srgb8()).map_err(failed)?;
-        writer.finish().map_err(failed)?;
-        Ok(bytes)
-    }
-
     /// The bytes of a file of a format.
     ///
     /// # Errors
@@ -130,7 +111,7 @@ impl Image {
         let flat = || -> Vec<f32> { self.pixels.iter().flatten().copied().collect() };
         let mut bytes = std::io::Cursor::new(Vec::new());
         match format {
-            ImageFormat::Png => return self.to_png(),
+            ImageFormat::Png => self.write_png(&mut bytes).map_err(|e| failed(&e))?,
             ImageFormat::Exr => image::Rgba32FImage::from_raw(self.width, self.height, flat())
                 .ok_or_else(|| failed(&"pixels do not fill the frame"))?
                 .write_to(&mut bytes, image::ImageFormat::OpenExr)
@@ -143,6 +124,19 @@ impl Image {
             }
         }
         Ok(bytes.into_inner())
+    }
+
+    /// Opaque sRGB, 8 bits a channel.
+    fn write_png(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(to, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        let [keyword, text] = SOFTWARE.map(str::to_owned);
+        encoder.add_text_chunk(keyword, text)?;
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.to_srgb8())?;
+        writer.finish()
     }
 
     /// Writes the image in the format that [`ImageFormat::of`] finds. The file appears whole or not at all.
@@ -165,6 +159,7 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RenderError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use peelnet_files::Standing;
 
     #[test]
     fn srgb_has_its_known_values() {
@@ -210,12 +205,11 @@ mod tests {
             ),
         ] {
             let kind = ImageFormat::of(&at(name)).expect("an ending").kind();
-            let standing = |name: &str| kind.standing(&at(name)).expect("stands");
-            assert_eq!(standing(name), peelnet_files::Standing::Replaced, "{name}");
             std::fs::write(at("foreign"), foreign).expect("writes");
+            let [own, other] = [name, "foreign"].map(|n| kind.standing(&at(n)).expect("stands"));
             assert_eq!(
-                standing("foreign"),
-                peelnet_files::Standing::Foreign,
+                (own, other),
+                (Standing::Replaced, Standing::Foreign),
                 "{name}"
             );
             std::fs::remove_file(at("foreign")).expect("removes");

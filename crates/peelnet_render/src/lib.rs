@@ -28,11 +28,9 @@ mod error;
 pub mod flaw;
 mod frame;
 mod image;
-mod kind;
 pub mod methods;
 mod pixel;
 mod renderer;
-mod samples;
 mod target;
 mod whole;
 

@@ -24,17 +24,13 @@ pub struct PixelFragment {
 }
 
 impl PixelFragment {
-    /// The object that it belongs to, as a number in the scene's list, and its triangle there.
-    pub fn object(&self, scene: &peelnet_scene::Scene) -> Option<(usize, usize)> {
-        let mut triangle = self.triangle as usize;
-        for (number, object) in scene.objects.iter().enumerate() {
-            let all = object.mesh.triangles.len();
-            if triangle < all {
-                return Some((number, triangle));
-            }
-            triangle -= all;
-        }
-        None
+    /// The object that it belongs to, as a number in the scene's list.
+    pub fn object(&self, scene: &peelnet_scene::Scene) -> Option<usize> {
+        let mut end = 0;
+        scene.objects.iter().position(|object| {
+            end += object.mesh.triangles.len();
+            (self.triangle as usize) < end
+        })
     }
 }
 
@@ -53,7 +49,7 @@ impl Renderer {
         size: [u32; 2],
         pixel: [u32; 2],
     ) -> Result<Vec<PixelFragment>, RenderError> {
-        let (gpu, scene) = (self.gpu(), self.buffers());
+        let (gpu, scene) = (self.gpu(), &self.scene);
         if pixel[0] >= size[0] || pixel[1] >= size[1] {
             return Err(RenderError::Target(format!(
                 "pixel {}, {} lies outside its {} x {} pixels",
@@ -114,19 +110,5 @@ impl Renderer {
             }
         };
         Ok(order.into_iter().map(fragment).collect())
-    }
-
-    /// The same as [`Self::pixel_async`], waiting for the device. Not in a browser.
-    ///
-    /// # Errors
-    /// See [`Self::pixel_async`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn pixel(
-        &self,
-        camera: &Camera,
-        size: [u32; 2],
-        pixel: [u32; 2],
-    ) -> Result<Vec<PixelFragment>, RenderError> {
-        self.gpu().block_on(self.pixel_async(camera, size, pixel))
     }
 }

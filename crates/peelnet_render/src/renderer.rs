@@ -2,13 +2,14 @@
 
 use crate::{
     error::RenderError,
-    kind::Kind,
+    frame::Canvas,
     methods::{
-        compositor::{Compositor, DrawContext, Fit, FrameStats, Learning},
-        layers::LayerView,
+        self,
+        compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+        layers::{self, LayerView},
         spec::MethodSpec,
+        surfaces,
     },
-    samples::Mean,
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
 use peelnet_core::absorbance::DepthWarp;
@@ -28,6 +29,14 @@ use std::collections::VecDeque;
 /// Frames whose counts may be on their way at one time.
 const FRAMES_IN_FLIGHT: usize = 3;
 
+/// What draws: a method by name, or a view that is no method of transparency.
+#[derive(Clone, Debug)]
+enum Kind {
+    Method(MethodSpec),
+    Layers(LayerView),
+    Surfaces,
+}
+
 /// A method made ready for one renderer. It keeps its targets and counts from frame to frame; another size, target format or depth buffer
 /// makes targets anew, and takes pipelines from the device's cache.
 #[derive(Debug)]
@@ -36,9 +45,7 @@ pub struct Prepared {
     options: MethodOptions,
     pub(crate) ready: Option<Ready>,
     /// The target of profiles.
-    pub(crate) canvas: Option<wgpu::TextureView>,
-    /// The mean of the samples of profiles.
-    pub(crate) mean: Option<Mean>,
+    pub(crate) canvas: Option<Canvas>,
     /// Counts on their way, with the version of the capacities that their frames had.
     pub(crate) pending: VecDeque<(u64, Vec<Download>)>,
     status: FrameStatus,
@@ -89,7 +96,7 @@ impl Prepared {
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    scene: SceneBuffers,
+    pub(crate) scene: SceneBuffers,
 }
 
 impl Renderer {
@@ -107,11 +114,6 @@ impl Renderer {
     /// The device.
     pub const fn gpu(&self) -> &Gpu {
         &self.gpu
-    }
-
-    /// The scene on the GPU.
-    pub(crate) const fn buffers(&self) -> &SceneBuffers {
-        &self.scene
     }
 
     /// The scene as it stands after all changes.
@@ -215,7 +217,6 @@ impl Renderer {
             options,
             ready: None,
             canvas: None,
-            mean: None,
             pending: VecDeque::new(),
             status: FrameStatus::Unknown,
             stats: FrameStats::default(),
@@ -259,12 +260,23 @@ impl Renderer {
         depth: Option<&wgpu::TextureView>,
     ) -> Result<Ready, RenderError> {
         let frame = self.scene.targets(&self.gpu, size, output, depth)?;
-        let options = &method.options;
-        let compositor = method.kind.build(&self.gpu, &self.scene, &frame, options)?;
+        let (gpu, scene) = (&self.gpu, &self.scene);
+        let compositor = match &method.kind {
+            Kind::Method(spec) => methods::build(&Build {
+                gpu,
+                scene,
+                frame: &frame,
+                spec,
+                learned: method.options.learned.as_ref(),
+                sums: method.options.sums,
+            })?,
+            Kind::Layers(view) => layers::build(gpu, scene, &frame, *view)?,
+            Kind::Surfaces => surfaces::build(gpu, scene, &frame)?,
+        };
         Ok(Ready {
-            generation: self.scene.generation(),
+            generation: scene.generation(),
             callers_depth: depth.cloned(),
-            opaque: self.scene.opaque_pipelines(&self.gpu, &frame)?,
+            opaque: scene.opaque_pipelines(gpu, &frame)?,
             frame,
             compositor,
         })
@@ -285,7 +297,7 @@ impl Renderer {
         camera: &Camera,
         target: &Target<'_>,
     ) -> Result<FrameStatus, RenderError> {
-        self.encode_over(encoder, method, camera, target, None)
+        self.draw_timed(encoder, method, camera, target, None)
     }
 
     /// The same as [`Self::draw`], measuring every pass: [`Timer::finish`] records the copy of the times, which are there once the commands
@@ -294,17 +306,6 @@ impl Renderer {
     /// # Errors
     /// See [`Self::draw`].
     pub fn draw_timed(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        method: &mut Prepared,
-        camera: &Camera,
-        target: &Target<'_>,
-        timer: &mut Timer,
-    ) -> Result<FrameStatus, RenderError> {
-        self.encode_over(encoder, method, camera, target, Some(timer))
-    }
-
-    fn encode_over(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         method: &mut Prepared,

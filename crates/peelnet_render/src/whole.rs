@@ -2,17 +2,13 @@
 
 use crate::{
     error::RenderError,
-    frame::{Frame, PROFILED, Profile},
+    frame::{Canvas, Frame, Profile},
     image::Image,
     methods::compositor::{Fit, Learning},
     renderer::{Prepared, Renderer},
-    samples::{self, Drawn, Mean},
     target::Target,
 };
-use peelnet_gpu::{
-    record::{Recorder, Timer},
-    wgpu,
-};
+use peelnet_gpu::record::{Recorder, Timer};
 use peelnet_raster::{SamplePoint, frame::Output};
 use peelnet_scene::Camera;
 use web_time::Instant;
@@ -29,7 +25,7 @@ impl Renderer {
         view: (&Camera, SamplePoint),
         counting: bool,
         target: Option<&Target<'_>>,
-    ) -> Result<Drawn, RenderError> {
+    ) -> Result<Profile, RenderError> {
         let (size, output) = match target {
             Some(target) => self.output(target)?,
             None => (method.size(), Output::Image),
@@ -61,7 +57,7 @@ impl Renderer {
             let fit = ready.compositor.learn(
                 &Learning {
                     gpu: self.gpu(),
-                    scene: self.buffers(),
+                    scene: &self.scene,
                     frame: &ready.frame,
                     exact: true,
                 },
@@ -70,7 +66,7 @@ impl Renderer {
             )?;
             if !only_count && (fit == Fit::Whole || (counting && fit == Fit::Loose)) {
                 stats.geometry_passes += wasted;
-                return Ok(Drawn {
+                return Ok(Profile {
                     stats,
                     times,
                     wall_micros,
@@ -78,7 +74,9 @@ impl Renderer {
             }
             wasted += stats.geometry_passes;
         }
-        Err(RenderError::NeverWhole(MOST_TRIES))
+        Err(RenderError::Refused(format!(
+            "the frame was drawn {MOST_TRIES} times and never had room for all of its fragments"
+        )))
     }
 
     /// Draws a view, counts what its statistics need, and reads the image back. Of several samples a pixel the frame is drawn once for each,
@@ -93,7 +91,7 @@ impl Renderer {
     ) -> Result<Frame, RenderError> {
         let [width, height] = method.size();
         let mut pixels: Vec<[f32; 4]> = Vec::new();
-        let mut sum = Drawn::default();
+        let mut sum = Profile::default();
         let points = method.points();
         for &point in &points {
             sum.add(self.drawn(method, (camera, point), true, None).await?);
@@ -102,7 +100,12 @@ impl Renderer {
                 Some(view) => self.gpu().read_rgba32f_async(view).await?,
                 None => Vec::new(),
             };
-            pixels = samples::sum(pixels, read);
+            if pixels.is_empty() {
+                pixels = read;
+                continue;
+            }
+            let sums = pixels.as_flattened_mut().iter_mut();
+            sums.zip(read.as_flattened()).for_each(|(a, b)| *a += b);
         }
         let share = 1.0 / points.len() as f32;
         pixels
@@ -140,39 +143,21 @@ impl Renderer {
         method: &mut Prepared,
         camera: &Camera,
     ) -> Result<Profile, RenderError> {
-        let size = method.size();
-        let texture = |v: &wgpu::TextureView| [v.texture().width(), v.texture().height()];
-        let canvas = match method.canvas.take().filter(|v| texture(v) == size) {
+        let (size, points) = (method.size(), method.points());
+        let canvas = match method.canvas.take().filter(|c| c.size() == size) {
             Some(canvas) => canvas,
-            None => {
-                let none = wgpu::TextureUsages::empty();
-                self.gpu().texture("canvas", PROFILED, size, 1, none)?
-            }
+            None => Canvas::new(self.gpu(), size, method.samples())?,
         };
-        let target = Target::cleared(&canvas);
-        let points = method.points();
-        let mut sum = Drawn::default();
+        let target = Target::cleared(&canvas.view);
+        let mut sum = Profile::default();
         for (k, &point) in points.iter().enumerate() {
             let drawn = self.drawn(method, (camera, point), false, Some(&target));
             sum.add(drawn.await?);
-            if points.len() > 1 {
-                let mean = match method.mean.take().filter(|m| m.is_of(&canvas)) {
-                    Some(mean) => mean,
-                    None => Mean::new(self.gpu(), &canvas)?,
-                };
-                sum.add(mean.take(self.gpu(), k == 0).await?);
-                method.mean = Some(mean);
-            }
+            sum.add(canvas.average(self.gpu(), k == 0).await?);
         }
+        sum.stats.bytes_per_pixel += canvas.mean_bytes();
         method.canvas = Some(canvas);
-        if points.len() > 1 {
-            sum.stats.bytes_per_pixel += samples::MEAN_BYTES;
-        }
-        Ok(Profile {
-            times: sum.times,
-            stats: sum.stats,
-            wall_micros: sum.wall_micros,
-        })
+        Ok(sum)
     }
 
     /// The same as [`Self::profile_async`], waiting for the device. Not in a browser.

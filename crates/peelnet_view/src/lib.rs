@@ -1,6 +1,6 @@
 //! The viewer of peelnet: every transparency method live, in a window and in a web page.
 //!
-//! It is an application of [`eframe`]. A frame of it goes like this:
+//! [`App`] is an application of [`eframe`]. A frame of it goes like this:
 //!
 //! 1. What was begun earlier goes on: errors, times, the fragments of a pixel, the front of all methods. All of it is futures that are polled,
 //!    because nothing may wait in a browser.
@@ -10,6 +10,7 @@
 //!
 //! Controls of methods are made from the methods' declarations ([`peelnet_render::METHODS`]): a new method or parameter appears by itself.
 
+#[cfg(any(test, target_arch = "wasm32"))]
 mod address;
 mod app;
 mod compare;
@@ -20,6 +21,7 @@ mod input;
 mod inspect;
 mod memory;
 mod messages;
+mod motion;
 mod numbers;
 mod output;
 mod panels;
@@ -36,10 +38,10 @@ mod web;
 #[cfg(not(target_arch = "wasm32"))]
 mod window;
 
-pub use address::camera_numbers;
-pub use app::Start;
+pub use app::{App, Start};
 pub use compare::Mode;
-pub use script::Script;
+pub use output::camera_numbers;
+pub use script::{Outcome, Script};
 #[cfg(target_arch = "wasm32")]
 pub use web::Page;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,10 +1,10 @@
 //! The window of a native system.
 
 use crate::{
-    app::{App, Start, configuration},
+    app::{App, Start},
     memory,
-    stage::Source,
 };
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use peelnet_gpu::Gpu;
 
 /// Opens the window and runs it until it is closed. `size` is that of its content, in pixels. Returns what the frames of a script cost, as a
@@ -13,13 +13,20 @@ use peelnet_gpu::Gpu;
 /// # Errors
 /// No display to open a window on, or what a script of `start` came to; one line.
 pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, String> {
-    let script = start.script.clone();
+    let setup = WgpuSetupExisting {
+        instance: gpu.instance.clone(),
+        adapter: gpu.adapter.clone(),
+        device: gpu.device.clone(),
+        queue: gpu.queue.clone(),
+    };
+    let outcome = start.script.as_ref().map(|s| s.outcome());
     // A script neither sees nor changes what is remembered, such as the size of text.
     let name = format!("peelnet-view-{}.ron", std::process::id());
-    let scratch = script.is_some().then(|| std::env::temp_dir().join(name));
+    let scratch = outcome.is_some().then(|| std::env::temp_dir().join(name));
+    let [width, height] = size.map(|n| n as f32);
     let viewport = egui::ViewportBuilder::default()
         .with_title("peelnet")
-        .with_inner_size(size.map(|n| n as f32))
+        .with_inner_size([width, height])
         .with_min_inner_size([320.0, 240.0])
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions {
@@ -27,7 +34,10 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, S
         // The size is what was asked for.
         persist_window: false,
         persistence_path: scratch.clone(),
-        wgpu_options: configuration(gpu),
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: WgpuSetup::Existing(setup),
+            ..Default::default()
+        },
         ..Default::default()
     };
     let gpu = gpu.clone();
@@ -40,8 +50,7 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, S
                 // One pixel of the picture is one of the window.
                 cc.egui_ctx.set_pixels_per_point(1.0);
             }
-            let source = Source::named(&start.scene);
-            Ok(Box::new(App::new(&gpu, start, source, recent)))
+            Ok(Box::new(App::new(&gpu, start, recent)))
         }),
     );
     if let Some(scratch) = scratch {
@@ -53,7 +62,14 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, S
             "no window can be opened ({e}); where there is no display, peelnet render draws images, and xvfb-run lends a display"
         )
     })?;
-    let closed = || Err("the window was closed before the script ended".into());
-    let outcome = script.map(|script| script.outcome().unwrap_or_else(closed));
-    outcome.transpose()
+    let Some(outcome) = outcome else {
+        return Ok(None);
+    };
+    let outcome = outcome
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
+        .take();
+    let outcome =
+        outcome.unwrap_or_else(|| Err("the window was closed before the script ended".into()));
+    outcome.map(Some)
 }

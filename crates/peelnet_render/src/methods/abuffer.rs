@@ -2,12 +2,7 @@
 //!
 //! A frame's storage has the room that an earlier frame needed. Fragments beyond it are left out and counted, and the next frame has room.
 
-use super::{
-    compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
-    method::{Method, Promises, Role},
-    parameter::{Count, Parameter},
-};
-use crate::error::RenderError;
+use super::prelude::*;
 use peelnet_core::methods::over;
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_raster::{
@@ -19,22 +14,22 @@ use peelnet_raster::{
 };
 use std::ops::Range;
 
-const BUDGET: Count = Count {
-    name: "budget",
-    about: "fragments that one tile may hold",
-    most: 1 << 32,
-};
+const BUDGET: Parameter = Parameter::whole(
+    "budget",
+    "fragments that one tile may hold",
+    None,
+    (1, 1 << 32),
+);
 
 pub(super) const METHOD: Method = Method {
-    parameters: &[Parameter::Count(BUDGET)],
+    parameters: &[BUDGET],
     promises: |_| Promises {
         tinted: true,
         ..Promises::EXACT
     },
     curve: &["", ":scale=0.5"],
-    roles: &[(Role::Reference, "abuffer")],
     twin: Some(|_, p| Some(over::composite(p.fragments, p.background))),
-    ..Method::new(
+    ..Method::own(
         "abuffer",
         "exact: S-buffer, every fragment stored and sorted",
         build,
@@ -73,26 +68,28 @@ struct ABuffer {
     version: u64,
 }
 
-fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let features: &[&str] = if b.scene.tinted { &["tinted"] } else { &[] };
-    build_exact(b.gpu, b.scene, b.frame, BUDGET.given(b.spec), features)
+impl Composite {
+    /// Front to back.
+    pub const fn exact(tinted: bool) -> Self {
+        Self {
+            shader: "methods::abuffer::composite",
+            fold: "abuffer",
+            features: if tinted { &["tinted"] } else { &[] },
+            parameters: String::new(),
+        }
+    }
 }
 
-/// Composites every pixel's run front to back; `features` are those of storing.
-pub(super) fn build_exact(
-    gpu: &Gpu,
-    scene: &SceneBuffers,
-    frame: &FrameTargets,
-    budget: Option<u64>,
-    features: &[&str],
-) -> Result<Box<dyn Compositor>, RenderError> {
-    let composite = Composite {
-        shader: "methods::abuffer::composite",
-        fold: "abuffer",
-        features: if scene.tinted { &["tinted"] } else { &[] },
-        parameters: String::new(),
-    };
-    build_with(gpu, scene, frame, budget, features, composite)
+fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+    let (budget, composite) = (BUDGET.count(b.spec), Composite::exact(b.scene.tinted));
+    build_with(
+        b.gpu,
+        b.scene,
+        b.frame,
+        budget,
+        composite.features,
+        composite,
+    )
 }
 
 /// Stores, sorts and composites every pixel's run; `features` are those of storing.

@@ -1,23 +1,55 @@
 //! `bins-N`: cumulative absorbance in N intervals of depth (Osorio López's write-up, and as shipped in a block game). The CPU twin
 //! is `peelnet_core::methods::bins`, which states the sources.
+//!
+//! The choice of the range that intervals are spread over, and the pass that finds a pixel's own, are `wavelet`'s, too: their CPU twin
+//! is `peelnet_core::methods::range`.
 
 use super::{
-    commutative::{self, Blend, Gather, Plan, Target},
-    compositor::{Build, Compositor},
-    method::{Method, Numbered},
-    parameter::{Parameter, Precision},
-    range::{BOUNDS_OF_PIXEL, PIXEL_BOUNDS, RANGE, RANGE_PASS, RANGE_TARGETS, bounds},
-    spec::MethodSpec,
-    weighted::{SUMS, TRANSMITTANCE},
-};
-use crate::{
-    error::RenderError,
-    flaw::{Flaw, Property},
+    plan::{Handle, Pass},
+    prelude::*,
 };
 use peelnet_core::methods::{bins, range::Bounds};
 
+/// `targets` of a method with 16-bit targets but for the bounds.
+pub(super) const RANGE_TARGETS: Parameter =
+    Parameter::targets("f16 or f32 for all; by default 16 bits, and 32 for a pixel's bounds");
+
+const BOUNDS: Parameter = Parameter::words(
+    "bounds",
+    "pixel (default) or frame: the range of depths; the frame's saves a pass",
+    &["pixel", "frame"],
+);
+
+/// The range that a method's `bounds` asks for.
+pub(super) fn bounds(spec: &MethodSpec, parameter: Parameter) -> Bounds {
+    if parameter.word(spec) == "pixel" {
+        Bounds::Pixel
+    } else {
+        Bounds::Frame
+    }
+}
+
+/// The pass that finds a pixel's bounds, where those are asked for: the target that holds the warped depths of its nearest fragment,
+/// negated, and of its farthest.
+pub(super) fn range_pass(p: &mut Plan, bounds: Bounds) -> Option<Handle> {
+    if bounds == Bounds::Frame {
+        return None;
+    }
+    // There is no alpha to add.
+    let range = p.target(Target::full("bounds", 2, Blend::MaxAdd));
+    p.geometry("methods::bins::bounds").writes([range]);
+    Some(range)
+}
+
+impl Pass {
+    /// Reads a pixel's bounds behind all else, where there are any.
+    pub(super) fn reads_range(&mut self, range: Option<Handle>) -> &mut Self {
+        self.reads(range).features(range.map(|_| "pixel_bounds"))
+    }
+}
+
 fn of_pixel(spec: &MethodSpec) -> bool {
-    bounds(spec, BOUNDS_OF_PIXEL) == Bounds::Pixel
+    bounds(spec, BOUNDS) == Bounds::Pixel
 }
 
 fn four_of_pixel(spec: &MethodSpec) -> bool {
@@ -27,129 +59,73 @@ fn four_of_pixel(spec: &MethodSpec) -> bool {
 const FEW_BINS: &str =
     "four bins between a pixel's ends: within one, absorbance counts as spread evenly";
 
+const BLURRED: &str = "bins over the whole frame's depth blur what lies close together";
+
 pub(super) const METHOD: Method = Method {
-    numbered: Some(Numbered {
-        least: 4,
-        most: 16,
-        power_of_two: true,
-    }),
-    parameters: &[RANGE_TARGETS, Parameter::Word(BOUNDS_OF_PIXEL)],
+    numbered: Numbered::powers(4, 16),
+    parameters: &[RANGE_TARGETS, BOUNDS],
     curve: &["-8", "-4", "-8:bounds=frame", "-16", "-8:targets=f16"],
     twin: Some(|s, p| {
         let (fragments, c0, n) = (p.fragments, p.background, s.number() as usize);
-        let bounds = bounds(s, BOUNDS_OF_PIXEL);
-        Some(bins::composite(fragments, c0, &p.warp, n, bounds))
+        Some(bins::composite(fragments, c0, &p.warp, n, bounds(s, BOUNDS)))
     }),
     transmittances: Some(|s, fragments, warp, _| {
-        let (n, bounds) = (s.number() as usize, bounds(s, BOUNDS_OF_PIXEL));
-        Some(bins::transmittances(fragments, warp, n, bounds))
+        let n = s.number() as usize;
+        Some(bins::transmittances(fragments, warp, n, bounds(s, BOUNDS)))
     }),
     flaws: &[
-        Flaw::swallowed(&["deep"]),
+        Flaw::swallowed("deep"),
         Flaw::new(
             Property::Opaque,
-            &["alpha-near-one"],
+            "alpha-near-one",
             "absorbance ends at 4, as shipped: three layers of 0.99 let 1.8 % through each, not 1 %",
         )
         .when(of_pixel),
-        Flaw::new(
-            Property::Opaque,
-            &["alpha-near-one"],
-            "bins over the whole frame's depth blur what lies close together",
-        )
-        .when(|s| !of_pixel(s)),
-        Flaw::new(
-            Property::Transmittance,
-            &["two-layers"],
-            "bins over the whole frame's depth blur what lies close together",
-        )
-        .when(|s| !of_pixel(s)),
-        Flaw::new(Property::Transmittance, &["coplanar"], FEW_BINS).when(four_of_pixel),
-        Flaw::new(Property::Steady, &["moving-camera"], FEW_BINS).when(four_of_pixel),
+        Flaw::new(Property::Opaque, "alpha-near-one", BLURRED).when(|s| !of_pixel(s)),
+        Flaw::new(Property::Transmittance, "two-layers", BLURRED).when(|s| !of_pixel(s)),
+        Flaw::new(Property::Transmittance, "coplanar", FEW_BINS).when(four_of_pixel),
+        Flaw::new(Property::Steady, "moving-camera", FEW_BINS).when(four_of_pixel),
     ],
     ..Method::new(
         "bins",
         "absorbance in N intervals between a pixel's nearest and farthest fragment",
-        build,
+        plan,
     )
 };
 
-fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
     let number = b.spec.number();
-    let of_pixel = of_pixel(b.spec);
-    let mut targets = vec![SUMS, TRANSMITTANCE];
-    let fours: Vec<usize> = (targets.len()..).take(number as usize / 4).collect();
-    targets.extend(fours.iter().map(|_| Target {
-        label: "bins",
-        channels: 4,
-        full: false,
-        blend: Blend::Add,
-    }));
-    let range: Vec<usize> = of_pixel.then_some(targets.len()).into_iter().collect();
-    targets.extend(range.iter().map(|_| RANGE));
-    let with_range = |own: &[&'static str]| {
-        let more: &[_] = if of_pixel { &[PIXEL_BOUNDS] } else { &[] };
-        [own, more].concat()
+    let parameters =
+        |first: usize| format!("const BINS: f32 = {number}.0;\nconst FIRST: u32 = {first}u;\n");
+    let features = |targets: usize| {
+        let two = (targets > 1).then_some("two");
+        two.into_iter().chain((targets > 2).then_some("four"))
     };
-    let features_of = |targets: usize| -> &[&'static str] {
-        match targets {
-            1 => &[],
-            2 => &["two"],
-            _ => &["two", "four"],
-        }
-    };
+    let mut p = Plan::new();
+    p.parameters = parameters(0);
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let four = Target::half("bins", 4, Blend::Add);
+    let fours = p.targets((0..number / 4).map(|_| four));
+    let range = range_pass(&mut p, bounds(b.spec, BOUNDS));
     // One pass of portable WebGPU writes 32 bytes a pixel: four targets of 16 bits, two of 32.
     let at_once = match b.spec.targets() {
         Some(Precision::Full) => 2,
         _ => 4,
     };
-    let bins = format!("const BINS: f32 = {number}.0;\n");
-    let parameters: Vec<String> = (0..number)
-        .step_by(4 * at_once)
-        .map(|first| format!("{bins}const FIRST: u32 = {first}u;\n"))
-        .collect();
-    let extras: Vec<_> = parameters
-        .iter()
-        .map(|p| [("parameters", p.as_str())])
-        .collect();
-    let accumulating = with_range(features_of(at_once.min(fours.len())));
-    let gathering = with_range(features_of(fours.len()));
-    let read = [fours.as_slice(), &range].concat();
-    let mut passes = Vec::new();
-    passes.extend(of_pixel.then_some(Gather {
-        writes: &range,
-        ..RANGE_PASS
-    }));
-    passes.extend(
-        fours
-            .chunks(at_once)
-            .zip(&extras)
-            .map(|(writes, extra)| Gather {
-                label: "bins",
-                shader: "methods::bins::accumulate",
-                features: &accumulating,
-                extra,
-                writes,
-                reads: &range,
-                ..Gather::NONE
-            }),
-    );
-    passes.push(Gather {
-        shader: "methods::bins::gather",
-        features: &gathering,
-        extra: &extras[0],
-        writes: &[0, 1],
-        reads: &read,
-        ..Gather::NONE
-    });
-    commutative::build(
-        b,
-        &Plan {
-            targets: &targets,
-            passes: &passes,
-            resolve: "methods::wboit::resolve",
-            resolve_reads: &[0, 1],
-            ..Plan::NONE
-        },
-    )
+    for (k, written) in fours.chunks(at_once).enumerate() {
+        p.geometry("methods::bins::accumulate")
+            .label("bins")
+            .parameters(parameters(4 * at_once * k))
+            .features(features(written.len()))
+            .reads_range(range)
+            .writes(written.iter().copied());
+    }
+    p.geometry("methods::bins::gather")
+        .features(features(fours.len()))
+        .reads(fours)
+        .reads_range(range)
+        .writes([sums, transmittance]);
+    p.resolve("methods::wboit::resolve", [sums, transmittance]);
+    Ok(p)
 }

@@ -28,12 +28,9 @@ pub struct FrameStats {
 
 /// What a compositor draws with.
 #[derive(Debug)]
-pub struct DrawContext<'a, 'e> {
-    /// Records passes.
+pub(crate) struct DrawContext<'a, 'e> {
     pub recorder: &'a mut Recorder<'e>,
-    /// The scene.
     pub scene: &'a SceneBuffers,
-    /// The view.
     pub camera: &'a Camera,
     /// Where pixels are sampled.
     pub point: SamplePoint,
@@ -67,7 +64,7 @@ impl<'a> DrawContext<'a, '_> {
 
 /// Whether a frame had room for all of its fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fit {
+pub(crate) enum Fit {
     /// It had, and took what it needed.
     Whole,
     /// It had, and did more than it needed: its time is not the method's.
@@ -78,12 +75,9 @@ pub enum Fit {
 
 /// What a compositor learns the counts of a frame with.
 #[derive(Debug)]
-pub struct Learning<'a> {
-    /// The device.
+pub(crate) struct Learning<'a> {
     pub gpu: &'a Gpu,
-    /// The scene.
     pub scene: &'a SceneBuffers,
-    /// The frame's targets.
     pub frame: &'a FrameTargets,
     /// Whether the same view is drawn again, so that room needs no reserve for movement.
     pub exact: bool,
@@ -101,11 +95,8 @@ impl Learning<'_> {
 }
 
 /// A method made ready for one scene and frame size.
-pub trait Compositor: fmt::Debug + wgpu::WasmNotSend {
+pub(crate) trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     /// Records the passes that composite the transparent fragments: over `C_0` into the frame's image, or onto the caller's target.
-    ///
-    /// # Errors
-    /// A lost device, or a frame beyond the adapter's limits.
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError>;
 
     /// Whether it knows how much room a frame needs, or need not know.
@@ -119,9 +110,6 @@ pub trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     }
 
     /// Takes what was read back, word by word, completes the statistics, and makes room for the next frame.
-    ///
-    /// # Errors
-    /// A pixel or frame beyond what storage can hold, or a lost device.
     fn learn(
         &mut self,
         _cx: &Learning<'_>,

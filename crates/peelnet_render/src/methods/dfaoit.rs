@@ -2,28 +2,12 @@
 //! text itself. Passes are those of the authors' shaders for portable hardware: two peels, and one pass of sums.
 
 use super::{
-    commutative::{Blend, Target},
-    compositor::{Build, Compositor, DrawContext, FrameStats},
-    depth_peel::COINCIDENT,
-    method::{Method, Promises},
-    parameter::{Precision, TARGETS},
-};
-use crate::{
-    error::RenderError,
-    flaw::{Flaw, Property},
+    depth_peel::{COINCIDENT, Layers},
+    peeling::{self, Peel as _},
+    prelude::*,
 };
 use peelnet_core::methods::dfaoit;
-use peelnet_gpu::{
-    bind::{Bind, Bound},
-    wgpu,
-};
 use peelnet_model::Inputs;
-use peelnet_raster::{
-    GeometryPass, GeometryPipelines, Surfaces,
-    frame::clear_color,
-    fullscreen::FullscreenPass,
-    single::{self, SinglePeel},
-};
 
 pub(super) const METHOD: Method = Method {
     parameters: &[TARGETS],
@@ -48,160 +32,67 @@ pub(super) const METHOD: Method = Method {
         COINCIDENT,
         Flaw::new(
             Property::Opaque,
-            &["alpha-near-one"],
+            "alpha-near-one",
             "the network's own error: it predicts the nearest layers' colour with that of the others (Tsopouridis et al. 2024)",
         ),
     ],
-    ..Method::new(
+    ..Method::own(
         "dfaoit",
         "Tsopouridis et al. 2024: up to two layers exact, the colour of more from a network",
         build,
     )
 };
 
-/// Layers that are composited exactly.
+/// Layers that are composited exactly: an even number, so that the last pass over them leaves its key and its colour in the first of
+/// two textures.
 const FRONT: u32 = dfaoit::FRONT as u32;
-
-/// Sums over the fragments behind the front, over all fragments, and the number of those behind.
-const SUMS: [Target; 3] = {
-    const fn target(label: &'static str, channels: u32, blend: Blend) -> Target {
-        Target {
-            label,
-            channels,
-            full: false,
-            blend,
-        }
-    }
-    [
-        target("behind", 4, Blend::Add),
-        target("all", 4, Blend::AddTransmit),
-        target("count", 1, Blend::Add),
-    ]
-};
 
 #[derive(Debug)]
 struct Dfaoit {
-    peel: SinglePeel,
-    /// What is composited so far, in turn.
-    front: [wgpu::TextureView; 2],
-    under: [FullscreenPass; 2],
-    second: Bound,
-    gather: GeometryPipelines,
-    sums: [wgpu::TextureView; 3],
-    resolve: FullscreenPass,
-    bytes_per_pixel: f64,
+    front: Layers,
+    /// The pass of sums and the resolve.
+    rest: Box<dyn Compositor>,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let (gpu, frame) = (b.gpu, b.frame);
-    let learned = b.learned_weight()?;
-    let full = b.spec.targets() == Some(Precision::Full);
-    if full {
-        gpu.need(
-            wgpu::Features::FLOAT32_BLENDABLE,
-            "float32-blendable",
-            &b.spec.to_string(),
-            "use targets=f16",
-        )?;
-    }
-    let peel = SinglePeel::new(gpu, b.scene, frame, &[])?;
-    let texture =
-        |label, format| gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty());
-    let format = wgpu::TextureFormat::Rgba32Float;
-    let front = [texture("front", format)?, texture("front", format)?];
-    let [behind, all, count] = SUMS.map(|t| texture(t.label, t.format(full)));
-    let sums = [behind?, all?, count?];
-    let found = gpu.storage("found", 8)?;
-    let image = [Some(format.into())];
-    let under = |from: usize| {
-        FullscreenPass::new(
-            gpu,
-            "methods::depth_peel::under",
-            &[],
-            &[],
-            &[
-                Bind::Texture(&front[from]),
-                Bind::Texture(&peel.layer),
-                Bind::Uint(&peel.keys[1 - from]),
-                Bind::Write(&found),
-            ],
-            &image,
-        )
-    };
-    // Two peels later the last key lies in the first texture again.
-    let second = gpu.bind(
-        "second key",
-        wgpu::ShaderStages::FRAGMENT,
-        &[Bind::Uint(&peel.keys[0])],
-    );
-    let extra = [("learned::weight", learned.wgsl.as_str())];
-    let gather = b.scene.pipelines(
-        gpu,
-        frame,
-        Surfaces::Transparent,
-        &GeometryPass {
-            label: "gather",
-            shader: "methods::dfaoit::gather",
-            extra: &extra,
-            group: Some(&second),
-            targets: &SUMS.map(|t| Some(t.state(full))),
-            ..GeometryPass::NONE
-        },
-    )?;
-    let resolve = FullscreenPass::resolve(
-        gpu,
-        "methods::dfaoit::resolve",
-        &[],
-        &extra,
-        &[
-            Bind::Texture(&frame.background),
-            Bind::Texture(&front[0]),
-            Bind::Texture(&sums[0]),
-            Bind::Texture(&sums[1]),
-            Bind::Texture(&sums[2]),
-        ],
-        frame.output,
-    )?;
-    let bytes: u32 = SUMS.iter().map(|t| t.bytes(full)).sum();
-    Ok(Box::new(Dfaoit {
-        under: [under(0)?, under(1)?],
-        peel,
-        front,
-        second,
-        gather,
-        sums,
-        resolve,
-        bytes_per_pixel: single::BYTES_PER_PIXEL + 2.0 * 16.0 + f64::from(bytes),
-    }))
+    let front = Layers::new(b, &peeling::found(b.gpu)?)?;
+    let mut p = Plan::new();
+    b.learned_weight()?.wgsl.clone_into(&mut p.network);
+    // Sums over the fragments behind the front, over all fragments, and the number of those behind.
+    let sums = p.targets([
+        Target::half("behind", 4, Blend::Add),
+        Target::half("all", 4, Blend::AddTransmit),
+        Target::half("count", 1, Blend::Add),
+    ]);
+    let second_key = p.integers(&front.peel.keys[0]);
+    let composited = p.texture(&front.accumulated[0]);
+    p.geometry("methods::dfaoit::gather")
+        .reads([second_key])
+        .writes(sums.iter().copied());
+    p.resolve("methods::dfaoit::resolve", [composited])
+        .reads(sums);
+    let rest = p.build(b)?;
+    Ok(Box::new(Dfaoit { front, rest }))
 }
 
 impl Compositor for Dfaoit {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        self.peel.init(cx.recorder);
-        drop(cx.recorder.render(
-            "clear",
-            &[clear_color(&self.front[0], [0.0, 0.0, 0.0, 1.0])],
-            None,
-        ));
+        let front = &mut DrawContext {
+            recorder: cx.recorder,
+            counting: false,
+            ..*cx
+        };
+        self.front.begin(front);
         for layer in 0..FRONT {
-            let from = (layer % 2) as usize;
-            self.peel.peel(cx.recorder, cx.scene, cx.frame, layer);
-            self.under[from].draw(cx.recorder, &[clear_color(&self.front[1 - from], [0.0; 4])]);
+            self.front.pass(front, layer);
         }
-        {
-            let colors = [0, 1, 2].map(|i| clear_color(&self.sums[i], SUMS[i].blend.start()));
-            let mut pass = cx.recorder.render("gather", &colors, None);
-            pass.set_bind_group(1, &self.second.group, &[]);
-            cx.scene
-                .draw(&mut pass, cx.frame, Surfaces::Transparent, &self.gather);
-        }
-        cx.resolve(&self.resolve);
+        let stats = self.rest.draw(cx)?;
         Ok(FrameStats {
-            tiles: 1,
-            geometry_passes: FRONT + 1,
-            fullscreen_passes: FRONT + 3,
-            bytes_per_pixel: self.bytes_per_pixel,
-            ..Default::default()
+            geometry_passes: FRONT + stats.geometry_passes,
+            // With what clears the layers before them.
+            fullscreen_passes: FRONT + 2 + stats.fullscreen_passes,
+            bytes_per_pixel: Layers::BYTES + stats.bytes_per_pixel,
+            ..stats
         })
     }
 }

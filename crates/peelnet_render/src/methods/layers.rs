@@ -3,9 +3,8 @@
 
 use super::{
     abuffer::{self, Composite},
-    compositor::Compositor,
+    prelude::*,
 };
-use crate::error::RenderError;
 use peelnet_gpu::Gpu;
 use peelnet_raster::{FrameTargets, SceneBuffers};
 

@@ -1,15 +1,14 @@
 //! What learned methods have in common.
 
-use super::{compositor::Build, parameter::Precision, spec::MethodSpec};
-use crate::{error::RenderError, target::LearnedWeight};
+use super::prelude::*;
+use crate::target::LearnedWeight;
 use peelnet_core::{absorbance::DepthWarp, statistics::SumPrecision};
 use peelnet_model::{Model, Recipe};
 
 impl LearnedWeight {
     /// The network that ships for a method; `None` for a method that has none.
     pub fn shipped(spec: &MethodSpec) -> Option<Self> {
-        let mut recipes = Recipe::ALL.into_iter();
-        let recipe = recipes.find(|r| r.method == spec.name())?;
+        let recipe = Recipe::of_method(spec.name())?;
         let shipped = peelnet_models::find(recipe.name)?;
         Some(Self {
             recipe,

@@ -5,13 +5,10 @@
 //! colours rounded as the list rounds them.
 
 use super::{
-    abuffer::{self, FIRST_GUESS},
-    compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
-    method::{Method, Promises},
-    parameter::{Count, Parameter},
+    abuffer::{self, Composite, FIRST_GUESS},
+    prelude::*,
     stored::{self, COLORS},
 };
-use crate::{error::RenderError, flaw::Property};
 use peelnet_core::methods::over;
 use peelnet_gpu::{
     Gpu,
@@ -25,14 +22,15 @@ use peelnet_raster::{
 };
 use std::ops::Range;
 
-const NODES: Count = Count {
-    name: "nodes",
-    about: "size of the first pool; it grows as needed",
-    most: 1 << 32,
-};
+const NODES: Parameter = Parameter::whole(
+    "nodes",
+    "size of the first pool; it grows as needed",
+    None,
+    (1, 1 << 32),
+);
 
 pub(super) const METHOD: Method = Method {
-    parameters: &[Parameter::Count(NODES), Parameter::Word(COLORS)],
+    parameters: &[NODES, COLORS],
     promises: |s| Promises {
         tinted: true,
         ..stored::promises(s, Promises::EXACT)
@@ -41,43 +39,21 @@ pub(super) const METHOD: Method = Method {
     flaws: &[
         stored::in_bytes(
             Property::Background,
-            &[
-                "alpha-tiny",
-                "alpha-zero",
-                "coplanar",
-                "emissive",
-                "far",
-                "grazing",
-                "intersecting",
-                "isolated",
-                "moving-camera",
-                "opaque-mix",
-                "thin-slab",
-                "two-layers",
-                "wide-range",
-            ],
+            "alpha-tiny alpha-zero coplanar emissive far grazing intersecting isolated moving-camera opaque-mix \
+             thin-slab two-layers wide-range",
         ),
         stored::in_bytes(
             Property::Hull,
-            &[
-                "alpha-tiny",
-                "coplanar",
-                "deep",
-                "emissive",
-                "grazing",
-                "intersecting",
-                "moving-camera",
-                "near-overflow",
-            ],
+            "alpha-tiny coplanar deep emissive grazing intersecting moving-camera near-overflow",
         ),
-        stored::in_bytes(Property::Single, &["emissive", "grazing"]),
+        stored::in_bytes(Property::Single, "emissive grazing"),
     ],
     twin: Some(|s, p| {
         let colors = stored::colors(s);
         let kept: Vec<_> = p.fragments.iter().map(|f| colors.kept(f)).collect();
         Some(over::composite(&kept, p.background))
     }),
-    ..Method::new(
+    ..Method::own(
         "linked-list",
         "exact: one pass into a list for each pixel, sorted by relinking",
         build,
@@ -118,23 +94,21 @@ struct Pool {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let (gpu, frame) = (b.gpu, b.frame);
-    let (pixels, tinted) = (frame.pixels(), b.scene.tinted);
-    let colors = stored::colors(b.spec);
+    let (gpu, frame, tinted) = (b.gpu, b.frame, b.scene.tinted);
+    let pixels = u64::from(frame.pixels());
+    let (_, bytes, layout) = stored::layout(b.spec);
     let shared = Shared {
-        heads: gpu.storage("list heads", u64::from(pixels) * 4)?,
+        heads: gpu.storage("list heads", pixels * 4)?,
         found: gpu.storage("nodes found", FOUND.end)?,
         background: frame.background.clone(),
-        features: [
-            stored::features(colors),
-            if tinted { &["tinted"] } else { &[] },
-        ]
-        .concat(),
+        features: layout
+            .into_iter()
+            .chain(tinted.then_some("tinted"))
+            .collect(),
         // Where light takes a colour two of a fragment.
-        color_bytes: u64::from(stored::bytes(colors)) * if tinted { 2 } else { 1 },
+        color_bytes: u64::from(bytes) * if tinted { 2 } else { 1 },
     };
-    let nodes = NODES.given(b.spec);
-    let first = nodes.unwrap_or(u64::from(pixels) * FIRST_GUESS);
+    let first = NODES.count(b.spec).unwrap_or(pixels * FIRST_GUESS);
     Ok(Box::new(LinkedList {
         attachment: unwritten_texture(gpu, frame)?,
         pool: Pool::new(gpu, b.scene, frame, &shared, first)?,
@@ -153,22 +127,21 @@ impl Pool {
         nodes: u64,
     ) -> Result<Self, RenderError> {
         let features = &shared.features;
-        let next = gpu.storage("list links", nodes * 4)?;
-        let depths = gpu.storage("fragment depths", nodes * 4)?;
-        let triangles = gpu.storage("fragment triangles", nodes * 4)?;
-        let colors = gpu.storage("fragment colours", nodes * shared.color_bytes)?;
-        let build_group = gpu.bind(
-            "build",
-            wgpu::ShaderStages::FRAGMENT,
-            &[
-                Bind::Write(&shared.heads),
-                Bind::Write(&shared.found),
-                Bind::Write(&next),
-                Bind::Write(&depths),
-                Bind::Write(&triangles),
-                Bind::Write(&colors),
-            ],
-        );
+        let storage = |label, bytes| gpu.storage(label, nodes * bytes);
+        let next = storage("list links", 4)?;
+        let depths = storage("fragment depths", 4)?;
+        let triangles = storage("fragment triangles", 4)?;
+        let colors = storage("fragment colours", shared.color_bytes)?;
+        let written = [
+            &shared.heads,
+            &shared.found,
+            &next,
+            &depths,
+            &triangles,
+            &colors,
+        ];
+        let stages = wgpu::ShaderStages::FRAGMENT;
+        let build_group = gpu.bind("build", stages, &written.map(Bind::Write));
         let build = scene.pipelines(
             gpu,
             frame,
@@ -264,10 +237,9 @@ impl Compositor for LinkedList {
         let needed = u64::from(used);
         stats.fragments = Some(needed);
         if too_long > 0 {
-            let features = &self.shared.features;
-            self.long = Some(abuffer::build_exact(
-                cx.gpu, cx.scene, cx.frame, None, features,
-            )?);
+            let (features, composite) = (&self.shared.features, Composite::exact(cx.scene.tinted));
+            let long = abuffer::build_with(cx.gpu, cx.scene, cx.frame, None, features, composite);
+            self.long = Some(long?);
             self.version += 1;
             return Ok(Fit::TooSmall);
         }

@@ -3,8 +3,7 @@
 //! The method composites over black, at its own size and against its own opaque depth. The result is normalised,
 //! premultiplied colour with coverage, which may be interpolated; sums and moments may not.
 
-use super::compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning};
-use crate::error::RenderError;
+use super::prelude::*;
 use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{
     FrameTargets, GeometryPipelines, OpaqueDepth, PixelSample,
@@ -26,17 +25,17 @@ struct LowResolution {
 
 pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, RenderError> {
     let full = b.frame;
-    if full.depth.as_ref().is_some_and(|d| d.is_callers) {
-        return Err(RenderError::Target(format!(
-            "{} draws at a lower resolution, against opaque surfaces of the scene: leave the target's depth out",
-            b.spec
-        )));
-    }
-    if full.depth.as_ref().is_some_and(|d| d.samples() > 1) {
-        return Err(RenderError::Target(format!(
-            "{} upsamples by the depth of opaque surfaces, which has several samples a pixel here: use a target of one sample",
-            b.spec
-        )));
+    let fault = match &full.depth {
+        Some(depth) if depth.is_callers => Some(
+            "draws at a lower resolution, against opaque surfaces of the scene: leave the target's depth out",
+        ),
+        Some(depth) if depth.samples() > 1 => Some(
+            "upsamples by the depth of opaque surfaces, which has several samples a pixel here: use a target of one sample",
+        ),
+        _ => None,
+    };
+    if let Some(fault) = fault {
+        return Err(RenderError::Target(format!("{} {fault}", b.spec)));
     }
     let size = full
         .size
@@ -45,16 +44,15 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
         .scene
         .targets_of(b.gpu, size, full.aspect, Output::Image, None)?;
     let opaque = b.scene.opaque_pipelines(b.gpu, &frame)?;
-    let method = (b.spec.method().build)(&Build {
+    let method = b.spec.method().build(&Build {
         frame: &frame,
         ..*b
     })?;
     let [width, height] = full.size;
-    let extent = b.gpu.upload(
-        "full extent",
-        &[width, height, 0, 0],
-        wgpu::BufferUsages::UNIFORM,
-    );
+    let extent = [width, height, 0, 0];
+    let extent = b
+        .gpu
+        .upload("full extent", &extent, wgpu::BufferUsages::UNIFORM);
     let mut entries = vec![
         // Its output is one.
         Bind::Texture(frame.image().unwrap_or(&frame.background)),
@@ -67,19 +65,12 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
         entries.push(Bind::Uniform(b.scene.camera_buffer()));
         features = &["opaque"];
     }
-    let upsample = FullscreenPass::resolve(
-        b.gpu,
-        "methods::low_resolution::upsample",
-        features,
-        &[],
-        &entries,
-        full.output,
-    )?;
+    let shader = "methods::low_resolution::upsample";
     Ok(Box::new(LowResolution {
+        upsample: FullscreenPass::resolve(b.gpu, shader, features, &[], &entries, full.output)?,
         frame,
         opaque,
         method,
-        upsample,
     }))
 }
 

@@ -5,7 +5,8 @@
 
 use super::{
     compositor::{Build, Compositor},
-    parameter::{Parameter, Precision},
+    parameter::{Parameter, Precision, SCALE, Values},
+    plan::Plan,
     spec::MethodSpec,
 };
 use crate::{error::RenderError, flaw::Flaw};
@@ -32,19 +33,23 @@ pub struct Method {
     pub promises: fn(&MethodSpec) -> Promises,
     /// What a benchmark of all methods draws: endings of its name, the default first.
     pub curve: &'static [&'static str],
-    /// What reports use it as, with the text of the [`MethodSpec`] that they draw.
-    pub roles: &'static [(Role, &'static str)],
     /// Its CPU twin.
     pub twin: Option<Twin>,
     /// Its estimate of every fragment's transmittance.
     pub transmittances: Option<Estimate>,
     /// Properties that it is known not to have.
     pub flaws: &'static [Flaw],
-    pub(super) build: BuildMethod,
+    pub(super) draws: Draws,
 }
 
-/// Makes a method ready to draw.
-pub(super) type BuildMethod = fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>;
+/// How a method draws.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Draws {
+    /// By a fixed list of passes.
+    Plan(fn(&Build<'_>) -> Result<Plan, RenderError>),
+    /// By itself.
+    Own(fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>),
+}
 
 /// The colour that a pixel must have; `None` without the model that a learned method needs.
 pub type Twin = fn(&MethodSpec, &Pixel<'_>) -> Option<[f32; 3]>;
@@ -146,6 +151,12 @@ impl Promises {
         statistics: Precision::Half,
         ..Self::EXACT
     };
+
+    /// The same of methods that also draw light which takes a colour.
+    pub(super) const TINTED: Self = Self {
+        tinted: true,
+        ..Self::NORMALISED
+    };
 }
 
 /// What reports use a method as: each role belongs to one method.
@@ -166,52 +177,76 @@ pub enum Role {
 }
 
 impl Role {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Reference,
-        Self::HardwareBlending,
-        Self::WeightedBlending,
-        Self::MomentBlending,
-        Self::ThesisWeight,
-        Self::ThesisNetwork,
-    ];
+    /// The method that has it, with its parameters: the text of a [`MethodSpec`].
+    pub const fn method(self) -> &'static str {
+        match self {
+            Self::Reference => "abuffer",
+            Self::HardwareBlending => "painter-object:sort=off",
+            Self::WeightedBlending => "wboit-eq9",
+            Self::MomentBlending => "mboit4",
+            Self::ThesisWeight => "wboit-papakostas",
+            Self::ThesisNetwork => "deep-thesis",
+        }
+    }
 }
 
 impl Numbered {
+    /// Any number of a range.
+    pub(super) const fn range(least: u32, most: u32) -> Option<Self> {
+        Some(Self {
+            least,
+            most,
+            power_of_two: false,
+        })
+    }
+
+    /// The powers of two of a range.
+    pub(super) const fn powers(least: u32, most: u32) -> Option<Self> {
+        Some(Self {
+            least,
+            most,
+            power_of_two: true,
+        })
+    }
+
     /// Reads the number behind `name`.
     pub(super) fn parse(self, name: &str, text: &str) -> Result<u32, String> {
         let Self { least, most, .. } = self;
-        match text.parse::<u32>() {
-            Ok(n) if !(least..=most).contains(&n) => {}
+        let allowed = match text.parse::<u32>() {
+            Ok(n) if !(least..=most).contains(&n) => format!("{least} to {most}"),
             Ok(n) if self.power_of_two && !n.is_power_of_two() => {
                 let above = n.next_power_of_two();
-                return Err(format!(
-                    "the number behind '{name}-' must be a power of two: {} or {above}, not '{n}'",
-                    above / 2
-                ));
+                format!("a power of two: {} or {above}", above / 2)
             }
             Ok(n) => return Ok(n),
-            Err(_) => {}
-        }
+            Err(_) => format!("{least} to {most}"),
+        };
         Err(format!(
-            "the number behind '{name}-' must be {least} to {most}, not '{text}'"
+            "the number behind '{name}-' must be {allowed}, not '{text}'"
         ))
     }
 }
 
 impl Method {
-    /// Whether it is exact with its default parameters.
-    pub fn is_exact(&'static self) -> bool {
-        MethodSpec::representative(self).promises().exact
-    }
-
-    /// Whether it draws light that takes a colour where it passes through surfaces.
-    pub fn is_tinted(&'static self) -> bool {
-        MethodSpec::representative(self).promises().tinted
-    }
-
     /// A method with what most have in common: normalised sums in 16 bits, no parameters, one point on its curve.
-    pub(super) const fn new(name: &'static str, about: &'static str, build: BuildMethod) -> Self {
+    pub(super) const fn new(
+        name: &'static str,
+        about: &'static str,
+        plan: fn(&Build<'_>) -> Result<Plan, RenderError>,
+    ) -> Self {
+        Self::drawn(name, about, Draws::Plan(plan))
+    }
+
+    /// The same for a method that draws by itself.
+    pub(super) const fn own(
+        name: &'static str,
+        about: &'static str,
+        build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
+    ) -> Self {
+        Self::drawn(name, about, Draws::Own(build))
+    }
+
+    const fn drawn(name: &'static str, about: &'static str, draws: Draws) -> Self {
         Self {
             name,
             about,
@@ -221,11 +256,46 @@ impl Method {
             cpu_only: None,
             promises: |_| Promises::NORMALISED,
             curve: &[""],
-            roles: &[],
             twin: None,
             transmittances: None,
             flaws: &[],
-            build,
+            draws,
         }
+    }
+
+    /// Makes it ready at the frame's own resolution.
+    pub(super) fn build(&self, b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+        match self.draws {
+            Draws::Plan(plan) => {
+                let mut plan = plan(b)?;
+                if self.learned {
+                    b.learned_weight()?.wgsl.clone_into(&mut plan.network);
+                }
+                plan.build(b)
+            }
+            Draws::Own(build) => build(b),
+        }
+    }
+
+    /// Whether it is exact with its default parameters.
+    pub fn is_exact(&'static self) -> bool {
+        MethodSpec::representative(self).promises().exact
+    }
+
+    /// Its parameters: its own, and those that every method has.
+    pub fn all_parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
+        self.parameters.iter().chain([&SCALE])
+    }
+
+    /// Whether the precision of its targets can be chosen.
+    pub fn has_targets(&self) -> bool {
+        let mut all = self.parameters.iter();
+        all.any(|p| matches!(p.values, Values::Precision))
+    }
+
+    /// Its name as it is written, `-N` where a number follows.
+    pub fn usage(&self) -> String {
+        let ending = if self.numbered.is_some() { "-N" } else { "" };
+        format!("{}{ending}", self.name)
     }
 }

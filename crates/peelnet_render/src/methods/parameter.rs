@@ -1,80 +1,47 @@
-//! Typed parameters of methods: what `name=value` behind a method's name may say.
+//! Parameters of methods: what `name=value` behind a method's name may say.
 //!
-//! A parameter is a constant beside the method that has it. [`MethodSpec`](super::MethodSpec) parses its value once; the constant then reads it
-//! from the specification, default included, and cannot fail.
+//! A parameter is a constant beside the method that has it. [`MethodSpec`] checks its value once; the constant then reads it from the
+//! specification, default included.
 
-use std::ops::{Bound, RangeBounds as _};
+use super::spec::MethodSpec;
+use std::str::FromStr;
 
 /// A parameter of a method.
 #[derive(Clone, Copy, Debug)]
-pub enum Parameter {
-    /// A finite number.
-    Number(Number),
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// One line for help texts: what it does, its values and its default.
+    pub about: &'static str,
+    /// The values that it takes.
+    pub values: Values,
+}
+
+/// The values that a parameter takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Values {
+    /// A finite number from 0. Shaders read it in 32 bits.
+    Number {
+        /// The value where none is given.
+        default: f64,
+        /// Whether 0 itself is not allowed.
+        above_zero: bool,
+        /// The largest value.
+        most: f64,
+    },
     /// A whole number.
-    Whole(Whole),
-    /// A positive whole number that may be left out.
-    Count(Count),
-    /// One of some words.
-    Word(Word),
-    /// The precision of the method's targets.
-    Targets(Targets),
-}
-
-/// A number within limits, with a default. Shaders read it in 32 bits.
-#[derive(Clone, Copy, Debug)]
-pub struct Number {
-    /// Its name.
-    pub name: &'static str,
-    /// One line for help texts.
-    pub about: &'static str,
-    /// The value where none is given.
-    pub default: f64,
-    /// The smallest value, itself allowed or not.
-    pub least: Bound<f64>,
-    /// The largest value.
-    pub most: f64,
-}
-
-/// A whole number with a default.
-#[derive(Clone, Copy, Debug)]
-pub struct Whole {
-    /// Its name.
-    pub name: &'static str,
-    /// One line for help texts.
-    pub about: &'static str,
-    /// The value where none is given.
-    pub default: u32,
-    /// The largest value; the smallest is 0.
-    pub most: u32,
-}
-
-/// A positive whole number, such as a limit, that may be left out.
-#[derive(Clone, Copy, Debug)]
-pub struct Count {
-    /// Its name.
-    pub name: &'static str,
-    /// One line for help texts.
-    pub about: &'static str,
-    /// The largest value; the smallest is 1.
-    pub most: u64,
-}
-
-/// One of some words.
-#[derive(Clone, Copy, Debug)]
-pub struct Word {
-    /// Its name.
-    pub name: &'static str,
-    /// One line for help texts.
-    pub about: &'static str,
-    /// The words, the default first.
-    pub words: &'static [&'static str],
-}
-
-/// `targets=f16` or `targets=f32`: the precision of all targets; without it each target has its own.
-#[derive(Clone, Copy, Debug)]
-pub struct Targets {
-    /// One line for help texts.
-    pub about: &'static str,
+    Whole {
+        /// The value where none is given; `None` for a limit that may be left out.
+        default: Option<u64>,
+        /// The smallest value.
+        least: u64,
+        /// The largest value.
+        most: u64,
+    },
+    /// One of some words, the default first.
+    Words(&'static [&'static str]),
+    /// `f16` or `f32`: the precision of all targets; without it each target has its own.
+    Precision,
 }
 
 /// Bits of a floating-point target.
@@ -86,115 +53,158 @@ pub enum Precision {
     Full,
 }
 
+impl Precision {
+    /// The words that choose one.
+    pub const WORDS: [&'static str; 2] = ["f16", "f32"];
+}
+
 /// `scale=S`, a parameter of every method.
-pub const SCALE: Number = Number {
-    name: "scale",
-    about: "of the resolution that transparency is drawn at, 1 by default; upsampled by depth",
-    default: 1.0,
-    least: Bound::Excluded(0.0),
-    most: 1.0,
-};
+pub const SCALE: Parameter = Parameter::positive(
+    "scale",
+    "of the resolution that transparency is drawn at, 1 by default; upsampled by depth",
+    1.0,
+    1.0,
+);
 
 /// `targets` of a method whose targets have 16 bits by default.
-pub(super) const TARGETS: Parameter = Parameter::Targets(Targets {
-    about: "f16 (default) or f32",
-});
+pub(super) const TARGETS: Parameter = Parameter::targets("f16 (default) or f32");
 
 /// `targets` of a method that needs 32 bits for some of them.
-pub(super) const MOMENT_TARGETS: Parameter = Parameter::Targets(Targets {
-    about: "f16 or f32 for all; by default 32-bit moments and 16-bit sums",
-});
-
-/// A parsed value.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Value {
-    Number(f64),
-    Whole(u64),
-    Word(&'static str),
-    Targets(Precision),
-}
-
-impl Number {
-    fn allows(&self, x: f64) -> bool {
-        (self.least, Bound::Included(self.most)).contains(&x)
-    }
-
-    fn allowed(&self) -> String {
-        let most = self.most;
-        match self.least {
-            Bound::Included(least) => format!("a number from {least} to {most}"),
-            Bound::Excluded(least) => format!("a number above {least} and at most {most}"),
-            Bound::Unbounded => format!("a number of at most {most}"),
-        }
-    }
-}
-
-impl Targets {
-    /// Its name.
-    pub const NAME: &'static str = "targets";
-    /// The values it takes.
-    pub const WORDS: [(&'static str, Precision); 2] =
-        [("f16", Precision::Half), ("f32", Precision::Full)];
-}
+pub(super) const MOMENT_TARGETS: Parameter =
+    Parameter::targets("f16 or f32 for all; by default 32-bit moments and 16-bit sums");
 
 impl Parameter {
-    /// Its name.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Number(p) => p.name,
-            Self::Whole(p) => p.name,
-            Self::Count(p) => p.name,
-            Self::Word(p) => p.name,
-            Self::Targets(_) => Targets::NAME,
+    const fn new(name: &'static str, about: &'static str, values: Values) -> Self {
+        Self {
+            name,
+            about,
+            values,
         }
     }
 
-    /// One line for help texts: what it does, its values and its default.
-    pub const fn about(&self) -> &'static str {
-        match self {
-            Self::Number(p) => p.about,
-            Self::Whole(p) => p.about,
-            Self::Count(p) => p.about,
-            Self::Word(p) => p.about,
-            Self::Targets(p) => p.about,
-        }
+    /// A number above 0.
+    pub(super) const fn positive(
+        name: &'static str,
+        about: &'static str,
+        default: f64,
+        most: f64,
+    ) -> Self {
+        let values = Values::Number {
+            default,
+            above_zero: true,
+            most,
+        };
+        Self::new(name, about, values)
+    }
+
+    /// A number from 0 to 1.
+    pub(super) const fn share(name: &'static str, about: &'static str, default: f64) -> Self {
+        let values = Values::Number {
+            default,
+            above_zero: false,
+            most: 1.0,
+        };
+        Self::new(name, about, values)
+    }
+
+    /// A whole number; without a default it may be left out.
+    pub(super) const fn whole(
+        name: &'static str,
+        about: &'static str,
+        default: Option<u64>,
+        (least, most): (u64, u64),
+    ) -> Self {
+        let values = Values::Whole {
+            default,
+            least,
+            most,
+        };
+        Self::new(name, about, values)
+    }
+
+    /// One of some words, the default first.
+    pub(super) const fn words(
+        name: &'static str,
+        about: &'static str,
+        words: &'static [&'static str],
+    ) -> Self {
+        Self::new(name, about, Values::Words(words))
+    }
+
+    /// The precision of the method's targets.
+    pub(super) const fn targets(about: &'static str) -> Self {
+        Self::new("targets", about, Values::Precision)
     }
 
     /// The values it takes, for messages.
     pub fn allowed(&self) -> String {
-        match self {
-            Self::Number(p) => p.allowed(),
-            Self::Whole(p) => format!("a whole number from 0 to {}", p.most),
-            Self::Count(p) => format!("a whole number from 1 to {}", p.most),
-            Self::Word(p) => p.words.join(" or "),
-            Self::Targets(_) => Targets::WORDS.map(|(word, _)| word).join(" or "),
+        match self.values {
+            Values::Number {
+                above_zero, most, ..
+            } => match above_zero {
+                true => format!("a number above 0 and at most {most}"),
+                false => format!("a number from 0 to {most}"),
+            },
+            Values::Whole { least, most, .. } => format!("a whole number from {least} to {most}"),
+            Values::Words(words) => words.join(" or "),
+            Values::Precision => Precision::WORDS.join(" or "),
         }
     }
 
-    /// Reads a value; `None` if it is not allowed.
-    pub(super) fn parse(&self, text: &str) -> Option<Value> {
-        match self {
-            Self::Number(p) => {
-                let x: f64 = text.parse().ok()?;
-                p.allows(x).then_some(Value::Number(x))
+    /// Whether a text is an allowed value.
+    pub(super) fn allows(&self, text: &str) -> bool {
+        match self.values {
+            Values::Number {
+                above_zero, most, ..
+            } => text
+                .parse()
+                .is_ok_and(|x: f64| (0.0..=most).contains(&x) && !(above_zero && x == 0.0)),
+            Values::Whole { least, most, .. } => {
+                text.parse().is_ok_and(|n| (least..=most).contains(&n))
             }
-            Self::Whole(p) => {
-                let n: u64 = text.parse().ok()?;
-                (n <= p.most.into()).then_some(Value::Whole(n))
-            }
-            Self::Count(p) => {
-                let n: u64 = text.parse().ok()?;
-                (1..=p.most).contains(&n).then_some(Value::Whole(n))
-            }
-            Self::Word(p) => p
-                .words
-                .iter()
-                .find(|word| **word == text)
-                .map(|word| Value::Word(word)),
-            Self::Targets(_) => Targets::WORDS
-                .iter()
-                .find(|(word, _)| *word == text)
-                .map(|&(_, precision)| Value::Targets(precision)),
+            Values::Words(words) => words.contains(&text),
+            Values::Precision => Precision::WORDS.contains(&text),
         }
+    }
+
+    /// The default as it is written; `None` where there is none.
+    pub fn default(&self) -> Option<String> {
+        match self.values {
+            Values::Number { default, .. } => Some(default.to_string()),
+            Values::Whole { default, .. } => default.map(|n| n.to_string()),
+            Values::Words(words) => Some(words[0].to_owned()),
+            Values::Precision => None,
+        }
+    }
+
+    /// The value that was given.
+    pub fn given<T: FromStr>(&self, spec: &MethodSpec) -> Option<T> {
+        spec.values.get(self.name)?.parse().ok()
+    }
+
+    /// The number, or the default; 0 of parameters that are none.
+    pub fn number(&self, spec: &MethodSpec) -> f64 {
+        let default = match self.values {
+            Values::Number { default, .. } => default,
+            _ => 0.0,
+        };
+        self.given(spec).unwrap_or(default)
+    }
+
+    /// The whole number, or the default; `None` where there is neither.
+    pub fn count(&self, spec: &MethodSpec) -> Option<u64> {
+        match self.values {
+            Values::Whole { default, .. } => self.given(spec).or(default),
+            _ => None,
+        }
+    }
+
+    /// The word, or the default; empty where there is neither.
+    pub fn word<'s>(&self, spec: &'s MethodSpec) -> &'s str {
+        let default = match self.values {
+            Values::Words(words) => words[0],
+            _ => "",
+        };
+        spec.values.get(self.name).map_or(default, String::as_str)
     }
 }

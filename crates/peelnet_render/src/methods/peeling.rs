@@ -1,23 +1,48 @@
-//! How many passes peeling takes: as many as an earlier frame needed. What a pass found is logged on the GPU and read back with the frame.
+//! Methods that peel until a pass finds nothing: as many passes as an earlier frame needed. What a pass found is logged on the GPU and
+//! read back with the frame.
 
-use super::compositor::{DrawContext, Fit, FrameStats};
-use crate::error::RenderError;
+use super::prelude::*;
 use peelnet_gpu::{Gpu, wgpu};
-use peelnet_raster::count::CountPass;
-use std::ops::Range;
+use peelnet_raster::{count::CountPass, fullscreen::FullscreenPass};
+use std::{fmt, ops::Range};
+
+/// A cap on the number of passes.
+pub(super) const PASSES: Parameter = Parameter::whole(
+    "passes",
+    "a cap on the number of peeling passes",
+    None,
+    (1, 1 << 20),
+);
 
 /// Passes of the first frame, where nothing is known yet.
 const FIRST_GUESS: u32 = 8;
 
-/// Counts the passes of peeling methods.
+/// What the passes of a peeling method do.
+pub(super) trait Peel: fmt::Debug + wgpu::WasmNotSend {
+    /// Layers that a pass peels.
+    const LAYERS: u32;
+
+    /// Records what comes before all passes.
+    fn begin(&self, cx: &mut DrawContext<'_, '_>);
+
+    /// Records a pass, and what it composites.
+    fn pass(&self, cx: &mut DrawContext<'_, '_>, number: u32);
+
+    /// The pass that writes finished pixels after so many passes.
+    fn resolve(&self, passes: u32) -> &FullscreenPass;
+
+    /// Passes over the geometry and over the pixels beside those of so many passes, and bytes a pixel.
+    fn besides(&self) -> (u32, u32, f64);
+}
+
+/// A peeling method made ready.
 #[derive(Debug)]
-pub(super) struct Passes {
+pub(super) struct Peeling<P> {
+    peel: P,
     /// Word 0: whether the last pass found anything that another must peel. Word 1: fragments peeled in the frame.
-    pub found: wgpu::Buffer,
+    found: wgpu::Buffer,
     /// Word 0 of `found` after each pass.
     log: wgpu::Buffer,
-    /// Layers that a pass peels.
-    layers: u32,
     count: Option<CountPass>,
     /// Passes that a frame takes, once one is known.
     known: Option<u32>,
@@ -28,24 +53,42 @@ pub(super) struct Passes {
     version: u64,
 }
 
-impl Passes {
-    /// Of a method that peels `layers` a pass, and takes `most` passes at most.
-    pub fn new(gpu: &Gpu, layers: u32, most: Option<u64>) -> Result<Self, RenderError> {
-        Ok(Self {
-            found: gpu.storage("found", 8)?,
-            log: gpu.storage("found by pass", 4 * u64::from(FIRST_GUESS))?,
-            layers,
+/// The buffer of what passes found.
+pub(super) fn found(gpu: &Gpu) -> Result<wgpu::Buffer, RenderError> {
+    Ok(gpu.storage("found", 8)?)
+}
+
+impl<P: Peel + 'static> Peeling<P> {
+    /// Of passes that write to `found`.
+    pub fn boxed(
+        b: &Build<'_>,
+        found: wgpu::Buffer,
+        peel: P,
+    ) -> Result<Box<dyn Compositor>, RenderError> {
+        let most = PASSES.count(b.spec).map(u32::try_from);
+        Ok(Box::new(Self {
+            peel,
+            found,
+            log: b.gpu.storage("found by pass", 4 * u64::from(FIRST_GUESS))?,
             count: None,
             known: None,
-            most: most.map_or(u32::MAX, |most| u32::try_from(most).unwrap_or(u32::MAX)),
+            most: most.and_then(Result::ok).unwrap_or(u32::MAX),
             recorded: 0,
             counted: false,
             version: 0,
-        })
+        }))
     }
 
-    /// Begins a frame; returns how many passes it takes.
-    pub fn begin(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<u32, RenderError> {
+    fn room(&mut self, passes: u32) {
+        if self.known != Some(passes) {
+            self.known = Some(passes);
+            self.version += 1;
+        }
+    }
+}
+
+impl<P: Peel + 'static> Compositor for Peeling<P> {
+    fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
         let gpu = cx.recorder.gpu();
         self.counted = cx.counting || cx.only_count;
         if self.counted {
@@ -64,35 +107,39 @@ impl Passes {
         } else {
             self.known.unwrap_or(FIRST_GUESS).min(self.most)
         };
-        let bytes = 4 * u64::from(self.recorded.max(1));
+        let passes = self.recorded;
+        let bytes = 4 * u64::from(passes.max(1));
         if self.log.size() < bytes {
             self.log = gpu.storage("found by pass", bytes)?;
         }
-        Ok(self.recorded)
+        if cx.only_count {
+            return Ok(FrameStats::default());
+        }
+        self.peel.begin(cx);
+        for number in 0..passes {
+            let (found, at) = (&self.found, 4 * u64::from(number));
+            cx.recorder.encoder().clear_buffer(found, 0, Some(4));
+            self.peel.pass(cx, number);
+            cx.recorder
+                .encoder()
+                .copy_buffer_to_buffer(found, 0, &self.log, at, 4);
+        }
+        cx.resolve(self.peel.resolve(passes));
+        let (geometry, fullscreen, bytes_per_pixel) = self.peel.besides();
+        Ok(FrameStats {
+            tiles: 1,
+            geometry_passes: passes + geometry,
+            fullscreen_passes: passes + fullscreen,
+            bytes_per_pixel,
+            ..Default::default()
+        })
     }
 
-    /// Before each pass.
-    pub fn before(&self, cx: &mut DrawContext<'_, '_>) {
-        cx.recorder.encoder().clear_buffer(&self.found, 0, Some(4));
-    }
-
-    /// After pass `number`.
-    pub fn after(&self, cx: &mut DrawContext<'_, '_>, number: u32) {
-        let at = 4 * u64::from(number);
-        cx.recorder
-            .encoder()
-            .copy_buffer_to_buffer(&self.found, 0, &self.log, at, 4);
-    }
-
-    pub const fn is_known(&self) -> bool {
+    fn is_ready(&self) -> bool {
         self.known.is_some()
     }
 
-    pub const fn version(&self) -> u64 {
-        self.version
-    }
-
-    pub fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
         let log = 0..4 * u64::from(self.recorded.max(1));
         let mut all = vec![(self.found.clone(), 0..8), (self.log.clone(), log)];
         if let Some(count) = self.count.as_ref().filter(|_| self.counted) {
@@ -102,8 +149,9 @@ impl Passes {
     }
 
     /// Learns how many passes the frame needed: those that left something to peel, and the one that found this out.
-    pub fn learn(
+    fn learn(
         &mut self,
+        _: &Learning<'_>,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
@@ -117,8 +165,8 @@ impl Passes {
             stats.lost = found.total.saturating_sub(words[0][1].into());
             if !is_whole {
                 // One layer a pass: another pass finds out that none is left. Two: the last pass knows.
-                let empty = u32::from(self.layers == 1);
-                self.room((found.most.div_ceil(self.layers) + empty).max(1));
+                let empty = u32::from(P::LAYERS == 1);
+                self.room((found.most.div_ceil(P::LAYERS) + empty).max(1));
                 return Ok(Fit::TooSmall);
             }
         }
@@ -135,10 +183,7 @@ impl Passes {
         Ok(if spare > 0 { Fit::Loose } else { Fit::Whole })
     }
 
-    fn room(&mut self, passes: u32) {
-        if self.known != Some(passes) {
-            self.known = Some(passes);
-            self.version += 1;
-        }
+    fn version(&self) -> u64 {
+        self.version
     }
 }

@@ -2,300 +2,223 @@
 //! guess of what lies between them, drawn with the exported text itself. `slabs` is the same without a network. The CPU twin is
 //! `peelnet_core::methods::slabs`.
 
-use super::{
-    commutative::{self, Blend, Gather, Plan, Target},
-    compositor::{Build, Compositor},
-    method::{Method, Pixel, Promises},
-    parameter::{Parameter, Word},
-    spec::MethodSpec,
-    weighted::SUMS,
-};
-use crate::{
-    error::RenderError,
-    flaw::{Flaw, Property},
-};
+use super::prelude::*;
 use peelnet_core::{
     absorbance::DepthWarp,
-    methods::slabs::{self, Design, Extent, Layout},
+    methods::slabs::{self, Between, Design, Extent, Layout},
     statistics::SumPrecision,
 };
 use peelnet_model::{Inputs, Model};
 
-const KEEP: Word = Word {
-    name: "keep",
-    about: "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the farthest fragment of the nearest alone",
-    words: &["large", "medium", "small"],
-};
+const KEEP: Parameter = Parameter::words(
+    "keep",
+    "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the farthest fragment of the nearest alone",
+    &["large", "medium", "small"],
+);
 
-const RANGE: Word = Word {
-    name: "range",
-    about: "what is cut into slabs: the pixel's own range of depth (pixel, by default), found by a geometry pass of its own; from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's (frame), with a pass less and several times the error",
-    words: &["pixel", "boxes", "frame"],
-};
+const RANGE: Parameter = Parameter::words(
+    "range",
+    "what is cut into slabs: the pixel's own range of depth (pixel, by default), found by a geometry pass of its own; from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's (frame), with a pass less and several times the error",
+    &["pixel", "boxes", "frame"],
+);
 
-fn asked(spec: &MethodSpec) -> Layout {
-    let name = KEEP.of(spec);
+fn is_small(spec: &MethodSpec) -> bool {
+    KEEP.word(spec) == "small"
+}
+
+fn is_of_pixel(spec: &MethodSpec) -> bool {
+    RANGE.word(spec) == "pixel"
+}
+
+/// What a method without a network keeps.
+fn plain_layout(spec: &MethodSpec) -> Layout {
+    let name = KEEP.word(spec);
     let found = Layout::ALL.into_iter().find(|l| l.name() == name);
     found.unwrap_or(Layout::Large)
 }
 
-/// A design over the range that is asked for, for the CPU twin. Lists of fragments have no boxes: what is drawn with them has none.
-fn ranged(spec: &MethodSpec, design: Design) -> Option<Design> {
-    let extent = match RANGE.of(spec) {
+/// A guess of where between its bounds the share lies that is in front of a fragment.
+type Guess<'m> = Box<dyn Fn(&Between) -> f64 + 'm>;
+
+/// What the CPU twin keeps and guesses. Lists of fragments have no boxes: what is drawn with them has no twin.
+fn design_and_guess<'m>(
+    spec: &MethodSpec,
+    model: Option<&'m Model>,
+) -> Option<(Design, Guess<'m>)> {
+    let (design, guess): (_, Guess<'m>) = if spec.needs_model() {
+        let model = model?;
+        let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
+            return None;
+        };
+        let guess = move |between: &_| model.answer(features, between);
+        (design, Box::new(guess))
+    } else {
+        (plain_layout(spec).design(), Box::new(slabs::middle))
+    };
+    let extent = match RANGE.word(spec) {
         "boxes" => return None,
         "frame" => Extent::Frame,
         _ => Extent::Pixel,
     };
-    Some(Design { extent, ..design })
+    Some((Design { extent, ..design }, guess))
 }
 
-fn is_small(spec: &MethodSpec) -> bool {
-    KEEP.of(spec) == "small"
+fn twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
+    let (design, guess) = design_and_guess(spec, p.model)?;
+    let (fragments, c0) = (p.fragments, p.background);
+    Some(slabs::composite(fragments, c0, &p.warp, design, guess))
 }
 
-const fn promises(_: &MethodSpec) -> Promises {
-    Promises {
-        tinted: true,
-        ..Promises::NORMALISED
-    }
-}
-
-fn is_of_pixel(spec: &MethodSpec) -> bool {
-    RANGE.of(spec) == "pixel"
-}
-
-const BORDERS: Flaw = Flaw::new(
-    Property::Steady,
-    &["moving-camera"],
-    "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
-);
-
-const COINCIDENT: Flaw = Flaw::new(
-    Property::Transmittance,
-    &["coplanar"],
-    "sixteen coincident layers are a slab's nearest all at once, and without its farthest what lies behind them is guessed",
-);
-
-pub(super) const METHOD: Method = Method {
-    parameters: &[Parameter::Word(KEEP), Parameter::Word(RANGE)],
-    promises,
-    curve: &["", ":keep=medium", ":keep=small"],
-    twin: Some(|s, p| {
-        let design = ranged(s, asked(s).design())?;
-        let (fragments, c0, warp) = (p.fragments, p.background, &p.warp);
-        let guess = slabs::middle;
-        Some(slabs::composite(fragments, c0, warp, design, guess))
-    }),
-    transmittances: Some(|s, fragments, warp, _| {
-        let design = ranged(s, asked(s).design())?;
-        let half = SumPrecision::Half;
-        Some(slabs::weights(fragments, warp, design, half, slabs::middle))
-    }),
-    flaws: &[
-        Flaw::swallowed(&["deep"]),
-        Flaw::reordered(&["deep"]),
-        BORDERS.when(is_of_pixel),
-        COINCIDENT.when(is_small),
-    ],
-    ..Method::new(
-        "slabs",
-        "slabs of depth in the pixel's range, each with its own sums and known ends; no network",
-        build_plain,
-    )
-};
-
-/// The weights that a network gives a pixel's fragments.
 fn transmittances(
     spec: &MethodSpec,
     fragments: &[(f32, f32)],
     warp: &DepthWarp,
     model: Option<&Model>,
 ) -> Option<Vec<f64>> {
-    let model = model?;
-    let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
-        return None;
-    };
-    let (design, half) = (ranged(spec, design)?, SumPrecision::Half);
-    Some(slabs::weights(fragments, warp, design, half, |between| {
-        model.answer(features, between)
-    }))
+    let (design, guess) = design_and_guess(spec, model)?;
+    let half = SumPrecision::Half;
+    Some(slabs::weights(fragments, warp, design, half, guess))
 }
 
-fn twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
-    let model = p.model?;
-    let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
-        return None;
-    };
-    Some(slabs::composite(
-        p.fragments,
-        p.background,
-        &p.warp,
-        ranged(spec, design)?,
-        |between| model.answer(features, between),
-    ))
+/// What all of them have in common.
+const fn slabs(name: &'static str, about: &'static str) -> Method {
+    Method {
+        parameters: &[RANGE],
+        learned: true,
+        promises: |_| Promises::TINTED,
+        twin: Some(twin),
+        transmittances: Some(transmittances),
+        ..Method::new(name, about, plan)
+    }
 }
 
-/// What the three sizes have in common.
-macro_rules! learned {
-    ($name:literal, $about:literal) => {
-        Method {
-            learned: true,
-            parameters: &[Parameter::Word(RANGE)],
-            promises,
-            twin: Some(twin),
-            transmittances: Some(transmittances),
-            ..Method::new($name, $about, build_learned)
-        }
-    };
-}
+const BORDERS: Flaw = Flaw::new(
+    Property::Steady,
+    "moving-camera",
+    "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
+);
+
+const COINCIDENT: Flaw = Flaw::new(
+    Property::Transmittance,
+    "coplanar",
+    "sixteen coincident layers are a slab's nearest all at once, and without its farthest what lies behind them is guessed",
+);
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[KEEP, RANGE],
+    learned: false,
+    curve: &["", ":keep=medium", ":keep=small"],
+    flaws: &[
+        Flaw::swallowed("deep"),
+        Flaw::reordered("deep"),
+        BORDERS.when(is_of_pixel),
+        COINCIDENT.when(is_small),
+    ],
+    ..slabs(
+        "slabs",
+        "slabs of depth in the pixel's range, each with its own sums and known ends; no network",
+    )
+};
 
 pub(super) const SMALL: Method = Method {
     flaws: &[
-        Flaw::swallowed(&["deep"]),
+        Flaw::swallowed("deep"),
         BORDERS.when(is_of_pixel),
         COINCIDENT,
     ],
-    ..learned!(
+    ..slabs(
         "deep-small",
-        "known layers of three slabs and a learned guess between them, 30 bytes a pixel"
+        "known layers of three slabs and a learned guess between them, 30 bytes a pixel",
     )
 };
 
 pub(super) const MEDIUM: Method = Method {
     curve: &["", ":range=boxes", ":range=frame", ":scale=0.5"],
-    flaws: &[Flaw::swallowed(&["deep"])],
-    ..learned!(
+    flaws: &[Flaw::swallowed("deep")],
+    ..slabs(
         "deep-medium",
-        "the same in 34 bytes a pixel: the one to ship"
+        "the same in 34 bytes a pixel: the one to ship",
     )
 };
 
 pub(super) const LARGE: Method = Method {
     curve: &["", ":range=boxes", ":range=frame"],
-    flaws: &[Flaw::swallowed(&["deep"])],
-    ..learned!(
+    flaws: &[Flaw::swallowed("deep")],
+    ..slabs(
         "deep-large",
-        "the same of four slabs, 42 bytes a pixel: the most accurate"
+        "the same of four slabs, 42 bytes a pixel: the most accurate",
     )
 };
 
-const fn half(label: &'static str, channels: u32, blend: Blend) -> Target {
-    Target {
-        label,
-        channels,
-        full: false,
-        blend,
-    }
-}
-
 /// What the statistics pass writes.
 fn kept(layout: Layout) -> Vec<Target> {
+    use Blend::{Add, Max, MaxAdd};
+    let four = |label, blend| Target::half(label, 4, blend);
     match layout {
         Layout::Small => vec![
-            half("absorbances of slabs and mean of one", 4, Blend::Add),
-            half("nearest of slabs and farthest of one", 4, Blend::Max),
-            half("means of two slabs", 2, Blend::Add),
+            four("absorbances of slabs and mean of one", Add),
+            four("nearest of slabs and farthest of one", Max),
+            Target::half("means of two slabs", 2, Add),
         ],
         Layout::Medium => vec![
-            half("absorbances of slabs and mean of one", 4, Blend::Add),
-            half("nearest of slabs and mean of one", 4, Blend::MaxAdd),
-            half("farthest of slabs and mean of one", 4, Blend::MaxAdd),
+            four("absorbances of slabs and mean of one", Add),
+            four("nearest of slabs and mean of one", MaxAdd),
+            four("farthest of slabs and mean of one", MaxAdd),
         ],
         Layout::Large => vec![
-            half("absorbances of slabs", 4, Blend::Add),
-            half("nearest of slabs", 4, Blend::Max),
-            half("farthest of slabs", 4, Blend::Max),
-            half("means of slabs", 4, Blend::Add),
+            four("absorbances of slabs", Add),
+            four("nearest of slabs", Max),
+            four("farthest of slabs", Max),
+            four("means of slabs", Add),
         ],
     }
 }
 
-fn build_learned(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let learned = b.learned_weight()?;
-    let Inputs::Slabs(design, _) = learned.recipe.inputs else {
-        unreachable!("the recipe of a method of slabs reads slabs");
+fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
+    let mut p = Plan::new();
+    let layout = if b.spec.needs_model() {
+        let Inputs::Slabs(design, _) = b.learned_weight()?.recipe.inputs else {
+            unreachable!("the recipe of a method of slabs reads slabs");
+        };
+        let layout = design.layout();
+        layout.expect("recipes that are drawn keep what a layout holds")
+    } else {
+        p.network.push_str(
+            "// The guess without a network: the middle between the bounds.\n\
+             fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
+        );
+        let layout = plain_layout(b.spec);
+        for module in peelnet_shaders::slab_modules(layout.name()) {
+            p.network.push_str(peelnet_shaders::source(module)?);
+        }
+        layout
     };
-    let layout = design.layout();
-    let layout = layout.expect("recipes that are drawn keep what a layout holds");
-    build(b, layout, &learned.wgsl)
-}
-
-fn build_plain(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let layout = asked(b.spec);
-    let mut text = String::from(
-        "// The guess without a network: the middle between the bounds.\n\
-         fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
-    );
-    for module in peelnet_shaders::slab_modules(layout.name()) {
-        text.push_str(peelnet_shaders::source(module)?);
+    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(b.spec) == word);
+    // The shaders' own case is the largest, over a range of its own.
+    let is_large = layout == Layout::Large;
+    let own_layout = (!is_large).then_some(layout.name());
+    let features = || own_layout.into_iter().chain(framed.then_some("frame"));
+    let sums = p.target(SUMS);
+    let kept = p.targets(kept(layout));
+    let range = (!framed).then(|| p.target(Target::half("range of depths", 2, Blend::MaxBytes)));
+    if boxes {
+        let pass = p.geometry("methods::slabs::boxes").boxes();
+        pass.label("range").writes(range);
+    } else if !framed {
+        p.geometry("methods::slabs::range").writes(range);
     }
-    build(b, layout, &text)
-}
-
-fn build(b: &Build<'_>, layout: Layout, text: &str) -> Result<Box<dyn Compositor>, RenderError> {
-    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.of(b.spec) == word);
-    let mut targets = vec![SUMS];
-    targets.extend(kept(layout));
-    let kept: Vec<usize> = (1..targets.len()).collect();
-    let mut reads = kept.clone();
-    let mut statistics_reads = Vec::new();
-    if !framed {
-        reads.push(targets.len());
-        statistics_reads.push(targets.len());
-        targets.push(half("range of depths", 2, Blend::MaxBytes));
-    }
-    let mut features = Vec::new();
-    // The shaders' own case is the largest.
-    features.extend((layout != Layout::Large).then_some(layout.name()));
-    features.extend(framed.then_some("frame"));
-    let resolve_features: &[&str] = match layout {
-        Layout::Small | Layout::Medium => &["three"],
-        Layout::Large => &[],
-    };
-    let extra = [("learned::weight", text)];
-    let range = Gather {
-        label: "range",
-        shader: if boxes {
-            "methods::slabs::boxes"
-        } else {
-            "methods::slabs::range"
-        },
-        extra: &extra,
-        writes: &statistics_reads,
-        boxes,
-        ..Gather::NONE
-    };
-    let statistics = Gather {
-        label: "statistics",
-        shader: "methods::slabs::statistics",
-        features: &features,
-        extra: &extra,
-        writes: &kept,
-        reads: &statistics_reads,
-        ..Gather::NONE
-    };
-    let gather = Gather {
-        label: "gather",
-        shader: "methods::slabs::gather",
-        features: &features,
-        extra: &extra,
-        writes: &[0],
-        reads: &reads,
-        ..Gather::NONE
-    };
-    let passes = [range, statistics, gather];
-    let passes = &passes[usize::from(framed)..];
-    commutative::build(
-        b,
-        &Plan {
-            targets: &targets,
-            passes,
-            resolve: "methods::slabs::resolve",
-            resolve_features,
-            resolve_extra: &extra,
-            resolve_reads: &[0, 1],
-            tinted_by: Some(passes.len() - 1),
-            ..Plan::NONE
-        },
-    )
+    let first = kept[0];
+    p.geometry("methods::slabs::statistics")
+        .features(features())
+        .reads(range)
+        .writes(kept.iter().copied());
+    p.geometry("methods::slabs::gather")
+        .features(features())
+        .reads(kept)
+        .reads(range)
+        .writes([sums]);
+    p.resolve("methods::slabs::resolve", [sums, first])
+        .features((!is_large).then_some("three"));
+    p.tint(b);
+    Ok(p)
 }

@@ -1,31 +1,59 @@
 //! A method's name with its parameters, parsed once.
 
 use super::{
+    METHODS,
     method::{Method, Pixel, Promises},
-    parameter::{Count, Number, Parameter, Precision, SCALE, Targets, Value, Whole, Word},
+    parameter::{Precision, SCALE},
 };
 use crate::error::RenderError;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_model::Model;
-use std::{cmp::Ordering, collections::BTreeMap, fmt};
+use std::{collections::BTreeMap, fmt, str::FromStr};
 
 /// A method's name with its parameters, such as `wboit-eq10:factor=3e4,targets=f32`. Every value in it is allowed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MethodSpec {
-    pub(super) method: &'static Method,
+    name: &'static str,
     /// The number that the name ends in, where it ends in one.
     pub(super) number: Option<u32>,
-    /// By name: the text as it was given, and its value.
-    pub(super) values: BTreeMap<&'static str, (String, Value)>,
+    /// By name: the text as it was given, an allowed value of the parameter.
+    pub(super) values: BTreeMap<&'static str, String>,
 }
 
 impl MethodSpec {
+    /// Every method that draws on the GPU without a model, with its default parameters.
+    pub fn all() -> Vec<Self> {
+        METHODS
+            .iter()
+            .filter(|m| !m.learned && m.cpu_only.is_none())
+            .filter_map(|m| Self::points(m).next())
+            .collect()
+    }
+
+    /// Every method that draws on the GPU, with the parameters that belong to its curve of error against time.
+    pub fn curve() -> Vec<Self> {
+        let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none());
+        drawn.flat_map(Self::points).collect()
+    }
+
+    /// What a comparison of all methods measures: [`MethodSpec::curve`], and the methods of which only the error can be known.
+    pub fn compared() -> Vec<Self> {
+        METHODS.iter().flat_map(Self::points).collect()
+    }
+
+    /// The points of one method's curve, the default first.
+    pub fn points(method: &'static Method) -> impl Iterator<Item = Self> {
+        let endings = method.curve.iter();
+        // A test parses them all.
+        endings.filter_map(|ending| format!("{}{ending}", method.name).parse().ok())
+    }
+
     /// The method with its parameters' defaults, or with a number in the middle of its curve.
     pub fn representative(method: &'static Method) -> Self {
         // Points of a curve are numbers where the name ends in one; a test parses them.
         let middle = method.curve[method.curve.len() / 2];
         Self {
-            method,
+            name: method.name,
             number: method
                 .numbered
                 .and_then(|_| middle[1..].split(':').next()?.parse().ok()),
@@ -35,17 +63,18 @@ impl MethodSpec {
 
     /// The method's name without number and parameters.
     pub const fn name(&self) -> &'static str {
-        self.method.name
+        self.name
     }
 
     /// The method's declaration.
-    pub const fn method(&self) -> &'static Method {
-        self.method
+    pub fn method(&self) -> &'static Method {
+        let found = METHODS.iter().find(|m| m.name == self.name);
+        found.expect("a specification has the name of a method")
     }
 
     /// Whether it draws with a trained network.
-    pub const fn needs_model(&self) -> bool {
-        self.method.learned
+    pub fn needs_model(&self) -> bool {
+        self.method().learned
     }
 
     /// The number that the name ends in; 0 where it ends in none.
@@ -55,20 +84,22 @@ impl MethodSpec {
 
     /// The precision that was asked for of all targets; `None` leaves it to the method.
     pub fn targets(&self) -> Option<Precision> {
-        match self.value(Targets::NAME) {
-            Some(Value::Targets(precision)) => Some(precision),
-            _ => None,
-        }
+        let text = self.values.get("targets")?;
+        Some(if text == Precision::WORDS[0] {
+            Precision::Half
+        } else {
+            Precision::Full
+        })
     }
 
     /// Whether transparency is drawn at a lower resolution: pixels then mix their neighbours' fragments.
     pub fn is_scaled(&self) -> bool {
-        SCALE.of(self) < 1.0
+        SCALE.number(self) < 1.0
     }
 
     /// What the method promises with these parameters.
     pub fn promises(&self) -> Promises {
-        let own = (self.method.promises)(self);
+        let own = (self.method().promises)(self);
         let scaled = self.is_scaled();
         Promises {
             exact: own.exact && !scaled,
@@ -84,7 +115,7 @@ impl MethodSpec {
     /// The colour that a pixel must have, by the method's CPU twin; `None` where it has none: at a lower resolution, and for a
     /// learned method without a model.
     pub fn twin(&self, pixel: &Pixel<'_>) -> Option<[f32; 3]> {
-        let twin = self.method.twin.filter(|_| !self.is_scaled())?;
+        let twin = self.method().twin.filter(|_| !self.is_scaled())?;
         twin(self, pixel)
     }
 
@@ -97,7 +128,7 @@ impl MethodSpec {
         warp: &DepthWarp,
         model: Option<&Model>,
     ) -> Option<Vec<f64>> {
-        let estimate = self.method.transmittances.filter(|_| !self.is_scaled())?;
+        let estimate = self.method().transmittances.filter(|_| !self.is_scaled())?;
         estimate(self, fragments, warp, model)
     }
 
@@ -111,71 +142,72 @@ impl MethodSpec {
         Ok(changed)
     }
 
-    pub(super) fn value(&self, name: &str) -> Option<Value> {
-        self.values.get(name).map(|(_, value)| *value)
-    }
-
-    pub(super) fn set(&mut self, name: &str, text: &str) -> Result<(), RenderError> {
-        let all = || self.method.all_parameters();
-        let Some(parameter) = all().find(|p| p.name() == name) else {
-            let known: Vec<String> = all()
-                .map(|p| format!("{} ({})", p.name(), p.about()))
-                .collect();
+    fn set(&mut self, name: &str, text: &str) -> Result<(), RenderError> {
+        let all = || self.method().all_parameters();
+        let Some(parameter) = all().find(|p| p.name == name) else {
+            let known: Vec<String> = all().map(|p| format!("{} ({})", p.name, p.about)).collect();
             return Err(self.bad(format!(
                 "there is no parameter '{name}'; there are: {}",
                 known.join(", ")
             )));
         };
-        let Some(value) = parameter.parse(text) else {
+        if !parameter.allows(text) {
             let allowed = parameter.allowed();
             return Err(self.bad(format!("{name} must be {allowed}, not '{text}'")));
-        };
-        self.values
-            .insert(parameter.name(), (text.to_owned(), value));
+        }
+        self.values.insert(parameter.name, text.to_owned());
         Ok(())
     }
 
-    pub(super) fn bad(&self, message: String) -> RenderError {
+    fn bad(&self, message: String) -> RenderError {
         RenderError::Parameter {
             method: self.name().to_owned(),
             message,
         }
     }
-
-    /// What makes it itself: two specifications with the same text are the same.
-    fn key(
-        &self,
-    ) -> (
-        &'static str,
-        Option<u32>,
-        impl Iterator<Item = (&str, &str)>,
-    ) {
-        let values = self.values.iter();
-        let texts = values.map(|(name, (text, _))| (*name, text.as_str()));
-        (self.name(), self.number, texts)
-    }
 }
 
-impl PartialEq for MethodSpec {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
+impl FromStr for MethodSpec {
+    type Err = RenderError;
 
-impl Eq for MethodSpec {}
-
-impl PartialOrd for MethodSpec {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for MethodSpec {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let ((name, number, values), (name_2, number_2, values_2)) = (self.key(), other.key());
-        (name, number)
-            .cmp(&(name_2, number_2))
-            .then_with(|| values.cmp(values_2))
+    fn from_str(text: &str) -> Result<Self, RenderError> {
+        let (name, parameters) = text.split_once(':').unwrap_or((text, ""));
+        let of = |name: &str, numbered: bool| {
+            METHODS
+                .iter()
+                .find(|m| m.name == name && m.numbered.is_some() == numbered)
+        };
+        let numbered = || {
+            let (name, number) = name.rsplit_once('-')?;
+            Some((of(name, true)?, number))
+        };
+        let (method, number) = match (of(name, false), numbered()) {
+            (Some(method), _) => (method, None),
+            (None, Some((method, number))) => (method, Some(number)),
+            (None, None) => {
+                let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
+                return Err(RenderError::UnknownMethod {
+                    name: name.to_owned(),
+                    known: known.join(", "),
+                });
+            }
+        };
+        let mut spec = Self {
+            name: method.name,
+            number: None,
+            values: BTreeMap::new(),
+        };
+        if let (Some(numbered), Some(text)) = (method.numbered, number) {
+            spec.number = Some(numbered.parse(method.name, text).map_err(|e| spec.bad(e))?);
+        }
+        for pair in parameters.split(',').filter(|p| !p.is_empty()) {
+            let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
+            if spec.values.contains_key(name) {
+                return Err(spec.bad(format!("{name} is given twice; give it once")));
+            }
+            spec.set(name, value)?;
+        }
+        Ok(spec)
     }
 }
 
@@ -185,84 +217,17 @@ impl fmt::Display for MethodSpec {
         if let Some(number) = self.number {
             write!(f, "-{number}")?;
         }
-        for (i, (name, (text, _))) in self.values.iter().enumerate() {
+        for (i, (name, text)) in self.values.iter().enumerate() {
             write!(f, "{}{name}={text}", if i == 0 { ':' } else { ',' })?;
         }
         Ok(())
     }
 }
 
-impl Number {
-    /// The value that was given.
-    pub fn given(&self, spec: &MethodSpec) -> Option<f64> {
-        match spec.value(self.name) {
-            Some(Value::Number(x)) => Some(x),
-            _ => None,
-        }
-    }
-
-    /// The value, or the default.
-    pub fn of(&self, spec: &MethodSpec) -> f64 {
-        self.given(spec).unwrap_or(self.default)
-    }
-}
-
-impl Whole {
-    /// The value, or the default.
-    pub fn of(&self, spec: &MethodSpec) -> u32 {
-        match spec.value(self.name) {
-            // Parsing checked that it is at most `most`.
-            Some(Value::Whole(n)) => n as u32,
-            _ => self.default,
-        }
-    }
-}
-
-impl Count {
-    /// The value that was given.
-    pub fn given(&self, spec: &MethodSpec) -> Option<u64> {
-        match spec.value(self.name) {
-            Some(Value::Whole(n)) => Some(n),
-            _ => None,
-        }
-    }
-}
-
-impl Word {
-    /// The word, or the default.
-    pub fn of(&self, spec: &MethodSpec) -> &'static str {
-        match spec.value(self.name) {
-            Some(Value::Word(word)) => word,
-            _ => self.words[0],
-        }
-    }
-}
-
-impl Method {
-    /// Its parameters: its own, and those that every method has.
-    pub fn all_parameters(&self) -> impl Iterator<Item = Parameter> {
-        let own = self.parameters.iter().copied();
-        own.chain([Parameter::Number(SCALE)])
-    }
-
-    /// Whether the precision of its targets can be chosen.
-    pub fn has_targets(&self) -> bool {
-        let mut all = self.parameters.iter();
-        all.any(|p| matches!(p, Parameter::Targets(_)))
-    }
-
-    /// Its name as it is written, `-N` where a number follows.
-    pub fn usage(&self) -> String {
-        let ending = if self.numbered.is_some() { "-N" } else { "" };
-        format!("{}{ending}", self.name)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-    use super::*;
-    use crate::methods::METHODS;
+    use super::{super::Parameter, *};
 
     #[test]
     fn names_and_parameters_round_trip() {
@@ -270,119 +235,10 @@ mod tests {
             "abuffer",
             "wboit-eq10:factor=3e4,targets=f32",
             "deep-thesis:targets=f32",
-            "kbuffer-8",
             "hybrid-4:weight=eq7",
         ] {
             assert_eq!(text.parse::<MethodSpec>().unwrap().to_string(), text);
         }
-    }
-
-    #[test]
-    fn unknown_names_and_parameters_are_refused_with_those_there_are() {
-        let e = "wbiot".parse::<MethodSpec>().unwrap_err().to_string();
-        assert!(e.contains("wboit-eq9"), "{e}");
-        let e = "abuffer:targets=f32".parse::<MethodSpec>().unwrap_err();
-        assert!(e.to_string().contains("budget"), "{e}");
-    }
-
-    /// A value that is not allowed is refused when it is parsed; the message names parameter, value and what is allowed.
-    #[test]
-    fn values_are_checked() {
-        for (text, allowed) in [
-            ("depth-peel:passes=0", "a whole number from 1 to 1048576"),
-            ("blended:targets=f64", "f16 or f32"),
-            ("mboit4:own=maybe", "in or out"),
-            ("wavelet-3:own=", "out or in"),
-            (
-                "depth-peel:passes=1048577",
-                "a whole number from 1 to 1048576",
-            ),
-            (
-                "abuffer:budget=4294967297",
-                "a whole number from 1 to 4294967296",
-            ),
-            (
-                "wboit-eq10:factor=inf",
-                "a number above 0 and at most 1000000000",
-            ),
-            (
-                "wboit-eq10:factor=-1",
-                "a number above 0 and at most 1000000000",
-            ),
-            (
-                "wboit-inverse-power:epsilon=0",
-                "a number above 0 and at most 1000000000",
-            ),
-            ("mboit4:bias=1e30", "a number from 0 to 1"),
-            ("mboit6:bias=-1e-9", "a number from 0 to 1"),
-            ("mboit4:overestimation=-5", "a number from 0 to 1"),
-            ("mboit4:overestimation=NaN", "a number from 0 to 1"),
-            ("wboit-inverse-power:k=17", "a whole number from 0 to 16"),
-            ("abuffer:scale=0", "a number above 0 and at most 1"),
-            ("abuffer:scale=nan", "a number above 0 and at most 1"),
-        ] {
-            let e = text.parse::<MethodSpec>().unwrap_err().to_string();
-            let (name, value) = text.split_once(':').unwrap().1.split_once('=').unwrap();
-            let want = format!("{name} must be {allowed}, not '{value}'");
-            assert!(e.ends_with(&want), "{e} does not end with {want}");
-        }
-    }
-
-    #[test]
-    fn a_parameter_that_is_given_twice_is_refused() {
-        for text in [
-            "mboit4:bias=1e-6,bias=2",
-            "mboit4:bias=1e-6,own=out,bias=1e-6",
-        ] {
-            let e = text.parse::<MethodSpec>().unwrap_err().to_string();
-            assert!(
-                e.contains("mboit4") && e.contains("bias is given twice"),
-                "{e}"
-            );
-        }
-    }
-
-    /// Promises and flaws belong to what a name resolves to, not to how it is spelled.
-    #[test]
-    fn a_bare_name_and_its_explicit_spelling_declare_the_same_flaws() {
-        let mut compared = 0;
-        for method in METHODS {
-            let bare = MethodSpec::representative(method);
-            let mut spellings = Vec::new();
-            for parameter in method.all_parameters() {
-                let values = match parameter {
-                    Parameter::Number(p) => vec![p.default.to_string()],
-                    Parameter::Whole(p) => vec![p.default.to_string()],
-                    Parameter::Word(p) => vec![p.words[0].to_owned()],
-                    Parameter::Targets(_) => Targets::WORDS.map(|(word, _)| word.to_owned()).into(),
-                    // Without a value there is no limit.
-                    Parameter::Count(_) => continue,
-                };
-                let with = |value: &String| bare.with(parameter.name(), value).unwrap();
-                spellings.extend(values.iter().map(with));
-            }
-            for spelled in spellings {
-                // Of the precisions, one or none is the default.
-                if spelled.targets().is_some() && spelled.promises() != bare.promises() {
-                    continue;
-                }
-                assert_eq!(spelled.promises(), bare.promises(), "{spelled}");
-                for flaw in method.flaws {
-                    assert_eq!(
-                        (flaw.when)(&spelled),
-                        (flaw.when)(&bare),
-                        "{spelled}: {}",
-                        flaw.reason
-                    );
-                }
-                compared += 1;
-            }
-        }
-        assert!(compared > METHODS.len());
-    }
-
-    #[test]
-    fn every_point_of_every_curve_parses() {
         let points: usize = METHODS.iter().map(|m| m.curve.len()).sum();
         assert_eq!(MethodSpec::compared().len(), points);
         for method in METHODS {
@@ -391,38 +247,75 @@ mod tests {
         }
     }
 
+    /// What is not allowed is refused when it is parsed; the message says what is.
     #[test]
-    fn numbers_are_checked() {
-        for bad in ["kbuffer", "kbuffer-", "kbuffer-0", "kbuffer-65", "mboit4-2"] {
-            assert!(bad.parse::<MethodSpec>().is_err(), "{bad}");
+    fn names_and_values_are_checked() {
+        let refused = |text: &str| text.parse::<MethodSpec>().unwrap_err().to_string();
+        for (text, said) in [
+            ("wbiot", "wboit-eq9"),
+            ("mboit4-2", "mboit4"),
+            ("kbuffer", "kbuffer-N"),
+            ("kbuffer-", "1 to 64"),
+            ("kbuffer-0", "1 to 64"),
+            ("kbuffer-900", "1 to 64"),
+            ("stochastic-9", "8 or 16"),
+            ("abuffer:targets=f32", "budget"),
+            ("mboit4:bias=0,own=out,bias=0", "bias is given twice"),
+        ] {
+            assert!(refused(text).contains(said), "{}", refused(text));
         }
-        let e = "kbuffer-900".parse::<MethodSpec>().unwrap_err().to_string();
-        assert!(e.contains("1 to 64"), "{e}");
-        let e = "stochastic-9".parse::<MethodSpec>().unwrap_err();
-        assert!(e.to_string().contains("8 or 16"), "{e}");
+        let of_factor = "a number above 0 and at most 1000000000";
+        let of_passes = "a whole number from 1 to 1048576";
+        for (text, allowed) in [
+            ("depth-peel:passes=0", of_passes),
+            ("depth-peel:passes=1048577", of_passes),
+            ("blended:targets=f64", "f16 or f32"),
+            ("mboit4:own=maybe", "in or out"),
+            ("wavelet-3:own=", "out or in"),
+            ("wboit-eq10:factor=inf", of_factor),
+            ("wboit-eq10:factor=0", of_factor),
+            ("wboit-eq10:factor=-1", of_factor),
+            ("mboit4:bias=1e30", "a number from 0 to 1"),
+            ("mboit6:bias=-1e-9", "a number from 0 to 1"),
+            ("mboit4:overestimation=NaN", "a number from 0 to 1"),
+            ("wboit-inverse-power:k=17", "a whole number from 0 to 16"),
+            ("abuffer:scale=0", "a number above 0 and at most 1"),
+            ("abuffer:scale=nan", "a number above 0 and at most 1"),
+        ] {
+            let (name, value) = text.split_once(':').unwrap().1.split_once('=').unwrap();
+            let want = format!("{name} must be {allowed}, not '{value}'");
+            assert!(refused(text).ends_with(&want), "{}", refused(text));
+        }
     }
 
-    /// Parameters have one name, and their defaults are allowed values.
+    /// Names are unique, defaults are allowed, and promises and flaws belong to what a name resolves to, not to how it is spelled.
     #[test]
-    fn declarations_are_sound() {
+    fn a_bare_name_and_its_explicit_spelling_declare_the_same() {
         let mut names: Vec<_> = METHODS.iter().map(|m| m.name).collect();
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), METHODS.len());
         for method in METHODS {
-            let mut names: Vec<_> = method.all_parameters().map(|p| p.name()).collect();
-            names.sort_unstable();
-            names.dedup();
-            assert_eq!(names.len(), method.parameters.len() + 1, "{}", method.name);
+            let bare = MethodSpec::representative(method);
+            let mut spelled = vec![];
             for parameter in method.all_parameters() {
-                let default = match parameter {
-                    Parameter::Number(p) => p.default.to_string(),
-                    Parameter::Whole(p) => p.default.to_string(),
-                    Parameter::Word(p) => p.words[0].to_owned(),
-                    Parameter::Count(_) | Parameter::Targets(_) => continue,
-                };
-                let at = format!("{} of {}", parameter.name(), method.name);
-                assert!(parameter.parse(&default).is_some(), "{at}: {default}");
+                let named = |p: &&Parameter| p.name == parameter.name;
+                assert_eq!(method.all_parameters().filter(named).count(), 1);
+                let default = parameter.default();
+                spelled.extend(default.map(|text| bare.with(parameter.name, &text).unwrap()));
+            }
+            if method.has_targets() {
+                let words = Precision::WORDS.into_iter();
+                let precisions = words.map(|word| bare.with("targets", word).unwrap());
+                // One or none of them is the default.
+                spelled.extend(precisions.filter(|s| s.promises() == bare.promises()));
+            }
+            for spelled in spelled {
+                assert_eq!(spelled.promises(), bare.promises(), "{spelled}");
+                for flaw in method.flaws {
+                    let (at, when) = (format!("{spelled}: {}", flaw.reason), flaw.when);
+                    assert_eq!(when(&spelled), when(&bare), "{at}");
+                }
             }
         }
     }

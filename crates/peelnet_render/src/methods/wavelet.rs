@@ -2,56 +2,48 @@
 //! `peelnet_core::methods::wavelet`, which states the sources.
 
 use super::{
-    commutative::{self, Blend, Gather, Plan, Target},
-    compositor::{Build, Compositor},
+    bins::{RANGE_TARGETS, bounds, range_pass},
     mboit::own_share,
-    method::{Method, Numbered},
-    parameter::{Parameter, Precision, Word},
-    range::{BOUNDS_OF_FRAME, PIXEL_BOUNDS, RANGE, RANGE_PASS, RANGE_TARGETS, bounds},
-    spec::MethodSpec,
-    weighted::{SUMS, TRANSMITTANCE},
-};
-use crate::{
-    error::RenderError,
-    flaw::{Flaw, Property},
+    prelude::*,
 };
 use peelnet_core::methods::{
     range::Bounds,
     wavelet::{self, Settings},
 };
 
-const OWN: Word = Word {
-    name: "own",
-    about: "out (default) or in: a fragment's own absorbance",
-    words: &["out", "in"],
-};
+const OWN: Parameter = Parameter::words(
+    "own",
+    "out (default) or in: a fragment's own absorbance",
+    &["out", "in"],
+);
+
+const BOUNDS: Parameter = Parameter::words(
+    "bounds",
+    "frame (default) or pixel: the range of depths; a pixel's own takes one more pass",
+    &["frame", "pixel"],
+);
 
 fn settings(spec: &MethodSpec) -> Settings {
     Settings {
         rank: spec.number(),
-        bounds: bounds(spec, BOUNDS_OF_FRAME),
-        own_share_out: OWN.of(spec) == "out",
+        bounds: bounds(spec, BOUNDS),
+        own_share_out: OWN.word(spec) == "out",
     }
 }
 
-const OWN_SHARE: Flaw = Flaw::new(
-    Property::Transmittance,
-    &["isolated", "two-layers"],
-    "a fragment's own absorbance counts by its place in its bin; own=out leaves it out",
-)
-.when(|s| !settings(s).own_share_out && settings(s).bounds == Bounds::Frame);
+fn of_frame(spec: &MethodSpec) -> bool {
+    settings(spec).bounds == Bounds::Frame
+}
+
+const fn own_share_in(property: Property, cases: &'static str) -> Flaw {
+    let reason =
+        "a fragment's own absorbance counts by its place in its bin; own=out leaves it out";
+    Flaw::new(property, cases, reason).when(|s| of_frame(s) && !settings(s).own_share_out)
+}
 
 pub(super) const METHOD: Method = Method {
-    numbered: Some(Numbered {
-        least: 2,
-        most: 3,
-        power_of_two: false,
-    }),
-    parameters: &[
-        RANGE_TARGETS,
-        Parameter::Word(OWN),
-        Parameter::Word(BOUNDS_OF_FRAME),
-    ],
+    numbered: Numbered::range(2, 3),
+    parameters: &[RANGE_TARGETS, OWN, BOUNDS],
     curve: &[
         "-3",
         "-2",
@@ -68,111 +60,66 @@ pub(super) const METHOD: Method = Method {
         Some(wavelet::transmittances(fragments, warp, &settings(s)))
     }),
     flaws: &[
-        Flaw::swallowed(&["deep"]),
-        Flaw::unsettled(Property::Order, &["deep", "near-overflow"]),
+        Flaw::swallowed("deep"),
+        Flaw::unsettled(Property::Order, "deep near-overflow"),
         Flaw::new(
             Property::Transmittance,
-            &["two-layers"],
+            "two-layers",
             "rank 3 separates eight depths (Aizenshtein et al. 2022)",
         )
-        .when(|s| settings(s).own_share_out && settings(s).bounds == Bounds::Frame),
+        .when(|s| of_frame(s) && settings(s).own_share_out),
         Flaw::new(
             Property::Opaque,
-            &["alpha-near-one"],
+            "alpha-near-one",
             "eight bins over the whole frame's depth blur what lies close together",
         )
-        .when(|s| settings(s).rank == 2 && settings(s).bounds == Bounds::Frame),
-        OWN_SHARE,
-        Flaw {
-            property: Property::Opaque,
-            cases: &["alpha-near-one"],
-            ..OWN_SHARE
-        },
+        .when(|s| of_frame(s) && s.number() == 2),
+        own_share_in(Property::Transmittance, "isolated two-layers"),
+        own_share_in(Property::Opaque, "alpha-near-one"),
     ],
     ..Method::new(
         "wavelet",
         "Aizenshtein, Smal & McGuire 2022, Haar wavelets of rank R",
-        build,
+        plan,
     )
 };
 
-fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
     let Settings {
         rank,
         bounds,
         own_share_out,
     } = settings(b.spec);
-    let coefficients = |label| Target {
-        label,
-        channels: 4,
-        full: false,
-        blend: Blend::Add,
+    let four = |label| Target::half(label, 4, Blend::Add);
+    let mut p = Plan::new();
+    p.parameters = format!("const BINS: f32 = {}.0;\n", 2 << rank);
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let lower = p.targets(["average, whole and halves", "quarters"].map(four));
+    let eighths = match rank {
+        3 => p.targets(["near eighths", "far eighths"].map(four)),
+        _ => Vec::new(),
     };
-    let mut targets = vec![
-        SUMS,
-        TRANSMITTANCE,
-        coefficients("average, whole and halves"),
-        coefficients("quarters"),
-    ];
-    let mut fours = vec![2, 3];
-    let mut features = own_share(own_share_out).to_vec();
-    if rank == 3 {
-        fours.extend([4, 5]);
-        features.push("eighths");
-        targets.extend(["near eighths", "far eighths"].map(coefficients));
-    }
-    let mut range = vec![];
-    let mut of_range: &[&str] = &[];
-    if bounds == Bounds::Pixel {
-        range.push(targets.len());
-        targets.push(RANGE);
-        of_range = &[PIXEL_BOUNDS];
-    }
+    let (rank_3, all) = (rank == 3, [lower.clone(), eighths.clone()].concat());
+    let range = range_pass(&mut p, bounds);
     // One pass of portable WebGPU writes 32 bytes a pixel: four targets of 16 bits, two of 32.
-    let parts: &[&[&str]] = match (rank, b.spec.targets()) {
-        (3, Some(Precision::Full)) => &[&["lower"], &["eighths"]],
-        (3, _) => &[&["lower", "eighths"]],
-        _ => &[&["lower"]],
+    let parts: Vec<(&[&'static str], _)> = match b.spec.targets() {
+        Some(Precision::Full) if rank_3 => vec![(&["lower"], lower), (&["eighths"], eighths)],
+        _ if rank_3 => vec![(&["lower", "eighths"], all.clone())],
+        _ => vec![(&["lower"], lower)],
     };
-    let parts: Vec<_> = parts
-        .iter()
-        .map(|part| [*part, of_range].concat())
-        .collect();
-    let parameters = format!("const BINS: f32 = {}.0;\n", 2 << rank);
-    let extra = [("parameters", parameters.as_str())];
-    let reads = [fours.as_slice(), &range].concat();
-    features.extend(of_range);
-    let mut passes = Vec::new();
-    passes.extend((!range.is_empty()).then_some(Gather {
-        writes: &range,
-        ..RANGE_PASS
-    }));
-    let writes = fours.chunks(fours.len() / parts.len());
-    passes.extend(parts.iter().zip(writes).map(|(features, writes)| Gather {
-        label: "coefficients",
-        shader: "methods::wavelet::coefficients",
-        features,
-        extra: &extra,
-        writes,
-        reads: &range,
-        ..Gather::NONE
-    }));
-    passes.push(Gather {
-        shader: "methods::wavelet::gather",
-        features: &features,
-        extra: &extra,
-        writes: &[0, 1],
-        reads: &reads,
-        ..Gather::NONE
-    });
-    commutative::build(
-        b,
-        &Plan {
-            targets: &targets,
-            passes: &passes,
-            resolve: "methods::wboit::resolve",
-            resolve_reads: &[0, 1],
-            ..Plan::NONE
-        },
-    )
+    for (features, written) in parts {
+        p.geometry("methods::wavelet::coefficients")
+            .features(features.iter().copied())
+            .reads_range(range)
+            .writes(written);
+    }
+    p.geometry("methods::wavelet::gather")
+        .features(own_share(own_share_out))
+        .features(rank_3.then_some("eighths"))
+        .reads(all)
+        .reads_range(range)
+        .writes([sums, transmittance]);
+    p.resolve("methods::wboit::resolve", [sums, transmittance]);
+    Ok(p)
 }

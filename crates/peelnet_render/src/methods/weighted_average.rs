@@ -1,16 +1,6 @@
 //! `weighted-average`: the mean colour, covering as so many layers of the mean opacity (Bavoil & Myers 2008).
 
-use super::{
-    commutative::{self, Blend, Plan, Target},
-    compositor::{Build, Compositor},
-    method::Method,
-    parameter::TARGETS,
-    weighted::{SUMS, gather},
-};
-use crate::{
-    error::RenderError,
-    flaw::{Flaw, Property},
-};
+use super::prelude::*;
 use peelnet_core::methods::weighted_average;
 
 pub(super) const METHOD: Method = Method {
@@ -19,40 +9,21 @@ pub(super) const METHOD: Method = Method {
     flaws: &[
         Flaw::new(
             Property::Background,
-            &[
-                "alpha-zero",
-                "alpha-one",
-                "coplanar",
-                "emissive",
-                "far",
-                "grazing",
-                "intersecting",
-                "moving-camera",
-                "passing",
-            ],
+            "alpha-zero alpha-one coplanar emissive far grazing intersecting moving-camera passing",
             "covers as layers of the mean opacity would, not as those that are there (Bavoil & Myers 2008)",
         ),
-        Flaw::swallowed(&["alpha-tiny", "deep", "near-overflow"]),
+        Flaw::swallowed("alpha-tiny deep near-overflow"),
         Flaw::BLIND,
     ],
-    ..Method::new("weighted-average", "Bavoil & Myers 2008", build)
+    ..Method::new("weighted-average", "Bavoil & Myers 2008", plan)
 };
 
-fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let count = Target {
-        label: "fragment count",
-        channels: 1,
-        full: false,
-        blend: Blend::Add,
-    };
-    commutative::build(
-        b,
-        &Plan {
-            targets: &[SUMS, count],
-            passes: &[gather("methods::weighted_average::gather", &[0, 1])],
-            resolve: "methods::weighted_average::resolve",
-            resolve_reads: &[0, 1],
-            ..Plan::NONE
-        },
-    )
+fn plan(_: &Build<'_>) -> Result<Plan, RenderError> {
+    let mut p = Plan::new();
+    let sums = p.target(SUMS);
+    let count = p.target(Target::half("fragment count", 1, Blend::Add));
+    p.geometry("methods::weighted_average::gather")
+        .writes([sums, count]);
+    p.resolve("methods::weighted_average::resolve", [sums, count]);
+    Ok(p)
 }
