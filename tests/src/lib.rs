@@ -3,14 +3,14 @@
 pub mod readers;
 
 use glam::{Vec2, Vec3};
-use peelnet_core::fragment::Fragment;
+use peelnet_core::{fragment::Fragment, random::Random};
 use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{
-    Image, LearnedWeight, METHODS, MethodOptions, MethodSpec, Prepared, Renderer,
+    Frame, Image, LearnedWeight, METHODS, MethodOptions, MethodSpec, Prepared, Renderer,
 };
 use peelnet_scene::{Camera, Light, Material, Object, Scene, Source, Texture};
-use std::sync::Arc;
+use std::{fmt::Display, sync::Arc};
 
 /// The software adapter where there is one, else whatever there is. Never skips: no adapter is a failure that says how to
 /// get one.
@@ -40,21 +40,60 @@ pub fn representatives() -> Vec<MethodSpec> {
     drawn.map(MethodSpec::representative).collect()
 }
 
+/// Methods by their names.
+pub fn specs<const N: usize>(names: [&str; N]) -> Vec<MethodSpec> {
+    let spec = |name: &str| name.parse().unwrap_or_else(|e| panic!("{e}"));
+    names.map(spec).to_vec()
+}
+
 /// Draws a scene's first view; a learned method with its shipped network.
-pub fn draw(gpu: &Gpu, scene: &Scene, method: &str, size: [u32; 2]) -> Image {
+pub fn draw(gpu: &Gpu, scene: &Scene, method: impl Display, size: [u32; 2]) -> Image {
+    frame(gpu, scene, method, MethodOptions::sized(size)).image
+}
+
+/// The same with what the method reports.
+pub fn frame(gpu: &Gpu, scene: &Scene, method: impl Display, options: MethodOptions) -> Frame {
     let renderer = Renderer::new(gpu, scene).unwrap_or_else(|e| panic!("{e}"));
-    let mut prepared = prepare(&renderer, method, size);
+    let spec = method.to_string().parse();
+    let mut prepared = spec
+        .and_then(|spec| renderer.method(&spec, options))
+        .unwrap_or_else(|e| panic!("{method}: {e}"));
     let frame = renderer.image(&mut prepared, &scene.views[0]);
-    frame.unwrap_or_else(|e| panic!("{method}: {e}")).image
+    frame.unwrap_or_else(|e| panic!("{method}: {e}"))
 }
 
 /// A method, or its name, made ready for a scene.
-pub fn prepare(renderer: &Renderer, method: &(impl ToString + ?Sized), size: [u32; 2]) -> Prepared {
-    let name = method.to_string();
-    let prepared = name
-        .parse()
-        .and_then(|method| renderer.method(&method, MethodOptions::sized(size)));
-    prepared.unwrap_or_else(|e| panic!("{name}: {e}"))
+pub fn prepare(renderer: &Renderer, method: impl Display, size: [u32; 2]) -> Prepared {
+    let spec = method.to_string().parse();
+    let prepared = spec.and_then(|spec| renderer.method(&spec, MethodOptions::sized(size)));
+    prepared.unwrap_or_else(|e| panic!("{method}: {e}"))
+}
+
+/// No colour channel of a pixel is farther off than the bound.
+pub fn assert_near<const N: usize>(
+    found: [f32; 4],
+    want: [f32; N],
+    bound: f32,
+    what: impl Display,
+) {
+    // Written so that a NaN is far.
+    let near = (0..3).all(|k| (found[k] - want[k]).abs() <= bound);
+    assert!(near, "{what}: {found:?} for {want:?}, bound {bound:e}");
+}
+
+/// The same of every pixel.
+pub fn assert_all<const N: usize>(image: &Image, want: [f32; N], bound: f32, what: impl Display) {
+    for (pixel, i) in image.pixels.iter().zip(0..) {
+        assert_near(*pixel, want, bound, format_args!("{what}, pixel {i}"));
+    }
+}
+
+/// The same of two images.
+pub fn assert_alike(found: &[[f32; 4]], want: &[[f32; 4]], bound: f32, what: impl Display) {
+    assert_eq!(found.len(), want.len(), "{what}");
+    for (i, (found, want)) in found.iter().zip(want).enumerate() {
+        assert_near(*found, *want, bound, format_args!("{what}, pixel {i}"));
+    }
 }
 
 /// Runs a compute shader on buffers of inputs and of `count` answers.
@@ -120,12 +159,42 @@ pub fn half_sums(n: usize, peak: f32) -> f32 {
     (n as f32 + 2.0) * HALF * peak
 }
 
+/// The two triangles of a quad.
+pub fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+/// A rectangle that faces the camera at depth `z`, from left to right and from bottom to top.
+pub fn rectangle(x: [f32; 2], y: [f32; 2], z: f32) -> [[Vec3; 3]; 2] {
+    let vertex = |i: usize, j: usize| Vec3::new(x[i], y[j], -z);
+    quad([vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(0, 1)])
+}
+
+/// Triangles of one material.
+pub fn object(triangles: &[[Vec3; 3]], material: Material) -> Object {
+    Object::of_triangles("test", triangles, material)
+}
+
+/// Objects of random triangles, so many each, between these depths; in color and opacity random, too.
+pub fn soup(seed: u64, objects: usize, triangles: usize, z: [f32; 2]) -> Vec<Object> {
+    let mut random = Random::new(seed, &[]);
+    let mut one = || {
+        let mut vertex = |()| {
+            let z = random.between(z[0], z[1]);
+            let mut side = || random.between(-1.2, 1.2) * z;
+            Vec3::new(side(), side(), -z)
+        };
+        let triangles: Vec<_> = (0..triangles).map(|_| [(); 3].map(&mut vertex)).collect();
+        let material = Material::unlit(random.color(), random.between(0.05, 0.95));
+        object(&triangles, material)
+    };
+    (0..objects).map(|_| one()).collect()
+}
+
 /// A quad facing the camera at depth `z` that covers the whole frame, and more.
 pub fn wall(z: f32, material: Material) -> Object {
     let s = 1.5 * z;
-    let v = |x: f32, y: f32| Vec3::new(x * s, y * s, -z);
-    let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
-    let mut wall = Object::of_triangles(&format!("wall at {z}"), &[[a, b, c], [a, c, d]], material);
+    let mut wall = object(&rectangle([-s, s], [-s, s], z), material);
     // It shows the whole of an image.
     let mesh = Arc::make_mut(&mut wall.mesh);
     let (a, b, c, d) = (Vec2::Y, Vec2::ONE, Vec2::X, Vec2::ZERO);
@@ -140,12 +209,6 @@ pub fn scene(name: &str, background: [f32; 3], objects: Vec<Object>) -> Scene {
 
 /// Every pixel of it holds exactly these fragments.
 pub fn walls(fragments: &[Fragment], background: [f32; 3]) -> Scene {
-    scene(
-        "walls",
-        background,
-        fragments
-            .iter()
-            .map(|f| wall(f.depth, Material::unlit(f.color, f.alpha)))
-            .collect(),
-    )
+    let wall = |f: &Fragment| wall(f.depth, Material::unlit(f.color, f.alpha));
+    scene("walls", background, fragments.iter().map(wall).collect())
 }

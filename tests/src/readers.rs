@@ -35,8 +35,8 @@ pub const READERS: [Reader; 7] = [
     reader("dataset", dataset, dataset_seeds),
     reader("model", model, model_seeds),
     reader("gltf", gltf, || committed("gltf")),
-    reader("ply", ply, || committed("ply")),
-    reader("stl", stl, || committed("stl")),
+    reader("ply", |bytes| load("f.ply", bytes), || committed("ply")),
+    reader("stl", |bytes| load("f.stl", bytes), || committed("stl")),
 ];
 
 /// The files in `tests/seeds`, each with what its reader knows: polygons and strips, colours, textures, lights, timelines, sparse accessors.
@@ -76,18 +76,17 @@ fn image() -> Vec<u8> {
 
 /// A scene file; the files that it may name do not exist, but for `a.obj` and `a.png`.
 fn scene(bytes: &[u8]) {
-    put(
-        "a.obj",
-        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
-    );
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    put("a.obj", triangle.as_bytes());
     put("a.png", &image());
-    if let Ok(scene) = Scene::load(put("s.toml", bytes)) {
-        is_sound(&scene);
-    }
+    load("s.toml", bytes);
 }
 
-/// What a reader let through can be drawn.
-fn is_sound(scene: &Scene) {
+/// A file of this name; what the reader lets through can be drawn.
+fn load(name: &str, bytes: &[u8]) {
+    let Ok(scene) = Scene::load(put(name, bytes)) else {
+        return;
+    };
     for view in &scene.views {
         assert!(view.near > 0.0 && view.near < view.far && view.view_from_world().is_finite());
     }
@@ -112,41 +111,17 @@ fn is_sound(scene: &Scene) {
 
 /// A glTF or GLB file, by how it begins.
 fn gltf(bytes: &[u8]) {
-    let name = if bytes.starts_with(b"glTF") {
-        "g.glb"
-    } else {
-        "g.gltf"
-    };
-    if let Ok(scene) = Scene::load(put(name, bytes)) {
-        is_sound(&scene);
-    }
+    let is_binary = bytes.starts_with(b"glTF");
+    load(if is_binary { "g.glb" } else { "g.gltf" }, bytes);
 }
 
 /// An OBJ file, and behind the first zero byte the MTL file that it may name as `m.mtl`.
 fn obj(bytes: &[u8]) {
-    let (mesh, materials) = match bytes.iter().position(|b| *b == 0) {
-        Some(at) => (&bytes[..at], &bytes[at + 1..]),
-        None => (bytes, &b""[..]),
-    };
-    put("m.mtl", materials);
+    let mut parts = bytes.splitn(2, |b| *b == 0);
+    let mesh = parts.next().unwrap_or_default();
+    put("m.mtl", parts.next().unwrap_or_default());
     put("a.png", &image());
-    if let Ok(scene) = Scene::load(put("f.obj", mesh)) {
-        is_sound(&scene);
-    }
-}
-
-/// A PLY file, as a scene.
-fn ply(bytes: &[u8]) {
-    if let Ok(scene) = Scene::load(put("f.ply", bytes)) {
-        is_sound(&scene);
-    }
-}
-
-/// An STL file, as a scene.
-fn stl(bytes: &[u8]) {
-    if let Ok(scene) = Scene::load(put("f.stl", bytes)) {
-        is_sound(&scene);
-    }
+    load("f.obj", mesh);
 }
 
 /// Where a dataset's manifest lies.
@@ -155,11 +130,11 @@ const MANIFEST: &str = "_peelnet/manifest.json";
 /// A dataset of two parts: the first byte says which of its files the others replace, and in which format.
 fn dataset(bytes: &[u8]) {
     let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
-    let format = [Format::Csv, Format::Npy, Format::Parquet][usize::from(which) % 3];
-    let template = template(format);
+    let kind = usize::from(which) % 3;
+    let template = template(kind);
     let files = &template.files;
     let file = usize::from(which / 3) % files.len();
-    let folder = folder().join(format!("read-{format}"));
+    let folder = folder().join(format!("read-{}", FORMATS[kind]));
     let _ = fs::create_dir_all(folder.join("_peelnet"));
     let mut manifest = template.manifest.clone();
     for (i, (name, sound)) in files.iter().enumerate() {
@@ -186,11 +161,8 @@ fn dataset(bytes: &[u8]) {
 
 fn dataset_seeds() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
-    for (format, k) in [Format::Csv, Format::Npy, Format::Parquet]
-        .into_iter()
-        .zip(0u8..)
-    {
-        for ((_, contents), file) in template(format).files.iter().zip(0u8..3) {
+    for k in 0u8..3 {
+        for ((_, contents), file) in template(usize::from(k)).files.iter().zip(0u8..3) {
             seeds.push([&[k + 3 * file], contents.as_slice()].concat());
         }
     }
@@ -203,15 +175,13 @@ struct Template {
     files: Vec<(String, Vec<u8>)>,
 }
 
-/// A small dataset of a format.
-fn template(format: Format) -> &'static Template {
+const FORMATS: [Format; 3] = [Format::Csv, Format::Npy, Format::Parquet];
+
+/// A small dataset of one of these formats.
+fn template(kind: usize) -> &'static Template {
     static TEMPLATES: [OnceLock<Template>; 3] = [const { OnceLock::new() }; 3];
-    let slot = match format {
-        Format::Csv => 0,
-        Format::Npy => 1,
-        Format::Parquet => 2,
-    };
-    TEMPLATES[slot].get_or_init(|| {
+    TEMPLATES[kind].get_or_init(|| {
+        let format = FORMATS[kind];
         let out = folder().join(format!("template-{format}"));
         let options = SyntheticOptions {
             out: out.clone(),

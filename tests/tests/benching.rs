@@ -11,8 +11,10 @@ use peelnet_eval::{
 };
 use peelnet_render::MethodSpec;
 use peelnet_scene::Scene;
-use peelnet_tests::{gpu, walls};
+use peelnet_tests::{gpu, specs, walls};
 use std::sync::atomic::AtomicBool;
+
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 fn rows(scene: &Scene, methods: &[MethodSpec], done: &[u32]) -> (Vec<Row>, usize) {
     let gpu = gpu();
@@ -21,22 +23,15 @@ fn rows(scene: &Scene, methods: &[MethodSpec], done: &[u32]) -> (Vec<Row>, usize
         ..Plan::new([16, 12], methods)
     };
     let (mut rows, mut drawn) = (Vec::new(), 0);
-    compare(
-        &gpu,
-        scene,
-        &plan,
-        done,
-        &AtomicBool::new(false),
-        &mut |event| {
-            match event {
-                Event::Drawn(_) => drawn += 1,
-                Event::LeftOut(method, why) => panic!("{method}: {why}"),
-                Event::View(of_view) => rows.extend(of_view),
-            }
-            Ok(())
-        },
-    )
-    .unwrap();
+    let mut take = |event: Event<'_>| {
+        match event {
+            Event::Drawn(_) => drawn += 1,
+            Event::LeftOut(method, why) => panic!("{method}: {why}"),
+            Event::View(of_view) => rows.extend(of_view),
+        }
+        Ok(())
+    };
+    compare(&gpu, scene, &plan, done, &NEVER, &mut take).unwrap();
     (rows, drawn)
 }
 
@@ -48,7 +43,7 @@ fn a_method_on_the_cpu_has_an_error_and_no_time() {
     let (red, green, blue) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let drawn = [wall(1.0, red), wall(3.0, green), wall(2.0, blue)];
     let c0 = [0.25, 0.5, 0.75];
-    let methods: Vec<MethodSpec> = ["mlab-1", "mlab-4"].map(|m| m.parse().unwrap()).to_vec();
+    let methods = specs(["mlab-1", "mlab-4"]);
     let scene = walls(&drawn, c0);
     let (rows, _) = rows(&scene, &methods, &[]);
     let exact = over::composite_f64(&drawn, c0);
@@ -59,11 +54,8 @@ fn a_method_on_the_cpu_has_an_error_and_no_time() {
         assert_eq!(row.method, format!("mlab-{nodes}"));
         // Twice the error of an exact image, 1e-5, times the error itself.
         let slack = 2e-5 * want.sqrt() + 1e-10;
-        assert!(
-            (row.mse_linear - want).abs() < slack,
-            "{nodes}: {} for {want}",
-            row.mse_linear
-        );
+        let found = row.mse_linear;
+        assert!((found - want).abs() < slack, "{nodes}: {found} for {want}");
         assert_eq!((row.time_ms, row.wall_ms, row.passes), (None, None, 0));
         assert_eq!((row.bytes_per_pixel, row.time_by_pass.as_str()), (None, ""));
         assert_eq!(row.flip.is_some(), rows[0].flip.is_some());
@@ -74,7 +66,7 @@ fn a_method_on_the_cpu_has_an_error_and_no_time() {
 /// Views that are done are not drawn again; the others have the rows that they would have had.
 #[test]
 fn a_resumed_comparison_draws_what_is_left() {
-    let methods: Vec<MethodSpec> = ["mboit4", "dual-peel"].map(|m| m.parse().unwrap()).to_vec();
+    let methods = specs(["mboit4", "dual-peel"]);
     let mut scene = walls(&worked_example(), [0.0; 3]);
     scene.views = vec![scene.views[0]; 3];
     let (all, drawn) = rows(&scene, &methods, &[]);
@@ -86,19 +78,14 @@ fn a_resumed_comparison_draws_what_is_left() {
         assert_eq!((&a.method, a.view), (&b.method, b.view));
         // Errors agree to the bit.
         assert_eq!(a.mse_linear.to_bits(), b.mse_linear.to_bits());
-        assert_eq!(
-            (a.ssim, a.flip, a.transmittance_error),
-            (b.ssim, b.flip, b.transmittance_error)
-        );
+        let [a, b] = [a, b].map(|r| (r.ssim, r.flip, r.transmittance_error));
+        assert_eq!(a, b);
     }
-    assert!(
-        all.iter()
-            .all(|r| (r.method == "mboit4") == r.transmittance_error.is_some())
-    );
-    assert!(
-        all.iter()
-            .all(|r| r.lost.unwrap_or_default() == 0 && r.flip.is_some())
-    );
+    for row in &all {
+        let is_moments = row.method == "mboit4";
+        assert_eq!(row.transmittance_error.is_some(), is_moments);
+        assert!(row.lost.unwrap_or_default() == 0 && row.flip.is_some());
+    }
     assert_eq!(rows(&scene, &methods, &[0, 1, 2]).1, 0);
 }
 
@@ -108,9 +95,7 @@ fn a_resumed_comparison_draws_what_is_left() {
 fn what_is_too_large_is_left_out_and_told() {
     let gpu = gpu();
     let scene = walls(&worked_example(), [0.0; 3]);
-    let methods: Vec<MethodSpec> = ["kbuffer-64", "wboit-eq9"]
-        .map(|m| m.parse().unwrap())
-        .to_vec();
+    let methods = specs(["kbuffer-64", "wboit-eq9"]);
     // 16 bytes of colour in each of 64 places: more than the binding holds by a row of pixels.
     let height = gpu.limits.max_storage_buffer_binding_size / (64 * 16 * 2048) + 1;
     let run = |lenient| {
@@ -120,29 +105,21 @@ fn what_is_too_large_is_left_out_and_told() {
             ..Plan::new([2048, height as u32], &methods)
         };
         let (mut rows, mut left_out) = (Vec::new(), Vec::new());
-        let done = compare(
-            &gpu,
-            &scene,
-            &plan,
-            &[],
-            &AtomicBool::new(false),
-            &mut |event| {
-                match event {
-                    Event::Drawn(_) => {}
-                    Event::LeftOut(method, why) => left_out.push((method.to_owned(), why)),
-                    Event::View(of_view) => rows.extend(of_view.into_iter().map(|r| r.method)),
-                }
-                Ok(())
-            },
-        );
+        let mut take = |event: Event<'_>| {
+            match event {
+                Event::Drawn(_) => {}
+                Event::LeftOut(method, why) => left_out.push((method.to_owned(), why)),
+                Event::View(of_view) => rows.extend(of_view.into_iter().map(|r| r.method)),
+            }
+            Ok(())
+        };
+        let done = compare(&gpu, &scene, &plan, &[], &NEVER, &mut take);
         (done.is_ok(), rows, left_out)
     };
     let (ok, rows, left_out) = run(true);
     assert!(ok && rows == ["abuffer", "wboit-eq9"], "{rows:?}");
-    assert!(
-        left_out.len() == 1 && left_out[0].0 == "kbuffer-64",
-        "{left_out:?}"
-    );
+    assert_eq!(left_out.len(), 1, "{left_out:?}");
+    assert_eq!(left_out[0].0, "kbuffer-64");
     assert!(left_out[0].1.contains("allows"), "{left_out:?}");
     assert!(!run(false).0);
 }
@@ -151,12 +128,9 @@ fn what_is_too_large_is_left_out_and_told() {
 #[test]
 #[ignore = "long: cargo xtask test --all"]
 fn memory_grows_as_it_is_allocated() {
-    let methods: Vec<MethodSpec> = ["abuffer", "wboit-eq9", "kbuffer-4"]
-        .map(|m| m.parse().unwrap())
-        .to_vec();
-    let stop = AtomicBool::new(false);
-    let (rows, left_out) =
-        scaling::measure(&gpu(), &methods, &[], 1, &stop, &mut |_, _, _| ()).unwrap();
+    let methods = specs(["abuffer", "wboit-eq9", "kbuffer-4"]);
+    let measured = scaling::measure(&gpu(), &methods, &[], 1, &NEVER, &mut |_, _, _| ());
+    let (rows, left_out) = measured.unwrap();
     assert!(left_out.is_empty(), "{left_out:?}");
     let of = |method: &str, series: Series, value: u64| {
         let found = rows
@@ -168,10 +142,8 @@ fn memory_grows_as_it_is_allocated() {
     };
     // RGBA16F and R16F; and four depths, triangles and colours with an attachment that nothing is written to.
     assert_eq!(of("wboit-eq9", Series::Fragments, 256), 10.0);
-    assert_eq!(
-        of("kbuffer-4", Series::Fragments, 1),
-        10.0 + 4.0 * 24.0 + 1.0
-    );
+    let four = 10.0 + 4.0 * 24.0 + 1.0;
+    assert_eq!(of("kbuffer-4", Series::Fragments, 1), four);
     // Count, offset, attachment, and 24 bytes a fragment.
     assert_eq!(of("abuffer", Series::Fragments, 64), 9.0 + 64.0 * 24.0);
 }

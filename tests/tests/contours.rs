@@ -7,38 +7,26 @@ use peelnet_eval::{
     contours::Pairs,
 };
 use peelnet_gpu::Gpu;
-use peelnet_render::{MethodSpec, Renderer};
+use peelnet_render::Renderer;
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{even, gpu, scene};
+use peelnet_tests::{even, gpu, object, quad, scene, specs};
 use std::sync::Arc;
 
 /// Pixels of a side of the frame.
 const SIDE: u32 = 16;
 
-/// The vertex above the top left of this pixel at this depth.
-fn vertex(z: f32, column: f32, row: f32) -> Vec3 {
-    let half = SIDE as f32 / 2.0;
-    Vec3::new(z * (column / half - 1.0), z * (1.0 - row / half), -z)
-}
-
 /// Two triangles that cover these columns and rows, at the depth `z[0]` on the left and `z[1]` on the right; counter-clockwise as seen.
-fn quad(z: [f32; 2], columns: [f32; 2], rows: [f32; 2]) -> [[Vec3; 3]; 2] {
-    let at = |k: usize, row: f32| vertex(z[k], columns[k], row);
-    let (a, b, c, d) = (
-        at(0, rows[1]),
-        at(1, rows[1]),
-        at(1, rows[0]),
-        at(0, rows[0]),
-    );
-    [[a, b, c], [a, c, d]]
+fn pane(z: [f32; 2], columns: [f32; 2], rows: [f32; 2]) -> [[Vec3; 3]; 2] {
+    let half = SIDE as f32 / 2.0;
+    let at = |k: usize, j: usize| {
+        let (x, y) = (columns[k] / half - 1.0, 1.0 - rows[j] / half);
+        z[k] * Vec3::new(x, y, -1.0)
+    };
+    quad([at(0, 1), at(1, 1), at(1, 0), at(0, 0)])
 }
 
 fn glass() -> Material {
     Material::unlit([0.5; 3], 0.5)
-}
-
-fn object(triangles: &[[Vec3; 3]], material: Material) -> Object {
-    Object::of_triangles("quad", triangles, material)
 }
 
 fn pairs(gpu: &Gpu, objects: Vec<Object>, samples: u32) -> u64 {
@@ -60,8 +48,8 @@ const FRAME: [f32; 2] = [0.0, SIDE as f32];
 #[test]
 fn overlapping_quads_make_regions() {
     let gpu = gpu();
-    let left = quad([2.0; 2], [0.0, 10.0], [4.0, 12.0]);
-    let right = quad([3.0; 2], [6.0, 16.0], [4.0, 12.0]);
+    let left = pane([2.0; 2], [0.0, 10.0], [4.0, 12.0]);
+    let right = pane([3.0; 2], [6.0, 16.0], [4.0, 12.0]);
     let want = inside(6, 8) + inside(4, 8) + inside(6, 8);
     for samples in [1, 4] {
         let both = vec![object(&left, glass()), object(&right, glass())];
@@ -71,7 +59,7 @@ fn overlapping_quads_make_regions() {
     let one = vec![object(&[left, right].concat(), glass())];
     assert_eq!(pairs(&gpu, one, 1), want);
     // Two objects that touch.
-    let halves = [[0.0, 8.0], [8.0, 16.0]].map(|columns| quad([2.0; 2], columns, FRAME));
+    let halves = [[0.0, 8.0], [8.0, 16.0]].map(|columns| pane([2.0; 2], columns, FRAME));
     let touching = halves.map(|half| object(&half, glass())).to_vec();
     assert_eq!(pairs(&gpu, touching, 1), 2 * inside(8, ALL));
 }
@@ -81,13 +69,10 @@ fn overlapping_quads_make_regions() {
 fn the_order_counts() {
     let gpu = gpu();
     let crossing = |near: f32, far: f32| {
-        let one = quad([near, far], FRAME, FRAME);
-        let other = quad([3.0; 2], FRAME, FRAME);
-        pairs(
-            &gpu,
-            vec![object(&one, glass()), object(&other, glass())],
-            1,
-        )
+        let one = pane([near, far], FRAME, FRAME);
+        let other = pane([3.0; 2], FRAME, FRAME);
+        let both = vec![object(&one, glass()), object(&other, glass())];
+        pairs(&gpu, both, 1)
     };
     assert_eq!(crossing(1.5, 2.0), inside(ALL, ALL));
     let halves = crossing(1.5, 6.0);
@@ -101,12 +86,12 @@ fn the_order_counts() {
 #[test]
 fn opacity_does_not_count_and_holes_do() {
     let gpu = gpu();
-    let [near_left, right] = [[0.0, 8.0], [8.0, 16.0]].map(|c| quad([2.0; 2], c, FRAME));
+    let [near_left, right] = [[0.0, 8.0], [8.0, 16.0]].map(|c| pane([2.0; 2], c, FRAME));
     let turned = right.map(|[a, b, c]| [a, c, b]);
     let two = vec![object(&[near_left, turned].concat(), glass())];
     assert_eq!(pairs(&gpu, two, 1), 2 * inside(8, ALL));
-    let whole = quad([2.0; 2], FRAME, FRAME);
-    let left = quad([3.0; 2], [0.0, 8.0], FRAME);
+    let whole = pane([2.0; 2], FRAME, FRAME);
+    let left = pane([3.0; 2], [0.0, 8.0], FRAME);
     let mut shaded = object(&[near_left, right].concat(), glass());
     let mesh = Arc::make_mut(&mut shaded.mesh);
     mesh.colors = vec![[1.0, 0.0, 1.0, 0.1]; 6];
@@ -124,7 +109,7 @@ fn opacity_does_not_count_and_holes_do() {
     // An opaque wall in front of the left half.
     let mut opaque = Material::unlit([1.0; 3], 1.0);
     opaque.blend = false;
-    let front = object(&quad([1.0; 2], [0.0, 8.0], FRAME), opaque);
+    let front = object(&pane([1.0; 2], [0.0, 8.0], FRAME), opaque);
     let hidden = vec![object(&whole, glass()), front];
     assert_eq!(pairs(&gpu, hidden, 1), inside(8, ALL));
 }
@@ -132,11 +117,8 @@ fn opacity_does_not_count_and_holes_do() {
 /// A wall of one colour before another one, which is black on the left and white on the right: blending in the wrong order errs by another
 /// amount on both sides. The border runs down the whole frame, inside the surfaces.
 fn bordered() -> Scene {
-    let near = object(&quad([2.0; 2], FRAME, FRAME), glass());
-    let halves = [
-        quad([3.0; 2], [0.0, 8.0], FRAME),
-        quad([3.0; 2], [8.0, 16.0], FRAME),
-    ];
+    let near = object(&pane([2.0; 2], FRAME, FRAME), glass());
+    let halves = [[0.0, 8.0], [8.0, 16.0]].map(|columns| pane([3.0; 2], columns, FRAME));
     let mut far = object(&halves.concat(), Material::unlit([1.0; 3], 0.5));
     let mesh = Arc::make_mut(&mut far.mesh);
     mesh.colors = vec![[0.0, 0.0, 0.0, 1.0]; 6];
@@ -149,26 +131,15 @@ fn bordered() -> Scene {
 fn benches_count_the_border_of_an_error() {
     let gpu = gpu();
     let scene = bordered();
-    let methods: Vec<MethodSpec> = ["depth-peel", "weighted-average"]
-        .map(|m| m.parse().unwrap())
-        .to_vec();
+    let methods = specs(["depth-peel", "weighted-average"]);
     let want = ALL as f64 / inside(ALL, ALL) as f64;
     let plan = Plan {
         frames: 0,
         ..Plan::new([SIDE; 2], &methods)
     };
     let rows = bench(&gpu, std::slice::from_ref(&scene), &plan).unwrap();
-    let found: Vec<_> = rows
-        .iter()
-        .map(|r| (r.method.as_str(), r.contour_pairs))
-        .collect();
-    let exact = Some(0.0);
-    assert_eq!(
-        found,
-        [
-            (EXACT, exact),
-            ("depth-peel", exact),
-            ("weighted-average", Some(want))
-        ]
-    );
+    let found = rows.iter().map(|r| (r.method.as_str(), r.contour_pairs));
+    let (exact, want) = (Some(0.0), ("weighted-average", Some(want)));
+    let want = [(EXACT, exact), ("depth-peel", exact), want];
+    assert_eq!(found.collect::<Vec<_>>(), want);
 }

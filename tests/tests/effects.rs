@@ -3,7 +3,7 @@
 use glam::Vec3;
 use peelnet_render::Renderer;
 use peelnet_scene::{Census, Effect, Light, Lighting, Maps, Material, Scene, Source, Texture};
-use peelnet_tests::{draw, even, gpu, light, prepare, scene, wall};
+use peelnet_tests::{assert_alike, draw, even, gpu, light, prepare, scene, wall};
 use std::sync::Arc;
 
 /// The place of a map's effect in a material.
@@ -17,57 +17,64 @@ fn map_of(maps: &mut Maps, effect: Effect) -> &mut Option<Arc<Texture>> {
     }
 }
 
-/// A scene with one effect, beside a plain surface.
-fn scene_with(effect: Option<Effect>) -> Scene {
-    let mut material = Material::unlit([0.9, 0.4, 0.2], 0.6);
-    let mut all = scene("effects", [0.1, 0.2, 0.3], vec![]);
+/// The effect that another one needs, so that it shows.
+const fn needs(effect: Effect) -> Option<Effect> {
     match effect {
-        None => {}
-        Some(Effect::Opaque) => (material.alpha, material.blend) = (1.0, false),
-        Some(Effect::Culling) => material.double_sided = false,
-        Some(Effect::Lighting) => material.lighting = Lighting::Phong,
-        Some(Effect::Pbr) => material.lighting = Lighting::Pbr,
-        Some(Effect::Cutout) => (material.alpha_cutoff, material.blend) = (Some(0.3), false),
-        Some(Effect::Emission) => material.emission = [0.2, 0.0, 0.1],
-        Some(Effect::LowResolution) => all.transparency_scale = 0.5,
-        Some(Effect::Transmission) => material.transmission = [0.5; 3],
-        Some(map) if Effect::MAPS.contains(&map) => {
-            *map_of(&mut material.maps, map) = even([200, 150, 220, 255]);
-            match map {
-                Effect::NormalMap | Effect::OcclusionMap => material.lighting = Lighting::Phong,
-                Effect::MetallicRoughnessMap => material.lighting = Lighting::Pbr,
-                Effect::EmissiveMap => material.emission = [0.2, 0.0, 0.1],
-                _ => {}
-            }
+        Effect::NormalMap | Effect::OcclusionMap | Effect::Sun => Some(Effect::Lighting),
+        Effect::MetallicRoughnessMap => Some(Effect::Pbr),
+        Effect::EmissiveMap => Some(Effect::Emission),
+        _ => None,
+    }
+}
+
+/// Gives the first surface of a scene an effect; as far as it has one, so that it shows.
+fn add(effect: Effect, all: &mut Scene) {
+    let object = &mut all.objects[0];
+    let material = &mut object.materials[0];
+    match effect {
+        Effect::Opaque => (material.alpha, material.blend) = (1.0, false),
+        Effect::Culling => material.double_sided = false,
+        Effect::Lighting | Effect::Pbr => {
+            material.lighting = match effect {
+                Effect::Pbr => Lighting::Pbr,
+                _ => Lighting::Phong,
+            };
+            all.lights = vec![light(Vec3::new(1.0, 1.0, 0.0), [1.0; 3])];
         }
-        Some(Effect::Sun) => {
-            material.lighting = Lighting::Phong;
-            all.lights.push(Light {
+        Effect::Cutout => (material.alpha_cutoff, material.blend) = (Some(0.3), false),
+        Effect::Emission => material.emission = [0.2, 0.0, 0.1],
+        Effect::LowResolution => all.transparency_scale = 0.5,
+        Effect::Transmission => material.transmission = [0.5; 3],
+        Effect::VertexColors => {
+            let mesh = Arc::make_mut(&mut object.mesh);
+            mesh.colors = vec![[0.5, 1.0, 0.25, 1.0]; mesh.positions.len()];
+        }
+        Effect::Sun => {
+            all.lights = vec![Light {
                 source: Source::Toward(Vec3::Z),
                 ..light(Vec3::ZERO, [1.0; 3])
-            });
+            }];
         }
-        Some(Effect::Monochrome) => {
+        Effect::Monochrome => {
             material.color = [0.6; 3];
+            all.objects[1].materials[0].color = [0.3; 3];
             all.background = [0.1; 3];
         }
-        _ => {}
+        map => *map_of(&mut material.maps, map) = even([200, 150, 220, 255]),
     }
-    if material.lighting != Lighting::Unlit && effect != Some(Effect::Sun) {
-        all.lights.push(light(Vec3::new(1.0, 1.0, 0.0), [1.0; 3]));
+}
+
+/// A scene with one effect, beside a plain surface.
+fn scene_with(effect: Option<Effect>) -> Scene {
+    let wall = |z, color, alpha| wall(z, Material::unlit(color, alpha));
+    let objects = vec![
+        wall(3.0, [0.9, 0.4, 0.2], 0.6),
+        wall(5.0, [0.1, 0.9, 0.4], 0.5),
+    ];
+    let mut all = scene("effects", [0.1, 0.2, 0.3], objects);
+    for effect in [effect.and_then(needs), effect].into_iter().flatten() {
+        add(effect, &mut all);
     }
-    let mut first = wall(3.0, material);
-    if effect == Some(Effect::VertexColors) {
-        let mesh = Arc::make_mut(&mut first.mesh);
-        mesh.colors = vec![[0.5, 1.0, 0.25, 1.0]; mesh.positions.len()];
-    }
-    all.objects.push(first);
-    let second = if effect == Some(Effect::Monochrome) {
-        [0.3; 3]
-    } else {
-        [0.1, 0.9, 0.4]
-    };
-    all.objects.push(wall(5.0, Material::unlit(second, 0.5)));
     all
 }
 
@@ -98,15 +105,8 @@ fn what_is_not_called_for_is_not_there() {
         assert!(census.variants.len() <= 2, "{effect}");
         let renderer = Renderer::new(&gpu, &with).unwrap();
         let (bindings, attributes) = (renderer.bindings(), renderer.vertex_attributes());
-        let lit = matches!(
-            effect,
-            Effect::Lighting
-                | Effect::Pbr
-                | Effect::NormalMap
-                | Effect::OcclusionMap
-                | Effect::MetallicRoughnessMap
-                | Effect::Sun
-        );
+        let light = needs(effect).unwrap_or(effect);
+        let lit = matches!(light, Effect::Lighting | Effect::Pbr);
         assert_eq!(bindings.contains(&"lights"), lit, "{effect}");
         assert_eq!(attributes.contains(&"normal"), lit, "{effect}");
         let mapped = Effect::MAPS.contains(&effect);
@@ -146,11 +146,8 @@ fn what_is_not_called_for_is_not_there() {
         let text_of = |scene: &Scene| -> String {
             let variants = Census::of(scene).variants.into_iter();
             let texts = variants.map(|v| {
-                let shader = if v.cutout {
-                    "scene::opaque"
-                } else {
-                    "methods::blended::gather"
-                };
+                let shaders = ["methods::blended::gather", "scene::opaque"];
+                let shader = shaders[usize::from(v.cutout)];
                 peelnet_shaders::link(shader, &v.features(), &[]).unwrap()
             });
             texts.collect()
@@ -165,19 +162,13 @@ fn what_is_not_called_for_is_not_there() {
 
 /// A scene, and the same with an effect that changes nothing.
 fn neutral(effect: Effect) -> [Scene; 2] {
-    let mut plain = scene_with(None);
+    let mut plain = scene_with(needs(effect));
     let opaque = Material {
         blend: false,
         ..Material::unlit([0.1, 0.9, 0.4], 1.0)
     };
     match effect {
         Effect::Cutout => plain.objects[1] = wall(5.0, opaque),
-        // Lit: the effect concerns light.
-        Effect::NormalMap | Effect::OcclusionMap | Effect::Sun => {
-            plain = scene_with(Some(Effect::Lighting));
-        }
-        Effect::MetallicRoughnessMap => plain = scene_with(Some(Effect::Pbr)),
-        Effect::EmissiveMap => plain = scene_with(Some(Effect::Emission)),
         Effect::Monochrome => plain = scene_with(Some(effect)).without(effect),
         _ => {}
     }
@@ -233,18 +224,8 @@ fn neutral_values_change_nothing() {
         let on = |scene: &Scene| Census::of(scene).has(effect);
         assert!(on(&with) && !on(&plain), "{effect}");
         for method in ["abuffer", "wboit-eq9", "mboit4", "dual-peel"] {
-            let [a, b] = [
-                draw(&gpu, &plain, method, size),
-                draw(&gpu, &with, method, size),
-            ];
-            for (a, b) in a.pixels.iter().zip(&b.pixels) {
-                for k in 0..3 {
-                    assert!(
-                        (a[k] - b[k]).abs() <= 1.0 / 255.0,
-                        "{effect}, {method}: {a:?} {b:?}"
-                    );
-                }
-            }
+            let [a, b] = [&plain, &with].map(|scene| draw(&gpu, scene, method, size).pixels);
+            assert_alike(&a, &b, 1.0 / 255.0, format!("{effect}, {method}"));
         }
         // What is lit cannot be drawn by its colour instead.
         if !matches!(effect, Effect::Lighting | Effect::Pbr) {

@@ -13,8 +13,8 @@ use peelnet_core::random::Random;
 use peelnet_export::{Blend, Description, Drawn, Language, Options, SelfTest, Target};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
-use peelnet_tests::{gpu, run_text, shipped};
-use std::{fmt::Write as _, fs, path::Path};
+use peelnet_tests::{assert_near, gpu, run_text, shipped};
+use std::{fs, path::Path};
 
 /// What engines are given is what the renderer draws with. `PEELNET_UPDATE=1` writes the texts anew.
 #[test]
@@ -44,56 +44,36 @@ fn committed_texts_are_what_is_exported_today() {
 /// The GPU computes in 32 bits what the self-test computed in 64: logarithms, exponentials and sums of four.
 const SOME_ROUNDINGS: f32 = 1e-4;
 
-fn channels(target: &Target) -> usize {
+/// The channels of a target, and their type.
+fn channels(target: &Target) -> (usize, &'static str) {
     match target.format.split(|c: char| c.is_ascii_digit()).next() {
-        Some("r") => 1,
-        Some("rg") => 2,
-        _ => 4,
-    }
-}
-
-fn kind(channels: usize) -> String {
-    if channels == 1 {
-        "f32".into()
-    } else {
-        format!("vec{channels}f")
+        Some("r") => (1, "f32"),
+        Some("rg") => (2, "vec2f"),
+        _ => (4, "vec4f"),
     }
 }
 
 /// A target before anything is drawn.
 fn declared(target: &Target) -> String {
-    let n = channels(target);
+    let (n, kind) = channels(target);
     let clear = target.clear[..n].iter().map(|c| format!("f32({c})"));
     let clear: Vec<String> = clear.collect();
-    format!(
-        "    var {} = {}({});\n",
-        target.name,
-        kind(n),
-        clear.join(", ")
-    )
+    format!("    var {} = {kind}({});\n", target.name, clear.join(", "))
 }
 
 /// A target after one more fragment.
 fn blended(target: &Target) -> String {
-    let (name, n) = (target.name, channels(target));
-    let channel = |k: usize| match n {
-        1 => String::new(),
-        _ => format!(".{}", ["x", "y", "z", "w"][k]),
-    };
+    let (name, (n, _)) = (target.name, channels(target));
     let mut text = format!("        let written_{name} = {};\n", target.write);
-    for k in 0..n {
-        let (dst, src) = (
-            format!("{name}{}", channel(k)),
-            format!("written_{name}{}", channel(k)),
-        );
-        let blend = if k == 3 { target.alpha } else { target.color };
-        let value = match blend {
+    for (k, channel) in [".x", ".y", ".z", ".w"].iter().take(n).enumerate() {
+        let channel = if n == 1 { "" } else { channel };
+        let [dst, src] = ["", "written_"].map(|of| format!("{of}{name}{channel}"));
+        let value = match if k == 3 { target.alpha } else { target.color } {
             Blend::Add => format!("{dst} + {src}"),
             Blend::Max => format!("max({dst}, {src})"),
             Blend::Transmit => format!("{dst} * (1.0 - {src})"),
         };
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "        {dst} = {value};");
+        text += &format!("        {dst} = {value};\n");
     }
     text
 }
@@ -117,25 +97,20 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
         };
         let text = peelnet_export::wgsl(&model).unwrap();
         let description = Description::of(recipe);
-        let zeta = if text.contains("fn peelnet_zeta(") {
-            format!(
-                "let zeta = peelnet_zeta(z, f32({}), f32({}));",
-                pixel.near, pixel.far
-            )
-        } else {
-            String::new()
-        };
+        let (near, far) = (pixel.near, pixel.far);
+        let zeta = format!("let zeta = peelnet_zeta(z, f32({near}), f32({far}));");
+        let has_zeta = text.contains("fn peelnet_zeta(");
+        let zeta = if has_zeta { &zeta } else { "" };
         let mut body = String::new();
         for pass in description.passes {
             body.extend(pass.targets.iter().map(declared));
             // Any order will do: here the farthest comes first.
             for f in pixel.fragments.iter().rev() {
-                let compute = pass
-                    .compute
-                    .map_or_else(String::new, |value| value.to_string());
+                let compute = pass.compute.map(|value| value.to_string());
+                let compute = compute.unwrap_or_default();
                 let blended: String = pass.targets.iter().map(blended).collect();
-                let begin = fragment(f, &zeta);
-                let _ = writeln!(body, "    {{\n{begin}        {compute}\n{blended}    }}");
+                let begin = fragment(f, zeta);
+                body += &format!("    {{\n{begin}        {compute}\n{blended}    }}\n");
             }
         }
         let [r, g, b] = pixel.background.map(|c| format!("f32({c})"));
@@ -153,19 +128,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
 }}"
         );
         let found: Vec<[f32; 4]> = run_text(&gpu, &program, &[[0.0; 4]], 1);
-        for (found, want) in found[0].iter().zip(&pixel.color) {
-            assert!(
-                (found - want).abs() < SOME_ROUNDINGS,
-                "{recipe}: {found} for {want}"
-            );
-        }
+        assert_near(found[0], pixel.color, SOME_ROUNDINGS, recipe);
         drawn += 1;
     }
-    assert_eq!(
-        drawn,
-        Recipe::ALL.len() - 1,
-        "all but the one that predicts colours"
-    );
+    // All but the one that predicts colours.
+    assert_eq!(drawn, Recipe::ALL.len() - 1);
 }
 
 fn of(language: Language) -> Options {
@@ -241,11 +208,9 @@ fn glsl_texts_answer_what_the_network_answers() {
             let want: Vec<f32> = rows.iter().flat_map(|r| model.shader_output(r)).collect();
             assert_eq!(found.len(), want.len());
             for (found, want) in found.iter().zip(&want) {
+                let error = (found - want).abs();
                 let bound = SAME_TEXT * want.abs().max(1.0) * 4.0;
-                assert!(
-                    (found - want).abs() <= bound,
-                    "{recipe}, {language}: {found} for {want}"
-                );
+                assert!(error <= bound, "{recipe}, {language}: {found} for {want}");
             }
         }
     }

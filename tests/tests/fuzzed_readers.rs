@@ -83,12 +83,9 @@ fn search(name: &str) {
         let bytes = mutate(&seeds[random.below(seeds.len())], &mut random);
         let start = Instant::now();
         let read = std::panic::catch_unwind(|| (reader.read)(&bytes));
-        let took = start.elapsed();
-        assert!(
-            read.is_ok() && took < LONGEST,
-            "{name} {k}: {took:?} for {:?}",
-            String::from_utf8_lossy(&bytes)
-        );
+        let (took, text) = (start.elapsed(), String::from_utf8_lossy(&bytes));
+        let is_sound = read.is_ok() && took < LONGEST;
+        assert!(is_sound, "{name} {k}: {took:?} for {text:?}");
     }
     if let Some(most) = peak_memory() {
         assert!(most < 1 << 30, "{most} bytes for files of kilobytes");

@@ -3,15 +3,21 @@
 //! `<!-- table of FILE | column; … | row; … -->` and `<!-- end of table -->` enclose columns of FILE's first table, in the order given,
 //! and of its rows those whose first cell is listed, or all where the third part is absent. `PEELNET_UPDATE=1` writes them again.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 const PAGES: [&str; 2] = ["README.md", "docs/benchmarks.md"];
 const BEGIN: &str = "<!-- table of ";
 const END: &str = "<!-- end of table -->";
 
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+}
+
 fn read(name: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    fs::read_to_string(root.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    fs::read_to_string(path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 fn cells(line: &str) -> Vec<&str> {
@@ -76,16 +82,10 @@ fn tables_of_pages_are_those_of_the_results() {
         let (want, tables) = regenerate(&page);
         assert!(tables > 0, "{name} has no table");
         if std::env::var_os("PEELNET_UPDATE").is_some() {
-            fs::write(
-                Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name),
-                want,
-            )
-            .unwrap();
+            fs::write(path(name), want).unwrap();
         } else {
-            assert!(
-                page == want,
-                "{name}: PEELNET_UPDATE=1 writes its tables again"
-            );
+            let hint = "PEELNET_UPDATE=1 writes its tables again";
+            assert!(page == want, "{name}: {hint}");
         }
     }
 }

@@ -1,10 +1,10 @@
 //! A GPU whose memory is full, and one that goes away.
 
 use peelnet_core::fragment::Fragment;
-use peelnet_gpu::GpuError;
+use peelnet_gpu::{Gpu, GpuError};
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{MethodOptions, MethodSpec, PixelSample, RenderError, Renderer};
-use peelnet_tests::{gpu, prepare, walls};
+use peelnet_tests::{frame, gpu, prepare, walls};
 
 fn stack() -> Vec<Fragment> {
     (0..20)
@@ -18,12 +18,7 @@ fn full_memory_makes_smaller_tiles() {
     let mut gpu = gpu();
     let size = [64, 48];
     let scene = walls(&stack(), [0.1, 0.2, 0.3]);
-    let method: MethodSpec = "abuffer".parse().unwrap();
-    let draw = |gpu: &peelnet_gpu::Gpu| {
-        let renderer = Renderer::new(gpu, &scene).unwrap();
-        let mut prepared = prepare(&renderer, &method, size);
-        renderer.image(&mut prepared, &scene.views[0]).unwrap()
-    };
+    let draw = |gpu: &Gpu| frame(gpu, &scene, "abuffer", MethodOptions::sized(size));
     let whole = draw(&gpu);
     assert!(whole.stats.tiles == 1 && !gpu.memory_was_full());
     // 64 x 48 pixels of 20 colours of 16 bytes are 983,040 bytes; targets of 16 bytes a pixel fit.
@@ -41,10 +36,9 @@ fn full_memory_makes_smaller_tiles() {
         fragments += tile.depths.len();
         Ok(())
     };
-    let all = PixelSample::ALL;
-    let found = harvester
-        .harvest(&scene.views[0], all, None, RawTile::default, &mut take)
-        .unwrap();
+    let (view, all) = (&scene.views[0], PixelSample::ALL);
+    let found = harvester.harvest(view, all, None, RawTile::default, &mut take);
+    let found = found.unwrap();
     assert_eq!((fragments, found.tiles), (64 * 48 * 20, 16));
 }
 
@@ -56,18 +50,13 @@ fn what_cannot_be_made_smaller_is_an_error() {
     let method: MethodSpec = "abuffer".parse().unwrap();
     gpu.pretend_memory(10_000);
     let renderer = Renderer::new(&gpu, &scene).unwrap();
-    let error = renderer
-        .method(&method, MethodOptions::sized([64, 48]))
-        .unwrap_err();
+    let refused = renderer.method(&method, MethodOptions::sized([64, 48]));
+    let error = refused.unwrap_err();
     let text = error.to_string();
-    assert!(
-        matches!(error, RenderError::Gpu(GpuError::OutOfMemory { .. })),
-        "{text}"
-    );
-    assert!(
-        text.contains("49152 bytes") && text.contains("smaller frame"),
-        "{text}"
-    );
+    let is_memory = matches!(error, RenderError::Gpu(GpuError::OutOfMemory { .. }));
+    assert!(is_memory, "{text}");
+    let says = text.contains("49152 bytes") && text.contains("smaller frame");
+    assert!(says, "{text}");
     // Fragments of one pixel of colour take 320 bytes.
     gpu.pretend_memory(300);
     let renderer = Renderer::new(&gpu, &scene).unwrap();
@@ -80,26 +69,16 @@ fn what_cannot_be_made_smaller_is_an_error() {
 #[test]
 fn a_lost_device_is_one_clear_error() {
     let scene = walls(&stack(), [0.0; 3]);
-    for name in [
-        "abuffer",
-        "linked-list",
-        "dual-peel",
-        "wboit-eq9",
-        "mboit4",
-        "kbuffer-4",
-        "stochastic-4",
-    ] {
+    let all = "abuffer linked-list dual-peel wboit-eq9 mboit4 kbuffer-4 stochastic-4";
+    for name in all.split(' ') {
         let gpu = gpu();
-        let method: MethodSpec = name.parse().unwrap();
         let renderer = Renderer::new(&gpu, &scene).unwrap();
-        let mut prepared = prepare(&renderer, &method, [16, 12]);
+        let mut prepared = prepare(&renderer, name, [16, 12]);
         renderer.image(&mut prepared, &scene.views[0]).unwrap();
         gpu.device.destroy();
         let error = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
-        assert!(
-            matches!(error, RenderError::Gpu(GpuError::Lost(_))),
-            "{name}: {error}"
-        );
+        let is_lost = matches!(error, RenderError::Gpu(GpuError::Lost(_)));
+        assert!(is_lost, "{name}: {error}");
         assert!(error.to_string().contains("run again"), "{error}");
     }
 }

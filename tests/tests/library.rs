@@ -4,12 +4,22 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 use peelnet_core::fragment::{Fragment, worked_example};
-use peelnet_gpu::{Gpu, wgpu};
+use peelnet_gpu::{Gpu, GpuError, wgpu};
 use peelnet_render::{
-    FrameStatus, METHODS, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
+    FrameStatus, Image, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
 };
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source};
-use peelnet_tests::{gpu, network_of, prepare, scene, wall, walls};
+use peelnet_tests::{
+    assert_alike, assert_all, gpu, light, object, prepare, representatives, scene, wall, walls,
+    window_depth,
+};
+
+/// Submits a pass that draws nothing.
+fn submit_pass(gpu: &Gpu, pass: &wgpu::RenderPassDescriptor<'_>) {
+    let mut encoder = gpu.encoder();
+    drop(encoder.begin_render_pass(pass));
+    gpu.queue.submit([encoder.finish()]);
+}
 
 /// A texture to draw onto, cleared to a colour.
 fn target(
@@ -17,15 +27,12 @@ fn target(
     format: wgpu::TextureFormat,
     size: [u32; 2],
     samples: u32,
-    color: [f64; 3],
+    color: [f32; 3],
 ) -> wgpu::TextureView {
     let none = wgpu::TextureUsages::empty();
-    let view = gpu
-        .texture("target", format, size, samples, none)
-        .expect("a small texture");
-    let [r, g, b] = color;
-    let mut encoder = gpu.encoder();
-    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+    let view = gpu.texture("target", format, size, samples, none).unwrap();
+    let [r, g, b] = color.map(f64::from);
+    let pass = wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: &view,
             depth_slice: None,
@@ -36,38 +43,30 @@ fn target(
             },
         })],
         ..Default::default()
-    }));
-    gpu.queue.submit([encoder.finish()]);
+    };
+    submit_pass(gpu, &pass);
     view
 }
 
+const FULL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
 /// A depth buffer, cleared to the window depth of a linear depth.
-fn depth_buffer(
-    gpu: &Gpu,
-    size: [u32; 2],
-    samples: u32,
-    camera: &Camera,
-    z: f32,
-) -> wgpu::TextureView {
+fn depth_buffer(gpu: &Gpu, size: [u32; 2], samples: u32, z: f32) -> wgpu::TextureView {
     let none = wgpu::TextureUsages::empty();
     let format = wgpu::TextureFormat::Depth32Float;
-    let view = gpu
-        .texture("depth", format, size, samples, none)
-        .expect("a small texture");
-    let (near, far) = (camera.near, camera.far);
-    let mut encoder = gpu.encoder();
-    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+    let view = gpu.texture("depth", format, size, samples, none).unwrap();
+    let pass = wgpu::RenderPassDescriptor {
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &view,
             depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(far / (far - near) * (1.0 - near / z)),
+                load: wgpu::LoadOp::Clear(window_depth(z)),
                 store: wgpu::StoreOp::Store,
             }),
             stencil_ops: None,
         }),
         ..Default::default()
-    }));
-    gpu.queue.submit([encoder.finish()]);
+    };
+    submit_pass(gpu, &pass);
     view
 }
 
@@ -80,43 +79,43 @@ fn draw(
 ) -> FrameStatus {
     let gpu = renderer.gpu();
     let mut encoder = gpu.encoder();
-    let status = renderer
-        .draw(&mut encoder, method, camera, target)
-        .expect("draws");
+    let status = renderer.draw(&mut encoder, method, camera, target).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    gpu.wait().expect("no error");
+    gpu.wait().unwrap();
     status
+}
+
+/// What a frame draws over a target of 32 bits that holds a colour.
+fn drawn_over(
+    renderer: &Renderer,
+    method: &mut Prepared,
+    size: [u32; 2],
+    behind: [f32; 3],
+) -> (FrameStatus, Vec<[f32; 4]>) {
+    let (gpu, camera) = (renderer.gpu(), &renderer.scene().views[0]);
+    let view = target(gpu, FULL, size, 1, behind);
+    let status = draw(renderer, method, camera, &Target::over(&view));
+    (status, gpu.read_rgba32f(&view).unwrap())
+}
+
+/// The image of the first view.
+fn image(renderer: &Renderer, method: &mut Prepared) -> Image {
+    let frame = renderer.image(method, &renderer.scene().views[0]);
+    frame.unwrap().image
 }
 
 /// Every method ready for a scene, the learned ones with their shipped networks.
 fn methods(renderer: &Renderer, size: [u32; 2]) -> Vec<(MethodSpec, Prepared)> {
-    let all = METHODS.iter().filter(|m| m.cpu_only.is_none());
-    let all = all.map(MethodSpec::representative);
-    all.map(|spec| {
-        let network = network_of(&spec).map(|(text, _)| text);
-        let options = MethodOptions::sized(size).with(network.as_ref());
-        let method = renderer.method(&spec, options);
-        let method = method.unwrap_or_else(|e| panic!("{spec}: {e}"));
-        (spec, method)
-    })
-    .collect()
+    let all = representatives().into_iter();
+    let ready = all.map(|spec| {
+        let prepared = prepare(renderer, &spec, size);
+        (spec, prepared)
+    });
+    ready.collect()
 }
 
 /// Blending onto a 32-bit target adds the rounding of a product and a sum to what the image has: 2^-23 of values up to 2.
 const BLENDED: f32 = 4.0 * f32::EPSILON;
-
-fn assert_close(what: &str, found: &[[f32; 4]], expected: &[[f32; 4]], tolerance: f32) {
-    assert_eq!(found.len(), expected.len(), "{what}");
-    for (pixel, (a, b)) in found.iter().zip(expected).enumerate() {
-        for k in 0..3 {
-            let apart = (a[k] - b[k]).abs();
-            assert!(
-                apart <= tolerance,
-                "{what}: pixel {pixel}: {a:?}, not {b:?}"
-            );
-        }
-    }
-}
 
 /// What every method draws over the colour that a target holds is what it draws over a background of that colour, in two frames at
 /// most; opaque objects of the scene hide what lies behind them there as well.
@@ -133,41 +132,30 @@ fn every_method_draws_over_what_a_target_holds() {
     let corner = objects.len() - 1;
     objects[corner].world_from_object = Mat4::from_translation(Vec3::new(6.0, 6.0, 0.0));
     let scene = scene("over", behind, objects);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
     let camera = scene.views[0];
     for (spec, mut method) in methods(&renderer, size) {
-        let image = if spec.promises().straight {
+        let straight = spec.promises().straight;
+        let image = if straight {
             // The target below has 32 bits.
-            let full = format!("{spec}:targets=f32").parse().expect("a name");
-            let full = renderer.method(&full, MethodOptions::sized(size));
-            let mut full = full.expect("made ready");
-            renderer.image(&mut full, &camera).expect("draws").image
+            let full = format!("{spec}:targets=f32");
+            image(&renderer, &mut prepare(&renderer, full, size))
         } else {
-            renderer.image(&mut method, &camera).expect("draws").image
+            image(&renderer, &mut method)
         };
-        let format = wgpu::TextureFormat::Rgba32Float;
-        let mut last = FrameStatus::Unknown;
-        let mut found = Vec::new();
-        for frame in 0..3 {
-            let view = target(&gpu, format, size, 1, behind.map(f64::from));
-            last = draw(&renderer, &mut method, &camera, &Target::over(&view));
-            found = gpu.read_rgba32f(&view).expect("reads");
-            // The second frame has the room that the first one needed.
-            if frame == 1 {
-                assert_close(&format!("{spec}"), &found, &image.pixels, BLENDED);
-            }
+        let frames = [(); 3].map(|()| drawn_over(&renderer, &mut method, size, behind));
+        assert_eq!(frames[2].0, FrameStatus::Whole, "{spec}");
+        // The second frame has the room that the first one needed.
+        for (_, found) in &frames[1..] {
+            assert_alike(found, &image.pixels, BLENDED, &spec);
         }
-        assert_eq!(last, FrameStatus::Whole, "{spec}");
-        assert_close(&format!("{spec} again"), &found, &image.pixels, BLENDED);
-        assert!(
-            found.iter().all(|p| (p[3] - 1.0).abs() <= BLENDED),
-            "{spec}"
-        );
+        let covers = |p: &[f32; 4]| (p[3] - 1.0).abs() <= BLENDED;
+        assert!(frames[2].1.iter().all(covers), "{spec}");
         // With the scene's own background the same.
-        let view = target(&gpu, format, size, 1, [0.0; 3]);
+        let view = target(&gpu, FULL, size, 1, [0.0; 3]);
         draw(&renderer, &mut method, &camera, &Target::cleared(&view));
-        let found = gpu.read_rgba32f(&view).expect("reads");
-        assert_close(&format!("{spec} cleared"), &found, &image.pixels, BLENDED);
+        let found = gpu.read_rgba32f(&view).unwrap();
+        assert_alike(&found, &image.pixels, BLENDED, format!("{spec} cleared"));
     }
 }
 
@@ -178,42 +166,28 @@ fn all_that_is_touched_is_resolved() {
     let gpu = gpu();
     let size = [24, 16];
     let behind = [0.1, 0.2, 0.9];
-    let format = wgpu::TextureFormat::Rgba32Float;
-    let triangle = |points: [Vec3; 3]| {
-        let material = Material::unlit([0.9, 0.5, 0.1], 0.5);
-        Object::of_triangles("small", &[points], material)
-    };
+    let triangle = |points| object(&[points], Material::unlit([0.9, 0.5, 0.1], 0.5));
     let mut cases: Vec<Vec<Object>> = vec![Vec::new()];
     for i in 0..7 {
         for j in 0..5 {
             let middle = Vec3::new(2.0 * i as f32 - 6.0, 2.0 * j as f32 - 4.0, -4.0);
             let corners = [[-0.9, -0.6], [1.2, 0.0], [-0.3, 0.9]];
-            cases.push(vec![triangle(
-                corners.map(|[x, y]| middle + Vec3::new(x, y, 0.2 * x)),
-            )]);
+            let corners = corners.map(|[x, y]| middle + Vec3::new(x, y, 0.2 * x));
+            cases.push(vec![triangle(corners)]);
         }
     }
-    let near = Vec3::new(0.4, 0.1, 3.0);
-    cases.push(vec![triangle([
-        near,
-        Vec3::new(0.5, 0.3, -3.0),
-        Vec3::new(0.9, -0.4, -3.0),
-    ])]);
+    let behind_the_eye = [[0.4, 0.1, 3.0], [0.5, 0.3, -3.0], [0.9, -0.4, -3.0]];
+    cases.push(vec![triangle(behind_the_eye.map(Vec3::from))]);
     let mut seen = 0;
     for (number, objects) in cases.into_iter().enumerate() {
         let scene = scene("touched", behind, objects);
-        let camera = scene.views[0];
-        let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
         for name in ["wboit-eq9:targets=f32", "dual-peel", "linked-list"] {
             let mut method = prepare(&renderer, name, size);
-            let image = renderer.image(&mut method, &camera).expect("draws").image;
-            let mut found = Vec::new();
-            for _ in 0..2 {
-                let view = target(&gpu, format, size, 1, behind.map(f64::from));
-                draw(&renderer, &mut method, &camera, &Target::over(&view));
-                found = gpu.read_rgba32f(&view).expect("reads");
-            }
-            assert_close(&format!("{name} {number}"), &found, &image.pixels, BLENDED);
+            let image = image(&renderer, &mut method);
+            let frames = [(); 2].map(|()| drawn_over(&renderer, &mut method, size, behind));
+            let what = format!("{name} {number}");
+            assert_alike(&frames[1].1, &image.pixels, BLENDED, what);
             seen += usize::from(image.pixels.iter().any(|p| p[0] > 0.2));
         }
     }
@@ -227,12 +201,9 @@ fn formats_keep_the_picture() {
     let size = [4, 3];
     let behind = [0.25, 0.5, 0.75];
     let scene = walls(&worked_example(), behind);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
     let mut method = prepare(&renderer, "abuffer", size);
-    let image = renderer
-        .image(&mut method, &scene.views[0])
-        .expect("draws")
-        .image;
+    let image = image(&renderer, &mut method);
     use wgpu::TextureFormat as F;
     for (format, is_srgb, red) in [
         (F::Rgba8Unorm, false, 0),
@@ -240,12 +211,12 @@ fn formats_keep_the_picture() {
         (F::Rgba8UnormSrgb, true, 0),
         (F::Bgra8UnormSrgb, true, 2),
     ] {
-        let view = target(&gpu, format, size, 1, behind.map(f64::from));
+        let view = target(&gpu, format, size, 1, behind);
         for _ in 0..2 {
             let cleared = Target::cleared(&view);
             draw(&renderer, &mut method, &scene.views[0], &cleared);
         }
-        let bytes: Vec<[u8; 4]> = gpu.read_texture(&view).expect("reads");
+        let bytes: Vec<[u8; 4]> = gpu.read_texture(&view).unwrap();
         for (found, exact) in bytes.iter().zip(&image.pixels) {
             for k in 0..3 {
                 let at = if k == 1 { 1 } else { red ^ k };
@@ -270,25 +241,13 @@ fn frames_that_were_too_small_grow() {
         .map(|i| Fragment::new(1.0 + 0.1 * i as f32, 0.1, [0.9, 0.1 * (i % 9) as f32, 0.3]))
         .collect();
     let scene = walls(&layers, [0.2; 3]);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
-    let camera = scene.views[0];
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
     // With a budget, a frame of many tiles.
-    for name in [
-        "abuffer",
-        "abuffer:budget=100",
-        "linked-list",
-        "depth-peel",
-        "dual-peel",
-    ] {
+    let all = "abuffer abuffer:budget=100 linked-list depth-peel dual-peel";
+    for name in all.split(' ') {
         let mut method = prepare(&renderer, name, size);
-        let exact = renderer.image(&mut method, &camera).expect("draws").image;
-        let format = wgpu::TextureFormat::Rgba32Float;
-        let mut frames = Vec::new();
-        for _ in 0..3 {
-            let view = target(&gpu, format, size, 1, [0.2; 3]);
-            let status = draw(&renderer, &mut method, &camera, &Target::over(&view));
-            frames.push((status, gpu.read_rgba32f(&view).expect("reads")));
-        }
+        let exact = image(&renderer, &mut method);
+        let frames = [(); 3].map(|()| drawn_over(&renderer, &mut method, size, [0.2; 3]));
         let statuses = [0, 1, 2].map(|i: usize| frames[i].0);
         use FrameStatus::{Grown, Unknown, Whole};
         assert_eq!(statuses, [Unknown, Grown, Whole], "{name}");
@@ -296,7 +255,7 @@ fn frames_that_were_too_small_grow() {
         let differs = differs.filter(|(a, b)| (a[0] - b[0]).abs() > 0.01).count();
         assert!(differs > 0, "{name}: the first frame had room for all");
         for (_, pixels) in &frames[1..] {
-            assert_close(name, pixels, &exact.pixels, 8.0 * BLENDED);
+            assert_alike(pixels, &exact.pixels, 8.0 * BLENDED, name);
         }
     }
 }
@@ -307,25 +266,23 @@ fn a_callers_depth_hides() {
     let gpu = gpu();
     let fragments = worked_example();
     let scene = walls(&fragments, [0.1, 0.2, 0.9]);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
     let camera = scene.views[0];
-    let near: Vec<_> = fragments
-        .iter()
-        .copied()
-        .filter(|f| f.depth < 3.0)
-        .collect();
-    let alone = Renderer::new(&gpu, &walls(&near, [0.1, 0.2, 0.9])).expect("uploads");
+    let near = fragments.iter().copied().filter(|f| f.depth < 3.0);
+    let near = walls(&near.collect::<Vec<_>>(), [0.1, 0.2, 0.9]);
     let size = [4, 4];
     for samples in [1, 4] {
         for name in ["wboit-eq9", "abuffer"] {
-            let spec: MethodSpec = name.parse().expect("a name");
-            let options = MethodOptions::sized(size);
-            let mut method = renderer.method(&spec, options.clone()).expect("a method");
-            let mut reference = alone.method(&spec, options).expect("a method");
-            let exact = alone.image(&mut reference, &camera).expect("draws").image;
-            let format = wgpu::TextureFormat::Rgba16Float;
-            let color = target(&gpu, format, size, samples, [0.0; 3]);
-            let depth = depth_buffer(&gpu, size, samples, &camera, 3.0);
+            let mut method = prepare(&renderer, name, size);
+            let exact = peelnet_tests::draw(&gpu, &near, name, size);
+            let color = target(
+                &gpu,
+                wgpu::TextureFormat::Rgba16Float,
+                size,
+                samples,
+                [0.0; 3],
+            );
+            let depth = depth_buffer(&gpu, size, samples, 3.0);
             for _ in 0..2 {
                 let target = Target {
                     color: &color,
@@ -336,7 +293,7 @@ fn a_callers_depth_hides() {
             }
             let found = resolved(&gpu, &color);
             // Half floats of values up to 1: 2^-11 for the background and as much for the blend.
-            assert_close(&format!("{name} x{samples}"), &found, &exact.pixels, 1e-3);
+            assert_alike(&found, &exact.pixels, 1e-3, format!("{name} x{samples}"));
         }
     }
 }
@@ -346,32 +303,26 @@ fn resolved(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
     let texture = view.texture();
     let size = [texture.width(), texture.height()];
     let single = target(gpu, texture.format(), size, 1, [0.0; 3]);
-    if texture.sample_count() == 1 {
-        return half_floats(gpu, view);
+    let is_single = texture.sample_count() == 1;
+    if !is_single {
+        let pass = wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: Some(&single),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Load,
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        };
+        submit_pass(gpu, &pass);
     }
-    let mut encoder = gpu.encoder();
-    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: Some(&single),
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Load,
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        ..Default::default()
-    }));
-    gpu.queue.submit([encoder.finish()]);
-    half_floats(gpu, &single)
-}
-
-fn half_floats(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
-    let texels: Vec<[u16; 4]> = gpu.read_texture(view).expect("reads");
-    let values = texels.into_iter();
-    values
-        .map(|p| p.map(|bits| half::f16::from_bits(bits).to_f32()))
-        .collect()
+    let texels = gpu.read_texture::<[u16; 4]>(if is_single { view } else { &single });
+    let float = |bits| half::f16::from_bits(bits).to_f32();
+    let texels = texels.unwrap().into_iter();
+    texels.map(|p| p.map(float)).collect()
 }
 
 /// A scene of two objects with one light, one of them lit.
@@ -380,11 +331,7 @@ fn lit_scene() -> Scene {
     for material in &mut all.objects[1].materials {
         material.lighting = Lighting::Phong;
     }
-    all.lights = vec![Light {
-        source: Source::Point(Vec3::new(1.0, 2.0, 1.0)),
-        color: [1.0, 0.9, 0.8],
-        intensity: 2.0,
-    }];
+    all.lights = vec![light(Vec3::new(1.0, 2.0, 1.0), [1.0, 0.9, 0.8])];
     // Two triangles that share two of their vertices.
     let mut object = all.objects[0].clone();
     let mesh = Arc::make_mut(&mut object.mesh);
@@ -403,58 +350,53 @@ fn lit_scene() -> Scene {
 fn scenes_change_in_place() {
     let gpu = gpu();
     let scene = lit_scene();
-    let mut renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let mut renderer = Renderer::new(&gpu, &scene).unwrap();
     let specs = ["mboit4", "abuffer", "painter-triangle", "blended"];
-    let mut prepared: Vec<Prepared> = specs.map(|name| prepare(&renderer, name, [9, 6])).into();
+    let mut prepared = specs.map(|name| prepare(&renderer, name, [9, 6]));
     let mut check = |renderer: &Renderer, what: &str| {
-        let fresh = Renderer::new(&gpu, renderer.scene()).expect("uploads");
+        let fresh = Renderer::new(&gpu, renderer.scene()).unwrap();
         for (name, method) in specs.iter().zip(&mut prepared) {
-            let camera = scene.views[0];
-            let found = renderer.image(method, &camera).expect("draws").image;
-            let mut other = prepare(&fresh, name, [9, 6]);
-            let expected = fresh.image(&mut other, &camera).expect("draws").image;
-            assert_eq!(found.pixels, expected.pixels, "{name}, {what}");
+            let expected = image(&fresh, &mut prepare(&fresh, name, [9, 6]));
+            assert_eq!(image(renderer, method), expected, "{name}, {what}");
         }
     };
     check(&renderer, "as uploaded");
     let compiled = gpu.compiled_pipelines();
     // Values: nothing is compiled.
     let moved = Mat4::from_rotation_y(0.3) * Mat4::from_translation(Vec3::new(0.4, -0.2, -1.0));
-    renderer.set_transform(1, moved).expect("moves");
-    check(&renderer, "an object moved");
     let mirrored = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
-    renderer.set_transform(0, mirrored).expect("moves");
-    check(&renderer, "an object mirrored");
-    let last = scene.objects.len() - 1;
-    renderer.set_transform(last, mirrored).expect("moves");
-    check(&renderer, "an object of shared vertices mirrored");
+    // The last object has vertices that triangles share.
+    for (object, to) in [(1, moved), (0, mirrored), (4, mirrored)] {
+        renderer.set_transform(object, to).unwrap();
+        check(&renderer, &format!("object {object} moved"));
+    }
     let mut material = renderer.scene().objects[2].materials[0].clone();
     (material.color, material.alpha) = ([0.7, 0.1, 0.4], 0.35);
-    renderer.set_material(2, 0, material.clone()).expect("set");
+    renderer.set_material(2, 0, material.clone()).unwrap();
     check(&renderer, "another colour");
-    let mut lights = scene.lights.clone();
+    let mut lights = vec![scene.lights[0]; 2];
     lights[0].intensity = 0.5;
-    lights.push(lights[0]);
-    lights[1].color = [0.0, 1.0, 0.0];
-    renderer.set_lights(lights).expect("set");
+    (lights[1].intensity, lights[1].color) = (0.5, [0.0, 1.0, 0.0]);
+    renderer.set_lights(lights).unwrap();
     check(&renderer, "another light");
     assert_eq!(gpu.compiled_pipelines(), compiled);
     // Needs: another pass, normals of a part that had none, a light of another kind.
     material.lighting = Lighting::Pbr;
-    renderer.set_material(2, 0, material.clone()).expect("set");
+    renderer.set_material(2, 0, material.clone()).unwrap();
     check(&renderer, "a material that is lit now");
     assert!(gpu.compiled_pipelines() > compiled);
     (material.alpha, material.blend) = (1.0, false);
-    renderer.set_material(2, 0, material).expect("set");
+    renderer.set_material(2, 0, material).unwrap();
     check(&renderer, "a material that is opaque now");
     let sun = Light {
         source: Source::Toward(Vec3::Z),
         ..scene.lights[0]
     };
-    renderer.set_lights(vec![sun]).expect("set");
-    check(&renderer, "the sun");
-    renderer.set_lights(Vec::new()).expect("set");
-    check(&renderer, "no light");
+    for lights in [vec![sun], vec![]] {
+        let what = format!("{} suns", lights.len());
+        renderer.set_lights(lights).unwrap();
+        check(&renderer, &what);
+    }
     for error in [
         renderer.set_transform(9, Mat4::IDENTITY),
         renderer.set_material(0, 3, Material::unlit([0.0; 3], 0.5)),
@@ -468,21 +410,20 @@ fn scenes_change_in_place() {
 fn a_resize_keeps_pipelines() {
     let gpu = gpu();
     let scene = walls(&worked_example(), [0.0; 3]);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
     let mut all = methods(&renderer, [8, 8]);
-    let camera = scene.views[0];
     for (_, method) in &mut all {
-        renderer.image(method, &camera).expect("draws");
+        image(&renderer, method);
     }
     let compiled = gpu.compiled_pipelines();
     for (spec, method) in &mut all {
         method.resize([11, 5]);
-        let image = renderer.image(method, &camera).expect("draws").image;
+        let image = image(&renderer, method);
         assert_eq!((image.width, image.height), (11, 5), "{spec}");
         assert_eq!(gpu.compiled_pipelines(), compiled, "{spec}");
     }
     let other = walls(&worked_example()[1..], [0.5; 3]);
-    let other = Renderer::new(&gpu, &other).expect("uploads");
+    let other = Renderer::new(&gpu, &other).unwrap();
     methods(&other, [5, 5]);
     assert_eq!(gpu.compiled_pipelines(), compiled);
 }
@@ -497,40 +438,27 @@ fn an_applications_own_device() {
     };
     let adapter = ours.adapter.clone();
     let opened = adapter.request_device(&descriptor);
-    let (device, queue) = ours
-        .block_on(async {
-            opened
-                .await
-                .map_err(|e| peelnet_gpu::GpuError::Lost(e.to_string()))
-        })
-        .expect("a second device");
+    let lost = |e: wgpu::RequestDeviceError| GpuError::Lost(e.to_string());
+    let opened = ours.block_on(async { opened.await.map_err(lost) });
+    let (device, queue) = opened.unwrap();
     let gpu = Gpu::from_parts(ours.instance.clone(), adapter, device, queue);
     let missing: Vec<_> = gpu.missing().iter().map(|f| f.name).collect();
-    assert_eq!(
-        missing,
-        ["float32-blendable", "timestamp-query", "shader-f16"]
-    );
+    let optional = ["float32-blendable", "timestamp-query", "shader-f16"];
+    assert_eq!(missing, optional);
     let scene = walls(&worked_example(), [0.0; 3]);
-    let renderer = Renderer::new(&gpu, &scene).expect("uploads");
-    let options = || MethodOptions::sized([4, 4]);
-    let mut method = renderer
-        .method(&"abuffer".parse().expect("a name"), options())
-        .expect("a method");
-    let image = renderer
-        .image(&mut method, &scene.views[0])
-        .expect("draws")
-        .image;
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let mut method = prepare(&renderer, "abuffer", [4, 4]);
     // See the README's four fragments.
-    for (found, exact) in image.pixels[5].iter().zip([0.6125, 0.3625, 0.2375]) {
-        assert!((found - exact).abs() < 1e-6, "{found}, not {exact}");
-    }
-    let view = target(&gpu, wgpu::TextureFormat::Rgba32Float, [4, 4], 1, [0.0; 3]);
+    let want = [0.6125, 0.3625, 0.2375];
+    assert_all(&image(&renderer, &mut method), want, 1e-6, "abuffer");
+    let view = target(&gpu, FULL, [4, 4], 1, [0.0; 3]);
     let over = Target::over(&view);
     let refused = renderer.draw(&mut gpu.encoder(), &mut method, &scene.views[0], &over);
-    let message = refused.expect_err("a target that blends").to_string();
+    let message = refused.unwrap_err().to_string();
     assert!(message.contains("Rgba32Float"), "{message}");
-    let refused = renderer.method(&"dual-peel".parse().expect("a name"), options());
-    let message = refused.expect_err("blends in 32 bits").to_string();
+    let dual_peel = "dual-peel".parse().unwrap();
+    let refused = renderer.method(&dual_peel, MethodOptions::sized([4, 4]));
+    let message = refused.unwrap_err().to_string();
     assert!(message.contains("float32-blendable"), "{message}");
 }
 

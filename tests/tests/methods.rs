@@ -1,27 +1,17 @@
 //! What single methods do in scenes whose answer is known: coincident and opaque walls, capped peels, storage that grows, painters, few layers
 //! of learned methods, and transparency at a lower resolution.
 
-use glam::Vec3;
 use peelnet_core::{
     fragment::{Fragment, worked_example},
     methods::over,
     tolerance,
 };
-use peelnet_gpu::Gpu;
-use peelnet_render::{Frame, Image, MethodOptions, MethodSpec, Renderer};
-use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{HALF, draw, gpu, half_sums, prepare, representatives, scene, wall, walls};
-
-fn frame(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, size: [u32; 2]) -> Frame {
-    let renderer = Renderer::new(gpu, scene).unwrap();
-    let mut prepared = renderer.method(spec, MethodOptions::sized(size)).unwrap();
-    renderer.image(&mut prepared, &scene.views[0]).unwrap()
-}
-
-fn assert_near(found: [f32; 4], want: [f32; 3], bound: f32, what: &dyn std::fmt::Display) {
-    let near = (0..3).all(|k| (found[k] - want[k]).abs() <= bound);
-    assert!(near, "{what}: {found:?} for {want:?}, bound {bound:e}");
-}
+use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer};
+use peelnet_scene::Material;
+use peelnet_tests::{
+    HALF, assert_all, assert_near, draw, frame, gpu, half_sums, object, prepare, rectangle,
+    representatives, scene, wall, walls,
+};
 
 /// Of coincident walls every method that is exact there keeps all, in the order of their triangles: coincident in front, behind and
 /// alone, of colours whose maximum by channel is none of them.
@@ -43,28 +33,21 @@ fn coplanar_walls() {
         one(1.0).chain(three(2.0)).chain(one(3.0)).collect(),
         three(2.0).chain(three(4.0)).chain(three(3.0)).collect(),
     ];
-    let exact = [
-        "abuffer",
-        "linked-list",
-        "depth-peel",
-        "dual-peel",
-        "kbuffer-9",
-        "hybrid-12",
-    ];
+    let exact = "abuffer linked-list depth-peel dual-peel kbuffer-9 hybrid-12";
     for mut fragments in stacks {
         for (f, i) in fragments.iter_mut().zip(0..) {
             f.triangle = i;
         }
         let scene = walls(&fragments, c0);
         let want = over::composite(&over::sorted(&fragments), c0);
-        for name in exact {
-            let frame = frame(&gpu, &scene, &name.parse().unwrap(), [4, 4]);
+        for name in exact.split(' ') {
+            let frame = frame(&gpu, &scene, name, MethodOptions::sized([4, 4]));
             if let Some(found) = frame.stats.fragments {
                 assert_eq!(found, 16 * fragments.len() as u64, "{name}");
             }
             assert_eq!(frame.stats.lost, 0, "{name}");
             let bound = tolerance::composite(fragments.len(), 1.0) as f32;
-            assert_near(frame.image.pixels[5], want, bound, &name);
+            assert_near(frame.image.pixels[5], want, bound, name);
         }
     }
 }
@@ -87,14 +70,12 @@ fn a_silhouette_in_smoke_is_exact() {
         let t = (1.0 - ALPHA).powi(inside);
         let want = [0, 1, 2].map(|k| smoke[k] * (1.0 - t) + SILHOUETTE[k] * t);
         // Random samples hit their mean only in the mean.
-        for spec in representatives()
-            .into_iter()
-            .filter(|s| s.promises().normalised && !s.promises().noisy)
-        {
-            let frame = frame(&gpu, &scene, &spec, [4, 4]);
+        let is_judged = |s: &MethodSpec| s.promises().normalised && !s.promises().noisy;
+        for spec in representatives().into_iter().filter(is_judged) {
+            let image = draw(&gpu, &scene, &spec, [4, 4]);
             // Of one colour, half floats round sums of absorbance and of colour only: no root is magnified.
             let bound = half_sums(LAYERS as usize, 3.0);
-            assert_near(frame.image.pixels[5], want, bound, &spec);
+            assert_near(image.pixels[5], want, bound, &spec);
         }
     }
 }
@@ -116,7 +97,7 @@ fn a_capped_peel_counts_what_it_left_out() {
         .collect();
     let scene = walls(&fragments, [0.0; 3]);
     for (name, left) in [("depth-peel:passes=4", 5), ("dual-peel:passes=3", 3)] {
-        let frame = frame(&gpu(), &scene, &name.parse().unwrap(), [2, 2]);
+        let frame = frame(&gpu(), &scene, name, MethodOptions::sized([2, 2]));
         assert_eq!(frame.stats.lost, left * 4, "{name}");
     }
 }
@@ -145,9 +126,7 @@ fn bounded_storage_loses_nothing() {
         for passes in passes {
             let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
             assert_eq!(frame.stats.geometry_passes, passes, "{name}");
-            for p in &frame.image.pixels {
-                assert_near(*p, want, tolerance::EXACT as f32, &name);
-            }
+            assert_all(&frame.image, want, tolerance::EXACT as f32, name);
         }
     }
 }
@@ -188,9 +167,7 @@ fn few_layers_of_learned_methods_are_exact() {
             let want = over::composite(&over::sorted(fragments), c0);
             let bound = (3 * fragments.len() + 4) as f32 * HALF;
             let image = draw(&gpu, &walls(fragments, c0), method, [3, 2]);
-            for p in image.pixels {
-                assert_near(p, want, bound, &method);
-            }
+            assert_all(&image, want, bound, method);
         }
     }
 }
@@ -208,14 +185,12 @@ fn a_lower_resolution_keeps_what_does_not_vary() {
     let gpu = gpu();
     let walls = walls(&worked_example(), [0.25, 0.5, 0.75]);
     // Samples differ from pixel to pixel by design.
-    for spec in representatives()
-        .into_iter()
-        .filter(|s| !s.promises().noisy)
-    {
-        let full = frame(&gpu, &walls, &spec, [7, 5]).image;
+    let is_even = |s: &MethodSpec| !s.promises().noisy;
+    for spec in representatives().into_iter().filter(is_even) {
+        let full = draw(&gpu, &walls, &spec, [7, 5]);
         for scale in ["0.5", "0.3", "1"] {
             let low = spec.with("scale", scale).unwrap();
-            let low = frame(&gpu, &walls, &low, [7, 5]).image;
+            let low = draw(&gpu, &walls, &low, [7, 5]);
             let apart = furthest(&full, &low);
             assert!(apart <= ROUNDING, "{spec} at {scale}: {apart}");
             assert!(scale != "1" || full == low, "{spec}");
@@ -231,14 +206,8 @@ fn a_lower_resolution_keeps_what_does_not_vary() {
 #[test]
 fn a_lower_resolution_keeps_opaque_edges() {
     let gpu = gpu();
-    let z = 2.0;
-    let v = |x: f32, y: f32| Vec3::new(x * z, y * z, -z);
-    let (a, b, c, d) = (v(-0.35, -2.0), v(0.4, -2.0), v(0.4, 2.0), v(-0.35, 2.0));
-    let post = Object::of_triangles(
-        "post",
-        &[[a, b, c], [a, c, d]],
-        Material::unlit([0.0; 3], 1.0),
-    );
+    let post = rectangle([-0.7, 0.8], [-4.0, 4.0], 2.0);
+    let post = object(&post, Material::unlit([0.0; 3], 1.0));
     let glass = wall(6.0, Material::unlit([1.0; 3], 0.5));
     let scene = scene("post", [0.0; 3], vec![post, glass]);
     let size = [33, 29];

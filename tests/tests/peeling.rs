@@ -6,8 +6,8 @@ use peelnet_eval::stress::judge::clip_triangles;
 use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{PixelSample, Renderer};
-use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{gpu, prepare, scene};
+use peelnet_scene::{Material, Scene};
+use peelnet_tests::{gpu, object, prepare, rectangle, scene, soup};
 
 const SIZE: [u32; 2] = [61, 47];
 
@@ -19,28 +19,8 @@ const SNAP: f64 = 1.0 / 16.0;
 const DEPTH_TOLERANCE: f64 = 2e-3;
 
 /// Random triangles, three to an object: a closed form is not needed where a judge is.
-fn soup(objects: usize, seed: u64) -> Scene {
-    let mut stream = Random::new(seed, &[]);
-    let mut random = move || stream.unit();
-    let objects: Vec<Object> = (0..objects)
-        .map(|i| {
-            let vertices: Vec<[Vec3; 3]> = (0..3)
-                .map(|_| {
-                    [(); 3].map(|()| {
-                        let z = 2.0 + 30.0 * random();
-                        Vec3::new((random() * 2.4 - 1.2) * z, (random() * 2.4 - 1.2) * z, -z)
-                    })
-                })
-                .collect();
-            let color = [random(), random(), random()];
-            Object::of_triangles(
-                &format!("soup {i}"),
-                &vertices,
-                Material::unlit(color, 0.05 + 0.9 * random()),
-            )
-        })
-        .collect();
-    scene("soup", [0.5; 3], objects)
+fn mixed(objects: usize, seed: u64) -> Scene {
+    scene("soup", [0.5; 3], soup(seed, objects, 3, [2.0, 32.0]))
 }
 
 /// One pixel: depths and colours, front to back; empty slots left out.
@@ -55,29 +35,19 @@ fn harvest(
 ) -> (Vec<Pixel>, u32) {
     let mut harvester = Harvester::new(gpu, scene, SIZE, peel, sample.is_some(), budget).unwrap();
     let mut pixels = vec![Pixel::new(); (SIZE[0] * SIZE[1]) as usize];
-    let found = harvester
-        .harvest(
-            &scene.views[0],
-            sample.unwrap_or(PixelSample::ALL),
-            None,
-            RawTile::default,
-            |tile| {
-                for (i, run) in tile.offsets.windows(2).enumerate() {
-                    for k in run[0] as usize..run[1] as usize {
-                        if tile.depths[k] > 0.0 {
-                            pixels[tile.first_pixel as usize + i]
-                                .push((tile.depths[k], tile.colors[k]));
-                        }
-                    }
-                }
-                Ok(())
-            },
-        )
-        .unwrap();
-    assert_eq!(
-        found.max_layers as usize,
-        pixels.iter().map(Vec::len).max().unwrap()
-    );
+    let mut take = |tile: RawTile| {
+        for (run, i) in tile.offsets.windows(2).zip(tile.first_pixel as usize..) {
+            let run = run[0] as usize..run[1] as usize;
+            let fragments = run.map(|k| (tile.depths[k], tile.colors[k]));
+            pixels[i].extend(fragments.filter(|(depth, _)| *depth > 0.0));
+        }
+        Ok(())
+    };
+    let sample = sample.unwrap_or(PixelSample::ALL);
+    let found = harvester.harvest(&scene.views[0], sample, None, RawTile::default, &mut take);
+    let found = found.unwrap();
+    let most = pixels.iter().map(Vec::len).max();
+    assert_eq!(Some(found.max_layers as usize), most);
     (pixels, found.tiles)
 }
 
@@ -85,14 +55,12 @@ fn harvest(
 fn all_three_ways_find_the_same_fragments() {
     let gpu = gpu();
     for seed in 1..4 {
-        let scene = soup(40, seed);
+        let scene = mixed(40, seed);
         let (sbuffer, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
         assert!(sbuffer.iter().map(Vec::len).max() > Some(10));
         for peel in [Peel::Dual, Peel::Single] {
-            assert!(
-                harvest(&gpu, &scene, peel, None, None).0 == sbuffer,
-                "{peel}, seed {seed}"
-            );
+            let (found, _) = harvest(&gpu, &scene, peel, None, None);
+            assert!(found == sbuffer, "{peel}, seed {seed}");
         }
     }
 }
@@ -107,26 +75,18 @@ fn deep_pixels(lists: &[Vec<f32>]) -> (Scene, [u32; 2]) {
     for (i, list) in lists.iter().enumerate() {
         let (x, y) = (i % columns, i / columns);
         for (k, &z) in list.iter().enumerate() {
-            let v = |px: usize, py: usize| {
-                Vec3::new(side(px, size[0]) * aspect * z, -side(py, size[1]) * z, -z)
-            };
-            let (a, b, c, d) = (v(x, y + 1), v(x + 1, y + 1), v(x + 1, y), v(x, y));
-            objects[k % 32].extend([[a, b, c], [a, c, d]]);
+            let columns = [x, x + 1].map(|x| side(x, size[0]) * aspect * z);
+            let rows = [y + 1, y].map(|y| -side(y, size[1]) * z);
+            objects[k % 32].extend(rectangle(columns, rows, z));
         }
     }
-    let object = |(i, triangles): (usize, &Vec<[Vec3; 3]>)| {
+    let layers = |(i, triangles): (usize, &Vec<[Vec3; 3]>)| {
         let color = [i as f32 / 32.0, 1.0 - i as f32 / 32.0, 0.25];
-        Object::of_triangles(
-            &format!("layers {i}"),
-            triangles,
-            Material::unlit(color, 0.01),
-        )
+        object(triangles, Material::unlit(color, 0.01))
     };
-    let objects = objects.iter().enumerate().map(object).collect();
-    (
-        scene("deep pixels", [0.5; 3], objects),
-        size.map(|n| n as u32),
-    )
+    let objects = objects.iter().enumerate().map(layers).collect();
+    let scene = scene("deep pixels", [0.5; 3], objects);
+    (scene, size.map(|n| n as u32))
 }
 
 /// Runs of every length around the borders between one sort and another, random ones up to 20,000, with ties: the rows are those that the
@@ -146,21 +106,17 @@ fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
         let depth = |t: f32| 2.0 + if tied { (t * 7.0).floor() } else { 4.0 * t };
         (0..n).map(|_| depth(random.unit())).collect()
     };
-    let lists: Vec<Vec<f32>> = lengths
-        .iter()
-        .enumerate()
-        .map(|(i, &n)| list(n, i % 3 == 0))
-        .collect();
+    let lists = lengths.iter().enumerate();
+    let lists: Vec<Vec<f32>> = lists.map(|(i, &n)| list(n, i % 3 == 0)).collect();
     let (scene, size) = deep_pixels(&lists);
-    let colors: Vec<[f32; 3]> = scene
-        .objects
-        .iter()
+    let objects = scene.objects.iter();
+    let colors: Vec<[f32; 3]> = objects
         .flat_map(|o| vec![o.materials[0].color; o.mesh.triangles.len()])
         .collect();
     // A tile for all, and tiles of which some hold a few pixels.
     for budget in [None, Some(30_000)] {
-        let mut harvester =
-            Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, budget).unwrap();
+        let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, budget);
+        let mut harvester = harvester.unwrap();
         harvester.keep_triangles(true);
         let mut pixels = 0;
         let mut check = |tile: RawTile| {
@@ -185,24 +141,15 @@ fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
                 let mut depths = list.clone();
                 depths.sort_unstable_by(f32::total_cmp);
                 for (row, depth) in rows.iter().zip(depths) {
-                    let error = (f32::from_bits(row.0) - depth).abs();
-                    assert!(
-                        f64::from(error) <= 8.0 * UNIT_ROUNDOFF * f64::from(depth),
-                        "{error}"
-                    );
+                    let error = f64::from((f32::from_bits(row.0) - depth).abs());
+                    assert!(error <= 8.0 * UNIT_ROUNDOFF * f64::from(depth), "{error}");
                 }
             }
             Ok(())
         };
-        harvester
-            .harvest(
-                &scene.views[0],
-                PixelSample::ALL,
-                None,
-                RawTile::default,
-                &mut check,
-            )
-            .unwrap();
+        let (view, all) = (&scene.views[0], PixelSample::ALL);
+        let harvested = harvester.harvest(view, all, None, RawTile::default, &mut check);
+        harvested.unwrap();
         assert_eq!(pixels, lists.len());
     }
 }
@@ -217,58 +164,40 @@ fn random_depths(n: usize, seed: u64) -> Vec<f32> {
 type Broken = (&'static str, &'static str, &'static str, &'static str);
 
 const LOST_TRIANGLE: &str = "if surface.triangle == 6u { discard; }\n    let pixel =";
-const LIST: &str = "methods::linked_list::composite";
+const ORDER: &str = "out of order";
 
 /// Of storage that is sorted in passes of its own.
-const BROKEN_STORAGE: [Broken; 6] = [
-    (
-        "peel::sort",
-        "if next < depth",
-        "if next <= depth + 1.0",
-        "out of order",
-    ),
-    (
-        "peel::long_chunks",
-        "depth < own",
-        "depth < own * 0.5",
-        "out of order",
-    ),
-    (
-        "peel::long_merge",
-        "near.depth < far.depth",
-        "near.depth > far.depth",
-        "out of order",
-    ),
-    (
-        "peel::long_merge",
-        "least = half + 1u",
-        "least = half + 2u",
-        "out of order",
-    ),
-    ("peel::store", "let pixel =", LOST_TRIANGLE, "1 lost"),
-    ("peel::count", "let pixel =", LOST_TRIANGLE, "1 found twice"),
-];
+const BROKEN_STORAGE: [Broken; 6] = {
+    const MERGE: &str = "peel::long_merge";
+    let (near, far) = ("near.depth < far.depth", "near.depth > far.depth");
+    let (least, more) = ("least = half + 1u", "least = half + 2u");
+    let next = "if next <= depth + 1.0";
+    [
+        ("peel::sort", "if next < depth", next, ORDER),
+        (
+            "peel::long_chunks",
+            "depth < own",
+            "depth < own * 0.5",
+            ORDER,
+        ),
+        (MERGE, near, far, ORDER),
+        (MERGE, least, more, ORDER),
+        ("peel::store", "let pixel =", LOST_TRIANGLE, "1 lost"),
+        ("peel::count", "let pixel =", LOST_TRIANGLE, "1 found twice"),
+    ]
+};
 
-const BROKEN_LISTS: [Broken; 3] = [
-    (
-        LIST,
-        "return near < far",
-        "return near > far",
-        "out of order",
-    ),
-    (
-        LIST,
-        "let following = next[node - 1u];",
-        "let following = next[next[node - 1u] - 1u];",
-        "lost",
-    ),
-    (
-        LIST,
-        "left_count > 0u && (right_empty || before(left, right))",
-        "left_count > 0u",
-        "out of order",
-    ),
-];
+const BROKEN_LISTS: [Broken; 3] = {
+    const LIST: &str = "methods::linked_list::composite";
+    let following = "let following = next[node - 1u];";
+    let skipped = "let following = next[next[node - 1u] - 1u];";
+    let left = "left_count > 0u && (right_empty || before(left, right))";
+    [
+        (LIST, "return near < far", "return near > far", ORDER),
+        (LIST, following, skipped, "lost"),
+        (LIST, left, "left_count > 0u", ORDER),
+    ]
+};
 
 /// What is wrong in a sort or loses fragments ends the extraction and the exact image with an error that says what and where.
 #[test]
@@ -284,10 +213,8 @@ fn broken_sorts_and_lost_fragments_are_errors() {
                 let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None);
                 let (view, all) = (&scene.views[0], PixelSample::ALL);
                 let ignored = |_| Ok(());
-                let harvested =
-                    harvester
-                        .unwrap()
-                        .harvest(view, all, None, RawTile::default, ignored);
+                let mut harvester = harvester.unwrap();
+                let harvested = harvester.harvest(view, all, None, RawTile::default, ignored);
                 let message = harvested.unwrap_err().to_string();
                 let says = message.contains(expected) && message.contains("pixel (");
                 assert!(says, "{message}");
@@ -311,7 +238,7 @@ fn broken_sorts_and_lost_fragments_are_errors() {
 #[test]
 fn tiles_change_nothing() {
     let gpu = gpu();
-    let scene = soup(40, 9);
+    let scene = mixed(40, 9);
     for peel in [Peel::SBuffer, Peel::Dual, Peel::Single] {
         let (whole, one) = harvest(&gpu, &scene, peel, None, None);
         assert_eq!(one, 1);
@@ -328,7 +255,7 @@ fn tiles_change_nothing() {
 #[test]
 fn a_pixel_sample_keeps_whole_pixels_and_the_right_ones() {
     let gpu = gpu();
-    let scene = soup(30, 5);
+    let scene = mixed(30, 5);
     let sample = PixelSample {
         seed: 77,
         view: 3,
@@ -347,7 +274,7 @@ fn a_pixel_sample_keeps_whole_pixels_and_the_right_ones() {
 fn the_judge_finds_the_same_fragments() {
     let gpu = gpu();
     for seed in 20..24 {
-        let scene = soup(30, seed);
+        let scene = mixed(30, seed);
         let triangles = clip_triangles(&scene, &scene.views[0], SIZE);
         let [w, h] = SIZE.map(|s| s as usize);
         let judge = scanline::rasterise(&triangles, w, h, [0.0; 2]);
@@ -364,11 +291,7 @@ fn the_judge_finds_the_same_fragments() {
             for (k, (want, (depth, color))) in want.iter().zip(got).enumerate() {
                 fragments += 1;
                 let off = (f64::from(*depth) / want.depth - 1.0).abs();
-                assert!(
-                    off <= DEPTH_TOLERANCE,
-                    "pixel {i}, layer {k}: {depth} for {}",
-                    want.depth
-                );
+                assert!(off <= DEPTH_TOLERANCE, "pixel {i}, layer {k}: {off}");
                 // Where neighbours are further apart than the tolerance their order is certain, and so is the colour.
                 let apart = |j: Option<&scanline::Hit>| {
                     j.is_none_or(|o| (o.depth / want.depth - 1.0).abs() > 2.0 * DEPTH_TOLERANCE)
@@ -381,13 +304,7 @@ fn the_judge_finds_the_same_fragments() {
                 }
             }
         }
-        assert!(
-            judged > w * h / 2,
-            "only {judged} pixels are no silhouettes"
-        );
-        assert!(
-            fragments > 3 * judged,
-            "{fragments} fragments in {judged} pixels"
-        );
+        assert!(judged > w * h / 2, "only {judged} are no silhouettes");
+        assert!(fragments > 3 * judged, "{fragments} in {judged} pixels");
     }
 }

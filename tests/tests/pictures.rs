@@ -47,10 +47,9 @@ fn pictures_are_the_committed_ones() {
             let (a, b) = (found.get_pixel(x, y).0, want.get_pixel(x, y).0);
             image::Rgb([0, 1, 2].map(|k| a[k].abs_diff(b[k])))
         });
-        let differs = differences
-            .pixels()
-            .filter(|p| p.0.iter().any(|d| *d > STEPS));
-        let fraction = differs.count() as f64 / f64::from(SIZE[0] * SIZE[1]);
+        let differs = differences.pixels();
+        let differs = differs.filter(|p| p.0.iter().any(|d| *d > STEPS)).count();
+        let fraction = differs as f64 / f64::from(SIZE[0] * SIZE[1]);
         if fraction > SILHOUETTES {
             let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
             fs::create_dir_all(&folder).unwrap();
@@ -59,11 +58,8 @@ fn pictures_are_the_committed_ones() {
             found.save(&actual).unwrap();
             differences.save(&difference).unwrap();
             problems.push(format!(
-                "{name}: {:.1} % of the pixels differ from {}: see {} and {}",
-                100.0 * fraction,
-                file.display(),
-                actual.display(),
-                difference.display()
+                "{name}: {:.1} % of the pixels differ from {file:?}: see {actual:?} and {difference:?}",
+                100.0 * fraction
             ));
         }
     }

@@ -1,76 +1,51 @@
 //! Extraction to datasets: what they hold, in every format and by every way to peel, and what is refused.
 
-use peelnet_core::{fragment::worked_example, random::Random};
+use peelnet_core::fragment::worked_example;
 use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
 use peelnet_gpu::Gpu;
 use peelnet_peel::{ExtractOptions, Peel, Views, extract};
-use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{gpu, scene, walls};
-use std::{path::Path, sync::atomic::AtomicBool};
+use peelnet_scene::Scene;
+use peelnet_tests::{gpu, scene, soup, walls};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
 
 fn options(out: &Path) -> ExtractOptions {
     ExtractOptions {
-        out: out.to_owned(),
         size: [40, 30],
-        views: Views::All,
-        format: Format::Parquet,
-        peel: Peel::SBuffer,
-        max_passes: None,
-        pixels: 1.0,
-        augment: 0,
         seed: 5,
-        shard: None,
-        resume: false,
-        command: "test".into(),
-        budget: None,
+        ..ExtractOptions::new(out)
     }
 }
 
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 fn run(gpu: &Gpu, scenes: &[Scene], options: &ExtractOptions) -> peelnet_peel::ExtractReport {
-    extract(gpu, scenes, options, &AtomicBool::new(false), &mut |_| {}).unwrap()
+    extract(gpu, scenes, options, &NEVER, &mut |_| {}).unwrap()
 }
 
 /// Two scenes of slanted panes, two views each.
 fn scenes() -> Vec<Scene> {
-    ["first", "second"]
-        .into_iter()
-        .zip(1..)
-        .map(|(name, seed)| {
-            let mut stream = Random::new(seed, &[]);
-            let mut random = move || stream.unit();
-            let objects = (0..12)
-                .map(|i| {
-                    let vertices = [(); 3].map(|()| {
-                        let z = 2.0 + 8.0 * random();
-                        glam::Vec3::new((2.0 * random() - 1.0) * z, (2.0 * random() - 1.0) * z, -z)
-                    });
-                    let color = [random(), random(), random()];
-                    Object::of_triangles(
-                        &format!("pane {i}"),
-                        &[vertices],
-                        Material::unlit(color, random()),
-                    )
-                })
-                .collect();
-            let mut s = scene(name, [0.0; 3], objects);
-            let mut other = s.views[0];
-            other.position.x += 0.5;
-            s.views.push(other);
-            s
-        })
-        .collect()
+    let one = |(name, seed)| {
+        let mut scene = scene(name, [0.0; 3], soup(seed, 12, 1, [2.0, 10.0]));
+        let mut other = scene.views[0];
+        other.position.x += 0.5;
+        scene.views.push(other);
+        scene
+    };
+    [("first", 1), ("second", 2)].map(one).to_vec()
 }
 
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut all: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().path())
-        .filter(|p| p.is_file() && p.extension().is_some_and(|e| e != "json"))
-        .map(|p| {
-            let name = p.file_name().unwrap().to_string_lossy().into_owned();
-            (name, std::fs::read(p).unwrap())
-        })
-        .collect();
+    let paths = std::fs::read_dir(folder).unwrap();
+    let paths = paths.map(|e| e.unwrap().path());
+    let of_rows = |p: &PathBuf| p.is_file() && p.extension().is_some_and(|e| e != "json");
+    let named = |p: PathBuf| {
+        let name = p.file_name().unwrap().to_string_lossy().into_owned();
+        (name, std::fs::read(p).unwrap())
+    };
+    let mut all: Vec<_> = paths.filter(of_rows).map(named).collect();
     all.sort();
     all
 }
@@ -81,22 +56,16 @@ fn the_worked_example_as_rows() {
     let gpu = gpu();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("d");
-    let report = run(
-        &gpu,
-        &[walls(&worked_example(), [0.0; 3])],
-        &ExtractOptions {
-            size: [3, 2],
-            ..options(&out)
-        },
-    );
-    assert_eq!(
-        (report.manifest.rows, report.lost, report.coplanar),
-        (24, 0, 0)
-    );
+    let small = ExtractOptions {
+        size: [3, 2],
+        ..options(&out)
+    };
+    let report = run(&gpu, &[walls(&worked_example(), [0.0; 3])], &small);
+    let found = (report.manifest.rows, report.lost, report.coplanar);
+    assert_eq!(found, (24, 0, 0));
     let dataset = Dataset::open(&out).unwrap();
-    let columns = dataset
-        .read_columns(&[Column::Transmittance, Column::LinearDepth, Column::AlphaSum])
-        .unwrap();
+    let columns = [Column::Transmittance, Column::LinearDepth, Column::AlphaSum];
+    let columns = dataset.read_columns(&columns).unwrap();
     for pixel in columns[0].as_f32().unwrap().chunks(4) {
         assert_eq!(pixel, [1.0, 0.5, 0.25, 0.125]);
     }
@@ -120,25 +89,19 @@ fn sums_hold_and_formats_and_peels_agree() {
         (Format::Npy, Peel::Single),
     ] {
         let out = folder.path().join(format!("{format}-{peel}"));
-        let report = run(
-            &gpu,
-            &scenes(),
-            &ExtractOptions {
-                format,
-                peel,
-                augment: 1,
-                ..options(&out)
-            },
-        );
+        let options = ExtractOptions {
+            format,
+            peel,
+            augment: 1,
+            ..options(&out)
+        };
+        let report = run(&gpu, &scenes(), &options);
         assert_eq!(report.manifest.parts.len(), 8);
         let dataset = Dataset::open(&out).unwrap();
         dataset.verify().unwrap();
         let summary = Summary::of(&dataset).unwrap();
-        assert!(
-            summary.passes() && summary.rows > 1000,
-            "{:?}",
-            summary.violations
-        );
+        assert!(summary.passes(), "{:?}", summary.violations);
+        assert!(summary.rows > 1000, "{}", summary.rows);
         let rows = dataset.read_columns(&Column::ALL).unwrap();
         match &first {
             None => first = Some(rows),
@@ -163,11 +126,8 @@ fn extraction_repeats_and_shards_add_up() {
     assert_eq!(files(&at("a")), files(&at("b")));
     assert_eq!(whole.hash, again.hash);
     for i in [2, 1, 3] {
-        run(
-            &gpu,
-            &scenes(),
-            &sampled(&at("c"), Some(Shard::new(i, 3).unwrap())),
-        );
+        let shard = Shard::new(i, 3).unwrap();
+        run(&gpu, &scenes(), &sampled(&at("c"), Some(shard)));
     }
     let merged = Dataset::open(at("c")).unwrap();
     assert_eq!(merged.hash(), whole.hash);
@@ -185,12 +145,8 @@ fn a_dataset_records_its_census() {
     all[1].objects[0].materials[0].double_sided = false;
     run(&gpu, &all, &options(&out));
     let found = Dataset::open(&out).unwrap();
-    let effects: Vec<_> = found
-        .manifest()
-        .scenes
-        .iter()
-        .map(|s| s.effects.clone())
-        .collect();
+    let scenes = found.manifest().scenes.iter();
+    let effects: Vec<_> = scenes.map(|s| s.effects.clone()).collect();
     assert_eq!(effects, [vec![], vec!["culling", "emission"]]);
 }
 
@@ -200,9 +156,8 @@ fn requests_that_make_no_sense_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("d");
     let refused = |scenes: &[Scene], options: &ExtractOptions| {
-        extract(&gpu, scenes, options, &AtomicBool::new(false), &mut |_| {})
-            .unwrap_err()
-            .to_string()
+        let refused = extract(&gpu, scenes, options, &NEVER, &mut |_| {});
+        refused.unwrap_err().to_string()
     };
     let all = scenes();
     let many = ExtractOptions {
@@ -228,28 +183,26 @@ fn requests_that_make_no_sense_are_refused() {
 #[test]
 fn batches_hold_the_rows_of_the_dataset() {
     let gpu = gpu();
-    let scene = peelnet_scene::suite::load("panes").expect("a shipped scene");
-    let folder = tempfile::tempdir().expect("temporary folder");
+    let scenes = [peelnet_scene::suite::load("panes").unwrap()];
+    let folder = tempfile::tempdir().unwrap();
     let options = ExtractOptions {
         size: [64, 48],
         ..ExtractOptions::new(folder.path().join("rows"))
     };
-    let scenes = [scene];
-    let stop = AtomicBool::new(false);
-    extract(&gpu, &scenes, &options, &stop, &mut |_| ()).expect("extracts");
-    let dataset = Dataset::open(&options.out).expect("opens");
+    run(&gpu, &scenes, &options);
+    let dataset = Dataset::open(&options.out).unwrap();
     let mut written = peelnet_dataset::FragmentBatch::default();
     for batch in dataset.batches(1 << 16) {
-        let batch = batch.expect("reads");
+        let batch = batch.unwrap();
         written.extend_from(&batch, 0..batch.len());
     }
     let mut found = peelnet_dataset::FragmentBatch::default();
-    for batch in peelnet_peel::batches(&gpu, &scenes, &options).expect("begins") {
-        let batch = batch.expect("peels");
+    for batch in peelnet_peel::batches(&gpu, &scenes, &options).unwrap() {
+        let batch = batch.unwrap();
         found.extend_from(&batch, 0..batch.len());
     }
     assert!(found.len() > 1000);
     assert_eq!(found, written);
-    let mut dropped = peelnet_peel::batches(&gpu, &scenes, &options).expect("begins");
+    let mut dropped = peelnet_peel::batches(&gpu, &scenes, &options).unwrap();
     assert!(dropped.next().is_some_and(|batch| batch.is_ok()));
 }

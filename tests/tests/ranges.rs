@@ -4,7 +4,7 @@ use glam::{Mat4, Quat, Vec3};
 use peelnet_core::{fragment::Fragment, methods::over};
 use peelnet_render::Renderer;
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{draw, gpu, prepare, scene};
+use peelnet_tests::{draw, gpu, object, prepare, rectangle, scene};
 
 /// Where the layers of the middle pixel lie in its range of depth on a logarithmic scale. The slabs of `slabs` end at 0.12, 0.4 and 0.75: each
 /// has two layers, which are its nearest and its farthest, so that all are known. The range is found to one of 42 levels.
@@ -21,11 +21,10 @@ const KNOWN: f32 = 9.0 * 2.9 / 2048.0;
 
 /// A square of side 1 around the origin in the plane of x and y, or one whose x runs the other way.
 fn square(world_from_object: Mat4, material: Material) -> Object {
-    let v = |x: f32, y: f32| Vec3::new(x, y, 0.0);
-    let [a, b, c, d] = [v(-0.5, -0.5), v(0.5, -0.5), v(0.5, 0.5), v(-0.5, 0.5)];
+    let side = [-0.5, 0.5];
     Object {
         world_from_object,
-        ..Object::of_triangles("square", &[[a, b, c], [a, c, d]], material)
+        ..object(&rectangle(side, side, 0.0), material)
     }
 }
 

@@ -15,8 +15,10 @@ use peelnet_render::{
     METHODS, MethodOptions, MethodSpec, Renderer,
     methods::{Pixel, Precision},
 };
-use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{gpu, half_sums, network_of, representatives, scene, window_depth};
+use peelnet_scene::{Material, Scene};
+use peelnet_tests::{
+    gpu, half_sums, network_of, object, quad, representatives, scene, window_depth,
+};
 
 /// Bound for moments in 32 bits against 64. Of four, where layers are apart, they err by some roundings; of more, points are cosines and
 /// roots of cubics, good to 1e-5 each, and what lies at them is divided by pivots down to 1e-3.
@@ -140,14 +142,9 @@ impl Frame {
                 (f.triangle, f.window_depth) = (2 * objects.len() as u32, window_depth(f.depth));
                 // The frame is 90° high: half its height at depth z is z.
                 let v = |x: f32, y: f32| Vec3::new(x * width / height, y, -1.0) * f.depth;
-                let (a, b) = (v(left, -1.0), v(right, -1.0));
-                let (c, d) = (v(right, 1.0), v(left, 1.0));
+                let corners = [v(left, -1.0), v(right, -1.0), v(right, 1.0), v(left, 1.0)];
                 let material = Material::unlit(f.color, f.alpha);
-                objects.push(Object::of_triangles(
-                    "fragment",
-                    &[[a, b, c], [a, c, d]],
-                    material,
-                ));
+                objects.push(object(&quad(corners), material));
             }
         }
         Self {
@@ -203,10 +200,8 @@ impl Frame {
 fn compare(lists: Vec<Vec<Fragment>>, moments: f32, specs: &[MethodSpec]) {
     let frame = Frame::new(lists);
     let renderer = Renderer::new(&gpu(), &frame.scene).unwrap();
-    let problems = specs.iter();
-    let problems: Vec<String> = problems
-        .flat_map(|spec| frame.problems(&renderer, spec, moments))
-        .collect();
+    let problems = |spec| frame.problems(&renderer, spec, moments);
+    let problems: Vec<String> = specs.iter().flat_map(problems).collect();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
@@ -238,11 +233,8 @@ fn every_method_has_a_reference() {
     let specs = all_specs();
     for method in METHODS.iter().filter(|m| m.cpu_only.is_none()) {
         let own = || specs.iter().filter(|s| s.name() == method.name);
-        assert!(
-            own().any(|s| bound(s, 4, MOMENTS).is_some()),
-            "{}",
-            method.name
-        );
+        let is_bounded = own().any(|s| bound(s, 4, MOMENTS).is_some());
+        assert!(is_bounded, "{}", method.name);
         // A list has no boxes: `ranges` tests what depends on them.
         let has_boxes = |s: &MethodSpec| s.to_string().contains("range=boxes");
         for spec in own().filter(|s| !s.is_scaled() && !has_boxes(s)) {
@@ -262,30 +254,12 @@ fn every_method_has_a_reference() {
 
 fn stress_case(gpu: &Gpu, id: &str, methods: Vec<MethodSpec>) {
     let case = CASES.iter().find(|c| c.id == id).unwrap();
-    let subject = |method: MethodSpec| {
-        let network = network_of(&method);
-        Subject::new(method, network)
-    };
-    let subjects: Vec<Subject> = methods.into_iter().map(subject).collect();
+    let subject = |method: &MethodSpec| Subject::new(method.clone(), network_of(method));
+    let subjects: Vec<Subject> = methods.iter().map(subject).collect();
     let rows = stress(gpu, case, &subjects, true, None, &mut |_| Ok(())).unwrap();
-    let failed: Vec<String> = rows
-        .iter()
-        .filter(|r| r.result == Outcome::Fail)
-        .map(|r| {
-            let reason = r.reason.as_deref().unwrap_or_default();
-            format!(
-                "{} {}: {:?} > {:.3e} at {} {reason}",
-                r.method, r.property, r.value, r.limit, r.place
-            )
-        })
-        .collect();
-    assert!(
-        failed.is_empty(),
-        "{} of {} rows fail:\n{}",
-        failed.len(),
-        rows.len(),
-        failed.join("\n")
-    );
+    let failed: Vec<_> = rows.iter().filter(|r| r.result == Outcome::Fail).collect();
+    let (count, all) = (failed.len(), rows.len());
+    assert!(count == 0, "{count} of {all} rows fail:\n{failed:#?}");
     for s in subjects.iter().filter(|s| case.judges(&s.method)) {
         let method = s.method.to_string();
         assert!(rows.iter().any(|r| r.method == method), "{method}");

@@ -2,16 +2,14 @@
 
 use peelnet_core::fragment::worked_example;
 use peelnet_eval::{Machine, bench, bench::Bench, compare::Plan};
-use peelnet_render::MethodSpec;
 use peelnet_report::Results;
-use peelnet_tests::{gpu, walls};
+use peelnet_tests::{gpu, specs, walls};
 use std::{path::Path, process::Command};
 
 /// Writes the report of a small bench of two scenes.
 fn write_report(folder: &Path) {
     let gpu = gpu();
-    let methods = ["painter-object:sort=off", "mboit4", "wboit-eq9"];
-    let methods: Vec<MethodSpec> = methods.map(|m| m.parse().unwrap()).to_vec();
+    let methods = specs(["painter-object:sort=off", "mboit4", "wboit-eq9"]);
     let scenes = ["first", "second"].map(|name| {
         let mut scene = walls(&worked_example(), [0.0; 3]);
         scene.name = name.to_owned();
@@ -38,14 +36,9 @@ fn chromium() -> &'static str {
 /// What the page is after its scripts and ours have run.
 fn dom(page: &Path) -> String {
     let profile = tempfile::tempdir().unwrap();
+    let options = "--headless --no-sandbox --disable-gpu --disable-dev-shm-usage --dump-dom";
     let output = Command::new(chromium())
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--disable-dev-shm-usage",
-            "--dump-dom",
-        ])
+        .args(options.split(' '))
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("file://{}", page.display()))
         .output()
@@ -85,22 +78,15 @@ document.body.dataset.found = found.join('; ');
          document.documentElement.dataset.failed = e.message);</script>",
     );
     let path = dir.path().join("watched.html");
-    std::fs::write(
-        &path,
-        watched.replace("</html>", &format!("{CHECK}</html>")),
-    )
-    .unwrap();
+    let checked = watched.replace("</html>", &format!("{CHECK}</html>"));
+    std::fs::write(&path, checked).unwrap();
     let dom = dom(&path);
-    assert!(
-        !dom.contains("data-failed"),
-        "a script failed: {}",
-        &dom[..300.min(dom.len())]
-    );
-    let found = dom
-        .split_once("data-found=\"")
+    let begin = &dom[..300.min(dom.len())];
+    assert!(!dom.contains("data-failed"), "a script failed: {begin}");
+    let found = dom.split_once("data-found=\"");
+    let (found, _) = found
         .and_then(|(_, rest)| rest.split_once('"'))
-        .map(|(found, _)| found.to_owned())
-        .unwrap_or_else(|| panic!("the check did not run: {}", &dom[..300.min(dom.len())]));
+        .unwrap_or_else(|| panic!("the check did not run: {begin}"));
     // Four charts: all scenes in two means, and one a scene.
     assert_eq!(
         found,

@@ -1,14 +1,14 @@
 //! Four samples a pixel: each is composited by itself, and the pixel is their mean in linear light.
 
-use glam::Vec3;
 use peelnet_core::fragment::Fragment;
-use peelnet_gpu::Gpu;
+use peelnet_gpu::{Gpu, wgpu};
 use peelnet_render::{
     Image, MethodOptions, MethodSpec, RenderError, Renderer, Target,
     methods::{Pixel, Precision},
 };
 use peelnet_scene::{Material, Object, Scene};
-use peelnet_tests::{gpu, scene, window_depth};
+use peelnet_tests::{assert_near, frame, gpu, object, rectangle, scene, window_depth};
+use std::fmt::Display;
 
 /// Pixels of a side; at depth 2 a pixel is one unit wide.
 const SIDE: u32 = 4;
@@ -33,11 +33,9 @@ const ROOTS: f32 = 2e-2;
 /// A wall at a depth that ends to the right at this share of the pixels of column [`CUT`].
 fn half_plane(depth: f32, share: f32, material: Material) -> Object {
     let unit = depth / 2.0;
+    let far = 9.0 * unit;
     let edge = (CUT as f32 + share - 2.0) * unit;
-    let v = |x: f32, y: f32| Vec3::new(x, y * unit, -depth);
-    let (a, b) = (v(-9.0 * unit, -9.0), v(edge, -9.0));
-    let (c, d) = (v(edge, 9.0), v(-9.0 * unit, 9.0));
-    Object::of_triangles("half-plane", &[[a, b, c], [a, c, d]], material)
+    object(&rectangle([-far, edge], [-far, far], depth), material)
 }
 
 /// Whether a half-plane covers a sample of the pixels that its edge cuts.
@@ -45,12 +43,9 @@ fn covers(share: f32, sample: usize) -> bool {
     ACROSS[sample] < share
 }
 
-fn image(gpu: &Gpu, scene: &Scene, spec: &MethodSpec, samples: u32) -> Image {
-    let renderer = Renderer::new(gpu, scene).unwrap();
-    let options = MethodOptions::sized([SIDE; 2]).sampled(samples);
-    let mut method = renderer.method(spec, options).unwrap();
-    let frame = renderer.image(&mut method, &scene.views[0]);
-    frame.unwrap_or_else(|e| panic!("{spec}: {e}")).image
+fn image(gpu: &Gpu, scene: &Scene, method: impl Display) -> Image {
+    let options = MethodOptions::sized([SIDE; 2]).sampled(4);
+    frame(gpu, scene, method, options).image
 }
 
 /// A surface that covers k of a pixel's samples covers k quarters of it: the A-buffer's coverage of areas.
@@ -70,12 +65,12 @@ fn coverage_comes_in_quarters() {
         let wall = half_plane(2.0, share, white.clone());
         let scene = scene("edge", [0.0; 3], vec![wall]);
         for method in ["abuffer", "linked-list", "depth-peel", "dual-peel"] {
-            let image = image(&gpu, &scene, &method.parse().unwrap(), 4);
+            let image = image(&gpu, &scene, method);
             for (i, pixel) in image.pixels.iter().enumerate() {
-                let want = match (i as u32 % SIDE).cmp(&CUT) {
-                    std::cmp::Ordering::Less => 1.0,
-                    std::cmp::Ordering::Equal => covered as f32 / 4.0,
-                    std::cmp::Ordering::Greater => 0.0,
+                let want = match i as u32 % SIDE {
+                    0 => 1.0,
+                    CUT => covered as f32 / 4.0,
+                    _ => 0.0,
                 };
                 assert_eq!(*pixel, [want; 4], "{method}, edge at {share}, pixel {i}");
             }
@@ -97,26 +92,19 @@ fn a_pixel_is_the_mean_of_its_samples() {
         half_plane(depth, share, Material::unlit(color, alpha))
     });
     let scene = scene("edges", BACKGROUND, objects.into());
-    let warp = Renderer::new(&gpu, &scene)
-        .unwrap()
-        .depth_warp(&scene.views[0]);
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let warp = renderer.depth_warp(&scene.views[0]);
     let mut judged = 0;
     for spec in MethodSpec::all() {
-        let promises = spec.promises();
-        // Its neighbours hold other surfaces, which twins know nothing of.
-        if !promises.per_pixel {
-            continue;
-        }
         let mean = || -> Option<[f32; 3]> {
             let mut mean = [0.0; 3];
             for sample in 0..4 {
                 let inside = surfaces.iter().filter(|s| covers(s.1, sample));
-                let fragments: Vec<Fragment> = inside
-                    .map(|&(depth, _, color, alpha)| Fragment {
-                        window_depth: window_depth(depth),
-                        ..Fragment::new(depth, alpha, color)
-                    })
-                    .collect();
+                let fragment = |&(depth, _, color, alpha): &_| Fragment {
+                    window_depth: window_depth(depth),
+                    ..Fragment::new(depth, alpha, color)
+                };
+                let fragments: Vec<Fragment> = inside.map(fragment).collect();
                 let color = spec.twin(&Pixel {
                     fragments: &fragments,
                     background: BACKGROUND,
@@ -130,7 +118,8 @@ fn a_pixel_is_the_mean_of_its_samples() {
             }
             Some(mean)
         };
-        // Random numbers of a pixel's position are other ones in every row, and twins know of no other pixels.
+        // Random numbers of a pixel's position are other ones in every row, and twins know nothing of the neighbours, which hold other surfaces.
+        let promises = spec.promises();
         let alone = promises.per_pixel && !promises.noisy;
         let Some(want) = mean().filter(|_| alone) else {
             continue;
@@ -142,13 +131,10 @@ fn a_pixel_is_the_mean_of_its_samples() {
             (None, Precision::Full, Precision::Full) => FULL_SUMS,
             _ => HALF_SUMS,
         };
-        let image = image(&gpu, &scene, &spec, 4);
+        let image = image(&gpu, &scene, &spec);
         for y in 0..SIDE {
             let pixel = image.pixels[(y * SIDE + CUT) as usize];
-            for k in 0..3 {
-                let apart = (pixel[k] - want[k]).abs();
-                assert!(apart <= tolerance, "{spec}: {pixel:?}, not {want:?}");
-            }
+            assert_near(pixel, want, tolerance, &spec);
         }
         judged += 1;
     }
@@ -170,16 +156,14 @@ fn samples_have_their_cost() {
     };
     let (one, four) = (profile(1), profile(4));
     assert_eq!(four.stats.geometry_passes, 4 * one.stats.geometry_passes);
-    assert_eq!(
-        four.stats.fullscreen_passes,
-        4 * (one.stats.fullscreen_passes + 1)
-    );
+    let fullscreen = 4 * (one.stats.fullscreen_passes + 1);
+    assert_eq!(four.stats.fullscreen_passes, fullscreen);
     assert_eq!(four.stats.bytes_per_pixel, one.stats.bytes_per_pixel + 8.0);
-    let backgrounds = |times: &[peelnet_gpu::record::PassTime]| {
-        let all = times.iter();
-        all.filter(|t| t.label == "background").count()
-    };
-    assert_eq!(backgrounds(&four.times), backgrounds(&one.times));
+    let [one, four] = [one, four].map(|profile| {
+        let labels = profile.times.into_iter().map(|t| t.label);
+        labels.filter(|label| label == "background").count()
+    });
+    assert_eq!(one, four);
 }
 
 /// Numbers that WebGPU does not have are refused, and so is a target of the caller's, which cannot be drawn again.
@@ -195,8 +179,8 @@ fn what_cannot_be_sampled_is_refused() {
     }
     let options = MethodOptions::sized([4, 4]).sampled(4);
     let mut method = renderer.method(&spec, options).unwrap();
-    let format = peelnet_gpu::wgpu::TextureFormat::Rgba16Float;
-    let none = peelnet_gpu::wgpu::TextureUsages::empty();
+    let format = wgpu::TextureFormat::Rgba16Float;
+    let none = wgpu::TextureUsages::empty();
     let view = gpu.texture("target", format, [4, 4], 1, none).unwrap();
     let mut encoder = gpu.encoder();
     let target = Target::over(&view);

@@ -2,7 +2,7 @@
 
 use peelnet_core::{guards, weights::Weight};
 use peelnet_gpu::Gpu;
-use peelnet_tests::{gpu, run_text};
+use peelnet_tests::{HALF, gpu, run_text};
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input, with features of the shaders.
 fn evaluate(
@@ -56,12 +56,9 @@ fn weights() {
         for (x, y) in inputs.iter().zip(&got) {
             let want = weight.eval(x[0], x[1], x[2]);
             // WGSL allows 2.5 units for each division; the sixth power multiplies its error by six.
-            let tolerance = 32.0 * f32::EPSILON * want.abs();
-            assert!(
-                (y[0] - want).abs() <= tolerance,
-                "{call} at {x:?}: {} for {want}",
-                y[0]
-            );
+            let error = (y[0] - want).abs();
+            let is_near = error <= 32.0 * f32::EPSILON * want.abs();
+            assert!(is_near, "{call} at {x:?}: {y:?} for {want}");
         }
     }
 }
@@ -77,23 +74,15 @@ fn guards_are_the_same_numbers() {
         if x.x > 0.0 { y = vec4f(EMISSIVE_ALPHA); }",
         &[[0.0; 4], [1.0; 4]],
     );
-    assert_eq!(got[1], [guards::EMISSIVE_ALPHA; 4]);
-    assert_eq!(
-        got[0],
-        [
-            guards::SUM_FLOOR,
-            guards::HALF_MAX,
-            guards::WEIGHT_FLOOR,
-            guards::FILL_MAX
-        ]
-    );
+    use guards::{EMISSIVE_ALPHA, FILL_MAX, HALF_MAX, SUM_FLOOR, WEIGHT_FLOOR};
+    assert_eq!(got[0], [SUM_FLOOR, HALF_MAX, WEIGHT_FLOOR, FILL_MAX]);
+    assert_eq!(got[1], [EMISSIVE_ALPHA; 4]);
 }
 
 /// Stored colours come back within half a step: of a half float, 2^-11 of the value, and of less than its normal numbers half of the least
 /// step, 2^-25; of a byte, 1/510 of alpha and of the colour's square root, so that the colour errs by that times twice the root.
 #[test]
 fn stored_colors_come_back_within_half_a_step() {
-    const HALF: f32 = 1.0 / 2048.0;
     const LEAST: f32 = 1.0 / 33_554_432.0;
     const BYTE: f32 = 0.5 / 255.0;
     // Roots and squares in 32 bits.

@@ -10,18 +10,13 @@ use peelnet_core::{
 };
 use peelnet_gpu::Gpu;
 use peelnet_render::{
-    Image, LayerFormula, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision,
+    LayerFormula, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision,
 };
 use peelnet_scene::{Light, Lighting, Maps, Material, Scene, Source, Texture};
-use peelnet_tests::{HALF, draw, even, gpu, light, scene, wall};
+use peelnet_tests::{
+    HALF, assert_alike, assert_all, assert_near, draw, even, gpu, light, scene, wall,
+};
 use std::sync::Arc;
-
-fn assert_all(image: &Image, want: [f32; 3], bound: f32, what: &dyn std::fmt::Display) {
-    for p in &image.pixels {
-        let near = (0..3).all(|k| (p[k] - want[k]).abs() <= bound);
-        assert!(near, "{what}: {p:?} for {want:?}");
-    }
-}
 
 /// Lit surfaces against the 64-bit twin, pixel by pixel: 1e-4 of the brightest. With and without a directional light; with and
 /// without textures, whose values multiply the material's, and tilted normals.
@@ -83,10 +78,8 @@ fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], ma
     let mut scene = scene("lit", [0.0; 3], vec![object]);
     scene.lights = lights.to_vec();
     let image = draw(gpu, &scene, "abuffer", size);
-    let lights: Vec<shading::Light> = lights
-        .iter()
-        .map(peelnet_eval::stress::judge::light)
-        .collect();
+    let lights = lights.iter().map(peelnet_eval::stress::judge::light);
+    let lights: Vec<shading::Light> = lights.collect();
     for (i, pixel) in image.pixels.iter().enumerate() {
         let (x, y) = (i as u32 % size[0], i as u32 / size[0]);
         let aspect = f64::from(size[0]) / f64::from(size[1]);
@@ -132,18 +125,12 @@ fn textures_follow_their_uvs() {
     material.maps.nearest = true;
     let scene = scene("four", [0.0; 3], vec![wall(3.0, material)]);
     for spec in MethodSpec::all() {
-        let image = draw(&gpu, &scene, &spec.to_string(), [16, 12]);
+        let image = draw(&gpu, &scene, &spec, [16, 12]);
         for (i, pixel) in image.pixels.iter().enumerate() {
             let quadrant = 2 * (i / 16 / 6) + i % 16 / 8;
             let [r, g, b, a] = texels[quadrant].map(|b| f32::from(b) / 255.0);
             let want = [r, g, b].map(|c| srgb::decode(c) * a);
-            for k in 0..3 {
-                let bound = 4.0 * 4.0 / 2048.0;
-                assert!(
-                    (pixel[k] - want[k]).abs() <= bound,
-                    "{spec}, {i}: {pixel:?} for {want:?}"
-                );
-            }
+            assert_near(*pixel, want, 4.0 * 4.0 * HALF, format!("{spec}, {i}"));
         }
     }
 }
@@ -166,12 +153,8 @@ fn passes_without_colour_take_any_images() {
     let mut alike = both.clone();
     alike.objects[1] = wall(5.0, first);
     for spec in MethodSpec::all() {
-        let [a, b] = [&both, &alike].map(|s| draw(&gpu, s, &spec.to_string(), [8, 6]));
-        for (a, b) in a.pixels.iter().zip(&b.pixels) {
-            for k in 0..4 {
-                assert!((a[k] - b[k]).abs() <= 1.0 / 255.0, "{spec}: {a:?} {b:?}");
-            }
-        }
+        let [a, b] = [&both, &alike].map(|s| draw(&gpu, s, &spec, [8, 6]).pixels);
+        assert_alike(&a, &b, 1.0 / 255.0, &spec);
     }
 }
 
@@ -184,17 +167,11 @@ fn fine_images_show_their_mean() {
         let c = if (x + y) % 2 == 0 { 255 } else { 0 };
         [c, c, c, 255]
     })));
-    let image = draw(
-        &gpu,
-        &scene("board", [0.0; 3], vec![wall(3.0, material)]),
-        "abuffer",
-        [16, 12],
-    );
+    let board = scene("board", [0.0; 3], vec![wall(3.0, material)]);
+    let image = draw(&gpu, &board, "abuffer", [16, 12]);
     // The mean of light is kept in a byte.
     let step = srgb::decode(189.0 / 255.0) - srgb::decode(188.0 / 255.0);
-    for p in &image.pixels {
-        assert!((p[0] - 0.5).abs() <= step, "{p:?}");
-    }
+    assert_all(&image, [0.5; 3], step, "board");
 }
 
 /// Stained glass: one pane is exact for every method that knows what light passes, two are for the exact one; the others say so.
@@ -216,21 +193,15 @@ fn stained_glass_tints_what_is_behind_it() {
         let want = through(c0, first, alpha);
         for spec in MethodSpec::all() {
             if spec.promises().tinted {
-                let bound = if spec.promises().exact {
-                    1e-6
-                } else {
-                    6.0 * HALF
-                };
-                let image = draw(&gpu, &one, &spec.to_string(), [4, 3]);
-                assert_all(&image, want, bound, &spec);
+                let exact = spec.promises().exact;
+                let bound = if exact { 1e-6 } else { 6.0 * HALF };
+                assert_all(&draw(&gpu, &one, &spec, [4, 3]), want, bound, &spec);
             } else {
                 let renderer = Renderer::new(&gpu, &one).unwrap();
                 let refused = renderer.method(&spec, MethodOptions::sized([4, 3]));
                 let e = refused.unwrap_err().to_string();
-                assert!(
-                    e.contains("abuffer") && e.contains("transmission_color"),
-                    "{e}"
-                );
+                assert!(e.contains("abuffer"), "{e}");
+                assert!(e.contains("transmission_color"), "{e}");
             }
         }
         // Grey glass is a lower opacity, which every method knows.
@@ -238,7 +209,7 @@ fn stained_glass_tints_what_is_behind_it() {
         let want = through(c0, [0.5; 3], alpha);
         for method in ["abuffer", "dual-peel", "painter-object", "wboit-eq9"] {
             let image = draw(&gpu, &grey, method, [4, 3]);
-            assert_all(&image, want, 6.0 * HALF, &method);
+            assert_all(&image, want, 6.0 * HALF, method);
         }
     }
     let both = vec![wall(3.0, pane(first, 0.6)), wall(5.0, pane(second, 0.9))];
@@ -246,7 +217,7 @@ fn stained_glass_tints_what_is_behind_it() {
     let two = scene("panes", c0, both);
     // Also where storage is sorted and tiled.
     for method in ["abuffer", "abuffer:budget=6"] {
-        assert_all(&draw(&gpu, &two, method, [4, 3]), want, 1e-6, &method);
+        assert_all(&draw(&gpu, &two, method, [4, 3]), want, 1e-6, method);
     }
 }
 
@@ -295,11 +266,9 @@ fn check_layers(gpu: &Gpu, scene: &Scene, view: LayerView, parts: [f32; 3]) {
     let renderer = Renderer::new(gpu, &scene).unwrap();
     let mut prepared = renderer.layers(view, [4, 3]).unwrap();
     let frame = renderer.image(&mut prepared, &scene.views[0]).unwrap();
-    for (k, found) in frame.image.pixels[5][..3].iter().enumerate() {
-        let want: f32 = (0..3).map(|layer| LAYERS[layer][k] * parts[layer]).sum();
-        // Roundings of a handful of products of numbers up to 1.
-        assert!((found - want).abs() < 1e-6, "{view:?}: {found} for {want}");
-    }
+    let want = [0, 1, 2].map(|k| (0..3).map(|layer| LAYERS[layer][k] * parts[layer]).sum());
+    // Roundings of a handful of products of numbers up to 1.
+    assert_near(frame.image.pixels[5], want, 1e-6, format!("{view:?}"));
 }
 
 /// Layers seen one by one. Through a hole in a layer the next one is seen; where the highlighted layer itself has the hole, the others share the
@@ -325,12 +294,8 @@ fn layers_are_highlighted() {
         (0, LayerFormula::Front, 1.0),
         (0, LayerFormula::Printed, 0.5),
     ] {
-        check_layers(
-            &gpu,
-            &holed,
-            view(highlight, formula, false),
-            [0.0, share, 0.0],
-        );
+        let view = view(highlight, formula, false);
+        check_layers(&gpu, &holed, view, [0.0, share, 0.0]);
     }
     let e = layered(&[0, 1]).layer_view(7, false).unwrap_err();
     let e = e.to_string();
@@ -350,8 +315,8 @@ fn emission_is_exact_on_a_single_surface() {
         material.emission = [0.5, 0.0, 2.0];
         let scene = scene("lamp", c0, vec![wall(3.0, material.clone())]);
         let covered = alpha.max(EMISSIVE_ALPHA);
-        let beyond = |k: usize| material.color[k] + material.emission[k] / covered;
-        let f = Fragment::new(3.0, covered, [beyond(0), beyond(1), beyond(2)]);
+        let beyond = [0, 1, 2].map(|k| material.color[k] + material.emission[k] / covered);
+        let f = Fragment::new(3.0, covered, beyond);
         let want = over::composite(&[f], c0);
         for spec in MethodSpec::all() {
             let faint = alpha < 0.5;
@@ -365,13 +330,9 @@ fn emission_is_exact_on_a_single_surface() {
             if faint && (promises.noisy || promises.sums == Precision::Half) {
                 continue;
             }
-            let image = draw(&gpu, &scene, &spec.to_string(), [4, 3]);
-            let bound = if spec.promises().exact {
-                1e-5
-            } else {
-                16.0 * HALF
-            };
-            assert_all(&image, want, bound, &format!("{spec}, alpha {alpha}"));
+            let image = draw(&gpu, &scene, &spec, [4, 3]);
+            let bound = if promises.exact { 1e-5 } else { 16.0 * HALF };
+            assert_all(&image, want, bound, format!("{spec}, alpha {alpha}"));
         }
     }
 }
@@ -380,7 +341,8 @@ fn emission_is_exact_on_a_single_surface() {
 #[test]
 fn cut_outs_are_holes_or_opaque() {
     let gpu = gpu();
-    for (alpha, whole) in [(0.29, false), (0.31, true), (1.0, true)] {
+    let (hole, whole) = ([0.1, 0.1, 0.6], [0.9, 0.5, 0.1]);
+    for (alpha, want) in [(0.29, hole), (0.31, whole), (1.0, whole)] {
         let material = Material {
             alpha_cutoff: Some(0.3),
             blend: false,
@@ -388,14 +350,9 @@ fn cut_outs_are_holes_or_opaque() {
         };
         let behind = wall(5.0, Material::unlit([0.0, 0.0, 1.0], 0.5));
         let scene = scene("holes", [0.2; 3], vec![wall(3.0, material), behind]);
-        let want = if whole {
-            [0.9, 0.5, 0.1]
-        } else {
-            [0.1, 0.1, 0.6]
-        };
         for method in ["abuffer", "wboit-eq9", "kbuffer-4"] {
             let image = draw(&gpu, &scene, method, [4, 3]);
-            assert_all(&image, want, 1e-3, &format!("{method} {alpha}"));
+            assert_all(&image, want, 1e-3, format!("{method} {alpha}"));
         }
     }
 }

@@ -1,9 +1,8 @@
 //! `avboit` over several blocks of pixels: what its CPU twin, of a pixel among its like, does not know.
 
-use glam::Vec3;
 use peelnet_core::{absorbance::absorbance, methods::avboit::UNIT};
-use peelnet_scene::{Material, Object};
-use peelnet_tests::{draw, gpu, scene, wall};
+use peelnet_scene::Material;
+use peelnet_tests::{draw, gpu, object, rectangle, scene, wall};
 
 /// Sums of three terms in 32 bits, and exponentials, which llvmpipe has to 1e-6.
 const TOLERANCE: f64 = 1e-5;
@@ -13,13 +12,6 @@ const NEAR: ([f32; 3], f32) = ([0.9, 0.1, 0.2], 0.3);
 const BETWEEN: ([f32; 3], f32) = ([0.1, 0.8, 0.3], 0.6);
 const FAR: ([f32; 3], f32) = ([0.2, 0.1, 0.7], 0.5);
 
-/// A wall in the upper left quarter of the frame.
-fn quarter(z: f32, material: Material) -> Object {
-    let v = |x: f32, y: f32| Vec3::new(x * z, y * z, -z);
-    let (a, b, c, d) = (v(-1.0, 0.0), v(0.0, 0.0), v(0.0, 1.0), v(-1.0, 1.0));
-    Object::of_triangles("quarter", &[[a, b, c], [a, c, d]], material)
-}
-
 /// Of 16 x 16 pixels the block at the upper left has a layer more between the other two. How much of it counts in front of the far one
 /// falls linearly from the centre of that block to the centres of those beside it, and is even beyond them.
 #[test]
@@ -27,7 +19,8 @@ fn blocks_are_linear_between_their_centres() {
     let material = |(color, alpha): ([f32; 3], f32)| Material::unlit(color, alpha);
     let objects = vec![
         wall(1.0, material(NEAR)),
-        quarter(2.0, material(BETWEEN)),
+        // In the upper left quarter of the frame.
+        object(&rectangle([-2.0, 0.0], [0.0, 2.0], 2.0), material(BETWEEN)),
         wall(4.0, material(FAR)),
     ];
     let scene = scene("three walls", BACKGROUND, objects);
@@ -40,16 +33,12 @@ fn blocks_are_linear_between_their_centres() {
             let in_front = b(NEAR) + share(x) * share(y) * b(BETWEEN);
             let mut seen = vec![(NEAR, 1.0), (FAR, (-in_front).exp())];
             if x < 8 && y < 8 {
-                let above = (-b(NEAR)).exp();
-                seen.push((BETWEEN, above));
+                seen.push((BETWEEN, (-b(NEAR)).exp()));
             }
             let (mut sums, mut transmittance) = ([0.0f64; 4], 1.0);
             for ((color, alpha), weight) in seen {
-                let alpha = f64::from(alpha);
-                for (sum, c) in sums
-                    .iter_mut()
-                    .zip(color.map(f64::from).into_iter().chain([1.0]))
-                {
+                let [r, g, b, alpha] = [color[0], color[1], color[2], alpha].map(f64::from);
+                for (sum, c) in sums.iter_mut().zip([r, g, b, 1.0]) {
                     *sum += alpha * weight * c;
                 }
                 transmittance *= 1.0 - alpha;

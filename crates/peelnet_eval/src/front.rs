@@ -1,6 +1,6 @@
 //! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
-use crate::{Row, geometric_mean, methods_of, ratios::Bytes};
+use crate::{Row, geometric_mean, methods_of, metrics::mark_front, ratios::Bytes};
 use peelnet_render::{MethodSpec, Role};
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting.
@@ -100,12 +100,7 @@ pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
             })
         })
         .collect();
-    points.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error)));
-    let mut least = f64::INFINITY;
-    for p in &mut points {
-        p.on_front = p.error < least;
-        least = least.min(p.error);
-    }
+    mark_front(&mut points, |p| [p.time, p.error], |p, on| p.on_front = on);
     measure_against_front(&mut points);
     points
 }

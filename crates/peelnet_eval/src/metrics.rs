@@ -117,6 +117,20 @@ impl Sums {
     }
 }
 
+/// Sorts points by time, and marks those that no other one is both faster than and at least as accurate as. `of` is time and error.
+pub fn mark_front<P>(points: &mut [P], of: impl Fn(&P) -> [f64; 2], set: impl Fn(&mut P, bool)) {
+    points.sort_by(|a, b| {
+        let ([a_time, a_error], [b_time, b_error]) = (of(a), of(b));
+        a_time.total_cmp(&b_time).then(a_error.total_cmp(&b_error))
+    });
+    let mut least = f64::INFINITY;
+    for p in points {
+        let [_, error] = of(p);
+        set(p, error < least);
+        least = least.min(error);
+    }
+}
+
 /// Compares an image with the exact one, both linear RGB and coverage, row by row.
 ///
 /// # Errors

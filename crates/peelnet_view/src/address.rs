@@ -1,97 +1,117 @@
-//! What the address of a page says of the view: a link shows the same again.
+//! What shows a view again: the command of the window, and the address of a page. Both name its parts by the same words.
 
-use crate::output::{camera_numbers, camera_text};
-use peelnet_files::printable;
-use peelnet_render::MethodSpec;
+use crate::app::App;
+#[cfg(any(test, target_arch = "wasm32"))]
+use crate::app::Start;
 use peelnet_scene::Camera;
 
-/// A view, as far as an address names it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Address {
-    pub scene: Option<String>,
-    pub method: Option<MethodSpec>,
-    pub view: Option<usize>,
-    /// As [`camera_numbers`] returns them.
-    pub camera: Option<Vec<f32>>,
-    pub time: Option<f32>,
-    pub bare: bool,
+/// Eye, target and field of view, as `--camera` reads them.
+fn camera_text(camera: &Camera) -> String {
+    let [p, t] = [camera.position, camera.target];
+    let numbers = [p.x, p.y, p.z, t.x, t.y, t.z, camera.fov_y_degrees];
+    numbers.map(|x| x.to_string()).join(",")
 }
 
-impl Address {
-    /// Reads `?scene=…&method=…`; what is wrong in it is left out, with a message.
-    pub fn read(query: &str) -> (Self, Vec<String>) {
-        let (mut address, mut wrong) = (Self::default(), Vec::new());
-        for pair in query.trim_start_matches('?').split('&') {
-            let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
-            let value = decoded(value);
-            if let Err(why) = address.take(name, &value) {
-                let value = printable(&value).to_string();
-                wrong.push(format!("the address says {name}={value}: {why}"));
-            }
-        }
-        (address, wrong)
+/// Eye and target, and the field of view in degrees: six or seven numbers, as `--camera` gives them.
+pub fn camera_numbers(text: &str) -> Result<Vec<f32>, String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|n| n.trim().parse::<f32>()).collect();
+    let numbers = numbers.unwrap_or_default();
+    let is_complete = matches!(numbers.len(), 6 | 7) && numbers.iter().all(|x| x.is_finite());
+    let is_direction = is_complete && numbers[..3] != numbers[3..6];
+    let is_angle = numbers.get(6).is_none_or(|x| *x > 0.0 && *x < 180.0);
+    if is_direction && is_angle {
+        return Ok(numbers);
+    }
+    Err("must be eye and target, and the field of view in degrees where it is another: X,Y,Z,X,Y,Z[,DEGREES]".into())
+}
+
+/// For a shell, on one line.
+fn quoted(text: &str) -> String {
+    shell_words::quote(&peelnet_files::one_line(text)).into_owned()
+}
+
+impl App {
+    /// What is shown of the scene: option and value.
+    fn options(&self) -> Vec<(&'static str, String)> {
+        let time = self.stage.as_ref().and_then(|stage| stage.time());
+        let method = ("method", self.first.spec.to_string());
+        let view = match self.view {
+            Some(number) => ("view", number.to_string()),
+            None => ("camera", camera_text(&self.camera)),
+        };
+        let time = time.map(|time| ("time", time.to_string()));
+        [method, view].into_iter().chain(time).collect()
     }
 
-    fn take(&mut self, name: &str, value: &str) -> Result<(), String> {
+    fn scene_path(&self) -> Option<String> {
+        let path = &self.stage.as_ref()?.source.path;
+        Some(path.to_string_lossy().into_owned())
+    }
+
+    /// The command that opens this view again; `None` without a scene.
+    pub(crate) fn command(&self) -> Option<String> {
+        let mut command = format!("peelnet view {}", quoted(&self.scene_path()?));
+        let model = self.first.own_network();
+        let model = model.map(|n| ("model", n.path.to_string_lossy().into_owned()));
+        for (name, value) in self.options().into_iter().chain(model) {
+            command += &format!(" --{name}={}", quoted(&value));
+        }
+        Some(command)
+    }
+
+    /// The query of an address that shows this view again; `None` without a scene.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    pub(crate) fn query(&self) -> Option<String> {
+        // An address may hold these two, and is easier to read with them.
+        let encoded = |text: &str| {
+            let all = urlencoding::encode(text);
+            all.replace("%2C", ",").replace("%3A", ":")
+        };
+        let mut query = format!("?scene={}", encoded(&self.scene_path()?));
+        for (name, value) in self.options() {
+            query += &format!("&{name}={}", encoded(&value));
+        }
+        if self.panels.bare {
+            query += "&bare=1";
+        }
+        Some(query)
+    }
+}
+
+/// Reads `?scene=…&method=…` into what a page begins with; what is wrong in it is left out, with a message.
+#[cfg(any(test, target_arch = "wasm32"))]
+pub(crate) fn read(query: &str, start: &mut Start) -> Vec<String> {
+    let mut take = |name: &str, value: &str| -> crate::task::Fallible<()> {
         match name {
-            "scene" if !value.is_empty() => self.scene = Some(value.to_owned()),
-            "method" => {
-                let method = value.parse::<MethodSpec>();
-                self.method = Some(method.map_err(|e| crate::stage::one_line(&e))?);
-            }
-            "view" => self.view = Some(value.parse().map_err(|_| "must be a whole number")?),
-            "camera" => self.camera = Some(camera_numbers(value)?),
+            "scene" if !value.is_empty() => start.scene = value.into(),
+            "method" => start.method = value.parse()?,
+            "view" => start.view = value.parse().map_err(|_| "must be a whole number")?,
+            "camera" => start.camera = Some(camera_numbers(value)?),
             "time" => {
                 let time = value.parse::<f32>().ok().filter(|t| t.is_finite());
-                self.time = Some(time.ok_or("must be a number")?);
+                start.time = Some(time.ok_or("must be a number")?);
             }
-            "bare" => self.bare = value != "0",
+            "bare" => start.bare = value != "0",
             // Hosts and mail programs add words of their own.
             _ => {}
         }
         Ok(())
-    }
-
-    /// The query of this view.
-    pub fn query(
-        scene: &str,
-        method: &MethodSpec,
-        (view, camera): (Option<usize>, &Camera),
-        time: Option<f32>,
-        bare: bool,
-    ) -> String {
-        let mut query = format!(
-            "?scene={}&method={}",
-            encoded(scene),
-            encoded(&method.to_string())
-        );
-        match view {
-            Some(number) => query += &format!("&view={number}"),
-            None => query += &format!("&camera={}", camera_text(camera)),
-        }
-        if let Some(time) = time {
-            query += &format!("&time={time}");
-        }
-        if bare {
-            query += "&bare=1";
-        }
-        query
-    }
-}
-
-/// Bytes that an address may not have as `%XX`.
-fn encoded(text: &str) -> String {
-    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-_.~:,".contains(&b);
-    let one = |b: u8| match plain(b) {
-        true => char::from(b).to_string(),
-        false => format!("%{b:02X}"),
     };
-    text.bytes().map(one).collect()
-}
-
-fn decoded(text: &str) -> String {
-    let spaced = text.replace('+', " ");
-    String::from_utf8_lossy(&urlencoding::decode_binary(spaced.as_bytes())).into_owned()
+    let mut wrong = Vec::new();
+    for pair in query.trim_start_matches('?').split('&') {
+        let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
+        let spaced = value.replace('+', " ");
+        let value = urlencoding::decode_binary(spaced.as_bytes());
+        let value = String::from_utf8_lossy(&value);
+        if let Err(why) = take(name, &value) {
+            let (value, why) = (
+                peelnet_files::printable(&value),
+                crate::task::one_line(&*why),
+            );
+            wrong.push(format!("the address says {name}={value}: {why}"));
+        }
+    }
+    wrong
 }
 
 #[cfg(test)]
@@ -100,40 +120,41 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_shows_the_same_again() {
-        let camera = Camera {
-            position: glam::Vec3::new(0.1, -2.5, 1e-3),
-            target: glam::Vec3::new(3.0, 4.0, 5.0),
-            up: glam::Vec3::Y,
-            fov_y_degrees: 33.3,
-            near: 0.1,
-            far: 9.0,
-        };
-        let method: MethodSpec = "wboit-eq10:factor=3e4,targets=f32".parse().unwrap();
-        for (scene, view) in [("cups", Some(2)), ("meine Szene & mehr=ä+.glb", None)] {
-            let query = Address::query(scene, &method, (view, &camera), Some(1.5), true);
-            let (address, wrong) = Address::read(&query);
-            assert_eq!(wrong, [""; 0], "{query}");
-            let numbers = vec![0.1, -2.5, 1e-3, 3.0, 4.0, 5.0, 33.3];
-            let wanted = Address {
-                scene: Some(scene.to_owned()),
-                method: Some(method.clone()),
-                view,
-                camera: view.is_none().then_some(numbers),
-                time: Some(1.5),
-                bare: true,
-            };
-            assert_eq!(address, wanted, "{query}");
+    fn shells_take_names_as_they_are() {
+        for (name, word) in [
+            ("a/b-1.glb", "a/b-1.glb"),
+            ("my mesh.glb", "'my mesh.glb'"),
+            ("it's", r"'it'\''s'"),
+            ("$(rm)", "'$(rm)'"),
+        ] {
+            assert_eq!(quoted(name), word);
+        }
+    }
+
+    #[test]
+    fn cameras_are_checked() {
+        assert_eq!(camera_numbers("1,2, 3,1,2,4").unwrap().len(), 6);
+        for bad in [
+            "",
+            "1,2,3",
+            "1,2,3,1,2,3",
+            "1,2,3,4,5,nan",
+            "1,2,3,4,5,6,0",
+            "1,2,3,4,5,6,7,8",
+            "a,2,3,4,5,6",
+        ] {
+            assert!(camera_numbers(bad).is_err(), "{bad}");
         }
     }
 
     #[test]
     fn what_is_wrong_is_said_and_left_out() {
-        let (address, wrong) =
-            Address::read("?method=nonsense&view=-1&camera=1,2&time=inf&scene=%E4%&utm=1");
+        let mut start = Start::new("", "abuffer".parse().unwrap());
+        let query = "?method=nonsense&view=-1&camera=1,2&time=inf&scene=%E4%&utm=1";
+        let wrong = read(query, &mut start);
         assert_eq!(wrong.len(), 4, "{wrong:?}");
-        assert_eq!(address.method, None);
-        assert_eq!(address.scene.as_deref(), Some("\u{fffd}%"));
-        assert_eq!(Address::read(""), (Address::default(), Vec::new()));
+        assert_eq!(start.method.to_string(), "abuffer");
+        assert_eq!(start.scene.to_str(), Some("\u{fffd}%"));
+        assert_eq!(read("", &mut start), [""; 0]);
     }
 }

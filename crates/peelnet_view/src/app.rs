@@ -2,26 +2,28 @@
 
 use crate::{
     compare::{Compare, Mode},
-    display::{Display, Show, View},
-    eye::{self},
+    display::{self, Display},
+    eye,
     front::Front,
     inspect::Inspector,
+    memory,
     messages::Messages,
-    motion::Motion,
     numbers::{EXACT, Judge, Key, LayerCounter},
     output::Output,
     panels,
     script::Script,
     slot::{Network, Slot},
     stage::{Source, Stage},
+    task::{Fallible, one_line},
     watch::Watch,
 };
-use eframe::egui_wgpu::RenderState;
+use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use egui::Context;
+use glam::Vec3;
 use peelnet_gpu::{Gpu, wgpu};
-use peelnet_render::MethodSpec;
+use peelnet_render::{FrameStatus, MethodSpec};
 use peelnet_scene::{Camera, Scene};
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 /// How long the view rests before errors are measured, seconds.
 const REST: f64 = 0.15;
@@ -74,103 +76,104 @@ impl Start {
     }
 }
 
+/// Has egui draw with a device that is open.
+pub(crate) fn configuration(gpu: &Gpu) -> WgpuConfiguration {
+    WgpuConfiguration {
+        wgpu_setup: WgpuSetup::Existing(WgpuSetupExisting {
+            instance: gpu.instance.clone(),
+            adapter: gpu.adapter.clone(),
+            device: gpu.device.clone(),
+            queue: gpu.queue.clone(),
+        }),
+        ..Default::default()
+    }
+}
+
 /// The viewer.
-#[derive(Debug)]
-pub struct App {
-    pub(crate) gpu: Gpu,
-    pub(crate) stage: Option<Stage>,
-    pub(crate) camera: Camera,
+pub(crate) struct App {
+    pub gpu: Gpu,
+    pub stage: Option<Stage>,
+    pub camera: Camera,
     /// The scene's view that the camera still is.
-    pub(crate) view: Option<usize>,
-    pub(crate) first: Slot,
-    pub(crate) second: Slot,
-    pub(crate) compare: Compare,
-    pub(crate) judge: Judge,
-    pub(crate) counter: LayerCounter,
-    pub(crate) inspector: Inspector,
-    pub(crate) front: Front,
-    pub(crate) output: Output,
-    pub(crate) messages: Messages,
-    pub(crate) motion: Motion,
-    pub(crate) watch: Watch,
-    pub(crate) recent: Vec<PathBuf>,
-    pub(crate) panels: panels::State,
+    pub view: Option<usize>,
+    pub first: Slot,
+    pub second: Slot,
+    pub compare: Compare,
+    pub judge: Judge,
+    pub counter: LayerCounter,
+    pub inspector: Inspector,
+    pub front: Front,
+    pub output: Output,
+    pub messages: Messages,
+    pub watch: Watch,
+    pub recent: Vec<PathBuf>,
+    pub panels: panels::State,
     /// Size of the picture, pixels.
-    pub(crate) size: [u32; 2],
-    pub(crate) script: Option<Script>,
-    display: Display,
-    displayed: Option<(View, [u64; 2], [u32; 2])>,
+    pub size: [u32; 2],
+    script: Option<Script>,
+    pub display: Display,
+    displayed: Option<(display::View, [u64; 2], [u32; 2])>,
     /// When the view last changed, and what it was: seconds of the window's clock.
     rest: Option<(Key, f64)>,
     /// Clock time of the last frames' work on the CPU, milliseconds.
-    pub(crate) cpu_ms: f64,
+    pub cpu_ms: f64,
     #[cfg(target_arch = "wasm32")]
-    pub(crate) page: crate::web::InPage,
+    pub page: crate::web::InPage,
 }
 
 impl App {
-    /// Opens a scene; what does not open is a message in the window.
-    pub fn new(gpu: &Gpu, mut start: Start, recent: Vec<PathBuf>) -> Self {
-        let source = Source::Named(std::mem::take(&mut start.scene));
-        Self::of_source(gpu, start, source, recent)
-    }
-
-    /// The same with the scene of a source, whatever `start` names.
-    pub(crate) fn of_source(gpu: &Gpu, start: Start, source: Source, recent: Vec<PathBuf>) -> Self {
-        let mut app = Self::empty(gpu, &start, recent);
-        app.compare.mode = start.compare;
-        match start.loaded {
+    /// Opens a scene from a source, whatever `start` names; what does not open is a message in the window.
+    pub fn new(gpu: &Gpu, mut start: Start, source: Source, recent: Vec<PathBuf>) -> Self {
+        let (loaded, model) = (start.loaded.take(), start.model.take());
+        let (camera, view, time) = (start.camera.take(), start.view, start.time);
+        let mut app = Self::empty(gpu, start, recent);
+        match loaded {
             Some(scene) => app.take(Stage::of_scene(gpu, source, scene)),
-            None => app.open(source, start.time),
+            None => app.open(source, time),
         }
-        app.show_view(start.view);
-        if let Some([px, py, pz, tx, ty, tz, angle @ ..]) = start.camera.as_deref() {
-            let (position, target) = ([*px, *py, *pz].into(), [*tx, *ty, *tz].into());
-            let angle = angle.first().copied();
+        app.show_view(view);
+        if let Some(numbers) = camera.filter(|numbers| numbers.len() >= 6) {
             app.move_eye(|camera, _| {
-                (camera.position, camera.target) = (position, target);
-                camera.fov_y_degrees = angle.unwrap_or(camera.fov_y_degrees);
+                camera.position = Vec3::from_slice(&numbers);
+                camera.target = Vec3::from_slice(&numbers[3..]);
+                camera.fov_y_degrees = *numbers.get(6).unwrap_or(&camera.fov_y_degrees);
             });
         }
-        if let Some(path) = start.model {
-            app.open_network(path);
+        if let Some(path) = model {
+            app.open_network(Source::named(path));
         }
         app
     }
 
     /// Without a scene.
-    pub(crate) fn empty(gpu: &Gpu, start: &Start, recent: Vec<PathBuf>) -> Self {
-        let exact: Option<MethodSpec> = EXACT.parse().ok();
+    pub fn empty(gpu: &Gpu, start: Start, recent: Vec<PathBuf>) -> Self {
+        let against = start.against.or_else(|| EXACT.parse().ok());
         Self {
             gpu: gpu.clone(),
             stage: None,
             camera: Camera {
-                position: glam::Vec3::Z,
-                target: glam::Vec3::ZERO,
-                up: glam::Vec3::Y,
+                position: Vec3::Z,
+                target: Vec3::ZERO,
+                up: Vec3::Y,
                 fov_y_degrees: 45.0,
                 near: 0.1,
                 far: 10.0,
             },
             view: None,
-            second: {
-                let against = start.against.clone().or(exact);
-                Slot::new(against.unwrap_or_else(|| start.method.clone()))
-            },
-            first: Slot::new(start.method.clone()),
-            compare: Compare::default(),
+            second: Slot::new(against.unwrap_or_else(|| start.method.clone())),
+            first: Slot::new(start.method),
+            compare: Compare::new(start.compare),
             judge: Judge::default(),
             counter: LayerCounter::default(),
             inspector: Inspector::default(),
             front: Front::default(),
             output: Output::default(),
             messages: Messages::default(),
-            motion: Motion::default(),
             watch: Watch::default(),
             recent,
             panels: panels::State::new(start.bare),
             size: [0; 2],
-            script: start.script.clone(),
+            script: start.script,
             display: Display::new(gpu),
             displayed: None,
             rest: None,
@@ -181,23 +184,19 @@ impl App {
     }
 
     /// Replaces the scene; the one that is shown stays where the new one does not open.
-    pub(crate) fn open(&mut self, source: Source, time: Option<f32>) {
+    pub fn open(&mut self, source: Source, time: Option<f32>) {
         self.take(Stage::open(&self.gpu, source, time));
     }
 
-    fn take(&mut self, opened: Result<Stage, String>) {
-        match opened {
-            Ok(stage) => self.replace(stage),
-            Err(e) => self.messages.error(e),
-        }
-    }
-
-    fn replace(&mut self, stage: Stage) {
+    fn take(&mut self, opened: Fallible<Stage>) {
+        let Some(stage) = self.messages.unless_error(opened) else {
+            return;
+        };
         self.cancel();
-        for warning in &stage.scene().warnings {
+        for warning in &stage.scene.warnings {
             self.messages.warn(warning.clone());
         }
-        let (Source::Named(path) | Source::Dropped(path, _)) = &stage.source;
+        let path = &stage.source.path;
         self.recent.retain(|p| p != path);
         self.recent.insert(0, path.clone());
         self.recent.truncate(MOST_RECENT);
@@ -206,31 +205,28 @@ impl App {
         self.first.forget();
         self.second.forget();
         self.inspector.pixel = None;
-        self.motion.stop();
+        (self.panels.plays, self.panels.turns) = (false, false);
         self.stage = Some(stage);
         self.show_view(0);
     }
 
     /// Looks through one of the scene's cameras.
-    pub(crate) fn show_view(&mut self, number: usize) {
+    pub fn show_view(&mut self, number: usize) {
         let Some(stage) = &self.stage else {
             return;
         };
-        match stage.scene().views.get(number) {
-            Some(camera) => {
-                self.camera = *camera;
-                self.view = Some(number);
-            }
+        match stage.scene.views.get(number) {
+            Some(camera) => (self.camera, self.view) = (*camera, Some(number)),
             None => self.messages.error(format!(
                 "{} has {} views, numbered from 0: there is no view {number}",
                 stage.source.name(),
-                stage.scene().views.len()
+                stage.scene.views.len()
             )),
         }
     }
 
     /// Moves the camera, and puts its planes around the scene.
-    pub(crate) fn move_eye(&mut self, change: impl FnOnce(&mut Camera, eye::Sphere)) {
+    pub fn move_eye(&mut self, change: impl FnOnce(&mut Camera, eye::Sphere)) {
         if let Some(stage) = &self.stage {
             change(&mut self.camera, stage.all);
             eye::set_planes(&mut self.camera, stage.all);
@@ -238,53 +234,46 @@ impl App {
         }
     }
 
-    /// Draws with a network from a file, by its method, and reads the file again when it changes.
-    pub(crate) fn open_network(&mut self, path: PathBuf) {
-        let read = std::fs::read(&path)
-            .map_err(|e| format!("{}: cannot be read: {e}", peelnet_files::shown(&path)));
-        match read.and_then(|bytes| Network::from_bytes(path.clone(), &bytes)) {
-            Ok(network) => {
-                self.take_network(network);
-                self.watch.follow(path);
-            }
-            Err(e) => self.messages.error(e),
-        }
-    }
-
-    pub(crate) fn take_network(&mut self, network: Network) {
-        if !network.is_of(self.first.spec())
-            && let Ok(spec) = network.weight.recipe.method.parse()
+    /// Draws with a network, by its method, and reads its file again when it changes.
+    pub fn open_network(&mut self, source: Source) {
+        let bytes = source.bytes();
+        let network = bytes.and_then(|bytes| Network::from_bytes(source.path.clone(), &bytes));
+        let Some(network) = self.messages.unless_error(network) else {
+            return;
+        };
+        let method = network.weight.recipe.method;
+        if method != self.first.spec.name()
+            && let Ok(spec) = method.parse()
         {
             self.first.set_spec(spec);
         }
         self.judge.cancel();
-        self.judge.last = None;
         self.first.set_network(Some(network));
+        self.watch
+            .follow(Some(source.path).filter(|_| source.dropped.is_none()));
     }
 
     /// Changes the scene; a failure is a message.
-    pub(crate) fn edit(&mut self, change: impl FnOnce(&mut Stage) -> Result<(), String>) {
+    pub fn edit(&mut self, change: impl FnOnce(&mut Stage) -> Fallible<()>) {
         // Measurements hold the scene: what they measure is not there any more.
         self.cancel();
-        if let Some(stage) = &mut self.stage
-            && let Err(e) = change(stage)
-        {
-            self.messages.error(e);
+        if let Some(stage) = &mut self.stage {
+            self.messages.unless_error(change(stage));
         }
     }
 
     fn cancel(&mut self) {
         self.judge.cancel();
         self.counter.cancel();
-        self.inspector.cancel();
-        self.front.cancel();
-        self.output.cancel();
+        self.inspector.job.cancel();
+        self.front.job.cancel();
+        self.output.job.cancel();
     }
 
     /// What identifies the picture.
-    pub(crate) fn key(&self) -> Option<Key> {
+    pub fn key(&self) -> Option<Key> {
         let stage = self.stage.as_ref()?;
-        Some(Key::of(stage, &self.first, &self.camera, self.size))
+        Some(Key::of(stage.view(self.camera, self.size), &self.first))
     }
 
     fn poll(&mut self, ui: &Context) {
@@ -295,22 +284,22 @@ impl App {
             if self.begin_again(&e) {
                 return;
             }
-            self.messages.error(crate::stage::one_line(&e));
+            self.messages.error(one_line(&e));
         }
         self.first.poll(ui);
         self.second.poll(ui);
         self.judge.poll(ui);
         self.counter.poll(ui);
-        self.inspector.poll(ui);
-        self.front.poll(ui);
-        self.output.poll(ui);
+        self.inspector.job.poll(ui);
+        self.front.job.poll(ui);
+        self.output.job.poll(ui);
         if let Some(path) = self.watch.changed(ui) {
-            self.open_network(path);
+            self.open_network(Source::named(path));
         }
     }
 
     /// Draws what is shown in a picture of this size, where anything changed; the texture that egui shows.
-    pub(crate) fn draw(
+    pub fn draw(
         &mut self,
         egui: &RenderState,
         ui: &Context,
@@ -326,43 +315,37 @@ impl App {
         let mode = self.compare.mode_at(ui);
         let half = [size[0].div_ceil(2), size[1]];
         let own = if mode == Mode::Beside { half } else { size };
+        let view = stage.view(self.camera, own);
         let mut encoder = self.gpu.encoder();
-        let mut drawn = self
-            .first
-            .draw(stage, &mut encoder, &self.camera, own, always);
+        let mut drawn = self.first.draw(stage, &mut encoder, view, always);
         if mode.needs_second() {
-            drawn |= self
-                .second
-                .draw(stage, &mut encoder, &self.camera, own, always);
-        }
-        if mode == Mode::Layers {
-            self.counter.want(stage, &self.camera, size);
+            drawn |= self.second.draw(stage, &mut encoder, view, always);
         }
         for slot in [&self.first, &self.second] {
             if let Some(failure) = &slot.failure {
-                self.messages.error(format!("{}: {failure}", slot.spec()));
+                self.messages.error(format!("{}: {failure}", slot.spec));
             }
         }
-        let map = match &self.counter.map {
-            Some(Ok(map)) if mode == Mode::Layers => Some(map),
-            Some(Err(e)) if mode == Mode::Layers => {
+        if mode == Mode::Layers {
+            self.counter.want(stage, view);
+            if let Some((_, Err(e))) = &self.counter.last {
                 self.messages.error(e.clone());
-                None
             }
-            _ => None,
-        };
+        }
+        let map = self.counter.map().filter(|_| mode == Mode::Layers);
         let (show, scale) = match (mode, map) {
-            (Mode::Layers, Some(map)) => (Show::Layers, map.most.max(1.0)),
-            (mode, _) => (mode.show(), self.compare.scale),
+            (_, Some(map)) => (mode, map.most.max(1.0)),
+            (Mode::Layers, None) => (Mode::One, self.compare.scale),
+            _ => (mode, self.compare.scale),
         };
-        let first = map.map_or_else(|| self.first.picture(), |map| Some(&map.texture))?;
-        let second = self.second.picture().unwrap_or(first);
+        let first = map.map_or(self.first.picture.as_ref(), |map| Some(&map.texture))?;
+        let second = self.second.picture.as_ref().unwrap_or(first);
         let divider = if mode == Mode::Beside {
             half[0]
         } else {
             (self.compare.divider * size[0] as f32).round() as u32
         };
-        let view = View {
+        let view = display::View {
             show: show as u32,
             divider,
             scale,
@@ -373,19 +356,14 @@ impl App {
             return self.display.texture();
         }
         let pictures = [first, second];
-        let done = self
-            .display
-            .draw(&self.gpu, egui, &mut encoder, size, pictures, view);
-        if let Err(e) = done {
-            self.messages.error(crate::stage::one_line(&e));
-        }
+        let (display, gpu) = (&mut self.display, &self.gpu);
+        let done = display.draw(gpu, egui, &mut encoder, size, pictures, view);
+        self.messages.unless_error(done);
         self.gpu.queue.submit([encoder.finish()]);
         #[cfg(target_arch = "wasm32")]
         self.page.drew(&self.gpu, ui);
         self.displayed = Some(state);
-        let unfinished = |slot: &Slot| {
-            slot.failure.is_none() && slot.status() != peelnet_render::FrameStatus::Whole
-        };
+        let unfinished = |slot: &Slot| slot.failure.is_none() && slot.status != FrameStatus::Whole;
         if unfinished(&self.first) || (mode.needs_second() && unfinished(&self.second)) {
             ui.request_repaint();
         }
@@ -398,30 +376,23 @@ impl App {
             return;
         };
         let now = ui.input(|i| i.time);
-        match &self.rest {
-            Some((of, since)) if *of == key => {
-                if now - since >= REST {
-                    if let Some(stage) = self.stage.as_ref().filter(|s| s.layers().is_none()) {
-                        if self.panels.measures {
-                            self.judge.want(stage, &self.first, key.clone());
-                        }
-                        self.inspector.want(stage, &self.first, key, self.size);
-                    }
-                } else {
-                    ui.request_repaint_after(std::time::Duration::from_secs_f64(REST));
-                }
+        let since = self.rest.as_ref().filter(|(of, _)| *of == key);
+        let since = since.map(|(_, since)| *since);
+        if since.is_none() {
+            self.rest = Some((key.clone(), now));
+        }
+        if since.is_none_or(|since| now - since < REST) {
+            ui.request_repaint_after(Duration::from_secs_f64(REST));
+        } else if let Some(stage) = self.stage.as_ref().filter(|s| s.shown.layers.is_none()) {
+            if self.panels.measures {
+                self.judge.want(stage, &self.first, key.clone());
             }
-            _ => {
-                self.rest = Some((key, now));
-                ui.request_repaint_after(std::time::Duration::from_secs_f64(REST));
-            }
+            self.inspector.want(stage, &self.first, key);
         }
     }
-}
 
-impl App {
     /// One frame of the window.
-    pub(crate) fn frame(&mut self, ui: &mut egui::Ui, egui: &RenderState) {
+    pub fn frame(&mut self, ui: &mut egui::Ui, egui: &RenderState) {
         let begin = web_time::Instant::now();
         let ctx = ui.ctx().clone();
         self.poll(&ctx);
@@ -435,16 +406,9 @@ impl App {
         // A slow average, so that the number can be read.
         let now = begin.elapsed().as_secs_f64() * 1e3;
         self.cpu_ms += 0.1 * (now - self.cpu_ms);
-        if let Some(mut script) = self.script.take() {
+        if let Some(script) = &mut self.script {
             script.advance(&ctx, &self.first, now);
-            self.script = Some(script);
         }
-    }
-
-    /// What the window shows as the picture.
-    #[cfg(test)]
-    pub(crate) const fn displayed(&self) -> &Display {
-        &self.display
     }
 }
 
@@ -461,7 +425,7 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        crate::memory::save(storage, &self.recent);
+        memory::save(storage, &self.recent);
     }
 
     #[cfg(target_arch = "wasm32")]

@@ -1,92 +1,66 @@
 //! How one or two pictures are shown.
 
-use crate::display::Show;
-
 /// Seconds that each of two pictures is seen.
 const FLICKER: f64 = 0.5;
 
-/// What the viewport shows.
+/// What the viewport shows; the numbers of `display.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Mode {
     /// The method alone.
     #[default]
-    One,
-    /// Both methods, divided by a line.
-    Split,
-    /// Both methods side by side.
-    Beside,
-    /// Both methods in turn.
-    Flicker,
+    One = 0,
     /// In place of [`Mode::Flicker`] while the second picture's turn lasts.
-    Second,
+    Second = 1,
+    /// Both methods, divided by a line.
+    Split = 2,
+    /// Both methods side by side.
+    Beside = 3,
     /// A map of their differences.
-    Error,
+    Error = 4,
     /// A map of the number of transparent surfaces.
-    Layers,
+    Layers = 5,
+    /// Both methods in turn; while the first picture's turn lasts, that one.
+    Flicker = 6,
 }
 
-/// Names for command lines, in the order of [`Mode::ALL`].
-const WORDS: [&str; 6] = ["one", "split", "beside", "flicker", "error", "layers"];
+/// What people choose from: the word of command lines, a name and what it does.
+pub(crate) const MODES: [(Mode, &str, &str, &str); 6] = {
+    const SPLIT: &str = "The method left of a divider that you drag, the other one right of it";
+    const BESIDE: &str = "Both methods side by side, each whole";
+    const FLICKER: &str = "Each in turn, every half second: the eye finds what jumps";
+    const ERROR: &str = "The largest difference of a colour channel, of 255";
+    const LAYERS: &str = "How many transparent surfaces lie over each pixel";
+    [
+        (Mode::One, "one", "One", "The method alone"),
+        (Mode::Split, "split", "Split", SPLIT),
+        (Mode::Beside, "beside", "Beside", BESIDE),
+        (Mode::Flicker, "flicker", "Flicker", FLICKER),
+        (Mode::Error, "error", "Error map", ERROR),
+        (Mode::Layers, "layers", "Depth complexity", LAYERS),
+    ]
+};
 
 impl std::str::FromStr for Mode {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let place = WORDS.iter().position(|word| *word == text);
-        place
-            .map(|k| Self::ALL[k].0)
-            .ok_or_else(|| format!("'{text}' is not one of {}", WORDS.join(", ")))
+        let found = MODES.iter().find(|(_, word, ..)| *word == text);
+        found.map(|(mode, ..)| *mode).ok_or_else(|| {
+            let words = MODES.map(|(_, word, ..)| word).join(", ");
+            format!("'{text}' is not one of {words}")
+        })
     }
 }
 
 impl Mode {
-    /// All that people choose from, with a name and what it does.
-    pub(crate) const ALL: [(Self, &'static str, &'static str); 6] = [
-        (Self::One, "One", "The method alone"),
-        (
-            Self::Split,
-            "Split",
-            "The method left of a divider that you drag, the other one right of it",
-        ),
-        (
-            Self::Beside,
-            "Beside",
-            "Both methods side by side, each whole",
-        ),
-        (
-            Self::Flicker,
-            "Flicker",
-            "Each in turn, every half second: the eye finds what jumps",
-        ),
-        (
-            Self::Error,
-            "Error map",
-            "The largest difference of a colour channel, of 255",
-        ),
-        (
-            Self::Layers,
-            "Depth complexity",
-            "How many transparent surfaces lie over each pixel",
-        ),
-    ];
-
     pub(crate) const fn needs_second(self) -> bool {
         !matches!(self, Self::One | Self::Layers)
-    }
-
-    pub(crate) const fn show(self) -> Show {
-        match self {
-            Self::One | Self::Flicker | Self::Layers => Show::First,
-            Self::Second => Show::Second,
-            Self::Split => Show::Split,
-            Self::Beside => Show::Beside,
-            Self::Error => Show::Error,
-        }
     }
 }
 
 /// The choice, and its numbers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct Compare {
     pub mode: Mode,
     /// Where the pictures are divided, a share of the width.
@@ -95,17 +69,15 @@ pub(crate) struct Compare {
     pub scale: f32,
 }
 
-impl Default for Compare {
-    fn default() -> Self {
+impl Compare {
+    pub const fn new(mode: Mode) -> Self {
         Self {
-            mode: Mode::One,
+            mode,
             divider: 0.5,
             scale: 16.0,
         }
     }
-}
 
-impl Compare {
     /// The mode at this moment: flickering takes turns.
     pub fn mode_at(&self, ui: &egui::Context) -> Mode {
         if self.mode != Mode::Flicker {

@@ -1,7 +1,7 @@
 // What the window shows of one or two pictures in linear light: encoded for a display, compared, or as a map.
 
 struct View {
-    // See `Show` in display.rs.
+    // See `Mode` in compare.rs.
     show: u32,
     // Column that divides the pictures, pixels.
     divider: u32,
@@ -14,7 +14,6 @@ struct View {
 @group(0) @binding(1) var second: texture_2d<f32>;
 @group(0) @binding(2) var<uniform> view: View;
 
-const FIRST: u32 = 0u;
 const SECOND: u32 = 1u;
 const SPLIT: u32 = 2u;
 const BESIDE: u32 = 3u;

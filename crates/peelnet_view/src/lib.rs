@@ -1,6 +1,6 @@
 //! The viewer of peelnet: every transparency method live, in a window and in a web page.
 //!
-//! [`App`] is an application of [`eframe`]. A frame of it goes like this:
+//! It is an application of [`eframe`]. A frame of it goes like this:
 //!
 //! 1. What was begun earlier goes on: errors, times, the fragments of a pixel, the front of all methods. All of it is futures that are polled,
 //!    because nothing may wait in a browser.
@@ -10,7 +10,6 @@
 //!
 //! Controls of methods are made from the methods' declarations ([`peelnet_render::METHODS`]): a new method or parameter appears by itself.
 
-#[cfg(any(test, target_arch = "wasm32"))]
 mod address;
 mod app;
 mod compare;
@@ -21,7 +20,6 @@ mod input;
 mod inspect;
 mod memory;
 mod messages;
-mod motion;
 mod numbers;
 mod output;
 mod panels;
@@ -38,10 +36,10 @@ mod web;
 #[cfg(not(target_arch = "wasm32"))]
 mod window;
 
-pub use app::{App, Start};
+pub use address::camera_numbers;
+pub use app::Start;
 pub use compare::Mode;
-pub use output::camera_numbers;
-pub use script::{Outcome, Script};
+pub use script::Script;
 #[cfg(target_arch = "wasm32")]
 pub use web::Page;
 #[cfg(not(target_arch = "wasm32"))]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-const RECENT: &str = "recent";
+pub(crate) const RECENT: &str = "recent";
 
 /// Scenes that were opened, the last one first.
 pub(crate) fn load(storage: Option<&dyn eframe::Storage>) -> Vec<PathBuf> {
@@ -17,18 +17,8 @@ pub(crate) fn save(storage: &mut dyn eframe::Storage, recent: &[PathBuf]) {
 }
 
 /// A name with a line break is not remembered.
-fn text(recent: &[PathBuf]) -> String {
+pub(crate) fn text(recent: &[PathBuf]) -> String {
     let names = recent.iter().filter_map(|p| p.to_str());
     let names: Vec<&str> = names.filter(|n| !n.contains('\n')).collect();
     names.join("\n")
-}
-
-/// At once: a page may be closed without a word.
-#[cfg(target_arch = "wasm32")]
-pub(crate) fn save_in_page(recent: &[PathBuf]) {
-    let window = web_sys::window();
-    if let Some(storage) = window.and_then(|w| w.local_storage().ok().flatten()) {
-        // A browser that keeps nothing shows the first scene again.
-        let _ = storage.set_item(RECENT, &text(recent));
-    }
 }

@@ -1,76 +1,27 @@
 //! What a script asks of the window: so many frames, a screenshot, the end.
 
-use crate::slot::Slot;
-use egui::{ColorImage, Context};
+use crate::{
+    slot::Slot,
+    task::{Fallible, one_line},
+};
+use egui::{ColorImage, Context, ViewportCommand};
+use peelnet_render::{FrameStatus, Image};
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
 };
 use web_time::Instant;
 
 /// Draws so many frames, saves what the window shows, and closes it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Script {
     frames: u64,
     screenshot: Option<PathBuf>,
     asked: bool,
-    costs: Costs,
-    result: Outcome,
-}
-
-/// What became of a script, shared with the program that opened the window: what its frames cost, or what went wrong.
-pub type Outcome = Arc<Mutex<Option<Result<String, String>>>>;
-
-/// What frames cost, milliseconds.
-#[derive(Clone, Debug, Default)]
-struct Costs {
     last: Option<Instant>,
-    /// From frame to frame.
-    frames: Vec<f64>,
-    /// Work of the window's frame on the CPU.
-    cpu: Vec<f64>,
-    /// The method's passes, of frames whose times came back.
-    method: Vec<f64>,
-}
-
-impl Costs {
-    fn frame(&mut self, cpu_ms: f64, slot: &Slot) {
-        let now = Instant::now();
-        if let Some(last) = self.last.replace(now) {
-            self.frames.push((now - last).as_secs_f64() * 1e3);
-        }
-        self.cpu.push(cpu_ms);
-        self.method.extend(slot.gpu_ms());
-    }
-
-    /// Medians.
-    fn text(mut self, slot: &Slot) -> String {
-        let median = |name: &str, values: &mut Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            let middle = values.get(values.len() / 2);
-            middle.map(|ms| format!("{name} {ms:.2} ms"))
-        };
-        let parts = [
-            median("from frame to frame", &mut self.frames),
-            median("the method's passes on the GPU", &mut self.method),
-            median("the frame on the CPU", &mut self.cpu),
-            Some(format!("made ready in {:.0} ms", slot.ready_ms)),
-        ];
-        let parts: Vec<String> = parts.into_iter().flatten().collect();
-        format!("{} frames: {}", slot.frames, parts.join(", "))
-    }
-}
-
-impl Clone for Script {
-    fn clone(&self) -> Self {
-        Self {
-            frames: self.frames,
-            screenshot: self.screenshot.clone(),
-            asked: self.asked,
-            costs: self.costs.clone(),
-            result: Arc::clone(&self.result),
-        }
-    }
+    /// What frames cost, milliseconds: from frame to frame, the method's passes where their times came back, and the window's frame on the CPU.
+    costs: [Vec<f64>; 3],
+    outcome: Arc<Mutex<Option<Result<String, String>>>>,
 }
 
 impl Script {
@@ -80,14 +31,16 @@ impl Script {
             frames: frames.max(1),
             screenshot,
             asked: false,
-            costs: Costs::default(),
-            result: Arc::default(),
+            last: None,
+            costs: Default::default(),
+            outcome: Arc::default(),
         }
     }
 
-    /// Where the outcome will be.
-    pub fn outcome(&self) -> Outcome {
-        Arc::clone(&self.result)
+    /// What became of the script, in any of its copies: what its frames cost, or what went wrong. `None` before it ended.
+    pub fn outcome(&self) -> Option<Result<String, String>> {
+        let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+        outcome.take()
     }
 
     /// Frames are drawn again while a script counts them.
@@ -95,50 +48,71 @@ impl Script {
         !self.asked
     }
 
+    fn finish(&self, ui: &Context, outcome: Result<String, String>) {
+        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
+        ui.send_viewport_cmd(ViewportCommand::Close);
+        ui.request_repaint();
+    }
+
     /// After each frame; `cpu_ms` is what its work on the CPU took.
     pub(crate) fn advance(&mut self, ui: &Context, slot: &Slot, cpu_ms: f64) {
-        let finished = |result: &Outcome, with: Result<String, String>| {
-            *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(with);
-        };
         if let Some(failure) = slot.failure.as_ref().filter(|_| !self.asked) {
-            finished(&self.result, Err(format!("{}: {failure}", slot.spec())));
-            ui.send_viewport_cmd(egui::ViewportCommand::Close);
-            return;
+            return self.finish(ui, Err(format!("{}: {failure}", slot.spec)));
         }
         ui.request_repaint();
-        if !self.asked {
-            self.costs.frame(cpu_ms, slot);
+        if self.asked {
+            return;
+        }
+        let now = Instant::now();
+        let last = self.last.replace(now);
+        let frame_ms = last.map(|last| (now - last).as_secs_f64() * 1e3);
+        for (all, ms) in (self.costs.iter_mut()).zip([frame_ms, slot.gpu_ms(), Some(cpu_ms)]) {
+            all.extend(ms);
         }
         // A method that needs counts has its whole picture only after they came back.
-        let is_whole = slot.status() == peelnet_render::FrameStatus::Whole;
-        if self.asked || slot.frames < self.frames || !is_whole {
+        if slot.frames < self.frames || slot.status != FrameStatus::Whole {
             return;
         }
         self.asked = true;
-        let costs = std::mem::take(&mut self.costs).text(slot);
+        let costs = self.medians(slot);
         let Some(path) = self.screenshot.clone() else {
-            finished(&self.result, Ok(costs));
-            ui.send_viewport_cmd(egui::ViewportCommand::Close);
-            return;
+            return self.finish(ui, Ok(costs));
         };
-        let (result, context) = (Arc::clone(&self.result), ui.clone());
+        let (script, context) = (self.clone(), ui.clone());
         ui.request_screenshot(move |image: Arc<ColorImage>| {
-            finished(&result, save(&image, &path).map(|()| costs.clone()));
-            context.send_viewport_cmd(egui::ViewportCommand::Close);
-            context.request_repaint();
+            let saved = save(&image, &path).map_err(|e| one_line(&*e));
+            script.finish(&context, saved.map(|()| costs.clone()));
         });
+    }
+
+    fn medians(&mut self, slot: &Slot) -> String {
+        let names = [
+            "from frame to frame",
+            "the method's passes on the GPU",
+            "the frame on the CPU",
+        ];
+        let mut text = format!("{} frames: ", slot.frames);
+        for (name, values) in names.into_iter().zip(&mut self.costs) {
+            values.sort_by(f64::total_cmp);
+            if let Some(ms) = values.get(values.len() / 2) {
+                text += &format!("{name} {ms:.2} ms, ");
+            }
+        }
+        text + &format!("made ready in {:.0} ms", slot.ready_ms)
     }
 }
 
 /// Writes what the window shows as a PNG file.
-pub(crate) fn save(image: &ColorImage, path: &std::path::Path) -> Result<(), String> {
-    let pixels = image.pixels.iter();
+fn save(image: &ColorImage, path: &Path) -> Fallible<()> {
     let linear = |byte: u8| peelnet_core::srgb::decode(f32::from(byte) / 255.0);
-    let pixels = pixels.map(|p| [p.r(), p.g(), p.b()].map(linear));
-    let image = peelnet_render::Image {
+    let pixels = image.pixels.iter().map(|p| {
+        let [r, g, b] = [p.r(), p.g(), p.b()].map(linear);
+        [r, g, b, 1.0]
+    });
+    let image = Image {
         width: image.size[0] as u32,
         height: image.size[1] as u32,
-        pixels: pixels.map(|[r, g, b]| [r, g, b, 1.0]).collect(),
+        pixels: pixels.collect(),
     };
-    image.save(path).map_err(|e| crate::stage::one_line(&e))
+    Ok(image.save(path)?)
 }

@@ -1,8 +1,8 @@
 //! A method and its picture.
 
 use crate::{
-    stage::{Stage, one_line},
-    task::Task,
+    stage::{Stage, View, next_number},
+    task::{Fallible, Task, one_line},
 };
 use peelnet_gpu::{
     GpuError,
@@ -11,73 +11,53 @@ use peelnet_gpu::{
 };
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{
-    FrameStats, FrameStatus, LayerView, LearnedWeight, MethodOptions, MethodSpec, Prepared, Target,
-    milliseconds,
+    Frame, FrameStats, FrameStatus, LayerView, LearnedWeight, MethodOptions, MethodSpec, Prepared,
+    RenderError, Renderer, Target, milliseconds,
 };
 use peelnet_scene::Camera;
-use std::path::PathBuf;
+use std::{path::PathBuf, rc::Rc};
 
 /// Format of pictures: what engines draw transparency onto before they map tones.
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// A network that was read from a file.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(crate) struct Network {
     pub path: PathBuf,
     pub model: Model,
     pub weight: LearnedWeight,
+    /// Another number whenever a file is read.
+    pub number: u64,
 }
 
 impl Network {
     /// Reads a model file and writes its shader text.
-    ///
-    /// # Errors
-    /// What is wrong with the file; one line.
-    pub fn from_bytes(path: PathBuf, bytes: &[u8]) -> Result<Self, String> {
-        let model = Model::from_bytes(bytes, &path).map_err(|e| one_line(&e))?;
-        let wgsl = peelnet_export::wgsl(&model).map_err(|e| one_line(&e))?;
+    pub fn from_bytes(path: PathBuf, bytes: &[u8]) -> Fallible<Self> {
+        let model = Model::from_bytes(bytes, &path)?;
+        let weight = LearnedWeight {
+            recipe: model.meta.recipe,
+            wgsl: peelnet_export::wgsl(&model)?,
+        };
         Ok(Self {
-            weight: LearnedWeight {
-                recipe: model.meta.recipe,
-                wgsl,
-            },
             path,
             model,
+            weight,
+            number: next_number(),
         })
     }
-
-    /// Whether a method draws with it.
-    pub fn is_of(&self, spec: &MethodSpec) -> bool {
-        self.weight.recipe.method == spec.name()
-    }
-}
-
-/// The network that ships for a method, or the one from a file that fits it.
-pub(crate) fn model_of(spec: &MethodSpec, network: Option<&Network>) -> Option<Model> {
-    if let Some(network) = network.filter(|n| n.is_of(spec)) {
-        return Some(network.model.clone());
-    }
-    Model::shipped(Recipe::of_method(spec.name())?).ok()
-}
-
-/// What a picture shows.
-#[derive(Clone, Debug, PartialEq)]
-struct Shown {
-    version: u64,
-    camera: Camera,
-    size: [u32; 2],
 }
 
 /// A method made ready, its target, and what is known of its last frame.
-#[derive(Debug)]
 pub(crate) struct Slot {
-    spec: MethodSpec,
+    pub spec: MethodSpec,
+    /// From a file; the method may be another one's.
+    pub network: Option<Network>,
     layers: Option<LayerView>,
-    network: Option<Network>,
     prepared: Option<(u64, Prepared)>,
-    target: Option<wgpu::TextureView>,
-    shown: Option<Shown>,
-    status: FrameStatus,
+    /// The picture, after the first frame.
+    pub picture: Option<wgpu::TextureView>,
+    shown: Option<View>,
+    pub status: FrameStatus,
     timing: Option<Task<Result<Vec<PassTime>, GpuError>>>,
     /// GPU times of the passes of the last frame that is known of, in their order.
     pub times: Vec<PassTime>,
@@ -93,10 +73,10 @@ impl Slot {
     pub const fn new(spec: MethodSpec) -> Self {
         Self {
             spec,
-            layers: None,
             network: None,
+            layers: None,
             prepared: None,
-            target: None,
+            picture: None,
             shown: None,
             status: FrameStatus::Unknown,
             timing: None,
@@ -107,18 +87,31 @@ impl Slot {
         }
     }
 
-    pub const fn spec(&self) -> &MethodSpec {
-        &self.spec
-    }
-
-    pub const fn network(&self) -> Option<&Network> {
-        self.network.as_ref()
-    }
-
     /// The network from a file, where the method draws with it.
-    pub fn learned(&self) -> Option<&LearnedWeight> {
-        let network = self.network.as_ref().filter(|n| n.is_of(&self.spec));
-        network.map(|n| &n.weight)
+    pub fn own_network(&self) -> Option<&Network> {
+        let network = self.network.as_ref();
+        network.filter(|n| n.weight.recipe.method == self.spec.name())
+    }
+
+    /// The network that the method draws with: from a file, or the one that ships.
+    pub fn model(&self) -> Option<Model> {
+        match self.own_network() {
+            Some(network) => Some(network.model.clone()),
+            None => Model::shipped(Recipe::of_method(self.spec.name())?).ok(),
+        }
+    }
+
+    fn options(&self, size: [u32; 2]) -> MethodOptions {
+        MethodOptions::sized(size).with(self.own_network().map(|n| &n.weight))
+    }
+
+    /// The same method for images that are drawn beside the window's frames.
+    pub fn shot(&self, stage: &Stage, size: [u32; 2]) -> Shot {
+        Shot {
+            renderer: Rc::clone(&stage.renderer),
+            spec: self.spec.clone(),
+            options: self.options(size),
+        }
     }
 
     /// Another method from the next frame on.
@@ -151,15 +144,6 @@ impl Slot {
         prepared.map(|(_, p)| p.stats()).unwrap_or_default()
     }
 
-    pub const fn status(&self) -> FrameStatus {
-        self.status
-    }
-
-    /// The picture; `None` before the first.
-    pub const fn picture(&self) -> Option<&wgpu::TextureView> {
-        self.target.as_ref()
-    }
-
     /// GPU time of the last frame that is known of, milliseconds.
     pub fn gpu_ms(&self) -> Option<f64> {
         milliseconds(&self.times)
@@ -170,27 +154,22 @@ impl Slot {
         &mut self,
         stage: &Stage,
         encoder: &mut wgpu::CommandEncoder,
-        camera: &Camera,
-        size: [u32; 2],
+        view: View,
         always: bool,
     ) -> bool {
-        let shown = Shown {
-            version: stage.version(),
-            camera: *camera,
-            size,
-        };
-        if self.layers != stage.layers() {
-            self.layers = stage.layers();
+        if self.layers != stage.shown.layers {
+            self.layers = stage.shown.layers;
             self.forget();
         }
-        if self.shown.as_ref() == Some(&shown) {
+        if self.shown == Some(view) {
             let is_done = self.failure.is_some() || self.status == FrameStatus::Whole;
             if is_done && !always {
                 return false;
             }
         }
-        self.failure = self.encode(stage, encoder, camera, size).err();
-        self.shown = Some(shown);
+        let encoded = self.encode(stage, encoder, &view);
+        self.failure = encoded.err().map(|e| one_line(&*e));
+        self.shown = Some(view);
         self.failure.is_none()
     }
 
@@ -198,62 +177,69 @@ impl Slot {
         &mut self,
         stage: &Stage,
         encoder: &mut wgpu::CommandEncoder,
-        camera: &Camera,
-        size: [u32; 2],
-    ) -> Result<(), String> {
-        let renderer = stage.renderer();
-        let of = |view: &wgpu::TextureView| [view.texture().width(), view.texture().height()];
-        let target = match self.target.take().filter(|view| of(view) == size) {
+        view: &View,
+    ) -> Fallible<()> {
+        let renderer = &stage.renderer;
+        let target = match self.picture.take().filter(|p| size_of(p) == view.size) {
             Some(target) => target,
             None => {
                 let usage = wgpu::TextureUsages::empty();
-                let made = stage.gpu.texture("picture", PICTURE, size, 1, usage);
-                made.map_err(|e| one_line(&e))?
+                (stage.gpu).texture("picture", PICTURE, view.size, 1, usage)?
             }
         };
-        let target = &*self.target.insert(target);
-        let id = stage.renderer_number();
+        self.picture = Some(target.clone());
+        let id = stage.renderer_number;
         let prepared = match self.prepared.take().filter(|(of, _)| *of == id) {
             Some(prepared) => prepared,
             None => {
                 let begin = web_time::Instant::now();
                 let made = match self.layers {
-                    Some(view) => renderer.layers(view, size),
-                    None => {
-                        let network = self.network.as_ref().filter(|n| n.is_of(&self.spec));
-                        let options = MethodOptions::sized(size).with(network.map(|n| &n.weight));
-                        renderer.method(&self.spec, options)
-                    }
+                    Some(layers) => renderer.layers(layers, view.size),
+                    None => renderer.method(&self.spec, self.options(view.size)),
                 };
                 self.ready_ms = begin.elapsed().as_secs_f64() * 1e3;
-                (id, made.map_err(|e| one_line(&e))?)
+                (id, made?)
             }
         };
         let (_, prepared) = self.prepared.insert(prepared);
-        let target = Target::cleared(target);
-        let drawn = if self.timing.is_none() {
+        let target = Target::cleared(&target);
+        self.status = if self.timing.is_none() {
             let mut timer = Timer::new(&stage.gpu);
-            let drawn = renderer.draw_timed(encoder, prepared, camera, &target, Some(&mut timer));
+            let drawn =
+                renderer.draw_timed(encoder, prepared, &view.camera, &target, Some(&mut timer));
             let times = timer.finish(&stage.gpu, encoder);
             self.timing = Some(Task::new(times.read()));
-            drawn
+            drawn?
         } else {
-            renderer.draw(encoder, prepared, camera, &target)
+            renderer.draw(encoder, prepared, &view.camera, &target)?
         };
-        self.status = drawn.map_err(|e| one_line(&e))?;
         self.frames += 1;
         Ok(())
     }
 
     /// Takes the times that came back.
     pub fn poll(&mut self, ui: &egui::Context) {
-        if let Some(timing) = &mut self.timing
-            && let Some(times) = timing.poll(ui)
-        {
-            self.timing = None;
-            if let Ok(times) = times {
-                self.times = times;
-            }
+        if let Some(Ok(times)) = Task::finish(&mut self.timing, ui) {
+            self.times = times;
         }
+    }
+}
+
+/// Width and height of a texture.
+pub(crate) fn size_of(view: &wgpu::TextureView) -> [u32; 2] {
+    [view.texture().width(), view.texture().height()]
+}
+
+/// A method on a renderer, for images of its own.
+pub(crate) struct Shot {
+    pub renderer: Rc<Renderer>,
+    pub spec: MethodSpec,
+    pub options: MethodOptions,
+}
+
+impl Shot {
+    pub async fn frame(&self, camera: &Camera) -> Result<Frame, RenderError> {
+        let mut prepared = self.renderer.method(&self.spec, self.options.clone())?;
+        self.renderer.image_async(&mut prepared, camera).await
     }
 }

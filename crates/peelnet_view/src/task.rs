@@ -1,20 +1,25 @@
 //! Work that goes on while frames are drawn: futures that are polled once a frame, and threads where there are any.
 
+use egui::Context;
 use std::{
+    error::Error,
     future::Future,
     pin::Pin,
-    sync::{Arc, Mutex, PoisonError},
-    task::{Context, Poll, Wake, Waker},
+    sync::Arc,
+    task::{Poll, Wake, Waker},
+    time::Duration,
 };
+
+/// What may go wrong; [`one_line`] of it is for people.
+pub(crate) type Fallible<T> = Result<T, Box<dyn Error>>;
+
+/// An error with its causes, as one line that is safe to show, however long it is.
+pub(crate) fn one_line(error: &dyn Error) -> String {
+    peelnet_files::one_line(&peelnet_files::error_line(error)).into_owned()
+}
 
 /// A future that the window polls each frame. Dropping it cancels the work.
 pub(crate) struct Task<T>(Pin<Box<dyn Future<Output = T>>>);
-
-impl<T> std::fmt::Debug for Task<T> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Task")
-    }
-}
 
 impl<T> Task<T> {
     /// Begins at the first poll.
@@ -22,14 +27,18 @@ impl<T> Task<T> {
         Self(Box::pin(future))
     }
 
-    /// Goes on; the result once there is one. The window is drawn again when there is more to do.
-    pub fn poll(&mut self, ui: &egui::Context) -> Option<T> {
+    /// Goes on with a task, if there is one; its result once it has one, and then it is gone. The window is drawn again when there is more to do.
+    pub fn finish(task: &mut Option<Self>, ui: &Context) -> Option<T> {
         let waker = repaints(ui);
-        match self.0.as_mut().poll(&mut Context::from_waker(&waker)) {
-            Poll::Ready(result) => Some(result),
+        let future = task.as_mut()?.0.as_mut();
+        match future.poll(&mut std::task::Context::from_waker(&waker)) {
+            Poll::Ready(result) => {
+                *task = None;
+                Some(result)
+            }
             Poll::Pending => {
                 // On native systems GPU callbacks run when the device is polled, which the next frame does.
-                ui.request_repaint_after(std::time::Duration::from_millis(8));
+                ui.request_repaint_after(Duration::from_millis(8));
                 None
             }
         }
@@ -37,46 +46,81 @@ impl<T> Task<T> {
 }
 
 /// Has the window drawn again when it is woken.
-pub(crate) fn repaints(ui: &egui::Context) -> Waker {
+pub(crate) fn repaints(ui: &Context) -> Waker {
+    struct Repaint(Context);
+
+    impl Wake for Repaint {
+        fn wake(self: Arc<Self>) {
+            self.0.request_repaint();
+        }
+    }
     Waker::from(Arc::new(Repaint(ui.clone())))
 }
 
-struct Repaint(egui::Context);
-
-impl Wake for Repaint {
-    fn wake(self: Arc<Self>) {
-        self.0.request_repaint();
+/// The result of a computation, made on a thread of its own where there are threads, so that frames go on. It runs in a task, which asks for
+/// frames until it has ended.
+pub(crate) async fn computed<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Fallible<T> {
+    #[cfg(target_arch = "wasm32")]
+    return Ok(work());
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        let thread = std::thread::spawn(work);
+        let ended = |_: &mut std::task::Context<'_>| match thread.is_finished() {
+            true => Poll::Ready(()),
+            false => Poll::Pending,
+        };
+        std::future::poll_fn(ended).await;
+        thread.join().map_err(|_| "the computation failed".into())
     }
 }
 
-/// The result, once there is one, `None` in it where the work panicked; and who waits for it.
-type Handed<T> = (Option<Option<T>>, Option<Waker>);
+/// Work on what a key identifies, one at a time, and its last result.
+pub(crate) struct Job<K, T> {
+    task: Option<Task<(K, Fallible<T>)>>,
+    pub last: Option<(K, Result<T, String>)>,
+}
 
-/// The result of a computation, made on a thread of its own where there are threads, so that frames go on.
-pub(crate) async fn computed<T: Send + 'static>(
-    work: impl FnOnce() -> T + Send + 'static,
-) -> Option<T> {
-    let slot: Arc<Mutex<Handed<T>>> = Arc::new(Mutex::new((None, None)));
-    let sink = Arc::clone(&slot);
-    let run = move || {
-        let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).ok();
-        let mut sink = sink.lock().unwrap_or_else(PoisonError::into_inner);
-        sink.0 = Some(result);
-        if let Some(waker) = sink.1.take() {
-            waker.wake();
+impl<K, T> Default for Job<K, T> {
+    fn default() -> Self {
+        Self {
+            task: None,
+            last: None,
         }
-    };
-    #[cfg(target_arch = "wasm32")]
-    run();
-    #[cfg(not(target_arch = "wasm32"))]
-    std::thread::spawn(run);
-    std::future::poll_fn(move |cx| {
-        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(result) = slot.0.take() {
-            return Poll::Ready(result);
+    }
+}
+
+impl<K: PartialEq + 'static, T: 'static> Job<K, T> {
+    pub const fn is_busy(&self) -> bool {
+        self.task.is_some()
+    }
+
+    /// Ends what goes on; the last result stays.
+    pub fn cancel(&mut self) {
+        self.task = None;
+    }
+
+    /// The last result, where it is of this.
+    pub fn of(&self, key: &K) -> Option<&Result<T, String>> {
+        let (of, result) = self.last.as_ref()?;
+        (of == key).then_some(result)
+    }
+
+    /// Whether work on this is to begin: nothing goes on, and its result is not known.
+    pub fn wants(&self, key: &K) -> bool {
+        self.task.is_none() && self.of(key).is_none()
+    }
+
+    /// Begins, in place of what goes on.
+    pub fn begin(&mut self, key: K, work: impl Future<Output = Fallible<T>> + 'static) {
+        self.task = Some(Task::new(async move { (key, work.await) }));
+    }
+
+    /// Goes on.
+    pub fn poll(&mut self, ui: &Context) {
+        if let Some((key, result)) = Task::finish(&mut self.task, ui) {
+            self.last = Some((key, result.map_err(|e| one_line(&*e))));
         }
-        slot.1 = Some(cx.waker().clone());
-        Poll::Pending
-    })
-    .await
+    }
 }

@@ -3,23 +3,30 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 use crate::{
-    app::{App, Start},
-    compare::Mode,
+    Mode, Start, address,
+    app::{App, configuration},
+    compare::MODES,
+    stage::{Source, Stage},
 };
-use eframe::egui_wgpu::{
-    RenderState, RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupExisting,
-};
+use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use peelnet_gpu::{AdapterRequest, Gpu};
-use peelnet_render::{MethodOptions, MethodSpec, Renderer};
-use peelnet_scene::suite;
-use std::time::{Duration, Instant};
+use peelnet_model::{Model, Recipe};
+use peelnet_render::{FrameStatus, MethodOptions, MethodSpec, Renderer};
+use peelnet_scene::{Scene, suite};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
 
 /// How long something may take that a frame does not wait for: a hundred times what it takes on two idle cores.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A window's content, points and pixels.
 const SIZE: [f32; 2] = [900.0, 500.0];
+
+const PICTURE: &str = "Picture of the scene";
 
 type Window = Harness<'static, App>;
 
@@ -29,18 +36,11 @@ fn window(scene: &str, method: &str) -> Window {
 
 fn sized(scene: &str, method: &str, size: [f32; 2]) -> Window {
     let gpu = Gpu::open(&AdapterRequest::Auto).unwrap();
-    let config = WgpuConfiguration {
-        wgpu_setup: WgpuSetup::Existing(WgpuSetupExisting {
-            instance: gpu.instance.clone(),
-            adapter: gpu.adapter.clone(),
-            device: gpu.device.clone(),
-            queue: gpu.queue.clone(),
-        }),
-        ..Default::default()
-    };
-    let made = RenderState::create(&config, &gpu.instance, None, RendererOptions::PREDICTABLE);
+    let (config, options) = (configuration(&gpu), RendererOptions::PREDICTABLE);
+    let made = RenderState::create(&config, &gpu.instance, None, options);
     let egui = pollster::block_on(made).unwrap();
-    let app = App::new(&gpu, Start::new(scene, method.parse().unwrap()), Vec::new());
+    let start = Start::new(scene, method.parse().unwrap());
+    let app = App::new(&gpu, start, Source::named(scene), Vec::new());
     let mut window = Harness::builder()
         .with_size(size)
         .with_max_steps(1000)
@@ -48,6 +48,24 @@ fn sized(scene: &str, method: &str, size: [f32; 2]) -> Window {
     window.state_mut().panels.measures = false;
     steps(&mut window);
     window
+}
+
+fn stage(window: &Window) -> &Stage {
+    window.state().stage.as_ref().unwrap()
+}
+
+/// What the window shows, after a few frames.
+fn texels(window: &mut Window) -> Vec<[u8; 4]> {
+    steps(window);
+    let app = window.state();
+    app.display.texels(&app.gpu)
+}
+
+fn whole(window: &mut Window) {
+    until(window, "whole", |app| {
+        let second = !app.compare.mode.needs_second() || app.second.status == FrameStatus::Whole;
+        second && app.first.status == FrameStatus::Whole
+    });
 }
 
 /// A few frames: what one frame asks for, the next ones show.
@@ -71,24 +89,16 @@ fn press(window: &mut Window, label: &str) {
 }
 
 fn method(window: &Window) -> String {
-    window.state().first.spec().to_string()
+    window.state().first.spec.to_string()
 }
 
-#[test]
-fn a_method_is_chosen_from_the_list() {
-    let mut w = window("boxes", "wboit-eq9");
-    press(&mut w, "Draw with");
-    press(&mut w, "mboit4");
-    assert_eq!(method(&w), "mboit4");
-    assert_eq!(w.state().first.failure, None);
-    // Its own parameters are there now.
-    w.get_by_label("own");
-}
-
-/// Every parameter of every method has a control with a name, which the harness checks of all widgets, and the picture is drawn.
+/// A method is chosen from the list, and every parameter of every method has a control with a name, which the harness checks of all widgets, and the picture is drawn.
 #[test]
 fn every_method_has_its_controls() {
     let mut w = sized("boxes", "wboit-eq9", [900.0, 900.0]);
+    press(&mut w, "Draw with");
+    press(&mut w, "mboit4");
+    assert_eq!(method(&w), "mboit4");
     for m in crate::panels::methods::offered() {
         let spec = MethodSpec::points(m).next().unwrap();
         w.state_mut().first.set_spec(spec);
@@ -114,12 +124,9 @@ fn the_picture_is_the_renderers() {
     const LEVELS: u8 = 1;
     for name in ["deep-medium", "mboit4", "abuffer", "kbuffer-4"] {
         let mut w = window("cups", name);
-        until(&mut w, "whole", |app| {
-            app.first.status() == peelnet_render::FrameStatus::Whole
-        });
-        steps(&mut w);
+        whole(&mut w);
+        let shown = texels(&mut w);
         let app = w.state();
-        let shown = app.displayed().texels(&app.gpu);
         let scene = suite::load("cups").unwrap();
         let renderer = Renderer::new(&app.gpu, &scene).unwrap();
         let options = MethodOptions::sized(app.size);
@@ -144,12 +151,8 @@ fn comparisons_show_both_pictures() {
     let picture = |w: &mut Window, mode: Mode| {
         w.state_mut().compare.mode = mode;
         steps(w);
-        until(w, "whole", |app| {
-            app.second.status() == peelnet_render::FrameStatus::Whole || mode == Mode::One
-        });
-        steps(w);
-        let app = w.state();
-        app.displayed().texels(&app.gpu)
+        whole(w);
+        texels(w)
     };
     let first = picture(&mut w, Mode::One);
     let split = picture(&mut w, Mode::Split);
@@ -159,12 +162,9 @@ fn comparisons_show_both_pictures() {
     let divider = (width as f32 * 0.5).round() as usize;
     assert_ne!(first, second);
     for (i, shown) in split.iter().enumerate() {
-        let from = if i % (width as usize) < divider {
-            &first
-        } else {
-            &second
-        };
-        assert_eq!(shown, &from[i], "{i}");
+        let is_left = i % (width as usize) < divider;
+        let want = if is_left { first[i] } else { second[i] };
+        assert_eq!(*shown, want, "{i}");
     }
     // Black exactly where the pictures are equal, as far as 8 bits tell.
     let black = error[0];
@@ -180,16 +180,14 @@ fn comparisons_show_both_pictures() {
 #[test]
 fn comparisons_are_chosen_by_their_names() {
     let mut w = window("boxes", "wboit-eq9");
-    for (mode, name, _) in Mode::ALL {
+    for (mode, _, name, _) in MODES {
         press(&mut w, name);
         assert_eq!(w.state().compare.mode, mode);
         if mode.needs_second() {
             w.get_by_label("Against");
         }
     }
-    until(&mut w, "layers", |app| {
-        app.counter.map.as_ref().is_some_and(Result::is_ok)
-    });
+    until(&mut w, "layers", |app| app.counter.map().is_some());
 }
 
 #[test]
@@ -224,18 +222,23 @@ fn keys_do_what_the_list_says() {
     assert!(w.state().size[0] > width - 20 && w.state().size[1] > height - 20);
 }
 
+/// Drags the pointer from the middle of the picture to another point of it.
+fn drag(w: &mut Window, to: impl Fn(egui::Rect) -> egui::Pos2) {
+    let picture = w.get_by_label(PICTURE).rect();
+    w.drag_at(picture.center());
+    w.step();
+    w.hover_at(to(picture));
+    w.step();
+    w.drop_at(to(picture));
+    steps(w);
+}
+
 /// A drag over the picture turns the eye; the distance to its target stays.
 #[test]
 fn a_drag_orbits() {
     let mut w = window("cups", "wboit-eq9");
     let before = w.state().camera;
-    let middle = w.get_by_label("Picture of the scene").rect().center();
-    w.drag_at(middle);
-    w.step();
-    w.hover_at(middle + egui::vec2(40.0, 10.0));
-    w.step();
-    w.drop_at(middle + egui::vec2(40.0, 10.0));
-    steps(&mut w);
+    drag(&mut w, |picture| picture.center() + egui::vec2(40.0, 10.0));
     let after = w.state().camera;
     let distance = |c: &peelnet_scene::Camera| (c.position - c.target).length();
     assert_ne!(before.position, after.position);
@@ -250,14 +253,7 @@ fn the_divider_is_dragged() {
     w.state_mut().compare.mode = Mode::Split;
     steps(&mut w);
     let eye = w.state().camera;
-    let picture = w.get_by_label("Picture of the scene").rect();
-    w.drag_at(picture.center());
-    w.step();
-    let to = egui::pos2(picture.left() + 0.25 * picture.width(), picture.center().y);
-    w.hover_at(to);
-    w.step();
-    w.drop_at(to);
-    steps(&mut w);
+    drag(&mut w, |picture| picture.lerp_inside([0.25, 0.5]));
     assert!((w.state().compare.divider - 0.25).abs() < 0.01);
     assert_eq!(w.state().camera, eye);
 }
@@ -266,7 +262,7 @@ fn the_divider_is_dragged() {
 #[test]
 fn a_pixel_lists_its_fragments() {
     let mut w = window("cups", "abuffer");
-    let middle = w.get_by_label("Picture of the scene").rect().center();
+    let middle = w.get_by_label(PICTURE).rect().center();
     w.hover_at(middle);
     w.step();
     w.drag_at(middle);
@@ -292,44 +288,32 @@ fn a_pixel_lists_its_fragments() {
 fn errors_are_measured_while_the_view_rests() {
     let mut w = window("boxes", "abuffer");
     w.state_mut().panels.measures = true;
-    let measured = |app: &App| {
-        let key = app.key().unwrap();
-        app.judge.of(&key).is_some()
-    };
-    until(&mut w, "measured", measured);
-    let numbers = |w: &Window| {
+    for (method, errs) in [("abuffer", false), ("wboit-eq9", true)] {
+        w.state_mut().first.set_spec(method.parse().unwrap());
+        steps(&mut w);
         let key = w.state().key().unwrap();
-        w.state().judge.of(&key).unwrap().clone().unwrap()
-    };
-    assert_eq!(numbers(&w).mse255, 0.0);
-    assert!(numbers(&w).stats.fragments.is_some_and(|n| n > 0));
-    w.state_mut().first.set_spec("wboit-eq9".parse().unwrap());
-    steps(&mut w);
-    until(&mut w, "measured again", measured);
-    assert!(numbers(&w).mse255 > 0.0);
-    assert!(numbers(&w).flip.is_some_and(|x| x > 0.0));
+        until(&mut w, "measured", |app| app.judge.of(&key).is_some());
+        let numbers = w.state().judge.of(&key).unwrap().as_ref().unwrap();
+        assert_eq!(numbers.differences.mse255 > 0.0, errs);
+        assert_eq!(numbers.flip.is_some_and(|x| x > 0.0), errs);
+        assert!(numbers.stats.fragments.is_some_and(|n| n > 0));
+    }
 }
 
 /// Every method gets a point, exact ones an error of 0, and a click on the list switches.
 #[test]
 fn all_methods_are_measured_on_the_view() {
     let mut w = sized("boxes", "wboit-eq9", [640.0, 420.0]);
-    w.state_mut().panels.bare = false;
-    // A small picture: it is the number of methods that takes time.
-    w.state_mut().size = [48, 32];
     let app = w.state_mut();
-    let key = app.key().unwrap();
     let stage = app.stage.as_ref().unwrap();
-    app.front.measure(stage, key, [48, 32]);
-    until(&mut w, "front", |app| !app.front.is_busy());
+    // A small picture: it is the number of methods that takes time.
+    app.front.measure(stage, stage.view(app.camera, [48, 32]));
+    until(&mut w, "front", |app| !app.front.job.is_busy());
     let front = &w.state().front;
-    assert_eq!(front.failure, None);
+    assert_eq!(front.job.of(&()), Some(&Ok(())));
     let measured = front.measured.borrow();
     assert_eq!(measured.done, measured.all);
-    assert_eq!(
-        measured.points.len() + measured.left_out.len(),
-        measured.all
-    );
+    assert_eq!(measured.points.len(), measured.all);
     assert_eq!(measured.left_out, []);
     let exact = measured.points.iter().find(|p| p.method == "abuffer");
     assert_eq!(exact.unwrap().mse255, 0.0);
@@ -342,36 +326,68 @@ fn bad_files_leave_the_view() {
     let mut w = window("boxes", "wboit-eq9");
     let folder = tempfile::tempdir().unwrap();
     let bad = folder.path().join("bad.glb");
-    std::fs::write(&bad, "no mesh").unwrap();
+    fs::write(&bad, "no mesh").unwrap();
     for (path, says) in [
         (bad.clone(), "bad.glb"),
         (folder.path().join("none.toml"), "none.toml"),
         ("nowhere".into(), "nowhere"),
     ] {
-        let source = crate::stage::Source::Named(path);
-        w.state_mut().open(source, None);
+        w.state_mut().open(Source::named(path), None);
         steps(&mut w);
         assert!(w.query_by_label_contains(says).is_some(), "{says}");
-        let stage = w.state().stage.as_ref().unwrap();
-        assert_eq!(stage.scene().name, "boxes");
+        assert_eq!(stage(&w).scene.name, "boxes");
     }
-    w.state_mut().open_network(bad);
+    w.state_mut().open_network(Source::named(bad));
     steps(&mut w);
-    assert!(w.state().first.network().is_none());
+    assert!(w.state().first.network.is_none());
     assert_eq!(w.state().first.failure, None);
+}
+
+/// The command of a view and a page's address name what is shown; an address is read as it was written.
+#[test]
+fn links_show_the_same_again() {
+    let mut w = window("vase", "wboit-eq10:factor=3e4,targets=f32");
+    let time = stage(&w).times().unwrap().1;
+    let app = w.state_mut();
+    app.edit(|stage| stage.set_time(time));
+    let method = "wboit-eq10:factor=3e4,targets=f32";
+    let command = app.command().unwrap();
+    let want = format!("peelnet view vase --method={method} --view=0 --time={time}");
+    assert_eq!(command, want.replace(method, &format!("'{method}'")));
+    app.panels.bare = true;
+    app.stage.as_mut().unwrap().source.path = "meine Szene & mehr=ä+.glb".into();
+    let read = |app: &App| {
+        let mut start = Start::new("", "abuffer".parse().unwrap());
+        assert_eq!(address::read(&app.query().unwrap(), &mut start), [""; 0]);
+        assert_eq!(start.scene, app.stage.as_ref().unwrap().source.path);
+        assert_eq!(
+            (start.method, start.time, start.bare),
+            (app.first.spec.clone(), Some(time), true)
+        );
+        (start.view, start.camera)
+    };
+    app.show_view(0);
+    assert_eq!(read(app), (0, None));
+    app.move_eye(|camera, _| {
+        camera.position = [0.1, -2.5, 1e-3].into();
+        camera.target = [3.0, 4.0, 5.0].into();
+        camera.fov_y_degrees = 33.3;
+    });
+    let numbers = vec![0.1, -2.5, 1e-3, 3.0, 4.0, 5.0, 33.3];
+    assert_eq!(read(app), (0, Some(numbers)));
 }
 
 /// A file that is dropped onto a window.
 #[derive(Debug)]
-struct Dropped(std::path::PathBuf);
+struct Dropped(PathBuf);
 
 impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &std::path::Path {
+    fn path(&self) -> &Path {
         &self.0
     }
 
     fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|e| e.to_string())
+        fs::read(&self.0).map_err(|e| e.to_string())
     }
 }
 
@@ -380,38 +396,33 @@ impl egui::DroppedFile for Dropped {
 fn dropped_and_saved_scenes() {
     let mut w = window("boxes", "wboit-eq9");
     let folder = tempfile::tempdir().unwrap();
-    let drop = |w: &mut Window, path: &std::path::Path| {
+    let drop = |w: &mut Window, path: &Path| {
         let file = std::sync::Arc::new(Dropped(path.to_owned()));
         w.input_mut().dropped_files.push(file);
         steps(w);
     };
     let scene = folder.path().join("mine.toml");
-    std::fs::write(&scene, suite::find("cups").unwrap().text).unwrap();
+    fs::write(&scene, suite::find("cups").unwrap().text).unwrap();
     drop(&mut w, &scene);
-    assert_eq!(w.state().stage.as_ref().unwrap().scene().objects.len(), 6);
     assert_eq!(w.state().recent[0], scene);
     let note = folder.path().join("note.txt");
-    std::fs::write(&note, "no scene").unwrap();
+    fs::write(&note, "no scene").unwrap();
     drop(&mut w, &note);
-    assert!(
-        w.query_by_label_contains("not a scene or a network")
-            .is_some()
-    );
-    assert_eq!(w.state().stage.as_ref().unwrap().scene().objects.len(), 6);
-    let mut clear = w.state().stage.as_ref().unwrap().scene().objects[0].materials[0].clone();
+    let says = w.query_by_label_contains("not a scene or a network");
+    assert!(says.is_some());
+    assert_eq!(stage(&w).scene.objects.len(), 6);
+    let mut clear = stage(&w).scene.objects[0].materials[0].clone();
     clear.alpha = 0.25;
-    w.state_mut().edit(|stage| stage.set_material(0, 0, clear));
-    w.state_mut()
-        .move_eye(|camera, _| crate::eye::orbit(camera, 0.5, 0.1));
-    let app = w.state();
-    let said = crate::output::scene(app.stage.as_ref().unwrap(), &app.first, &app.camera).unwrap();
+    let app = w.state_mut();
+    app.edit(|stage| stage.set_material(0, 0, clear));
+    app.move_eye(|camera, _| crate::eye::orbit(camera, 0.5, 0.1));
+    app.save_scene();
+    let said = app.output.last().unwrap().as_ref().unwrap();
     assert!(!said.contains("without"), "{said}");
-    let saved = std::fs::read_dir(folder.path())
-        .unwrap()
-        .map(|e| e.unwrap().path());
-    let saved = saved.filter(|p| *p != scene && p.extension().is_some_and(|e| e == "toml"));
-    let saved: Vec<_> = saved.collect();
-    let again = peelnet_scene::Scene::load(&saved[0]).unwrap();
+    let files = fs::read_dir(folder.path()).unwrap();
+    let mut files = files.map(|e| e.unwrap().path());
+    let saved = files.find(|p| *p != scene && p.extension().is_some_and(|e| e == "toml"));
+    let again = Scene::load(saved.unwrap()).unwrap();
     assert_eq!(again.views, [app.camera]);
     assert_eq!(again.objects[0].materials[0].alpha, 0.25);
 }
@@ -422,73 +433,64 @@ fn a_network_is_read_again_when_its_file_changes() {
     let mut w = window("boxes", "wboit-eq9");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.safetensors");
-    let recipe = peelnet_model::Recipe::of_method("deep-small").unwrap();
-    let model = peelnet_model::Model::shipped(recipe).unwrap();
-    model.save(&path).unwrap();
-    w.state_mut().open_network(path.clone());
+    let write = |method: &str| {
+        let recipe = Recipe::of_method(method).unwrap();
+        Model::shipped(recipe).unwrap().save(&path).unwrap();
+    };
+    let loaded = |app: &App| app.first.own_network().map(|n| n.model.meta.recipe.method);
+    write("deep-small");
+    w.state_mut().open_network(Source::named(&path));
     steps(&mut w);
     assert_eq!(method(&w), "deep-small");
     assert_eq!(w.state().first.failure, None);
-    let loaded = |app: &App| app.first.network().map(|n| n.model.meta.recipe.method);
     assert_eq!(loaded(w.state()), Some("deep-small"));
     // Files keep times to a fraction of a second at best.
     std::thread::sleep(Duration::from_millis(50));
-    let other = peelnet_model::Recipe::of_method("deep-large").unwrap();
-    peelnet_model::Model::shipped(other)
-        .unwrap()
-        .save(&path)
-        .unwrap();
+    write("deep-large");
     until(&mut w, "read again", |app| {
         loaded(app) == Some("deep-large")
     });
     assert_eq!(method(&w), "deep-large");
 }
 
-/// Changes of an object, a material, a light and an effect show, and are taken back.
+/// Changes of an object, a material and a light show, and are taken back.
 #[test]
 fn changes_show_and_are_taken_back() {
     let mut w = window("cups", "wboit-eq9");
-    let shown = |w: &mut Window| {
-        steps(w);
-        let app = w.state();
-        app.displayed().texels(&app.gpu)
-    };
-    let before = shown(&mut w);
-    let scene = w.state().stage.as_ref().unwrap().scene().clone();
-    let moved = glam::Mat4::from_translation(glam::Vec3::X) * scene.objects[0].world_from_object;
-    w.state_mut().edit(|stage| stage.set_transform(0, moved));
-    assert_ne!(shown(&mut w), before);
-    w.state_mut().edit(crate::stage::Stage::reset);
-    assert!(shown(&mut w) == before);
-    let mut clear = scene.objects[0].materials[0].clone();
+    let before = texels(&mut w);
+    let object = stage(&w).scene.objects[0].clone();
+    let moved = glam::Mat4::from_translation(glam::Vec3::X) * object.world_from_object;
+    let mut clear = object.materials[0].clone();
     clear.alpha = 0.01;
-    w.state_mut().edit(|stage| stage.set_material(0, 0, clear));
-    assert_ne!(shown(&mut w), before);
-    w.state_mut().edit(crate::stage::Stage::reset);
-    w.state_mut().edit(|stage| stage.set_lights(Vec::new()));
-    assert_ne!(shown(&mut w), before);
-    w.state_mut().edit(crate::stage::Stage::reset);
-    assert!(shown(&mut w) == before);
+    type Change<'a> = &'a dyn Fn(&mut Stage) -> crate::task::Fallible<()>;
+    let changes: [Change<'_>; 3] = [
+        &|stage| stage.set_transform(0, moved),
+        &|stage| stage.set_material(0, 0, clear.clone()),
+        &|stage| stage.set_lights(Vec::new()),
+    ];
+    for change in changes {
+        w.state_mut().edit(change);
+        assert!(texels(&mut w) != before);
+        w.state_mut().edit(Stage::reset);
+        assert!(texels(&mut w) == before);
+    }
 }
 
 /// The timeline moves by its labels; layers are highlighted and shaded as the check boxes say.
 #[test]
 fn time_and_layers() {
     let mut w = sized("vase", "wboit-eq9", [1000.0, 900.0]);
-    let last = {
-        let scene = w.state().stage.as_ref().unwrap().scene();
-        scene.timeline.last().unwrap().clone()
-    };
+    let last = stage(&w).scene.timeline.last().unwrap().clone();
     press(&mut w, &last.label);
-    let time = |w: &Window| w.state().stage.as_ref().unwrap().scene().time;
+    let time = |w: &Window| stage(w).scene.time;
     assert_eq!(time(&w), last.time);
     press(&mut w, "Play");
-    assert!(w.state().motion.plays);
+    assert!(w.state().panels.plays);
     press(&mut w, "Pause");
     assert_ne!(time(&w), last.time);
     press(&mut w, "Layers");
     press(&mut w, "Layer 1");
-    let layers = |w: &Window| w.state().stage.as_ref().unwrap().shown().clone();
+    let layers = |w: &Window| stage(w).shown.clone();
     assert_eq!(layers(&w).layers.unwrap().highlight, 1);
     press(&mut w, "Increasing layers only");
     assert!(layers(&w).layers.unwrap().increasing);
@@ -503,12 +505,12 @@ fn time_and_layers() {
 #[test]
 fn a_narrow_window_has_one_column() {
     let mut w = sized("boxes", "wboit-eq9", [360.0, 740.0]);
-    let picture = w.get_by_label("Picture of the scene").rect();
+    let picture = w.get_by_label(PICTURE).rect();
     assert!(picture.width() >= 340.0, "{picture:?}");
     assert!(picture.height() > 200.0, "{picture:?}");
     w.get_by_label("Method");
     press(&mut w, "Controls");
     press(&mut w, "Results");
-    let picture = w.get_by_label("Picture of the scene").rect();
+    let picture = w.get_by_label(PICTURE).rect();
     assert!(picture.height() > 600.0, "{picture:?}");
 }

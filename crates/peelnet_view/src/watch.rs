@@ -1,27 +1,24 @@
-//! A model file that is read again whenever it changes, as `peelnet train` writes it.
+//! A model file that is read again whenever it changes, as `peelnet train` writes it. A page has no files: nothing changes there.
 
 use egui::Context;
-use std::{path::PathBuf, time::Duration};
-use web_time::SystemTime;
+use std::{fs, path::PathBuf, time::Duration, time::SystemTime};
 
 /// How often the file is looked at.
 const EVERY: Duration = Duration::from_millis(500);
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Watch {
     file: Option<(PathBuf, Option<SystemTime>)>,
     looked: f64,
 }
 
 impl Watch {
-    /// Looks at this file from now on.
-    pub fn follow(&mut self, path: PathBuf) {
-        let time = modified(&path);
-        self.file = Some((path, time));
-    }
-
-    pub fn stop(&mut self) {
-        self.file = None;
+    /// Looks at this file from now on, or at none.
+    pub fn follow(&mut self, path: Option<PathBuf>) {
+        self.file = path.map(|path| {
+            let time = fs::metadata(&path).and_then(|m| m.modified()).ok();
+            (path, time)
+        });
     }
 
     /// The file, where it has changed since it was last read.
@@ -34,22 +31,7 @@ impl Watch {
         }
         self.looked = now;
         // While it is replaced there may be none.
-        let time = modified(path)?;
-        if *known == Some(time) {
-            return None;
-        }
-        *known = Some(time);
-        Some(path.clone())
+        let time = fs::metadata(&*path).and_then(|m| m.modified()).ok()?;
+        (known.replace(time) != Some(time)).then(|| path.clone())
     }
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-fn modified(path: &std::path::Path) -> Option<SystemTime> {
-    std::fs::metadata(path).and_then(|m| m.modified()).ok()
-}
-
-/// A page has no files.
-#[cfg(target_arch = "wasm32")]
-fn modified(_: &std::path::Path) -> Option<SystemTime> {
-    None
 }

@@ -1,10 +1,10 @@
 //! The window of a native system.
 
 use crate::{
-    app::{App, Start},
+    app::{App, Start, configuration},
     memory,
+    stage::Source,
 };
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use peelnet_gpu::Gpu;
 
 /// Opens the window and runs it until it is closed. `size` is that of its content, in pixels. Returns what the frames of a script cost, as a
@@ -13,20 +13,13 @@ use peelnet_gpu::Gpu;
 /// # Errors
 /// No display to open a window on, or what a script of `start` came to; one line.
 pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, String> {
-    let setup = WgpuSetupExisting {
-        instance: gpu.instance.clone(),
-        adapter: gpu.adapter.clone(),
-        device: gpu.device.clone(),
-        queue: gpu.queue.clone(),
-    };
-    let outcome = start.script.as_ref().map(|s| s.outcome());
+    let script = start.script.clone();
     // A script neither sees nor changes what is remembered, such as the size of text.
     let name = format!("peelnet-view-{}.ron", std::process::id());
-    let scratch = outcome.is_some().then(|| std::env::temp_dir().join(name));
-    let [width, height] = size.map(|n| n as f32);
+    let scratch = script.is_some().then(|| std::env::temp_dir().join(name));
     let viewport = egui::ViewportBuilder::default()
         .with_title("peelnet")
-        .with_inner_size([width, height])
+        .with_inner_size(size.map(|n| n as f32))
         .with_min_inner_size([320.0, 240.0])
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions {
@@ -34,10 +27,7 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, S
         // The size is what was asked for.
         persist_window: false,
         persistence_path: scratch.clone(),
-        wgpu_options: WgpuConfiguration {
-            wgpu_setup: WgpuSetup::Existing(setup),
-            ..Default::default()
-        },
+        wgpu_options: configuration(gpu),
         ..Default::default()
     };
     let gpu = gpu.clone();
@@ -50,7 +40,8 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, S
                 // One pixel of the picture is one of the window.
                 cc.egui_ctx.set_pixels_per_point(1.0);
             }
-            Ok(Box::new(App::new(&gpu, start, recent)))
+            let source = Source::named(&start.scene);
+            Ok(Box::new(App::new(&gpu, start, source, recent)))
         }),
     );
     if let Some(scratch) = scratch {
@@ -62,14 +53,7 @@ pub fn open(gpu: &Gpu, start: Start, size: [u32; 2]) -> Result<Option<String>, S
             "no window can be opened ({e}); where there is no display, peelnet render draws images, and xvfb-run lends a display"
         )
     })?;
-    let Some(outcome) = outcome else {
-        return Ok(None);
-    };
-    let outcome = outcome
-        .lock()
-        .unwrap_or_else(std::sync::PoisonError::into_inner)
-        .take();
-    let outcome =
-        outcome.unwrap_or_else(|| Err("the window was closed before the script ended".into()));
-    outcome.map(Some)
+    let closed = || Err("the window was closed before the script ended".into());
+    let outcome = script.map(|script| script.outcome().unwrap_or_else(closed));
+    outcome.transpose()
 }

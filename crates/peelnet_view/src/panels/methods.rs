@@ -1,6 +1,12 @@
 //! Choosing methods, and their parameters: all from the methods' own declarations.
 
-use crate::{app::App, compare::Mode};
+use super::error;
+use crate::{
+    app::App,
+    compare::{MODES, Mode},
+    slot::Slot,
+    stage::Source,
+};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use peelnet_render::{
     METHODS, Method, MethodSpec,
@@ -13,22 +19,21 @@ pub(crate) fn offered() -> impl Iterator<Item = &'static Method> {
 }
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
-    if app.stage.as_ref().is_some_and(|s| s.layers().is_some()) {
+    if (app.stage.as_ref()).is_some_and(|s| s.shown.layers.is_some()) {
         ui.label("Layers are shown: methods draw the scene again once no layer is highlighted.");
     }
-    let mut spec = app.first.spec().clone();
-    choose(ui, "Draw with", &mut spec);
-    parameters(ui, "first", &mut spec);
-    network(app, ui, &spec);
-    app.first.set_spec(spec);
+    choose(ui, "Draw with", "first", &mut app.first);
+    if app.first.spec.needs_model() {
+        network(app, ui);
+    }
     if let Some(failure) = &app.first.failure {
-        ui.colored_label(ui.visuals().error_fg_color, failure.clone());
+        error(ui, failure);
     }
 }
 
 pub(super) fn compare(app: &mut App, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
-        for (mode, name, about) in Mode::ALL {
+        for (mode, _, name, about) in MODES {
             ui.selectable_value(&mut app.compare.mode, mode, name)
                 .on_hover_text(about);
         }
@@ -36,84 +41,80 @@ pub(super) fn compare(app: &mut App, ui: &mut Ui) {
     if !app.compare.mode.needs_second() {
         return;
     }
-    let mut spec = app.second.spec().clone();
-    choose(ui, "Against", &mut spec);
-    parameters(ui, "second", &mut spec);
-    app.second.set_spec(spec);
-    match app.compare.mode {
-        Mode::Split => {
-            ui.add(Slider::new(&mut app.compare.divider, 0.0..=1.0).text("Divider"));
-        }
-        Mode::Error => {
-            let slider = Slider::new(&mut app.compare.scale, 1.0..=255.0);
-            ui.add(slider.logarithmic(true).text("Map ends at, of 255"));
-        }
-        _ => {}
+    choose(ui, "Against", "second", &mut app.second);
+    if app.compare.mode == Mode::Split {
+        ui.add(Slider::new(&mut app.compare.divider, 0.0..=1.0).text("Divider"));
+    }
+    if app.compare.mode == Mode::Error {
+        let slider = Slider::new(&mut app.compare.scale, 1.0..=255.0);
+        ui.add(slider.logarithmic(true).text("Map ends at, of 255"));
     }
 }
 
-fn choose(ui: &mut Ui, label: &str, spec: &mut MethodSpec) {
-    ComboBox::from_label(label)
-        .selected_text(spec.name())
-        .width(150.0)
-        .height(420.0)
-        .show_ui(ui, |ui| {
-            for method in METHODS {
-                let is_own = method.name == spec.method().name
-                    && method.numbered.is_some() == spec.method().numbered.is_some();
-                if let Some(why) = method.cpu_only {
-                    let entry = ui.add_enabled(false, egui::Button::selectable(false, method.name));
-                    entry.on_disabled_hover_text(why);
-                    continue;
-                }
-                let entry = ui.selectable_label(is_own, method.name);
-                if entry.on_hover_text(method.about).clicked()
-                    && !is_own
-                    && let Some(point) = MethodSpec::points(method).next()
-                {
-                    *spec = point;
-                }
+/// Controls of a method and its parameters.
+fn choose(ui: &mut Ui, label: &str, salt: &str, slot: &mut Slot) {
+    let mut spec = slot.spec.clone();
+    let list = ComboBox::from_label(label).selected_text(spec.name());
+    list.width(150.0).height(420.0).show_ui(ui, |ui| {
+        for method in METHODS {
+            if let Some(why) = method.cpu_only {
+                let entry = ui.add_enabled(false, egui::Button::selectable(false, method.name));
+                entry.on_disabled_hover_text(why);
+                continue;
             }
-        });
+            let own = spec.method();
+            let is_own =
+                method.name == own.name && method.numbered.is_some() == own.numbered.is_some();
+            let entry = ui.selectable_label(is_own, method.name);
+            if entry.on_hover_text(method.about).clicked()
+                && !is_own
+                && let Some(point) = MethodSpec::points(method).next()
+            {
+                spec = point;
+            }
+        }
+    });
     ui.weak(spec.method().about);
+    parameters(ui, salt, &mut spec);
+    slot.set_spec(spec);
 }
 
-/// A control for the number at the end of the name and for every parameter.
+/// A control for the number at the end of the name and for every parameter. What the method does not allow changes nothing: controls keep to
+/// the limits, but for those that are excluded.
 fn parameters(ui: &mut Ui, salt: &str, spec: &mut MethodSpec) {
-    egui::Grid::new(("parameters", salt))
-        .num_columns(2)
-        .show(ui, |ui| {
-            if let Some(numbered) = spec.method().numbered {
-                let label = ui.label("number");
-                let number = number(ui, salt, numbered, spec.number(), label.id);
-                if number != spec.number() {
-                    *spec = renumbered(spec, number);
-                }
-                ui.end_row();
+    let grid = egui::Grid::new(("parameters", salt)).num_columns(2);
+    grid.show(ui, |ui| {
+        if let Some(numbered) = spec.method().numbered {
+            let label = ui.label("number");
+            let number = number(ui, salt, numbered, spec.number(), label.id);
+            if number != spec.number() {
+                *spec = renamed(spec, &format!("{}-{number}", spec.name()), "");
             }
-            for parameter in spec.method().all_parameters() {
-                let label = ui.label(parameter.name).on_hover_text(parameter.about);
-                if let Some(value) = control(ui, salt, parameter, spec, label.id) {
-                    *spec = changed(spec, parameter.name, value.as_deref());
-                }
-                ui.end_row();
-            }
-        });
+            ui.end_row();
+        }
+        for parameter in spec.method().all_parameters() {
+            let name = parameter.name;
+            let label = ui.label(name).on_hover_text(parameter.about);
+            let changed = match control(ui, salt, parameter, spec, label.id) {
+                Some(Some(value)) => spec.with(name, &value).ok(),
+                Some(None) => Some(renamed(spec, "", name)),
+                None => None,
+            };
+            *spec = changed.unwrap_or_else(|| spec.clone());
+            ui.end_row();
+        }
+    });
 }
 
 fn number(ui: &mut Ui, salt: &str, numbered: Numbered, now: u32, label: egui::Id) -> u32 {
     let mut number = now;
     if numbered.power_of_two {
-        ComboBox::from_id_salt(("number", salt))
-            .selected_text(now.to_string())
-            .show_ui(ui, |ui| {
-                let powers = (0..32).map(|k| 1u32 << k);
-                for n in powers.filter(|n| (numbered.least..=numbered.most).contains(n)) {
-                    ui.selectable_value(&mut number, n, n.to_string());
-                }
-            })
-            .response
-            .labelled_by(label);
+        let all = numbered.least..=numbered.most;
+        let powers = (0..32).map(|k| 1u32 << k).filter(|n| all.contains(n));
+        let powers = powers.map(|n| (n.to_string(), Some(n)));
+        if let Some(chosen) = chosen(ui, (salt, "number"), &now.to_string(), powers, label) {
+            number = chosen.unwrap_or(now);
+        }
     } else {
         let drag = DragValue::new(&mut number).range(numbered.least..=numbered.most);
         ui.add(drag).labelled_by(label);
@@ -172,13 +173,13 @@ fn control(
             change
         }
         Values::Words(words) => {
-            let words = words.iter().map(|word| (*word, Some(*word)));
+            let words = words.iter().map(|word| (*word, Some(word.to_string())));
             chosen(ui, (salt, name), parameter.word(spec), words, label)
         }
         Values::Precision => {
             let now = parameter.word(spec);
             let now = if now.is_empty() { "its own" } else { now };
-            let words = Precision::WORDS.map(|word| (word, Some(word)));
+            let words = Precision::WORDS.map(|word| (word, Some(word.to_string())));
             let all = std::iter::once(("its own", None)).chain(words);
             chosen(ui, (salt, name), now, all, label)
         }
@@ -186,79 +187,53 @@ fn control(
 }
 
 /// A list of words; the value of the one that was chosen.
-fn chosen<'a>(
+fn chosen<W: AsRef<str>, T>(
     ui: &mut Ui,
     salt: (&str, &str),
     now: &str,
-    words: impl Iterator<Item = (&'a str, Option<&'a str>)>,
+    words: impl Iterator<Item = (W, Option<T>)>,
     label: egui::Id,
-) -> Option<Option<String>> {
+) -> Option<Option<T>> {
     let mut change = None;
-    ComboBox::from_id_salt(salt)
-        .selected_text(now)
-        .show_ui(ui, |ui| {
-            for (word, value) in words {
-                if ui.selectable_label(word == now, word).clicked() && word != now {
-                    change = Some(value.map(str::to_owned));
-                }
+    let list = ComboBox::from_id_salt(salt).selected_text(now);
+    let list = list.show_ui(ui, |ui| {
+        for (word, value) in words {
+            let word = word.as_ref();
+            if ui.selectable_label(word == now, word).clicked() && word != now {
+                change = Some(value);
             }
-        })
-        .response
-        .labelled_by(label);
+        }
+    });
+    list.response.labelled_by(label);
     change
 }
 
-/// The same method with another number at its name's end.
-fn renumbered(spec: &MethodSpec, number: u32) -> MethodSpec {
+/// The same method with another name, which the number is a part of, unless that is empty; and without a parameter.
+fn renamed(spec: &MethodSpec, name: &str, without: &str) -> MethodSpec {
     let text = spec.to_string();
-    let parameters = text.split_once(':').map(|(_, parameters)| parameters);
-    let name = format!("{}-{number}", spec.name());
-    let text = parameters.map_or_else(|| name.clone(), |p| format!("{name}:{p}"));
-    // A number that the control offers is allowed, but for methods that want more of it.
-    text.parse().unwrap_or_else(|_| spec.clone())
-}
-
-/// The same method with another value of a parameter, or its default.
-fn changed(spec: &MethodSpec, name: &str, value: Option<&str>) -> MethodSpec {
-    if let Some(value) = value {
-        // Controls keep to the limits, but for those that are excluded.
-        return spec.with(name, value).unwrap_or_else(|_| spec.clone());
-    }
-    let text = spec.to_string();
-    let Some((method, parameters)) = text.split_once(':') else {
-        return spec.clone();
-    };
-    let left = parameters.split(',');
-    let left: Vec<&str> = left
-        .filter(|pair| pair.split_once('=').is_none_or(|(n, _)| n != name))
-        .collect();
-    let text = format!("{method}:{}", left.join(","));
+    let (own, parameters) = text.split_once(':').unwrap_or((&text, ""));
+    let name = if name.is_empty() { own } else { name };
+    let is_left = |pair: &&str| pair.split('=').next() != Some(without);
+    let left: Vec<&str> = parameters.split(',').filter(is_left).collect();
+    let text = format!("{name}:{}", left.join(","));
+    let text = text.trim_end_matches(':');
     text.parse().unwrap_or_else(|_| spec.clone())
 }
 
 /// Which network draws.
-fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
-    if !spec.needs_model() {
-        return;
-    }
-    let own = app.first.network().filter(|n| n.is_of(spec));
-    let name = own.map(|n| peelnet_files::shown(&n.path));
-    match name {
-        Some(name) => {
-            ui.horizontal_wrapped(|ui| {
-                ui.label(format!("Network: {name}")).on_hover_text(
-                    "Read again whenever the file changes, as while peelnet train writes it",
-                );
-                if ui.button("Use the shipped one").clicked() {
-                    app.first.set_network(None);
-                    app.watch.stop();
-                    app.judge.last = None;
-                }
-            });
-        }
-        None => {
-            ui.label("Network: the shipped one");
-        }
+fn network(app: &mut App, ui: &mut Ui) {
+    let own = app.first.own_network();
+    if let Some(name) = own.map(|n| peelnet_files::shown(&n.path)) {
+        ui.horizontal_wrapped(|ui| {
+            let about = "Read again whenever the file changes, as while peelnet train writes it";
+            ui.label(format!("Network: {name}")).on_hover_text(about);
+            if ui.button("Use the shipped one").clicked() {
+                app.first.set_network(None);
+                app.watch.follow(None);
+            }
+        });
+    } else {
+        ui.label("Network: the shipped one");
     }
     if cfg!(target_arch = "wasm32") {
         ui.weak("Drop a .safetensors file onto the page to draw with it.");
@@ -269,7 +244,7 @@ fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
         let edit = egui::TextEdit::singleline(&mut app.panels.model).desired_width(120.0);
         ui.add(edit).labelled_by(label.id);
         if ui.button("Open network").clicked() && !app.panels.model.is_empty() {
-            app.open_network(app.panels.model.clone().into());
+            app.open_network(Source::named(&app.panels.model));
         }
     });
 }
@@ -278,33 +253,23 @@ fn network(app: &mut App, ui: &mut Ui, spec: &MethodSpec) {
 mod tests {
     use super::*;
 
-    fn spec(text: &str) -> MethodSpec {
-        text.parse().expect("a method")
-    }
-
     #[test]
-    fn values_and_defaults_are_set() {
-        let m = spec("wboit-eq10:factor=3e4,targets=f32");
-        assert_eq!(changed(&m, "factor", None), spec("wboit-eq10:targets=f32"));
-        let other = changed(&m, "targets", Some("f16"));
-        assert_eq!(other, spec("wboit-eq10:factor=3e4,targets=f16"));
-        // What is not allowed changes nothing.
-        assert_eq!(changed(&m, "targets", Some("f8")), m);
-        assert_eq!(changed(&spec("mboit4"), "targets", None), spec("mboit4"));
-    }
-
-    #[test]
-    fn numbers_are_set() {
-        let m = spec("kbuffer-4");
-        assert_eq!(renumbered(&m, 8), spec("kbuffer-8"));
-        assert_eq!(renumbered(&m, 0), m);
-    }
-
-    /// Every method that a GPU draws can be chosen, and every parameter has a control: the match in `control` has no catch-all.
-    #[test]
-    fn methods_are_offered() {
-        let drawn = METHODS.iter().filter(|m| m.cpu_only.is_none()).count();
-        assert_eq!(offered().count(), drawn);
-        assert!(offered().all(|m| MethodSpec::points(m).next().is_some()));
+    fn numbers_and_defaults_are_set() {
+        for (spec, name, without, want) in [
+            (
+                "wboit-eq10:factor=3e4,targets=f32",
+                "",
+                "factor",
+                "wboit-eq10:targets=f32",
+            ),
+            ("wboit-eq10:factor=3e4", "", "factor", "wboit-eq10"),
+            ("mboit4", "", "targets", "mboit4"),
+            ("kbuffer-4", "kbuffer-8", "", "kbuffer-8"),
+            // What is not allowed changes nothing.
+            ("kbuffer-4", "kbuffer-0", "", "kbuffer-4"),
+        ] {
+            let spec = spec.parse().expect("a method");
+            assert_eq!(renamed(&spec, name, without).to_string(), want);
+        }
     }
 }

@@ -10,13 +10,12 @@ mod top;
 
 use crate::app::App;
 use eframe::egui_wgpu::RenderState;
-use egui::{CentralPanel, Frame, Panel, ScrollArea, Ui};
+use egui::{CentralPanel, Panel, ScrollArea, Ui};
 
 /// Windows narrower than this have one column below the picture instead of two beside it, points.
 const NARROW: f32 = 760.0;
 
-/// Which panels are open, and what is typed into them.
-#[derive(Debug)]
+/// Which panels are open, what is typed into them, and what moves.
 pub(crate) struct State {
     /// The picture alone.
     pub bare: bool,
@@ -25,11 +24,11 @@ pub(crate) struct State {
     /// Whether errors are measured when the view rests.
     pub measures: bool,
     pub help: bool,
+    /// Whether the timeline plays.
+    pub plays: bool,
+    /// Whether the eye goes round.
+    pub turns: bool,
     /// What is typed as a file to open.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "a page has no paths")
-    )]
     pub path: String,
     /// What is typed as a network's file.
     pub model: String,
@@ -49,103 +48,113 @@ impl State {
             right: true,
             measures: true,
             help: false,
+            plays: false,
+            turns: false,
             path: String::new(),
             model: String::new(),
             object: 0,
             listed: false,
-            frames: output::FRAMES,
+            frames: 48,
         }
     }
 }
 
 /// The whole window.
 pub(crate) fn show(app: &mut App, ui: &mut Ui, egui: &RenderState) {
-    if ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Tab)) {
-        app.panels.bare = !app.panels.bare;
-    }
+    app.panels.bare ^= ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Tab));
     if app.panels.bare {
         CentralPanel::no_frame().show(ui, |ui| app.show_viewport(ui, egui));
         return;
     }
     Panel::top("top").show(ui, |ui| top::show(app, ui));
-    if !app.messages.is_empty() {
+    if !app.messages.0.is_empty() {
         Panel::bottom("messages").show(ui, |ui| app.messages.show(ui));
     }
-    let has_timeline = |app: &App| {
-        let stage = app.stage.as_ref();
-        stage.is_some_and(|s| !s.scene().timeline.is_empty())
-    };
-    if has_timeline(app) {
+    if app.stage.as_ref().is_some_and(|s| s.times().is_some()) {
         Panel::bottom("timeline").show(ui, |ui| scene::timeline(app, ui));
     }
+    let (left, right) = (app.panels.left, app.panels.right);
     if ui.available_width() < NARROW {
-        if app.panels.left || app.panels.right {
+        if left || right {
             let height = 0.45 * ui.available_height();
-            Panel::bottom("column")
-                .resizable(true)
-                .default_size(height)
-                .show(ui, |ui| {
-                    scrolled(ui, |ui| {
-                        if app.panels.left {
-                            controls(app, ui);
-                        }
-                        if app.panels.right {
-                            results(app, ui);
-                        }
-                    });
-                });
+            column(Panel::bottom("column"), height, ui, |ui| {
+                if left {
+                    controls(app, ui);
+                }
+                if right {
+                    results(app, ui);
+                }
+            });
         }
     } else {
-        if app.panels.left {
-            Panel::left("controls")
-                .resizable(true)
-                .default_size(300.0)
-                .show(ui, |ui| scrolled(ui, |ui| controls(app, ui)));
+        if left {
+            column(Panel::left("controls"), 300.0, ui, |ui| controls(app, ui));
         }
-        if app.panels.right {
-            Panel::right("results")
-                .resizable(true)
-                .default_size(340.0)
-                .show(ui, |ui| scrolled(ui, |ui| results(app, ui)));
+        if right {
+            column(Panel::right("results"), 340.0, ui, |ui| results(app, ui));
         }
     }
-    CentralPanel::default()
-        .frame(Frame::NONE)
-        .show(ui, |ui| app.show_viewport(ui, egui));
+    CentralPanel::no_frame().show(ui, |ui| app.show_viewport(ui, egui));
     top::help(app, ui);
 }
 
-fn scrolled(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, add);
+fn column(panel: Panel, size: f32, ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    panel.resizable(true).default_size(size).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, add);
+    });
 }
+
+type Section = (&'static str, bool, fn(&mut App, &mut Ui));
 
 /// What is chosen.
 fn controls(app: &mut App, ui: &mut Ui) {
-    section(ui, "Method", true, |ui| methods::show(app, ui));
-    section(ui, "Compare", true, |ui| methods::compare(app, ui));
-    section(ui, "Camera", true, |ui| scene::camera(app, ui));
-    section(ui, "Layers", false, |ui| scene::layers(app, ui));
-    section(ui, "Objects", false, |ui| scene::objects(app, ui));
-    section(ui, "Lights", false, |ui| scene::lights(app, ui));
-    section(ui, "Save", false, |ui| output::show(app, ui));
+    let all: [Section; 7] = [
+        ("Method", true, methods::show),
+        ("Compare", true, methods::compare),
+        ("Camera", true, scene::camera),
+        ("Layers", false, scene::layers),
+        ("Objects", false, scene::objects),
+        ("Lights", false, scene::lights),
+        ("Save", false, output::show),
+    ];
+    sections(&all, app, ui);
 }
 
 /// What is measured.
 fn results(app: &mut App, ui: &mut Ui) {
-    section(ui, "Error of this view", true, |ui| numbers::show(app, ui));
-    section(ui, "Time and memory", true, |ui| numbers::passes(app, ui));
-    section(ui, "Pixel", true, |ui| pixel::show(app, ui));
-    section(ui, "Error against time", true, |ui| front::show(app, ui));
+    let all: [Section; 4] = [
+        ("Error of this view", true, numbers::show),
+        ("Time and memory", true, numbers::passes),
+        ("Pixel", true, pixel::show),
+        ("Error against time", true, front::show),
+    ];
+    sections(&all, app, ui);
 }
 
-fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
-    egui::CollapsingHeader::new(egui::RichText::new(title).strong())
-        .default_open(open)
-        .show(ui, add);
+fn sections(all: &[Section], app: &mut App, ui: &mut Ui) {
+    for (title, open, add) in all {
+        egui::CollapsingHeader::new(egui::RichText::new(*title).strong())
+            .default_open(*open)
+            .show(ui, |ui| add(app, ui));
+    }
+}
+
+/// A button that says what it does; whether it was clicked.
+fn button(ui: &mut Ui, name: &str, about: &str) -> bool {
+    ui.button(name).on_hover_text(about).clicked()
+}
+
+fn error(ui: &mut Ui, text: &str) {
+    ui.colored_label(ui.visuals().error_fg_color, text);
+}
+
+/// Text of a file, safe to show.
+fn printable(text: &str) -> String {
+    peelnet_files::printable(text).into_owned()
 }
 
 /// A number with as many digits as are worth reading.
-pub(crate) fn digits(x: f64) -> String {
+fn digits(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
         a if a >= 100.0 => format!("{x:.0}"),

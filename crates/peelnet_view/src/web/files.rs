@@ -1,34 +1,29 @@
 //! Files that come into a page and leave it.
 
+use crate::{stage::Files, task::Fallible};
 use egui::{DroppedFileHandle, Ui};
-use std::{
-    collections::HashMap,
-    path::{Path, PathBuf},
-};
+use peelnet_files::shown;
+use std::path::Path;
 use wasm_bindgen::{JsCast as _, JsValue};
-
-/// Dropped files by their names.
-pub(super) type Files = HashMap<PathBuf, Vec<u8>>;
 
 /// Bytes that are read at once: a page has 4 GiB of memory, and a scene needs several times the size of its file.
 const MOST: f64 = 512.0 * 1024.0 * 1024.0;
 
 /// Reads dropped files.
-pub(super) async fn read(dropped: Vec<DroppedFileHandle>) -> Result<Files, String> {
+pub(super) async fn read(dropped: Vec<DroppedFileHandle>) -> Fallible<Files> {
     let sizes = dropped.iter().filter_map(|file| file.web_file());
     let bytes: f64 = sizes.map(|file| file.size()).sum();
     if bytes > MOST {
+        let [found, most] = [bytes, MOST].map(|bytes| bytes / (1 << 20) as f64);
         return Err(format!(
-            "{:.0} MiB were dropped: a page opens at most {:.0} MiB; the window of peelnet view opens more",
-            bytes / (1 << 20) as f64,
-            MOST / (1 << 20) as f64
-        ));
+            "{found:.0} MiB were dropped: a page opens at most {most:.0} MiB; the window of peelnet view opens more"
+        )
+        .into());
     }
     let mut files = Files::new();
     for file in dropped {
         let read = file.bytes_async().await.map_err(|e| {
-            let name = file.path().to_string_lossy();
-            let name = peelnet_files::printable(&name).to_string();
+            let name = shown(file.path());
             format!("{name}: the browser cannot read it: {e}")
         })?;
         files.insert(file.path().to_owned(), read);
@@ -40,8 +35,7 @@ pub(super) async fn read(dropped: Vec<DroppedFileHandle>) -> Result<Files, Strin
 pub(crate) fn choose_files(ui: &mut Ui) {
     ui.label("Drop files onto the page, or");
     if ui.button("Choose files").clicked() {
-        let document = web_sys::window().and_then(|w| w.document());
-        let input = document.and_then(|d| d.get_element_by_id("files"));
+        let input = super::element("files");
         if let Some(input) = input.and_then(|i| i.dyn_into::<web_sys::HtmlElement>().ok()) {
             input.click();
         }
@@ -53,10 +47,8 @@ pub(crate) fn choose_files(ui: &mut Ui) {
 /// Hands a file to the browser, which puts it among the downloads.
 pub(crate) fn download(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let name = path.to_string_lossy().replace('/', "-");
-    handed(&name, bytes).map_err(|e| {
-        let name = peelnet_files::printable(&name).to_string();
-        format!("{name}: the browser does not take it: {e:?}")
-    })
+    let handed = handed(&name, bytes);
+    handed.map_err(|e| format!("{}: the browser does not take it: {e:?}", shown(path)))
 }
 
 fn handed(name: &str, bytes: &[u8]) -> Result<(), JsValue> {

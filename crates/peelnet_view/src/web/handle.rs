@@ -1,7 +1,11 @@
 //! What the page's own script, and tests, do with the viewer.
 
-use super::{Begin, Shelf, files::Files, say};
-use crate::{app::App, eye, stage::Source};
+use super::{Begin, Shelf, say};
+use crate::{
+    app::App,
+    eye,
+    stage::{Files, Source},
+};
 use peelnet_render::{FrameStatus, MethodSpec};
 use std::{cell::Cell, path::PathBuf, rc::Rc};
 use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
@@ -16,12 +20,6 @@ pub struct Page {
     pub(super) lost: Rc<Cell<u32>>,
     /// The scene that the browser keeps.
     pub(super) shelf: Rc<Shelf>,
-}
-
-impl std::fmt::Debug for Page {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Page")
-    }
 }
 
 impl Page {
@@ -96,19 +94,19 @@ impl Page {
     /// # Errors
     /// A text that names no method.
     pub fn set_method(&self, method: &str) -> Result<(), String> {
-        let method: MethodSpec = method.parse().map_err(|e| crate::stage::one_line(&e))?;
+        let method: MethodSpec = method.parse().map_err(|e| crate::task::one_line(&e))?;
         self.with(|app| app.first.set_spec(method));
         Ok(())
     }
 
     /// The method.
     pub fn method(&self) -> Option<String> {
-        self.read(|app| app.first.spec().to_string())
+        self.read(|app| app.first.spec.to_string())
     }
 
     /// Opens a shipped scene.
     pub fn open_scene(&self, name: &str) {
-        self.with(|app| app.open(Source::Named(name.into()), None));
+        self.with(|app| app.open(Source::named(name), None));
     }
 
     /// The scene's name.
@@ -135,9 +133,9 @@ impl Page {
     pub fn is_whole(&self) -> bool {
         let whole = |app: &App| {
             let slot = &app.first;
-            slot.picture().is_some()
+            slot.picture.is_some()
                 && slot.failure.is_none()
-                && slot.status() == FrameStatus::Whole
+                && slot.status == FrameStatus::Whole
                 && app.page.reading.is_none()
         };
         self.read(whole).unwrap_or_default()
@@ -147,14 +145,17 @@ impl Page {
     pub fn error(&self) -> Option<f64> {
         self.read(|app| {
             let numbers = app.judge.of(&app.key()?)?.as_ref();
-            numbers.ok().map(|n| n.mse255)
+            numbers.ok().map(|n| n.differences.mse255)
         })?
     }
 
     /// Messages, one a line.
     pub fn messages(&self) -> String {
-        let all = self.read(|app| app.messages.lines().collect::<Vec<_>>().join("\n"));
-        all.unwrap_or_default()
+        let lines = |app: &App| -> Vec<String> {
+            let lines = app.messages.0.iter();
+            lines.map(|(_, text)| text.clone()).collect()
+        };
+        self.read(lines).unwrap_or_default().join("\n")
     }
 
     /// Devices that were lost since the page was opened.

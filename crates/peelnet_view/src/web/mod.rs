@@ -5,22 +5,19 @@ mod handle;
 mod shelf;
 
 use crate::{
-    address::Address,
-    app::{App, Start},
+    address,
+    app::{App, Start, configuration},
     compare::Compare,
     memory,
     panels::State,
     slot::Network,
-    stage::Source,
-    task::{Task, repaints},
+    stage::{Files, Source},
+    task::{Fallible, Task, one_line, repaints},
 };
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use egui::{FontData, FontDefinitions, FontFamily};
-use files::Files;
 pub(crate) use files::{choose_files, download};
 pub use handle::Page;
 use peelnet_gpu::{AdapterRequest, Gpu, GpuError};
-use peelnet_render::{MethodSpec, RenderError};
 use peelnet_scene::Camera;
 use shelf::Shelf;
 use std::{path::PathBuf, rc::Rc};
@@ -39,7 +36,7 @@ pub(crate) struct InPage {
     /// Draws the page again.
     context: egui::Context,
     /// Files that were dropped and are being read.
-    reading: Option<Task<Result<Files, String>>>,
+    reading: Option<Task<Fallible<Files>>>,
     /// What the address says, and when it was written.
     address: (String, f64),
     /// Begins again with another device.
@@ -54,11 +51,7 @@ impl InPage {
     /// Whether the GPU is still drawing the last frame. A browser takes frames faster than a slow GPU draws them: what methods read back
     /// of a frame, and what is dragged, would wait behind all of them.
     pub fn is_drawing(&mut self, ui: &egui::Context) -> bool {
-        if let Some(drawing) = &mut self.drawing
-            && drawing.poll(ui).is_some()
-        {
-            self.drawing = None;
-        }
+        Task::finish(&mut self.drawing, ui);
         self.drawing.is_some()
     }
 
@@ -71,21 +64,14 @@ impl InPage {
     }
 }
 
-impl std::fmt::Debug for InPage {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("InPage")
-    }
-}
-
 /// What is shown, without anything of a device.
 struct Kept {
     source: Option<Source>,
-    time: Option<f32>,
+    /// With both methods and the time.
+    start: Start,
     camera: Camera,
     view: Option<usize>,
-    first: MethodSpec,
     network: Option<Network>,
-    second: MethodSpec,
     compare: Compare,
     panels: State,
 }
@@ -96,21 +82,17 @@ impl App {
         let stage = self.stage.as_ref();
         Kept {
             source: stage.map(|s| s.source.clone()),
-            time: self.time(),
+            start: Start {
+                against: Some(self.second.spec.clone()),
+                time: stage.and_then(|s| s.time()),
+                ..Start::new(FIRST.0, self.first.spec.clone())
+            },
             camera: self.camera,
             view: self.view,
-            first: self.first.spec().clone(),
-            network: self.first.network().cloned(),
-            second: self.second.spec().clone(),
+            network: self.first.network.take(),
             compare: self.compare,
             panels: std::mem::replace(&mut self.panels, State::new(false)),
         }
-    }
-
-    /// The time of a scene that has a timeline.
-    fn time(&self) -> Option<f32> {
-        let scene = self.stage.as_ref()?.scene();
-        (!scene.timeline.is_empty()).then_some(scene.time)
     }
 
     /// The application of an address.
@@ -119,33 +101,31 @@ impl App {
         query: &str,
         mut recent: Vec<PathBuf>,
         shelf: &Shelf,
-    ) -> Result<Self, RenderError> {
-        let (address, wrong) = Address::read(query);
+    ) -> Fallible<Self> {
         recent.retain(|path| shelf.has(path));
-        let last = recent.first().cloned();
-        let last = last.unwrap_or_else(|| FIRST.0.into());
-        let wanted = address.scene.clone().map(PathBuf::from);
-        let missing = wanted.clone().filter(|path| !shelf.has(path));
-        let is_missing = missing.is_some();
-        let method = address.method.map_or_else(|| FIRST.1.parse(), Ok)?;
-        let start = Start {
-            view: address.view.filter(|_| !is_missing).unwrap_or(0),
-            camera: address.camera.filter(|_| !is_missing),
-            time: address.time.filter(|_| !is_missing),
-            bare: address.bare,
-            ..Start::new(FIRST.0, method)
+        let mut start = Start::new("", FIRST.1.parse()?);
+        let wrong = address::read(query, &mut start);
+        let wanted = std::mem::take(&mut start.scene);
+        let is_named = !wanted.as_os_str().is_empty();
+        let is_missing = is_named && !shelf.has(&wanted);
+        if is_missing {
+            (start.view, start.camera, start.time) = (0, None, None);
+        }
+        let scene = if is_named && !is_missing {
+            wanted.clone()
+        } else {
+            recent.first().cloned().unwrap_or_else(|| FIRST.0.into())
         };
-        let source = shelf.source(wanted.filter(|_| !is_missing).unwrap_or(last));
-        let mut app = Self::of_source(gpu, start, source, recent);
+        let mut app = Self::new(gpu, start, shelf.source(scene), recent);
         if app.stage.is_none() {
             // A time that the scene does not have, or a scene that this GPU does not take.
-            app.open(Source::Named(FIRST.0.into()), None);
+            app.open(Source::named(FIRST.0), None);
         }
         for text in wrong {
             app.messages.error(text);
         }
-        if let Some(path) = missing {
-            let name = peelnet_files::shown(&path);
+        if is_missing {
+            let name = peelnet_files::shown(&wanted);
             app.messages.warn(format!(
                 "{name}: no scene of this name ships with the viewer, and a page keeps only the one that was dropped last: drop it again"
             ));
@@ -155,14 +135,12 @@ impl App {
 
     /// The application of another device, as it was.
     fn of_kept(gpu: &Gpu, kept: Kept, recent: Vec<PathBuf>) -> Self {
-        let start = Start::new(FIRST.0, kept.first.clone());
-        let mut app = Self::empty(gpu, &start, recent);
+        let time = kept.start.time;
+        let mut app = Self::empty(gpu, kept.start, recent);
         app.first.set_network(kept.network);
-        app.second.set_spec(kept.second);
-        app.compare = kept.compare;
-        app.panels = kept.panels;
+        (app.compare, app.panels) = (kept.compare, kept.panels);
         if let Some(source) = kept.source {
-            app.open(source, kept.time);
+            app.open(source, time);
             (app.camera, app.view) = (kept.camera, kept.view);
         }
         app.messages
@@ -183,7 +161,7 @@ impl App {
     pub(crate) fn kept_or_named(&self, path: PathBuf) -> Source {
         match &self.page.shelf {
             Some(shelf) => shelf.source(path),
-            None => Source::Named(path),
+            None => Source::named(path),
         }
     }
 
@@ -201,63 +179,64 @@ impl App {
 
     /// Writes what is shown into the page's address.
     pub(crate) fn show_address(&mut self, ui: &egui::Context) {
-        let Some(stage) = &self.stage else {
-            return;
-        };
-        let scene = match &stage.source {
-            Source::Named(path) | Source::Dropped(path, _) => path.to_string_lossy().into_owned(),
-        };
-        let (method, bare) = (self.first.spec(), self.panels.bare);
-        let view = (self.view, &self.camera);
-        let query = Address::query(&scene, method, view, self.time(), bare);
         let (written, when) = &self.page.address;
-        if *written == query {
+        let Some(query) = self.query().filter(|query| query != written) else {
             return;
-        }
+        };
         let now = ui.input(|i| i.time);
         let wait = ADDRESS - (now - when);
         if wait > 0.0 && !written.is_empty() {
             ui.request_repaint_after(std::time::Duration::from_secs_f64(wait));
             return;
         }
-        if let Some(history) = web_sys::window().and_then(|w| w.history().ok()) {
+        let window = web_sys::window();
+        if let Some(history) = window.as_ref().and_then(|w| w.history().ok()) {
             // A browser that refuses loses nothing but the link.
             let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&query));
         }
         self.page.address = (query, now);
-        memory::save_in_page(&self.recent);
+        // At once: a page may be closed without a word.
+        if let Some(storage) = window.and_then(|w| w.local_storage().ok().flatten()) {
+            // A browser that keeps nothing shows the first scene again.
+            let _ = storage.set_item(memory::RECENT, &memory::text(&self.recent));
+        }
     }
+
+    /// Opens what was dropped onto the page or chosen.
+    fn take_files(&mut self, files: Files) {
+        let paths: Vec<PathBuf> = files.keys().cloned().collect();
+        self.open_files(&paths, Some(files.into()));
+    }
+
+    pub(crate) fn take_dropped(&mut self, ui: &egui::Context) {
+        let dropped = ui.input(|i| i.raw.dropped_files.clone());
+        if !dropped.is_empty() {
+            self.page.reading = Some(Task::new(files::read(dropped)));
+        }
+        let read = Task::finish(&mut self.page.reading, ui);
+        let files = read.and_then(|read| self.messages.unless_error(read));
+        if let Some(files) = files {
+            self.take_files(files);
+        }
+    }
+}
+
+/// An element of the page by its id.
+fn element(id: &str) -> Option<web_sys::Element> {
+    web_sys::window()?.document()?.get_element_by_id(id)
 }
 
 /// Shows a sentence over the page, or nothing.
 fn say(text: &str) {
-    let document = web_sys::window().and_then(|w| w.document());
-    if let Some(element) = document.and_then(|d| d.get_element_by_id("say")) {
+    if let Some(element) = element("say") {
         element.set_text_content(Some(text));
     }
 }
 
 /// Why there is nothing to draw with.
 fn no_device(error: &GpuError) -> String {
-    let why = crate::stage::one_line(error);
+    let why = one_line(error);
     format!("This browser gave the page no graphics device ({why}). Reload the page to try again.")
-}
-
-/// What the page draws on, with a device that is open.
-fn options(gpu: &Gpu) -> eframe::WebOptions {
-    let setup = WgpuSetupExisting {
-        instance: gpu.instance.clone(),
-        adapter: gpu.adapter.clone(),
-        device: gpu.device.clone(),
-        queue: gpu.queue.clone(),
-    };
-    eframe::WebOptions {
-        wgpu_options: WgpuConfiguration {
-            wgpu_setup: WgpuSetup::Existing(setup),
-            ..Default::default()
-        },
-        ..Default::default()
-    }
 }
 
 /// One font for words and for numbers, and egui's own signs; what they lack the browser draws.
@@ -289,13 +268,18 @@ impl Page {
     async fn begin(&self, begin: Begin) -> Result<(), String> {
         let opened = Gpu::open_async(&AdapterRequest::Auto).await;
         let gpu = opened.map_err(|e| no_device(&e))?;
-        let options = options(&gpu);
+        let options = eframe::WebOptions {
+            wgpu_options: configuration(&gpu),
+            ..Default::default()
+        };
         let page = self.clone();
         let make: eframe::AppCreator<'static> = Box::new(move |cc| {
             cc.egui_ctx.set_fonts(fonts());
             let recent = memory::load(cc.storage);
             let mut app = match begin {
-                Begin::Address(query) => App::of_address(&gpu, &query, recent, &page.shelf)?,
+                Begin::Address(query) => {
+                    App::of_address(&gpu, &query, recent, &page.shelf).map_err(|e| one_line(&*e))?
+                }
                 Begin::Again(kept) => App::of_kept(&gpu, *kept, recent),
             };
             gpu.wake_when_lost(repaints(&cc.egui_ctx));
@@ -333,43 +317,6 @@ impl Page {
         match self.begin(Begin::Again(Box::new(kept))).await {
             Ok(()) => say(""),
             Err(e) => say(&e),
-        }
-    }
-}
-
-impl App {
-    /// Opens what was dropped onto the page or chosen.
-    fn take_files(&mut self, files: Files) {
-        use crate::input::{Opens, opens};
-        match opens(files.keys().map(PathBuf::as_path)) {
-            Ok(Opens::Network(path)) => {
-                let bytes = files.get(path).map(Vec::as_slice).unwrap_or_default();
-                match Network::from_bytes(path.to_owned(), bytes) {
-                    Ok(network) => self.take_network(network),
-                    Err(e) => self.messages.error(e),
-                }
-            }
-            Ok(Opens::Scene(path)) => {
-                let path = path.to_owned();
-                self.open(Source::Dropped(path, files.into()), None);
-            }
-            Err(e) => self.messages.error(e),
-        }
-    }
-
-    pub(crate) fn take_dropped(&mut self, ui: &egui::Context) {
-        let dropped = ui.input(|i| i.raw.dropped_files.clone());
-        if !dropped.is_empty() {
-            self.page.reading = Some(Task::new(files::read(dropped)));
-        }
-        if let Some(reading) = &mut self.page.reading
-            && let Some(read) = reading.poll(ui)
-        {
-            self.page.reading = None;
-            match read {
-                Ok(files) => self.take_files(files),
-                Err(e) => self.messages.error(e),
-            }
         }
     }
 }

@@ -1,7 +1,6 @@
 //! The scene that was dropped last. The page's script keeps it in the browser, so that a reload shows it again.
 
-use super::files::Files;
-use crate::stage::Source;
+use crate::stage::{Files, Source};
 use peelnet_scene::suite;
 use std::{
     cell::RefCell,
@@ -35,15 +34,18 @@ impl Shelf {
 
     /// Where the scene of a name comes from.
     pub fn source(&self, path: PathBuf) -> Source {
-        match &*self.kept.borrow() {
-            Some((name, files)) if *name == path => Source::Dropped(path, Arc::clone(files)),
-            _ => Source::Named(path),
+        let kept = self.kept.borrow();
+        let kept = kept.as_ref().filter(|(name, _)| *name == path);
+        Source {
+            dropped: kept.map(|(_, files)| Arc::clone(files)),
+            path,
         }
     }
 
     /// Keeps a dropped scene in place of the last one; whether it was another one.
     pub fn put(&self, source: &Source) -> bool {
-        let Source::Dropped(path, files) = source else {
+        let Source { path, dropped } = source;
+        let Some(files) = dropped else {
             return false;
         };
         let same = |(name, old): &(PathBuf, Arc<Files>)| name == path && Arc::ptr_eq(old, files);
