@@ -8,8 +8,13 @@
 mod support;
 
 use bevy::{core_pipeline::oit::OrderIndependentTransparencySettings, prelude::*};
-use bevy_peelnet::{LearnedTransparency, PeelnetModel, PeelnetPlugin};
-use std::{error::Error, fs, path::PathBuf};
+use bevy_peelnet::{PeelnetModel, PeelnetPlugin};
+use std::{
+    error::Error,
+    fs,
+    io::BufWriter,
+    path::{Path, PathBuf},
+};
 use support::{cards, exact, headless::Headless};
 
 const SIZE: UVec2 = UVec2::new(640, 480);
@@ -26,39 +31,34 @@ fn main() -> Result<(), Box<dyn Error>> {
     let exact = exact::picture(&scene, SIZE, options.samples);
 
     let msaa = Msaa::from_samples(options.samples);
-    let mut headless = Headless::new(SIZE, msaa, PeelnetPlugin::default());
-    cards::spawn(&mut headless.app, &scene);
+    let mut headless = Headless::new(SIZE, msaa, PeelnetPlugin::default(), &scene);
 
     let mut pictures = vec![("exact", exact.bytes())];
     pictures.push(("sorted", headless.picture()));
     // Bevy's own technique has no multisampling.
     if options.samples == 1 {
-        let settings = OrderIndependentTransparencySettings::default();
-        headless.camera().insert(settings);
-        pictures.push(("linked-lists", headless.picture()));
-        headless
-            .camera()
-            .insert(OrderIndependentTransparencySettings {
-                sorted_fragment_max_count: 32,
-                fragments_per_pixel_average: 32.0,
-                ..settings
-            });
-        pictures.push(("linked-lists-32", headless.picture()));
+        let usual = OrderIndependentTransparencySettings::default();
+        let many = OrderIndependentTransparencySettings {
+            sorted_fragment_max_count: 32,
+            fragments_per_pixel_average: 32.0,
+            ..usual
+        };
+        for (name, settings) in [("linked-lists", usual), ("linked-lists-32", many)] {
+            headless.camera().insert(settings);
+            pictures.push((name, headless.picture()));
+        }
         headless
             .camera()
             .remove::<OrderIndependentTransparencySettings>();
     }
-    headless.camera().insert(LearnedTransparency::default());
-    pictures.push(("medium", headless.picture()));
+    pictures.push(("medium", headless.learned().picture()));
     // An application has one network.
     for (name, model) in [
         ("small", PeelnetModel::small()),
         ("large", PeelnetModel::large()),
     ] {
-        let mut headless = Headless::new(SIZE, msaa, model.into());
-        cards::spawn(&mut headless.app, &scene);
-        headless.camera().insert(LearnedTransparency::default());
-        pictures.push((name, headless.picture()));
+        let headless = Headless::new(SIZE, msaa, model, &scene);
+        pictures.push((name, headless.learned().picture()));
     }
 
     fs::create_dir_all(&options.out)?;
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             100.0 * errors.visible
         );
         let path = options.out.join(format!("{name}.png"));
-        save(&path, SIZE, picture)?;
+        save(&path, SIZE, &[picture])?;
     }
     let judged = exact.certain.iter().filter(|&&certain| certain).count();
     println!(
@@ -84,12 +84,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         100.0 * judged as f64 / exact.certain.len() as f64
     );
     let path = options.out.join("all.png");
-    let all: Vec<&[u8]> = pictures
-        .iter()
-        .map(|(_, picture)| picture.as_slice())
-        .collect();
-    let (size, all) = beside(&all);
-    save(&path, size, &all)?;
+    let all: Vec<&Vec<u8>> = pictures.iter().map(|(_, picture)| picture).collect();
+    save(&path, SIZE, &all)?;
     println!(
         "{}: the pictures in this order, from left to right",
         path.display()
@@ -123,23 +119,20 @@ impl Options {
     }
 }
 
-/// Pictures of one size in a row.
-fn beside(pictures: &[&[u8]]) -> (UVec2, Vec<u8>) {
-    let row = 4 * SIZE.x as usize;
-    let rows = 0..SIZE.y as usize;
-    let bytes = rows.flat_map(|y| {
-        let of_row = move |picture: &&[u8]| picture[y * row..(y + 1) * row].to_vec();
-        pictures.iter().flat_map(of_row).collect::<Vec<_>>()
-    });
-    let width = SIZE.x * u32::try_from(pictures.len()).unwrap_or(1);
-    (UVec2::new(width, SIZE.y), bytes.collect())
-}
-
-fn save(path: &std::path::Path, size: UVec2, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
-    let file = fs::File::create(path)?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), size.x, size.y);
+/// Writes pictures of one size in a row.
+fn save(path: &Path, size: UVec2, pictures: &[&Vec<u8>]) -> Result<(), Box<dyn Error>> {
+    let row = 4 * size.x as usize;
+    let mut bytes = Vec::new();
+    for y in 0..size.y as usize {
+        for picture in pictures {
+            bytes.extend_from_slice(&picture[y * row..(y + 1) * row]);
+        }
+    }
+    let width = size.x * pictures.len() as u32;
+    let file = BufWriter::new(fs::File::create(path)?);
+    let mut encoder = png::Encoder::new(file, width, size.y);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.write_header()?.write_image_data(bytes)?;
+    encoder.write_header()?.write_image_data(&bytes)?;
     Ok(())
 }

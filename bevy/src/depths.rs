@@ -33,20 +33,17 @@ pub(crate) fn extract_boxes(
     }
     for (entity, bounds, transform, visibility) in &meshes {
         if visibility.get() {
-            let world_from_local = transform.affine();
-            boxes.0.insert(
-                entity.into(),
-                PlacedBox {
-                    bounds: *bounds,
-                    world_from_local,
-                },
-            );
+            let placed = PlacedBox {
+                bounds: *bounds,
+                world_from_local: transform.affine(),
+            };
+            boxes.0.insert(entity.into(), placed);
         }
     }
 }
 
 /// Near and far, and what both are counted from: what shaders get.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Depths {
     pub near: f32,
     pub far: f32,
@@ -79,18 +76,12 @@ impl Depths {
         let near = near.clamp(camera_near, camera_far);
         let far = far.clamp(near, camera_far);
         // Distances along the axis of an orthographic camera are no distances to a point: the scale is linear, and counts from near.
-        if is_orthographic(clip_from_view) {
-            Self {
-                near: 0.0,
-                far: far - near,
-                origin: near,
-            }
-        } else {
-            Self {
-                near,
-                far,
-                origin: 0.0,
-            }
+        let is_orthographic = clip_from_view.w_axis.w == 1.0;
+        let origin = if is_orthographic { near } else { 0.0 };
+        Self {
+            near: near - origin,
+            far: far - origin,
+            origin,
         }
     }
 
@@ -98,10 +89,6 @@ impl Depths {
     pub fn uniform(self) -> Vec4 {
         Vec4::new(self.near, self.far, self.origin, 0.0)
     }
-}
-
-fn is_orthographic(clip_from_view: Mat4) -> bool {
-    clip_from_view.w_axis.w == 1.0
 }
 
 /// The distances of the camera's near and far plane. Bevy's perspective cameras have no far plane: they get one far away.
@@ -112,17 +99,12 @@ fn ends_of(clip_from_view: Mat4) -> [f32; 2] {
         let point = view_from_clip * Vec4::new(0.0, 0.0, depth, 1.0);
         -point.z / point.w
     };
-    let near = at(1.0);
-    let far = at(0.0);
-    let without_end = near.abs().max(f32::MIN_POSITIVE) * 1e5;
-    [
-        near,
-        if far.is_finite() && far > near {
-            far
-        } else {
-            near + without_end
-        },
-    ]
+    let (near, far) = (at(1.0), at(0.0));
+    if far.is_finite() && far > near {
+        [near, far]
+    } else {
+        [near, near + near.abs().max(f32::MIN_POSITIVE) * 1e5]
+    }
 }
 
 /// The nearest and the farthest distance of a box along the view's axis.
@@ -138,84 +120,49 @@ fn extent_of(view_from_local: Affine3A, bounds: Aabb) -> [f32; 2] {
 mod tests {
     use super::*;
     use bevy::math::proj;
+    use std::f32::consts::{FRAC_PI_4, SQRT_2};
 
-    fn placed(center: [f32; 3], half: [f32; 3], z: f32) -> Option<PlacedBox> {
+    /// The box of this half side around a point, turned about the y axis.
+    fn placed(half: f32, angle: f32, z: f32) -> Option<PlacedBox> {
+        let (turn, to) = (Quat::from_rotation_y(angle), Vec3::new(0.0, 0.0, z));
         Some(PlacedBox {
             bounds: Aabb {
-                center: center.into(),
-                half_extents: half.into(),
+                center: Vec3A::ZERO,
+                half_extents: Vec3A::splat(half),
             },
-            world_from_local: Affine3A::from_translation(Vec3::new(0.0, 0.0, z)),
+            world_from_local: Affine3A::from_rotation_translation(turn, to),
         })
     }
 
-    fn perspective() -> Mat4 {
-        proj::perspective_infinite_reverse(1.0, 1.0, 0.1)
-    }
-
     #[test]
-    fn the_range_spans_all_boxes() {
-        let boxes = [
-            placed([0.0; 3], [1.0; 3], -5.0),
-            placed([0.0, 0.0, 1.0], [2.0; 3], -20.0),
-        ];
-        let depths = Depths::of(Affine3A::IDENTITY, perspective(), boxes.into_iter());
-        assert_eq!((depths.near, depths.far, depths.origin), (4.0, 21.0, 0.0));
-    }
-
-    #[test]
-    fn a_turned_box_reaches_as_far_as_its_corners() {
-        let turned = PlacedBox {
-            world_from_local: Affine3A::from_rotation_translation(
-                Quat::from_rotation_y(std::f32::consts::FRAC_PI_4),
-                Vec3::new(0.0, 0.0, -10.0),
-            ),
-            bounds: Aabb {
-                center: Vec3A::ZERO,
-                half_extents: Vec3A::ONE,
-            },
-        };
-        let depths = Depths::of(
-            Affine3A::IDENTITY,
-            perspective(),
-            std::iter::once(Some(turned)),
-        );
-        let root = 2.0f32.sqrt();
-        assert!((depths.near - (10.0 - root)).abs() < 1e-5, "{depths:?}");
-        assert!((depths.far - (10.0 + root)).abs() < 1e-5, "{depths:?}");
-    }
-
-    #[test]
-    fn the_camera_clips_the_range() {
-        // The camera stands in the box.
-        let boxes = [placed([0.0; 3], [3.0; 3], 0.0)];
-        let depths = Depths::of(Affine3A::IDENTITY, perspective(), boxes.into_iter());
-        assert!(
-            (depths.near - 0.1).abs() < 1e-6 && depths.far == 3.0,
-            "{depths:?}"
-        );
-    }
-
-    #[test]
-    fn orthographic_distances_count_from_the_nearest() {
+    fn the_range_spans_all_boxes_within_the_camera() {
+        let perspective = proj::perspective_infinite_reverse(1.0, 1.0, 0.1);
         // Bevy's orthographic cameras swap the planes: depth is 1 at near.
-        let camera = proj::orthographic(-1.0, 1.0, -1.0, 1.0, 100.0, -10.0);
-        let boxes = [placed([0.0; 3], [1.0; 3], 5.0)];
-        let depths = Depths::of(Affine3A::IDENTITY, camera, boxes.into_iter());
-        // Behind the camera's position, but in front of its near plane.
-        assert!((depths.origin + 6.0).abs() < 1e-4, "{depths:?}");
-        assert!(
-            depths.near == 0.0 && (depths.far - 2.0).abs() < 1e-4,
-            "{depths:?}"
-        );
-    }
-
-    #[test]
-    fn a_mesh_without_a_box_may_be_anywhere() {
-        let depths = Depths::of(Affine3A::IDENTITY, perspective(), std::iter::once(None));
-        assert!(
-            (depths.near - 0.1).abs() < 1e-6 && depths.far > 1000.0,
-            "{depths:?}"
-        );
+        let orthographic = proj::orthographic(-1.0, 1.0, -1.0, 1.0, 100.0, -10.0);
+        let cases = [
+            (
+                perspective,
+                vec![placed(1.0, 0.0, -5.0), placed(2.0, 0.0, -19.0)],
+                [4.0, 21.0, 0.0],
+            ),
+            // A turned box reaches as far as its corners.
+            (
+                perspective,
+                vec![placed(1.0, FRAC_PI_4, -10.0)],
+                [10.0 - SQRT_2, 10.0 + SQRT_2, 0.0],
+            ),
+            // The camera stands in the box.
+            (perspective, vec![placed(3.0, 0.0, 0.0)], [0.1, 3.0, 0.0]),
+            // Behind the camera's position, but in front of its near plane: distances count from the nearest.
+            (orthographic, vec![placed(1.0, 0.0, 5.0)], [0.0, 2.0, -6.0]),
+            // A mesh without a box may be anywhere.
+            (perspective, vec![None], [0.1, 0.1 + 0.1 * 1e5, 0.0]),
+        ];
+        for (camera, boxes, want) in cases {
+            let depths = Depths::of(Affine3A::IDENTITY, camera, boxes.into_iter());
+            let found = [depths.near, depths.far, depths.origin];
+            let is_near = |(a, b): (f32, f32)| (a - b).abs() < 1e-4 * b.abs().max(1.0);
+            assert!(found.into_iter().zip(want).all(is_near), "{depths:?}");
+        }
     }
 }

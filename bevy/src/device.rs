@@ -1,10 +1,6 @@
 //! What a device must be able to do.
 
-use crate::{
-    model::{Format, PeelnetModel},
-    pipelines::texture_format,
-    shader_text::GROUP,
-};
+use crate::{model::PeelnetModel, shader_text::GROUP};
 use bevy::{
     ecs::resource::Resource,
     platform::collections::HashMap,
@@ -76,7 +72,7 @@ impl Abilities {
         }
         for pass in &model.passes {
             let targets = &model.targets[pass.targets.clone()];
-            let bytes: u32 = targets.iter().map(|t| t.format.bytes()).sum();
+            let bytes = PeelnetModel::bytes_of(targets);
             if bytes > limits.max_color_attachment_bytes_per_sample {
                 return Some(format!(
                     "pass {:?} writes {bytes} bytes a sample, the device allows {}",
@@ -97,17 +93,14 @@ impl Abilities {
                 "{samples} samples a pixel need shading by sample, which the device cannot do; take Msaa::Off"
             ));
         }
-        let mut formats: Vec<Format> = model.targets.iter().map(|t| t.format).collect();
-        formats.dedup();
-        for format in formats {
-            let flags = (self.flags_of)(texture_format(format));
+        for format in model.targets.iter().map(|target| target.format) {
+            let flags = (self.flags_of)(format);
             if !flags.contains(TextureFormatFeatureFlags::BLENDABLE) {
-                return Some(format!("the device cannot blend {}", format.name()));
+                return Some(format!("the device cannot blend {format:?}"));
             }
             if samples > 1 && !flags.sample_count_supported(samples) {
                 return Some(format!(
-                    "the device has no {} with {samples} samples a pixel",
-                    format.name()
+                    "the device has no {format:?} with {samples} samples a pixel"
                 ));
             }
         }
@@ -119,58 +112,45 @@ impl Abilities {
 mod tests {
     use super::*;
 
-    fn plain() -> Abilities {
-        Abilities {
-            limits: WgpuLimits {
-                max_bind_groups: 8,
-                ..WgpuLimits::default()
-            },
-            sample_shading: true,
-            flags_of: Box::new(|_| {
-                TextureFormatFeatureFlags::BLENDABLE | TextureFormatFeatureFlags::MULTISAMPLE_X4
-            }),
-        }
-    }
-
-    #[test]
-    fn a_device_with_default_limits_and_five_bind_groups_will_do() {
-        for model in [
-            PeelnetModel::small(),
-            PeelnetModel::medium(),
-            PeelnetModel::large(),
-        ] {
-            assert_eq!(plain().refusal(&model, 1), None);
-            assert_eq!(plain().refusal(&model, 4), None);
-        }
-    }
-
     #[test]
     fn each_missing_ability_is_named() {
-        let medium = PeelnetModel::medium();
-        let mut device = plain();
-        device.limits.max_bind_groups = 4;
-        let text = device.refusal(&medium, 1).expect("is refused");
-        assert!(text.contains("5 bind groups"), "{text}");
-
-        let mut device = plain();
-        device.limits.max_color_attachment_bytes_per_sample = 16;
-        let text = device.refusal(&medium, 1).expect("is refused");
-        assert!(text.contains("24 bytes a sample"), "{text}");
-
-        let mut device = plain();
-        device.limits.max_color_attachments = 2;
-        let text = device.refusal(&medium, 1).expect("is refused");
-        assert!(text.contains("3 targets"), "{text}");
-
-        let mut device = plain();
-        device.sample_shading = false;
-        assert_eq!(device.refusal(&medium, 1), None);
-        let text = device.refusal(&medium, 4).expect("is refused");
-        assert!(text.contains("Msaa::Off"), "{text}");
-
-        let mut device = plain();
-        device.flags_of = Box::new(|_| TextureFormatFeatureFlags::empty());
-        let text = device.refusal(&medium, 1).expect("is refused");
-        assert!(text.contains("cannot blend rg8unorm"), "{text}");
+        // Why a device with default limits and five bind groups cannot draw, once it has changed.
+        let refusal = |change: fn(&mut Abilities), samples| {
+            let usual =
+                TextureFormatFeatureFlags::BLENDABLE | TextureFormatFeatureFlags::MULTISAMPLE_X4;
+            let mut device = Abilities {
+                limits: WgpuLimits {
+                    max_bind_groups: 5,
+                    ..WgpuLimits::default()
+                },
+                sample_shading: true,
+                flags_of: Box::new(move |_| usual),
+            };
+            change(&mut device);
+            device.refusal(&PeelnetModel::medium(), samples)
+        };
+        for samples in [1, 4] {
+            assert_eq!(refusal(|_| (), samples), None);
+        }
+        assert_eq!(refusal(|d| d.sample_shading = false, 1), None);
+        let changes: [(fn(&mut Abilities), _, _); 5] = [
+            (|d| d.limits.max_bind_groups = 4, 1, "5 bind groups"),
+            (
+                |d| d.limits.max_color_attachment_bytes_per_sample = 16,
+                1,
+                "24 bytes a sample",
+            ),
+            (|d| d.limits.max_color_attachments = 2, 1, "3 targets"),
+            (|d| d.sample_shading = false, 4, "Msaa::Off"),
+            (
+                |d| d.flags_of = Box::new(|_| TextureFormatFeatureFlags::empty()),
+                1,
+                "cannot blend Rg8Unorm",
+            ),
+        ];
+        for (change, samples, says) in changes {
+            let text = refusal(change, samples).expect("is refused");
+            assert!(text.contains(says), "{text}");
+        }
     }
 }

@@ -4,49 +4,13 @@ use bevy::{
     log::{error, info, warn},
     prelude::*,
 };
-use std::{
-    io,
-    path::PathBuf,
-    sync::{Arc, Mutex, PoisonError},
-};
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// A network that cannot be used.
+/// A network that cannot be used, and why: a file that cannot be read, a description that is not one or is of another version, or a recipe with passes
+/// that this plugin does not draw.
 #[derive(Debug, thiserror::Error)]
-pub enum PeelnetError {
-    /// A file of the network cannot be read.
-    #[error("{}: {source}", .path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// `model.json` is not a description of an exported network.
-    #[error("the network's description is not readable: {0}")]
-    Description(serde_json::Error),
-    /// The description has another version.
-    #[error(
-        "the network's description is {found:?} (written by peelnet {tool}), this plugin reads {known:?}; export the network again"
-    )]
-    Version {
-        /// Format and version in the file.
-        found: String,
-        /// Format and version that this crate reads.
-        known: String,
-        /// The version of peelnet that wrote the file.
-        tool: String,
-    },
-    /// The recipe needs passes that this plugin does not draw.
-    #[error(
-        "this plugin cannot draw with a network of recipe {recipe:?}: {reason}; take small, medium, large or an anchored one"
-    )]
-    Recipe {
-        /// Of the network.
-        recipe: String,
-        /// What is missing.
-        reason: String,
-    },
-}
+#[error("{0}")]
+pub struct PeelnetError(pub(crate) String);
 
 /// How grave a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

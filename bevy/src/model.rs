@@ -1,6 +1,7 @@
 //! The exported network: its shader text, and the description of the passes around it.
 
 use crate::error::PeelnetError;
+use bevy::render::render_resource::TextureFormat;
 use serde::Deserialize;
 use std::{borrow::Cow, fs, ops::Range, path::Path};
 
@@ -10,34 +11,31 @@ const FORMAT: &str = "peelnet-export";
 const FORMAT_VERSION: u32 = 1;
 
 /// How a target combines what fragments write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum Blend {
     Add,
     Max,
-}
-
-/// The formats that descriptions name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Format {
-    R16,
-    Rg8,
-    Rg16,
-    Rgba16,
-    R32,
-    Rg32,
-    Rgba32,
+    /// Refused: this plugin does not draw it.
+    Transmit,
 }
 
 /// A texture that one pass draws into and later passes read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Target {
     pub name: String,
-    pub format: Format,
+    pub format: TextureFormat,
     pub clear: [f64; 4],
     pub color: Blend,
     pub alpha: Blend,
     /// The expression that each fragment writes.
     pub write: String,
+}
+
+impl Target {
+    fn bytes(&self) -> u32 {
+        self.format.block_copy_size(None).unwrap_or_default()
+    }
 }
 
 /// One drawing of all transparent surfaces.
@@ -90,17 +88,7 @@ struct DescribedPass {
     name: String,
     reads: Vec<String>,
     compute: Option<String>,
-    targets: Vec<DescribedTarget>,
-}
-
-#[derive(Deserialize)]
-struct DescribedTarget {
-    name: String,
-    format: String,
-    clear: [f64; 4],
-    color: String,
-    alpha: String,
-    write: String,
+    targets: Vec<Target>,
 }
 
 impl PeelnetModel {
@@ -136,7 +124,8 @@ impl PeelnetModel {
     pub fn load(folder: impl AsRef<Path>) -> Result<Self, PeelnetError> {
         let read = |name: &str| {
             let path = folder.as_ref().join(name);
-            fs::read_to_string(&path).map_err(|source| PeelnetError::Read { path, source })
+            let text = fs::read_to_string(&path);
+            text.map_err(|e| PeelnetError(format!("{}: {e}", path.display())))
         };
         Self::new(read("model.wgsl")?, &read("model.json")?)
     }
@@ -147,20 +136,25 @@ impl PeelnetModel {
     ///
     /// A description that is not one, or is of another version; passes that this crate cannot draw; a text of another network.
     pub fn new(wgsl: impl Into<Cow<'static, str>>, json: &str) -> Result<Self, PeelnetError> {
+        let unreadable =
+            |e| PeelnetError(format!("the network's description is not readable: {e}"));
         // The head first: a description of another version may differ in all else.
-        let header: Header = serde_json::from_str(json).map_err(PeelnetError::Description)?;
-        if header.format != FORMAT || header.format_version != FORMAT_VERSION {
-            return Err(PeelnetError::Version {
-                found: format!("{} {}", header.format, header.format_version),
-                known: format!("{FORMAT} {FORMAT_VERSION}"),
-                tool: header.tool_version,
-            });
+        let header: Header = serde_json::from_str(json).map_err(unreadable)?;
+        let (format, version) = (header.format, header.format_version);
+        if format != FORMAT || version != FORMAT_VERSION {
+            let tool = header.tool_version;
+            return Err(PeelnetError(format!(
+                "the network's description is \"{format} {version}\" (written by peelnet {tool}), this plugin reads \"{FORMAT} {FORMAT_VERSION}\"; \
+                 export the network again"
+            )));
         }
-        let described: Description =
-            serde_json::from_str(json).map_err(PeelnetError::Description)?;
-        let wgsl = wgsl.into();
+        let described: Description = serde_json::from_str(json).map_err(unreadable)?;
         let recipe = described.recipe.clone();
-        Self::of(described, wgsl).map_err(|reason| PeelnetError::Recipe { recipe, reason })
+        Self::of(described, wgsl.into()).map_err(|reason| {
+            PeelnetError(format!(
+                "this plugin cannot draw with a network of recipe {recipe:?}: {reason}; take small, medium, large or an anchored one"
+            ))
+        })
     }
 
     fn of(described: Description, wgsl: Cow<'static, str>) -> Result<Self, String> {
@@ -185,10 +179,14 @@ impl PeelnetModel {
             let reads = found_in(&targets, &pass.reads).map_err(|target| {
                 format!("pass {name:?} reads {target:?}, which no pass before it draws")
             })?;
-            let first = targets.len();
-            for target in pass.targets {
-                targets.push(Target::of(target)?);
+            let transmits = |t: &&Target| [t.color, t.alpha].contains(&Blend::Transmit);
+            if let Some(Target { name, .. }) = pass.targets.iter().find(transmits) {
+                return Err(format!(
+                    "target {name:?} blends with \"transmit\", this plugin with \"add\" and \"max\""
+                ));
             }
+            let first = targets.len();
+            targets.extend(pass.targets);
             let compute = pass.compute.unwrap_or_default();
             let texts = || {
                 let writes = targets[first..].iter().map(|t| t.write.as_str());
@@ -234,63 +232,11 @@ impl PeelnetModel {
     /// Bytes that the targets take a sample, beside Bevy's own.
     #[must_use]
     pub fn bytes_per_sample(&self) -> u32 {
-        self.targets.iter().map(|t| t.format.bytes()).sum()
-    }
-}
-
-impl Target {
-    fn of(described: DescribedTarget) -> Result<Self, String> {
-        let DescribedTarget { name, format, .. } = &described;
-        let format = Format::named(format)
-            .ok_or_else(|| format!("target {name:?} has the unknown format {format:?}"))?;
-        let blend = |operation: &str| match operation {
-            "add" => Ok(Blend::Add),
-            "max" => Ok(Blend::Max),
-            _ => Err(format!(
-                "target {name:?} blends with {operation:?}, this plugin with \"add\" and \"max\""
-            )),
-        };
-        Ok(Self {
-            format,
-            clear: described.clear,
-            color: blend(&described.color)?,
-            alpha: blend(&described.alpha)?,
-            write: described.write,
-            name: described.name,
-        })
-    }
-}
-
-impl Format {
-    const ALL: [(&'static str, Self, u32, u32); 7] = [
-        ("r16float", Self::R16, 1, 2),
-        ("rg8unorm", Self::Rg8, 2, 2),
-        ("rg16float", Self::Rg16, 2, 4),
-        ("rgba16float", Self::Rgba16, 4, 8),
-        ("r32float", Self::R32, 1, 4),
-        ("rg32float", Self::Rg32, 2, 8),
-        ("rgba32float", Self::Rgba32, 4, 16),
-    ];
-
-    fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|f| f.0 == name).map(|f| f.1)
+        Self::bytes_of(&self.targets)
     }
 
-    fn row(self) -> (&'static str, Self, u32, u32) {
-        // Every variant has its row, in the order of the variants' declaration.
-        Self::ALL[self as usize]
-    }
-
-    pub(crate) fn name(self) -> &'static str {
-        self.row().0
-    }
-
-    pub(crate) fn channels(self) -> u32 {
-        self.row().2
-    }
-
-    pub(crate) fn bytes(self) -> u32 {
-        self.row().3
+    pub(crate) fn bytes_of(targets: &[Target]) -> u32 {
+        targets.iter().map(Target::bytes).sum()
     }
 }
 
@@ -316,26 +262,25 @@ fn mentions(text: &str, variable: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::Value;
 
-    fn json_of(name: &str) -> serde_json::Value {
-        let model = peelnet_models::find(name).expect("ships");
-        serde_json::from_str(model.json).expect("is valid")
-    }
-
-    fn refusal_of(name: &str, json: &serde_json::Value) -> String {
-        let wgsl = peelnet_models::find(name).expect("ships").wgsl;
-        let error = PeelnetModel::new(wgsl, &json.to_string()).expect_err("is refused");
+    /// Why the text of one network with the description of another, changed, is refused.
+    fn refusal_of(text: &str, description: &str, change: fn(&mut Value)) -> String {
+        let [text, description] =
+            [text, description].map(|name| peelnet_models::find(name).expect("ships"));
+        let mut json = serde_json::from_str(description.json).expect("is valid");
+        change(&mut json);
+        let error = PeelnetModel::new(text.wgsl, &json.to_string()).expect_err("is refused");
         error.to_string()
     }
 
     #[test]
     fn the_shipped_networks_are_read() {
-        for (model, passes, bytes) in [
-            (PeelnetModel::small(), 3, 30),
-            (PeelnetModel::medium(), 3, 34),
-            (PeelnetModel::large(), 3, 42),
+        for (model, bytes) in [
+            (PeelnetModel::small(), 30),
+            (PeelnetModel::medium(), 34),
+            (PeelnetModel::large(), 42),
         ] {
-            assert_eq!(model.passes.len(), passes);
             assert_eq!(model.bytes_per_sample(), bytes, "{}", model.recipe());
             // Nothing is lit before the last pass, and the first needs depth alone.
             let needs = |p: &Pass| (p.needs_alpha, p.needs_color);
@@ -345,47 +290,44 @@ mod tests {
     }
 
     #[test]
-    fn formats_stand_in_the_order_of_their_declaration() {
-        for (name, format, ..) in Format::ALL {
-            assert_eq!(format.name(), name);
+    fn what_cannot_be_drawn_is_refused_with_the_reason() {
+        let later = refusal_of("medium", "medium", |json| {
+            json["format_version"] = 2.into();
+            // What else a later version changes does not matter.
+            json["passes"] = "elsewhere".into();
+        });
+        assert!(later.contains("peelnet-export 2"), "{later}");
+        assert!(later.contains("peelnet-export 1"), "{later}");
+        let thesis = refusal_of("thesis", "thesis", |_| ());
+        assert!(thesis.contains("\"thesis\""), "{thesis}");
+        for (text, refusal) in [
+            ("no function peelnet_zeta", thesis),
+            (
+                "wants plain distances",
+                refusal_of("medium", "medium", |json| {
+                    let compute = "let s = peelnet_statistics(alpha, z, range);";
+                    json["passes"][1]["compute"] = compute.into();
+                }),
+            ),
+            (
+                "reads \"front\"",
+                refusal_of("medium", "medium", |json| {
+                    json["passes"][1]["reads"] = serde_json::json!(["front"]);
+                }),
+            ),
+            (
+                "blends with \"transmit\"",
+                refusal_of("medium", "medium", |json| {
+                    json["passes"][0]["targets"][0]["color"] = "transmit".into();
+                }),
+            ),
+            (
+                "the text is not of the network",
+                refusal_of("small", "medium", |_| ()),
+            ),
+        ] {
+            assert!(refusal.contains(text), "{refusal}");
         }
-    }
-
-    #[test]
-    fn another_version_is_refused_by_name() {
-        let mut json = json_of("medium");
-        json["format_version"] = 2.into();
-        // What else a later version changes does not matter.
-        json["passes"] = "elsewhere".into();
-        let text = refusal_of("medium", &json);
-        assert!(
-            text.contains("peelnet-export 2") && text.contains("peelnet-export 1"),
-            "{text}"
-        );
-    }
-
-    #[test]
-    fn recipes_with_other_passes_are_refused_with_the_reason() {
-        let thesis = refusal_of("thesis", &json_of("thesis"));
-        assert!(
-            thesis.contains("\"thesis\"") && thesis.contains("no function peelnet_zeta"),
-            "{thesis}"
-        );
-        // Plain distances are refused wherever they are wanted.
-        let mut json = json_of("medium");
-        json["passes"][1]["compute"] = "let s = peelnet_statistics(alpha, z, range);".into();
-        let distances = refusal_of("medium", &json);
-        assert!(distances.contains("wants plain distances"), "{distances}");
-        let mut json = json_of("medium");
-        json["passes"][1]["reads"] = serde_json::json!(["front"]);
-        let reads = refusal_of("medium", &json);
-        assert!(reads.contains("reads \"front\""), "{reads}");
-    }
-
-    #[test]
-    fn a_text_of_another_network_is_refused() {
-        let text = refusal_of("small", &json_of("medium"));
-        assert!(text.contains("the text is not of the network"), "{text}");
     }
 
     #[test]

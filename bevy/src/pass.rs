@@ -61,7 +61,7 @@ pub(crate) fn learned_transparent_pass(
     let entity = view.entity();
     let (camera, extracted, target, depth, resolution) = view.into_inner();
     let id = extracted.retained_view_entity;
-    let (Some(setup), Some(state), Some(phase)) = (setup, views.get(&id), phases.get(&id)) else {
+    let (Some(setup), Some(state), Some(phase)) = (setup, views.0.get(&id), phases.get(&id)) else {
         return;
     };
     let (Some(resolve_group), Some(resolve)) = (

@@ -5,12 +5,12 @@
 //! of what is retained and what is stale stays right, and whatever is not lent is drawn by Bevy as ever: sorted, over the weighed surfaces.
 
 use crate::{
-    LearnedTransparency,
+    DepthRange, LearnedTransparency,
     depths::{Boxes, Depths},
     device::Refusals,
     error::{Gravity, PeelnetMessages},
     pipelines::{Found, HookedShaders, LearnedPipelines, Setup},
-    view::LearnedViews,
+    view::{LearnedView, LearnedViews},
 };
 use bevy::{
     core_pipeline::{
@@ -161,13 +161,11 @@ pub(crate) fn lend_items(
             refusals.of(&setup.model, samples, &device, &adapter)
         };
         if let Some(reason) = refusal {
-            messages.report(
-                Gravity::Error,
-                format!(
-                    "camera {} has no learned transparency: {reason}. Its transparent surfaces are drawn by Bevy",
-                    camera.id()
-                ),
+            let text = format!(
+                "camera {} has no learned transparency: {reason}. Its transparent surfaces are drawn by Bevy",
+                camera.id()
             );
+            messages.report(Gravity::Error, text);
             continue;
         }
         let Some(from) = transparent.get_mut(&id) else {
@@ -176,7 +174,9 @@ pub(crate) fn lend_items(
         live.insert(id);
         let into = learned.entry(id).or_default();
         let resolve = pipelines.resolve(view.target_format, samples, &cache, &setup, &fullscreen);
-        let state = views.entry(id, resolve, samples);
+        let state = views.0.entry(id);
+        let state = state.or_insert_with(|| LearnedView::new(resolve, samples));
+        (state.resolve, state.samples) = (resolve, samples);
         if cache.get_render_pipeline(resolve).is_none() {
             continue;
         }
@@ -188,38 +188,33 @@ pub(crate) fn lend_items(
                 Found::Ready => true,
                 Found::Waiting => false,
                 Found::NoHook => {
-                    messages.report(
-                        Gravity::Warning,
-                        format!(
-                            "the material of entity {} is not weighed, and Bevy draws it over all that are: its fragment shader does not import \
-                             bevy_peelnet::draw",
-                            item.main_entity().id()
-                        ),
+                    let text = format!(
+                        "the material of entity {} is not weighed, and Bevy draws it over all that are: its fragment shader does not import \
+                         bevy_peelnet::draw",
+                        item.main_entity().id()
                     );
+                    messages.report(Gravity::Warning, text);
                     false
                 }
             }
         });
         // Sorted by pipeline, not by depth.
         into.sort();
-        state.frames_without = if weighed == 0 {
-            state.frames_without + 1
-        } else {
-            0
-        };
+        state.frames_without += 1;
+        if weighed > 0 {
+            state.frames_without = 0;
+        }
         if state.frames_without == FRAMES_TO_LOAD {
-            messages.report(
-                Gravity::Info,
-                format!(
-                    "camera {} sees no transparent surface that learned transparency applies to; nothing is added to its frames",
-                    camera.id()
-                ),
+            let text = format!(
+                "camera {} sees no transparent surface that learned transparency applies to; nothing is added to its frames",
+                camera.id()
             );
+            messages.report(Gravity::Info, text);
         }
         state.depths = depths_of(view, settings, into, &boxes, &messages);
     }
     learned.retain(|id, _| live.contains(id));
-    views.retain(&live);
+    views.0.retain(|id, _| live.contains(id));
 }
 
 /// Moves the chosen items, and says how many.
@@ -228,12 +223,8 @@ fn lend(
     into: &mut SortedRenderPhase<Learned3d>,
     mut choose: impl FnMut(&Transparent3d) -> bool,
 ) -> usize {
-    let keys: Vec<_> = from
-        .items
-        .iter()
-        .filter(|(_, item)| choose(item))
-        .map(|(key, _)| *key)
-        .collect();
+    let chosen = from.items.iter().filter(|(_, item)| choose(item));
+    let keys: Vec<_> = chosen.map(|(key, _)| *key).collect();
     for key in &keys {
         // Bevy sorts what stays after this system, so that its order does not matter here.
         if let Some(item) = from.items.swap_remove(key) {
@@ -267,20 +258,18 @@ fn depths_of(
     boxes: &Boxes,
     messages: &PeelnetMessages,
 ) -> Depths {
-    if let crate::DepthRange::Fixed { near, far } = settings.depth_range {
+    if let DepthRange::Fixed { near, far } = settings.depth_range {
         return Depths::clipped(near, far, view.clip_from_view);
     }
     let placed = phase.items.values().map(|item| {
         let placed = boxes.0.get(&item.main_entity()).copied();
         if placed.is_none() {
-            messages.report(
-                Gravity::Warning,
-                format!(
-                    "entity {} is transparent and has no Aabb: the range of depths is the whole camera's, which costs accuracy; give it one, or \
-                     set LearnedTransparency::depth_range",
-                    item.main_entity().id()
-                ),
+            let text = format!(
+                "entity {} is transparent and has no Aabb: the range of depths is the whole camera's, which costs accuracy; give it one, or \
+                 set LearnedTransparency::depth_range",
+                item.main_entity().id()
             );
+            messages.report(Gravity::Warning, text);
         }
         placed
     });

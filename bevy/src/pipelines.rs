@@ -5,7 +5,7 @@
 //! specialises (skins, morph targets, bindless materials, fog) holds here too.
 
 use crate::{
-    model::{Blend, Format, PeelnetModel, Target},
+    model::{Blend, PeelnetModel, Target},
     shader_text::{GROUP, binding, pass_define},
 };
 use bevy::{
@@ -14,11 +14,11 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
     prelude::*,
     render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor,
-        BlendOperation, BlendState, BufferBindingType, CachedRenderPipelineId, ColorTargetState,
-        ColorWrites, FragmentState, MultisampleState, PipelineCache, PipelineDescriptor,
+        BindGroupLayoutDescriptor, BindGroupLayoutEntryBuilder, BlendComponent, BlendFactor,
+        BlendOperation, BlendState, CachedRenderPipelineId, ColorTargetState, ColorWrites,
+        FragmentState, MultisampleState, PipelineCache, PipelineDescriptor,
         RenderPipelineDescriptor, ShaderStages, TextureFormat, TextureSampleType,
-        TextureViewDimension,
+        binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
     },
     shader::{Shader, ShaderDefVal},
 };
@@ -79,14 +79,9 @@ impl LearnedPipelines {
                 .map(|all| all.into_iter().map(|d| cache.queue_render_pipeline(d)));
             self.by_base.insert(base, pipelines.map(Iterator::collect));
         }
+        let is_ready = |&id: &CachedRenderPipelineId| cache.get_render_pipeline(id).is_some();
         match self.by_base.get(&base) {
-            Some(Some(ids))
-                if ids
-                    .iter()
-                    .all(|&id| cache.get_render_pipeline(id).is_some()) =>
-            {
-                Found::Ready
-            }
+            Some(Some(ids)) if ids.iter().all(is_ready) => Found::Ready,
             Some(None) => Found::NoHook,
             _ => Found::Waiting,
         }
@@ -141,7 +136,7 @@ fn learned_descriptors(
         let samples = descriptor.multisample.count;
         descriptor
             .layout
-            .push(layout_of(model, &pass.reads, samples, true));
+            .push(layout_of(&pass.reads, samples, true));
         descriptor.multisample = MultisampleState {
             count: samples,
             ..default()
@@ -155,15 +150,14 @@ fn learned_descriptors(
             .iter()
             .map(|target| Some(state_of(target)))
             .collect();
-        let mut define = |name: String| fragment.shader_defs.push(ShaderDefVal::from(name));
-        define("PEELNET".into());
-        define(pass_define(number));
-        if pass.needs_alpha {
-            define("PEELNET_NEEDS_ALPHA".into());
-        }
-        if pass.needs_color {
-            define("PEELNET_NEEDS_COLOR".into());
-        }
+        let defines = [
+            Some("PEELNET".to_owned()),
+            Some(pass_define(number)),
+            pass.needs_alpha.then(|| "PEELNET_NEEDS_ALPHA".to_owned()),
+            pass.needs_color.then(|| "PEELNET_NEEDS_COLOR".to_owned()),
+        ];
+        let defines = defines.into_iter().flatten().map(ShaderDefVal::from);
+        fragment.shader_defs.extend(defines);
         Some(descriptor)
     };
     model.passes.iter().enumerate().map(descriptor).collect()
@@ -177,12 +171,7 @@ fn resolve_descriptor(
 ) -> RenderPipelineDescriptor {
     RenderPipelineDescriptor {
         label: Some("peelnet_resolve_pipeline".into()),
-        layout: vec![layout_of(
-            &setup.model,
-            &setup.model.resolve_reads,
-            samples,
-            false,
-        )],
+        layout: vec![layout_of(&setup.model.resolve_reads, samples, false)],
         vertex: fullscreen.to_vertex_state(),
         fragment: Some(FragmentState {
             shader: setup.resolve[usize::from(samples > 1)].clone(),
@@ -204,30 +193,21 @@ fn resolve_descriptor(
 
 /// The layout of a bind group with the targets that are read, and with the range of depths in passes over surfaces.
 pub(crate) fn layout_of(
-    model: &PeelnetModel,
     targets: &[usize],
     samples: u32,
     with_depths: bool,
 ) -> BindGroupLayoutDescriptor {
-    let depths = BindingType::Buffer {
-        ty: BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
+    let depths = uniform_buffer::<Vec4>(false);
+    let not_filtered = TextureSampleType::Float { filterable: false };
+    let texture = if samples > 1 {
+        texture_2d_multisampled(not_filtered)
+    } else {
+        texture_2d(not_filtered)
     };
-    let texture = BindingType::Texture {
-        sample_type: TextureSampleType::Float { filterable: false },
-        view_dimension: TextureViewDimension::D2,
-        multisampled: samples > 1,
-    };
-    let entry = |binding, ty| BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
+    let entry =
+        |binding, ty: BindGroupLayoutEntryBuilder| ty.build(binding, ShaderStages::FRAGMENT);
     let mut entries: Vec<_> = with_depths.then(|| entry(0, depths)).into_iter().collect();
     entries.extend(targets.iter().map(|&t| entry(binding(t), texture)));
-    debug_assert!(targets.iter().all(|&t| t < model.targets.len()));
     BindGroupLayoutDescriptor::new("peelnet_layout", &entries)
 }
 
@@ -235,29 +215,18 @@ fn state_of(target: &Target) -> ColorTargetState {
     let component = |blend| BlendComponent {
         src_factor: BlendFactor::One,
         dst_factor: BlendFactor::One,
-        operation: match blend {
-            Blend::Add => BlendOperation::Add,
-            Blend::Max => BlendOperation::Max,
+        operation: if blend == Blend::Max {
+            BlendOperation::Max
+        } else {
+            BlendOperation::Add
         },
     };
     ColorTargetState {
-        format: texture_format(target.format),
+        format: target.format,
         blend: Some(BlendState {
             color: component(target.color),
             alpha: component(target.alpha),
         }),
         write_mask: ColorWrites::ALL,
-    }
-}
-
-pub(crate) fn texture_format(format: Format) -> TextureFormat {
-    match format {
-        Format::R16 => TextureFormat::R16Float,
-        Format::Rg8 => TextureFormat::Rg8Unorm,
-        Format::Rg16 => TextureFormat::Rg16Float,
-        Format::Rgba16 => TextureFormat::Rgba16Float,
-        Format::R32 => TextureFormat::R32Float,
-        Format::Rg32 => TextureFormat::Rg32Float,
-        Format::Rgba32 => TextureFormat::Rgba32Float,
     }
 }

@@ -3,7 +3,7 @@
 //! `draw.wesl` is the module that materials import. One function of it serves all passes: `PEELNET_PASS_<number>` says which one is compiled. The
 //! names of targets, the statements and the expressions are those of `model.json`.
 
-use crate::model::{Format, PeelnetModel};
+use crate::model::{PeelnetModel, Target};
 use std::fmt::Write as _;
 
 /// The bind group of the statistics: the one after Bevy's view, light probes, meshes and materials.
@@ -20,19 +20,12 @@ pub(crate) fn binding(target: usize) -> u32 {
     1 + u32::try_from(target).unwrap_or(u32::MAX)
 }
 
-fn type_of(format: Format) -> &'static str {
-    match format.channels() {
-        1 => "f32",
-        2 => "vec2f",
-        _ => "vec4f",
-    }
-}
-
-fn channels_of(format: Format) -> &'static str {
-    match format.channels() {
-        1 => ".x",
-        2 => ".xy",
-        _ => "",
+/// The type of a target's texels, and how they are taken out of four channels.
+fn type_of(target: &Target) -> (&'static str, &'static str) {
+    match target.format.components() {
+        1 => ("f32", ".x"),
+        2 => ("vec2f", ".xy"),
+        _ => ("vec4f", ""),
     }
 }
 
@@ -40,7 +33,7 @@ fn channels_of(format: Format) -> &'static str {
 fn reads(model: &PeelnetModel, targets: &[usize], indent: &str) -> String {
     targets.iter().fold(String::new(), |mut text, &index| {
         let target = &model.targets[index];
-        let (name, channels) = (&target.name, channels_of(target.format));
+        let (name, (_, channels)) = (&target.name, type_of(target));
         let _ = writeln!(
             text,
             "{indent}let {name} = textureLoad(peelnet_target_{name}, peelnet_at, peelnet_sample){channels};"
@@ -77,7 +70,7 @@ pub(crate) fn draw_text(model: &PeelnetModel) -> String {
     for (number, pass) in model.passes.iter().enumerate() {
         for (location, target) in model.targets[pass.targets.clone()].iter().enumerate() {
             let (define, name) = (pass_define(number), &target.name);
-            let kind = type_of(target.format);
+            let (kind, _) = type_of(target);
             let _ = writeln!(
                 text,
                 "    @if({define})\n    @location({location}) {name}: {kind},"

@@ -3,19 +3,19 @@
 use crate::{
     depths::Depths,
     phase::Learned3d,
-    pipelines::{Setup, layout_of, texture_format},
+    pipelines::{Setup, layout_of},
     shader_text::binding,
 };
 use bevy::{
-    math::UVec2,
-    platform::collections::{HashMap, HashSet},
+    image::ToExtents,
+    platform::collections::HashMap,
     prelude::*,
     render::{
         camera::ExtractedCamera,
         render_phase::ViewSortedRenderPhases,
         render_resource::{
-            BindGroup, BindGroupEntry, BindingResource, CachedRenderPipelineId, Extent3d,
-            PipelineCache, TextureDescriptor, TextureDimension, TextureUsages, UniformBuffer,
+            BindGroup, BindGroupEntry, BindingResource, CachedRenderPipelineId, PipelineCache,
+            TextureDescriptor, TextureDimension, TextureUsages, UniformBuffer,
         },
         renderer::{RenderDevice, RenderQueue},
         texture::{CachedTexture, TextureCache},
@@ -38,44 +38,24 @@ pub(crate) struct LearnedView {
     uniform: UniformBuffer<Vec4>,
 }
 
-/// The state of all views.
-#[derive(Default, Resource)]
-pub(crate) struct LearnedViews(HashMap<RetainedViewEntity, LearnedView>);
-
-impl LearnedViews {
-    pub fn get(&self, id: &RetainedViewEntity) -> Option<&LearnedView> {
-        self.0.get(id)
-    }
-
-    pub fn entry(
-        &mut self,
-        id: RetainedViewEntity,
-        resolve: CachedRenderPipelineId,
-        samples: u32,
-    ) -> &mut LearnedView {
-        let view = self.0.entry(id).or_insert_with(|| LearnedView {
+impl LearnedView {
+    pub fn new(resolve: CachedRenderPipelineId, samples: u32) -> Self {
+        Self {
             resolve,
             samples,
-            depths: Depths {
-                near: 1.0,
-                far: 1.0,
-                origin: 0.0,
-            },
+            depths: Depths::default(),
             frames_without: 0,
             textures: Vec::new(),
             groups: Vec::new(),
             resolve_group: None,
             uniform: UniformBuffer::default(),
-        });
-        view.resolve = resolve;
-        view.samples = samples;
-        view
-    }
-
-    pub fn retain(&mut self, live: &HashSet<RetainedViewEntity>) {
-        self.0.retain(|id, _| live.contains(id));
+        }
     }
 }
+
+/// The state of all views.
+#[derive(Default, Resource)]
+pub(crate) struct LearnedViews(pub HashMap<RetainedViewEntity, LearnedView>);
 
 /// Targets, and the bind groups that read them, for this frame. Views without a weighed surface get none.
 pub(crate) fn prepare_views(
@@ -120,22 +100,18 @@ impl LearnedView {
         self.textures.extend(model.targets.iter().map(|target| {
             let descriptor = TextureDescriptor {
                 label: Some("peelnet_target"),
-                size: Extent3d {
-                    width: size.x,
-                    height: size.y,
-                    depth_or_array_layers: 1,
-                },
+                size: size.to_extents(),
                 mip_level_count: 1,
                 sample_count: self.samples,
                 dimension: TextureDimension::D2,
-                format: texture_format(target.format),
+                format: target.format,
                 usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             };
             textures.get(device, descriptor)
         }));
         let group = |targets: &[usize], uniform: Option<BindingResource<'_>>| {
-            let layout = layout_of(model, targets, self.samples, uniform.is_some());
+            let layout = layout_of(targets, self.samples, uniform.is_some());
             let depths = uniform.map(|resource| BindGroupEntry {
                 binding: 0,
                 resource,
@@ -150,9 +126,7 @@ impl LearnedView {
         };
         let passes = model.passes.iter();
         let groups = passes.map(|pass| group(&pass.reads, self.uniform.binding()));
-        let groups = groups.collect();
-        let resolve_group = group(&model.resolve_reads, None);
-        self.groups = groups;
-        self.resolve_group = Some(resolve_group);
+        (self.groups, self.resolve_group) =
+            (groups.collect(), Some(group(&model.resolve_reads, None)));
     }
 }

@@ -15,52 +15,51 @@ use bevy::{
         settings::{WgpuLimits, WgpuSettings},
     },
 };
-use bevy_peelnet::{Gravity, LearnedTransparency, PeelnetMessages, PeelnetModel, PeelnetPlugin};
+use bevy_peelnet::{Gravity, PeelnetModel, PeelnetPlugin};
 use support::{cards, headless::Headless};
 
 const SIZE: UVec2 = UVec2::new(128, 96);
 
-fn messages(headless: &Headless) -> Vec<(Gravity, String)> {
-    headless.app.world().resource::<PeelnetMessages>().all()
-}
-
-/// The picture without learned transparency, and with it, of one application; and what was said.
-fn pictures(
-    plugin: PeelnetPlugin,
-    settings: WgpuSettings,
-) -> (Vec<u8>, Vec<u8>, Vec<(Gravity, String)>) {
-    let mut headless = Headless::with_settings(SIZE, Msaa::Off, plugin, settings);
+fn crossing(plugin: impl Into<PeelnetPlugin>, settings: WgpuSettings) -> Headless {
+    let mut headless = Headless::with_settings(SIZE, Msaa::Off, plugin.into(), settings);
     cards::spawn(&mut headless.app, &cards::crossing());
+    headless
+}
+
+/// The picture stays as it is without learned transparency, and one message says all of this.
+fn assert_refused(mut headless: Headless, frames: u32, gravity: Gravity, says: &[&str]) {
     let bevys = headless.picture();
-    headless.camera().insert(LearnedTransparency::default());
-    let with = headless.picture();
-    (bevys, with, messages(&headless))
+    let mut headless = headless.learned();
+    headless.run(frames);
+    assert!(headless.picture() == bevys);
+    assert_said(&headless, gravity, says);
+}
+
+fn assert_said(headless: &Headless, gravity: Gravity, says: &[&str]) {
+    let said = headless.messages();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert_eq!(said[0].0, gravity, "{said:?}");
+    let all = says.iter().all(|text| said[0].1.contains(text));
+    assert!(all, "{said:?}");
 }
 
 #[test]
-fn a_network_of_another_version() {
-    let shipped = peelnet_models::find("medium").expect("ships");
-    let json = shipped
-        .json
-        .replace("\"format_version\": 1", "\"format_version\": 7");
-    let model = PeelnetModel::new(shipped.wgsl, &json);
-    let (bevys, with, said) = pictures(model.into(), WgpuSettings::default());
-    assert!(bevys == with);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert!(
-        said[0].1.contains("peelnet-export 7") && said[0].1.contains("export the network again"),
-        "{said:?}"
-    );
-}
-
-#[test]
-fn a_network_of_another_recipe() {
-    let shipped = peelnet_models::find("thesis").expect("ships");
-    let model = PeelnetModel::new(shipped.wgsl, shipped.json);
-    let (bevys, with, said) = pictures(model.into(), WgpuSettings::default());
-    assert!(bevys == with);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert!(said[0].1.contains("\"thesis\""), "{said:?}");
+fn networks_of_another_version_or_recipe() {
+    for (name, version, says) in [
+        (
+            "medium",
+            7,
+            &["peelnet-export 7", "export the network again"][..],
+        ),
+        ("thesis", 1, &["\"thesis\""]),
+    ] {
+        let shipped = peelnet_models::find(name).expect("ships");
+        let version = format!("\"format_version\": {version}");
+        let json = shipped.json.replace("\"format_version\": 1", &version);
+        let model = PeelnetModel::new(shipped.wgsl, &json);
+        let headless = crossing(model, WgpuSettings::default());
+        assert_refused(headless, 0, Gravity::Error, says);
+    }
 }
 
 #[test]
@@ -73,61 +72,42 @@ fn a_device_with_few_bind_groups() {
         }),
         ..default()
     };
-    let (bevys, with, said) = pictures(PeelnetPlugin::default(), settings);
-    assert!(bevys == with);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert_eq!(said[0].0, Gravity::Error);
-    assert!(said[0].1.contains("5 bind groups"), "{said:?}");
+    let headless = crossing(PeelnetPlugin::default(), settings);
+    assert_refused(headless, 0, Gravity::Error, &["5 bind groups"]);
 }
 
 /// Bounds that no adapter reaches.
 fn unlimited() -> WgpuLimits {
-    let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default());
+    let mut headless = usual();
     headless.run(1);
     let render = headless.app.sub_app(RenderApp).world();
     render.resource::<RenderAdapter>().limits()
 }
 
+fn usual() -> Headless {
+    crossing(PeelnetPlugin::default(), WgpuSettings::default())
+}
+
 #[test]
 fn a_camera_with_both_techniques() {
-    let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default());
-    cards::spawn(&mut headless.app, &cards::crossing());
-    headless
-        .camera()
-        .insert(OrderIndependentTransparencySettings::default());
-    let bevys = headless.picture();
-    headless.camera().insert(LearnedTransparency::default());
-    let with = headless.picture();
-    assert!(bevys == with);
-    let said = messages(&headless);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert!(
-        said[0].1.contains("OrderIndependentTransparencySettings"),
-        "{said:?}"
-    );
+    let mut headless = usual();
+    let bevys = OrderIndependentTransparencySettings::default();
+    headless.camera().insert(bevys);
+    let says = ["OrderIndependentTransparencySettings"];
+    assert_refused(headless, 0, Gravity::Error, &says);
 }
 
 #[test]
 fn a_scene_without_transparent_surfaces() {
-    let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default());
     // Only the opaque card.
-    cards::spawn(&mut headless.app, &cards::many(0));
-    let bevys = headless.picture();
-    headless.camera().insert(LearnedTransparency::default());
-    headless.run(70);
-    let with = headless.picture();
-    assert!(bevys == with);
-    let said = messages(&headless);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert_eq!(said[0].0, Gravity::Info);
-    assert!(said[0].1.contains("no transparent surface"), "{said:?}");
+    let scene = cards::many(0);
+    let headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default(), &scene);
+    assert_refused(headless, 70, Gravity::Info, &["no transparent surface"]);
 }
 
 #[test]
 fn a_lost_device_is_replaced_where_the_application_asks_for_it() {
-    let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default());
-    cards::spawn(&mut headless.app, &cards::crossing());
-    headless.camera().insert(LearnedTransparency::default());
+    let mut headless = usual().learned();
     // With lights assigned on the GPU, Bevy itself unwraps a buffer of the lost device and panics.
     headless.run(1);
     let world = headless.app.world_mut();
@@ -146,12 +126,7 @@ fn a_lost_device_is_replaced_where_the_application_asks_for_it() {
         .expect("reports the loss");
     let after = headless.picture();
     assert!(before == after);
-    let said = messages(&headless);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert!(
-        said[0].1.contains("replaced the graphics device"),
-        "{said:?}"
-    );
+    assert_said(&headless, Gravity::Info, &["replaced the graphics device"]);
 }
 
 #[test]
@@ -163,14 +138,7 @@ fn files_that_are_not_there_are_named() {
 #[test]
 fn the_shipped_folders_can_be_loaded() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/");
-    for recipe in [
-        "small",
-        "medium",
-        "large",
-        "anchored-small",
-        "anchored-medium",
-        "nmt",
-    ] {
+    for recipe in "small medium large anchored-small anchored-medium nmt".split(' ') {
         let model = PeelnetModel::load(format!("{folder}{recipe}")).expect("loads");
         assert_eq!(model.recipe(), recipe);
     }

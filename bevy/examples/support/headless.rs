@@ -1,6 +1,9 @@
 //! An application that draws into an image and reads it.
 
-use super::cards::{BACKGROUND, EYE};
+use super::{
+    cards::{self, BACKGROUND, Card, EYE},
+    exact::{self, Errors},
+};
 use bevy::{
     app::PluginsState,
     camera::{Hdr, RenderTarget},
@@ -14,7 +17,7 @@ use bevy::{
     },
     window::ExitCondition,
 };
-use bevy_peelnet::PeelnetPlugin;
+use bevy_peelnet::{Gravity, LearnedTransparency, PeelnetMessages, PeelnetPlugin};
 use std::sync::{
     Arc, Mutex,
     atomic::{AtomicBool, Ordering},
@@ -31,13 +34,16 @@ static LOGGED: AtomicBool = AtomicBool::new(false);
 pub struct Headless {
     pub app: App,
     pub camera: Entity,
+    size: UVec2,
     image: Handle<Image>,
 }
 
 impl Headless {
-    /// A camera that sees the background. The width must be a multiple of 64: rows are read as they are copied.
-    pub fn new(size: UVec2, msaa: Msaa, plugin: PeelnetPlugin) -> Self {
-        Self::with_settings(size, msaa, plugin, WgpuSettings::default())
+    /// A camera that sees cards. The width must be a multiple of 64: rows are read as they are copied.
+    pub fn new(size: UVec2, msaa: Msaa, plugin: impl Into<PeelnetPlugin>, scene: &[Card]) -> Self {
+        let mut headless = Self::with_settings(size, msaa, plugin.into(), WgpuSettings::default());
+        cards::spawn(&mut headless.app, scene);
+        headless
     }
 
     pub fn with_settings(
@@ -90,7 +96,38 @@ impl Headless {
             Transform::from_translation(EYE).looking_at(Vec3::ZERO, Vec3::Y),
         );
         let camera = app.world_mut().spawn(camera).id();
-        Self { app, camera, image }
+        Self {
+            app,
+            camera,
+            size,
+            image,
+        }
+    }
+
+    /// The same with learned transparency.
+    pub fn learned(mut self) -> Self {
+        self.camera().insert(LearnedTransparency::default());
+        self
+    }
+
+    /// Without learned transparency.
+    pub fn sort(&mut self) {
+        self.camera().remove::<LearnedTransparency>();
+    }
+
+    /// How far the picture is from the exact one of a scene.
+    pub fn errors(&mut self, scene: &[Card]) -> Errors {
+        let msaa = self.app.world().get::<Msaa>(self.camera);
+        let samples = msaa.map_or(1, Msaa::samples);
+        let errors = exact::picture(scene, self.size, samples).errors_of(&self.picture());
+        // The rest is edges.
+        assert!(errors.judged > 0.85, "{errors:?}");
+        errors
+    }
+
+    /// What the plugin reported.
+    pub fn messages(&self) -> Vec<(Gravity, String)> {
+        self.app.world().resource::<PeelnetMessages>().all()
     }
 
     /// Plugins are ready only then. Call it after the last plugin is added.
