@@ -1,4 +1,4 @@
-//! Wavefront OBJ files.
+//! Wavefront OBJ files, read by `tobj` behind a check.
 
 use super::{
     Imported,
@@ -14,7 +14,7 @@ use crate::{
 };
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_files::printable;
-use std::{borrow::Cow, collections::HashMap, path::Path};
+use std::{borrow::Cow, fmt::Write, path::Path};
 
 #[cfg(test)]
 #[path = "obj_tests.rs"]
@@ -34,53 +34,32 @@ pub(super) fn load(
     let mut warnings = Warnings::default();
     let text = statements(path, &bytes, &mut warnings)?;
     drop(bytes);
-    let at_line = |(line, message): (usize, String)| SceneError::file(path, Some(line), message);
-    let vertices = Vertices::read(&text).map_err(at_line)?;
-    let mut libraries = Libraries::new(path, lighting, files, warnings);
-    let mut parts = Parts::new(&vertices);
-    for (line, number) in text.lines().zip(1..) {
-        let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
-        match key {
-            "v" => parts.read[0] += 1,
-            "vt" => parts.read[1] += 1,
-            "vn" => parts.read[2] += 1,
-            "f" => {
-                let face = parts.face(rest);
-                let fault = |what| (number, format!("'{}' {what}", printable(line)));
-                face.map_err(|what| at_line(fault(what)))?;
-            }
-            "o" | "g" => {
-                parts.close();
-                parts.name = if rest.is_empty() { UNNAMED } else { rest }.to_owned();
-            }
-            "mtllib" => libraries.load(rest)?,
-            "usemtl" => {
-                let material = libraries.find(rest);
-                if parts.material != material {
-                    parts.close();
-                }
-                parts.material = material;
-            }
-            _ => {}
-        }
-    }
-    parts.close();
-    if parts.done.is_empty() {
-        let message = "holds no faces; is the file empty or cut off?";
-        return Err(SceneError::file(path, None, message));
-    }
-    let (materials, mut warnings) = libraries.materials();
-    let parts = parts.done.into_iter().map(|(name, material, surface)| {
-        let material = material.map(|i| materials[i].clone());
-        let default = || Material::default_with(lighting);
-        (name, material.unwrap_or_else(default), surface)
+    let fail = |message: String| SceneError::file(path, None, message);
+    let mut libraries = Libraries::new(path, lighting, files, &mut warnings);
+    let text = check(path, &text, &mut libraries)?;
+    let options = tobj::LoadOptions {
+        single_index: true,
+        ..tobj::LoadOptions::default()
+    };
+    let loaded = tobj::load_obj_buf(&mut text.as_bytes(), &options, |name| {
+        Ok((Vec::new(), libraries.names(name)))
     });
-    let mesh = assemble(
-        parts.collect(),
-        &format!("{}: ", shown(path)),
-        &mut warnings,
-    );
-    let mesh = mesh.map_err(|message| SceneError::file(path, None, message))?;
+    let (models, _) = loaded.map_err(|e| fail(format!("{e}; export the mesh again")))?;
+    if models.iter().all(|m| m.mesh.indices.is_empty()) {
+        return Err(fail("holds no faces; is the file empty or cut off?".into()));
+    }
+    let named = text.lines().filter_map(|line| line.strip_prefix("usemtl "));
+    let materials = libraries.finish(named);
+    let mut triangulator = Triangulator::new();
+    let parts = models.into_iter().map(|tobj::Model { name, mesh }| {
+        let material = mesh.material_id.map(|i| materials[i].clone());
+        let surface = surface(&mesh, &mut triangulator);
+        let surface = surface.map_err(|e| fail(format!("'{}' holds {e}", printable(&name))))?;
+        let default = || Material::default_with(lighting);
+        Ok((name, material.unwrap_or_else(default), surface))
+    });
+    let parts = parts.collect::<Result<_, SceneError>>()?;
+    let mesh = assemble(parts, &format!("{}: ", shown(path)), &mut warnings).map_err(fail)?;
     Ok(Imported::mesh(mesh, warnings.texts()))
 }
 
@@ -133,191 +112,152 @@ pub(super) fn statements(
     Ok(out)
 }
 
-const NOT_FINITE: &str = "holds no finite numbers";
-
-/// Everything that faces of a file point at.
-#[derive(Default)]
-struct Vertices {
-    positions: Vec<Vec3>,
-    /// One for each position, or none.
-    colors: Vec<[f32; 4]>,
-    uvs: Vec<Vec2>,
-    normals: Vec<Vec3>,
-}
-
-impl Vertices {
-    /// An error has the line from 1, and a message.
-    fn read(text: &str) -> Result<Self, (usize, String)> {
-        let mut all = Self::default();
-        for (line, number) in text.lines().zip(1..) {
-            let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
-            if !matches!(key, "v" | "vt" | "vn") {
+/// Refuses, with its line, what `tobj` would misread or panic on, and reads the libraries. The text that is left: vertices first, as a face can
+/// name any of them, then faces with numbers from 1, names and materials. Lines and points, which `tobj` takes for faces, are no part of it.
+fn check(path: &Path, text: &str, libraries: &mut Libraries<'_, '_>) -> Result<String, SceneError> {
+    let fault = |number, line: &str, what: &str| {
+        let message = format!("'{}' {what}", printable(line));
+        SceneError::file(path, Some(number), message)
+    };
+    let mut out = String::with_capacity(text.len());
+    // Positions, UVs and normals; those of them that stand before a face, as negative numbers count back from there.
+    let [mut counts, mut read] = [[0; 3]; 2];
+    let list = |key: &str| ["v", "vt", "vn"].iter().position(|k| *k == key);
+    let mut colors = 0;
+    for (line, number) in text.lines().zip(1..) {
+        let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
+        let Some(list) = list(key) else { continue };
+        counts[list] += 1;
+        let is_colored = check_vertex(key, rest).and_then(|is_colored| {
+            colors += usize::from(is_colored);
+            if [0, counts[0]].contains(&colors) {
+                return Ok(());
+            }
+            Err("is among vertices some of which have a colour and some none".into())
+        });
+        is_colored.map_err(|what| fault(number, line, &format!("{what}; repair the line")))?;
+        out.extend([line, "\n"]);
+    }
+    for (line, number) in text.lines().zip(1..) {
+        let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
+        match key {
+            "f" => {
+                let words: Vec<&str> = rest.split_whitespace().collect();
+                if words.len() < 3 {
+                    let what = "is a face of fewer than 3 vertices; is the file cut off? Export the mesh again";
+                    return Err(fault(number, line, what));
+                }
+                out.push('f');
+                for word in words {
+                    let what = "names a vertex that is not there; repair the face";
+                    let numbers = numbers(word, counts, read);
+                    let numbers = numbers.ok_or_else(|| fault(number, line, what))?;
+                    let [v, vt, vn] = numbers.map(|n| n.map_or(String::new(), |n| n.to_string()));
+                    let _ = write!(out, " {v}/{vt}/{vn}");
+                }
+            }
+            "mtllib" if !libraries.load(rest)? => continue,
+            // tobj refuses a material without a name.
+            "usemtl" if rest.is_empty() => out += "usemtl unnamed",
+            "o" | "g" | "mtllib" | "usemtl" => out += line,
+            _ => {
+                if let Some(list) = list(key) {
+                    read[list] += 1;
+                }
                 continue;
             }
-            let fault = |what: &str| {
-                let message = format!("'{}' {what}; repair the line", printable(line));
-                (number, message)
-            };
-            // A vertex of more numbers than these is none.
-            let mut numbers = [0.0; 7];
-            let mut count = 0;
-            for (number, word) in numbers.iter_mut().zip(rest.split_whitespace()) {
-                *number = word.parse().map_err(|_| fault(NOT_FINITE))?;
-                count += 1;
-            }
-            let added = all.add(key, &numbers[..count]);
-            added.map_err(|what| fault(&what))?;
         }
-        Ok(all)
+        out.push('\n');
     }
+    Ok(out)
+}
 
-    fn add(&mut self, key: &str, numbers: &[f32]) -> Result<(), Cow<'static, str>> {
-        match (key, numbers) {
-            // v runs up in OBJ, down here.
-            ("vt", [u, v, ..]) => self.uvs.push(Vec2::new(*u, 1.0 - *v)),
-            ("vn", [x, y, z, ..]) => self.normals.push(Vec3::new(*x, *y, *z)),
-            ("v", [x, y, z]) => self.positions.push(Vec3::new(*x, *y, *z)),
-            ("v", [x, y, z, w]) => self.positions.push(Vec3::new(*x, *y, *z) / *w),
-            ("v", [x, y, z, color @ ..]) if color.len() == 3 => {
-                self.positions.push(Vec3::new(*x, *y, *z));
-                let color = Vec3::from_slice(color);
-                if !color.is_finite() {
-                    return Err(NOT_FINITE.into());
-                }
-                let color = color.clamp(Vec3::ZERO, Vec3::ONE).extend(1.0);
-                self.colors.push(color.to_array());
-            }
-            ("v", _) => {
-                let message = format!(
-                    "is a vertex of {} numbers, and a position has 3, with w 4, with a colour 6: is the file cut off?",
-                    numbers.len()
-                );
-                return Err(message.into());
-            }
-            _ => return Err("holds too few numbers".into()),
-        }
+/// Whether the line of a vertex, a UV or a normal has a colour, or what is wrong with it.
+fn check_vertex(key: &str, rest: &str) -> Result<bool, Cow<'static, str>> {
+    const NOT_FINITE: &str = "holds no finite numbers";
+    // A vertex of more numbers than these is none.
+    let words = rest.split_whitespace().take(7).map(str::parse);
+    let numbers: Vec<f32> = words.collect::<Result<_, _>>().map_err(|_| NOT_FINITE)?;
+    let is_finite = match (key, &*numbers) {
         // UVs that are not finite are taken as 0 later.
-        let added = [self.positions.last(), self.normals.last()];
-        if added.into_iter().flatten().any(|p| !p.is_finite()) {
-            return Err(NOT_FINITE.into());
+        ("vt", [_, _, ..]) => true,
+        ("v", [position @ .., w]) if numbers.len() == 4 => {
+            position.iter().all(|x| (x / w).is_finite())
         }
-        if ![0, self.positions.len()].contains(&self.colors.len()) {
-            return Err("is among vertices some of which have a colour and some none".into());
+        ("v", [_, _, _] | [_, _, _, _, _, _]) | ("vn", [_, _, _, ..]) => {
+            numbers.iter().all(|x| x.is_finite())
         }
-        Ok(())
-    }
-}
-
-/// The name of a part without one.
-const UNNAMED: &str = "unnamed_object";
-
-/// The parts of a file: a new one begins at each group, object and material.
-struct Parts<'a> {
-    all: &'a Vertices,
-    /// How many positions, UVs and normals stand before a face: negative numbers count back from them.
-    read: [usize; 3],
-    triangulator: Triangulator,
-    name: String,
-    material: Option<usize>,
-    done: Vec<(String, Option<usize>, Surface)>,
-    /// The open part, its vertices by their numbers in the file, and one UV for each, where the file has them.
-    surface: Surface,
-    known: HashMap<[Option<usize>; 3], u32>,
-    uvs: Vec<Vec2>,
-}
-
-impl<'a> Parts<'a> {
-    fn new(all: &'a Vertices) -> Self {
-        Self {
-            all,
-            read: [0; 3],
-            triangulator: Triangulator::new(),
-            name: UNNAMED.to_owned(),
-            material: None,
-            done: Vec::new(),
-            surface: Surface::default(),
-            known: HashMap::new(),
-            uvs: Vec::new(),
-        }
-    }
-
-    /// Closes the open part, if it has any face.
-    fn close(&mut self) {
-        if self.surface.triangles.is_empty() {
-            return;
-        }
-        self.known.clear();
-        let mut surface = std::mem::take(&mut self.surface);
-        let uvs = std::mem::take(&mut self.uvs);
-        let n = surface.positions.len();
-        // A part has UVs only if all of its vertices have them; normals likewise.
-        if uvs.len() == n {
-            let corners = surface.triangles.iter();
-            surface.uvs = corners.map(|t| t.map(|i| uvs[i as usize])).collect();
-        }
-        if surface.normals.len() != n {
-            surface.normals.clear();
-        }
-        let part = (self.name.clone(), self.material, surface);
-        self.done.push(part);
-    }
-
-    /// Adds the face of these words; an error tells what is wrong with it.
-    fn face(&mut self, words: &str) -> Result<(), String> {
-        let mut corners: Vec<u32> = Vec::new();
-        for word in words.split_whitespace() {
-            let Some(numbers) = self.numbers(word) else {
-                return Err("names a vertex that is not there; repair the face".into());
-            };
-            corners.push(self.vertex(numbers));
-        }
-        if corners.len() < 3 {
-            let message =
-                "is a face of fewer than 3 vertices; is the file cut off? Export the mesh again";
+        ("v", _) => {
+            let message = format!(
+                "is a vertex of {} numbers, and a position has 3, with w 4, with a colour 6: is the file cut off?",
+                numbers.len()
+            );
             return Err(message.into());
         }
-        let positions = &self.surface.positions;
-        let position = |&i: &u32| positions[i as usize].as_dvec3();
-        let polygon: Vec<DVec3> = corners.iter().map(position).collect();
-        let cut = self.triangulator.triangulate(&polygon)?;
-        let cut = cut.into_iter().map(|t| t.map(|k| corners[k]));
-        self.surface.triangles.extend(cut);
-        Ok(())
-    }
+        _ => return Err("holds too few numbers".into()),
+    };
+    let is_colored = key == "v" && numbers.len() == 6;
+    is_finite.then_some(is_colored).ok_or(NOT_FINITE.into())
+}
 
-    /// The numbers, from 0, of the position, the UV and the normal that a word such as `1/2/3` names. Those of a list that is empty are none.
-    fn numbers(&self, word: &str) -> Option<[Option<usize>; 3]> {
-        let all = self.all;
-        let counts = [all.positions.len(), all.uvs.len(), all.normals.len()];
-        let mut numbers = [None; 3];
-        for (k, part) in word.split('/').enumerate() {
-            if part.is_empty() {
-                continue;
-            }
-            let (count, read) = (*counts.get(k)?, self.read[k]);
-            let number: i64 = part.parse().ok()?;
-            if k > 0 && (number == 0 || count == 0) {
-                continue;
-            }
-            let base = if number < 0 { read as i64 } else { -1 };
-            let number = usize::try_from(base.checked_add(number)?).ok()?;
-            numbers[k] = Some(number).filter(|n| *n < count);
-            numbers[k]?;
+/// The numbers, from 1, of the position, the UV and the normal that a word such as `1/2/3` names. Those of a list that is empty are none.
+fn numbers(word: &str, counts: [usize; 3], read: [usize; 3]) -> Option<[Option<usize>; 3]> {
+    let mut numbers = [None; 3];
+    for (k, part) in word.split('/').enumerate() {
+        if part.is_empty() {
+            continue;
         }
-        numbers[0].map(|_| numbers)
+        let count = *counts.get(k)?;
+        let number: i64 = part.parse().ok()?;
+        if k > 0 && (number == 0 || count == 0) {
+            continue;
+        }
+        let base = if number < 0 { read[k] as i64 + 1 } else { 0 };
+        let number = usize::try_from(base.checked_add(number)?).ok()?;
+        numbers[k] = Some(number).filter(|n| (1..=count).contains(n));
+        numbers[k]?;
     }
+    numbers[0].map(|_| numbers)
+}
 
-    /// The number in the open part of a vertex of the file.
-    fn vertex(&mut self, numbers: [Option<usize>; 3]) -> u32 {
-        let surface = &mut self.surface;
-        *self.known.entry(numbers).or_insert_with(|| {
-            let [position, uv, normal] = numbers;
-            let position = position.unwrap_or_default();
-            surface.positions.push(self.all.positions[position]);
-            surface.colors.extend(self.all.colors.get(position));
-            self.uvs.extend(uv.map(|i| self.all.uvs[i]));
-            surface.normals.extend(normal.map(|i| self.all.normals[i]));
-            surface.positions.len() as u32 - 1
-        })
+/// The surface of a model. It has UVs only if all of its vertices have them; normals and colours likewise.
+fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Surface, String> {
+    let vectors = |flat: &[f32]| -> Vec<Vec3> { flat.chunks(3).map(Vec3::from_slice).collect() };
+    let positions = vectors(&mesh.positions);
+    let n = positions.len();
+    // tobj lists no arities where all faces are triangles.
+    let all_triangles = mesh.indices.len() / 3 * usize::from(mesh.face_arities.is_empty());
+    let arities = mesh.face_arities.iter().copied();
+    let mut rest = &*mesh.indices;
+    let mut triangles = Vec::new();
+    for arity in arities.chain(std::iter::repeat_n(3, all_triangles)) {
+        let (face, after) = rest.split_at(arity as usize);
+        rest = after;
+        let position = |&i: &u32| positions[i as usize].as_dvec3();
+        let polygon: Vec<DVec3> = face.iter().map(position).collect();
+        let cut = triangulator.triangulate(&polygon)?;
+        triangles.extend(cut.into_iter().map(|t| t.map(|k| face[k])));
     }
+    // v runs up in OBJ, down here.
+    let uv = |i: u32| {
+        Vec2::new(
+            mesh.texcoords[2 * i as usize],
+            1.0 - mesh.texcoords[2 * i as usize + 1],
+        )
+    };
+    let has_uvs = mesh.texcoords.len() == 2 * n;
+    let colors = vectors(&mesh.vertex_color).into_iter();
+    let colors = colors.map(|c| c.clamp(Vec3::ZERO, Vec3::ONE).extend(1.0).to_array());
+    let normals = Some(vectors(&mesh.normals)).filter(|all| all.len() == n);
+    Ok(Surface {
+        uvs: triangles
+            .iter()
+            .filter(|_| has_uvs)
+            .map(|t| t.map(uv))
+            .collect(),
+        normals: normals.unwrap_or_default(),
+        colors: colors.collect(),
+        positions,
+        triangles,
+    })
 }

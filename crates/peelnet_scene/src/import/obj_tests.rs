@@ -33,10 +33,11 @@ fn polygons_negative_indices_groups_and_materials() {
     assert!(m.normals.iter().all(|n| *n == Vec3::Z));
 }
 
-/// An L-shaped face (concave), comments behind data, a continued line, and a texture that is not there.
+/// An L-shaped face (concave) before its vertices, lines and points, comments behind data, a continued line, and a texture that is not there.
 #[test]
 fn what_exporters_write() {
-    let obj = "mtllib\ta.mtl # library\nv 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\n";
+    let obj = "mtllib\ta.mtl # library\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\nl 1 2 3\np 1\n\
+        v 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
     let mtl = b"newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n";
     let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
     let m = &loaded.mesh;

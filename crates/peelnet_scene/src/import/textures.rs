@@ -1,6 +1,5 @@
 //! Textures that MTL files name.
 
-use super::mtl::Entry;
 use crate::{
     displacement::Displacement,
     error::{SceneError, shown},
@@ -57,8 +56,8 @@ struct Statement {
 
 /// The textures of all materials, each file read once and each pair of them joined once.
 pub(super) struct Textures<'a, 'f> {
-    files: &'a mut Files<'f>,
-    warnings: &'a mut Warnings,
+    pub files: &'a mut Files<'f>,
+    pub warnings: &'a mut Warnings,
     read: HashMap<PathBuf, Option<Arc<Texture>>>,
     made: Made,
 }
@@ -155,14 +154,23 @@ impl<'a, 'f> Textures<'a, 'f> {
         texture
     }
 
-    /// A material with its textures.
-    pub fn put_on(&mut self, entry: &Entry) -> Material {
-        let mut material = entry.material.clone();
+    /// A material with the textures that `m`, of a library, names.
+    pub fn put_on(&mut self, library: &Path, m: &tobj::Material, material: Material) -> Material {
+        let mut material = material;
+        let known = [
+            ("map_Kd", &m.diffuse_texture),
+            ("map_d", &m.dissolve_texture),
+            ("map_Bump", &m.normal_texture),
+        ];
+        let known = known
+            .into_iter()
+            .filter_map(|(key, text)| Some((key, text.as_ref()?)));
+        let others = m.unknown_param.iter().map(|(key, text)| (&**key, text));
+        let statements: BTreeMap<&str, &String> = known.chain(others).collect();
         let mut uses: BTreeMap<Use, Statement> = BTreeMap::new();
-        for statement in &entry.statements {
-            let (key, rest) = (&statement.key, &statement.rest);
+        for (key, text) in statements {
             if let Some(kind) = drawn_as(key)
-                && let Some(statement) = self.statement(&entry.path, key, rest)
+                && let Some(statement) = self.statement(library, key, text)
             {
                 uses.insert(kind, statement);
             }
@@ -209,10 +217,10 @@ impl<'a, 'f> Textures<'a, 'f> {
             if material.lighting != Lighting::Unlit {
                 material.lighting = Lighting::Pbr;
             }
-            if rough.is_some() && !entry.has("Pr") {
+            if rough.is_some() && !m.unknown_param.contains_key("Pr") {
                 material.roughness = 1.0;
             }
-            if metal.is_some() && !entry.has("Pm") {
+            if metal.is_some() && !m.unknown_param.contains_key("Pm") {
                 material.metallic = 1.0;
             }
         }
@@ -230,7 +238,7 @@ impl<'a, 'f> Textures<'a, 'f> {
             })
         });
         maps.emissive = found.get(&Use::Emission).cloned();
-        if maps.emissive.is_some() && !entry.has("Ke") {
+        if maps.emissive.is_some() && m.emissive.is_none() {
             material.emission = [1.0; 3];
         }
         Material { maps, ..material }
