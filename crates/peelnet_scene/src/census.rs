@@ -1,10 +1,9 @@
 //! The census: which effects a scene needs, and which objects need them. A renderer is specialised by it: unused effects cost nothing.
 
-#[cfg(doc)]
-use crate::texture::Maps;
 use crate::{
     material::{Lighting, Material},
     scene::{Light, Object, Scene, Source},
+    texture::Maps,
 };
 use serde::Serialize;
 use std::fmt;
@@ -111,13 +110,7 @@ impl Variant {
             (self.cutout, "cutout"),
             (self.is_mapped(), "mapped"),
         ];
-        let maps = self.maps.into_iter().zip([
-            "color_map",
-            "normal_map",
-            "metallic_roughness_map",
-            "occlusion_map",
-            "emissive_map",
-        ]);
+        let maps = self.maps.into_iter().zip(Maps::KEYS);
         let after = [
             (self.clear_map, "clear_map"),
             (self.vertex_colors, "vertex_colors"),

@@ -7,7 +7,7 @@ mod tests;
 use crate::{
     budget::{Budget, MAX_TRIANGLES},
     material::Material,
-    mesh::{Mesh, key_of},
+    mesh::{Mesh, area_of, key_of},
     texture::{Texture, Wrap},
 };
 use glam::{DVec3, Quat, Vec2, Vec3};
@@ -223,13 +223,9 @@ fn leaning(mesh: &Mesh, moved: &[Vec3]) -> Vec<Vec3> {
         let i = i as usize;
         (key_of(mesh.positions[i]), key_of(mesh.normals[i]))
     };
-    let area = |positions: &[Vec3], t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        (b - a).cross(c - a)
-    };
     let mut sums: HashMap<_, [Vec3; 2]> = HashMap::new();
     for t in &mesh.triangles {
-        let areas = [area(&mesh.positions, t), area(moved, t)];
+        let areas = [area_of(&mesh.positions, *t), area_of(moved, *t)];
         for &i in t {
             let sum = sums.entry(key(i)).or_default();
             *sum = [sum[0] + areas[0], sum[1] + areas[1]];

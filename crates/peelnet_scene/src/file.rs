@@ -119,7 +119,6 @@ const MUCH_BRIGHTER: f32 = 16.0;
 /// Reads a scene file's tables and keys.
 fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
     let bytes = files.read(path, FileKind::Scene)?;
-    files.record(path, &bytes);
     let text = String::from_utf8(bytes).map_err(|e| SceneError::Read {
         path: path.to_owned(),
         source: io::Error::new(io::ErrorKind::InvalidData, e.utf8_error()),

@@ -1,7 +1,7 @@
 //! The files of a scene. All of them are read through one function, so that a folder, an archive, a web page or a test can be the file
 //! system.
 
-use crate::{budget::Budget, error::SceneError};
+use crate::{budget::Budget, error::SceneError, texture::Texture};
 use peelnet_files::{check_size, hex};
 use sha2::{Digest as _, Sha256};
 use std::{
@@ -59,22 +59,27 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// A file's bytes.
-    pub fn read(&self, path: &Path, kind: FileKind) -> Result<Vec<u8>, SceneError> {
+    /// Reads a file, which becomes part of the scene's hash and list.
+    pub fn read(&mut self, path: &Path, kind: FileKind) -> Result<Vec<u8>, SceneError> {
         let limit = kind.max_bytes();
-        (self.read)(path, limit)
-            // A caller's function knows no limit.
-            .and_then(|bytes| check_size(bytes.len() as u64, limit).map(|()| bytes))
-            .map_err(|source| SceneError::Read {
-                path: path.to_owned(),
-                source,
-            })
+        // A caller's function knows no limit.
+        let read = (self.read)(path, limit)
+            .and_then(|bytes| check_size(bytes.len() as u64, limit).map(|()| bytes));
+        let bytes = read.map_err(|source| SceneError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        self.hasher.update(&bytes);
+        self.used.push(path.to_owned());
+        Ok(bytes)
     }
 
-    /// Adds a file that was read to the scene's hash and list.
-    pub fn record(&mut self, path: &Path, bytes: &[u8]) {
-        self.hasher.update(bytes);
-        self.used.push(path.to_owned());
+    /// Reads a texture.
+    pub fn texture(&mut self, path: &Path) -> Result<Texture, SceneError> {
+        let bytes = self.read(path, FileKind::Image)?;
+        let name = path.display().to_string();
+        Texture::decode_within(&name, &bytes, &mut self.budget)
+            .map_err(|message| SceneError::file(path, None, message))
     }
 
     /// Adds bytes that are in no file to the hash.
@@ -82,12 +87,12 @@ impl<'a> Files<'a> {
         self.hasher.update(bytes);
     }
 
-    /// Every recorded file, in order.
+    /// Every file that was read, in order.
     pub fn used(&self) -> &[PathBuf] {
         &self.used
     }
 
-    /// SHA-256 over every recorded file in order, hexadecimal.
+    /// SHA-256 over every file that was read in order, hexadecimal.
     pub fn hash(self) -> String {
         hex(&self.hasher.finalize())
     }
@@ -104,7 +109,7 @@ mod tests {
             assert!(limit == 64 << 20 || limit == 512 << 20);
             Ok(vec![0; (64 << 20) + 1])
         };
-        let files = Files::new(&read);
+        let mut files = Files::new(&read);
         let path = Path::new("s.toml");
         assert!(files.read(path, FileKind::Image).is_ok());
         let e = files.read(path, FileKind::Scene).expect_err("too large");

@@ -110,6 +110,24 @@ fn load_from_memory(
     (loaded, used)
 }
 
+/// Loads a file of a mesh alone that a test holds in memory.
+#[cfg(test)]
+fn load_mesh(name: &str, bytes: &[u8]) -> Result<Imported, String> {
+    let (loaded, _) = load_from_memory(&[(name, bytes)], Lighting::Phong);
+    loaded.map_err(|e| e.to_string())
+}
+
+/// The error begins with the name of the file, and `words`, between ` & `, are in it.
+#[cfg(test)]
+fn assert_refused(loaded: Result<Imported, String>, file: &str, words: &str) {
+    let e = loaded.map(|_| ()).expect_err(words);
+    assert!(e.starts_with(file), "{e}");
+    for word in words.split(" & ") {
+        assert!(e.contains(word), "no '{word}' in: {e}");
+    }
+    assert!(!e.contains(char::is_control), "{e:?}");
+}
+
 /// The area of a mesh that faces +z.
 #[cfg(test)]
 fn area(mesh: &Mesh) -> f32 {

@@ -30,6 +30,7 @@ mod files;
 mod import;
 mod material;
 mod mesh;
+mod parameters;
 mod pattern;
 mod scatter;
 mod scene;

@@ -1,15 +1,13 @@
-use crate::{material::Material, texture::Maps};
+use crate::{material::Material, texture::Maps, warnings::Warnings};
 use glam::{Mat4, Vec2, Vec3};
+use peelnet_files::printable;
 use std::{collections::HashMap, ops::Range};
-
-/// Stands behind the name of a part whose maps cannot be drawn.
-pub(crate) const NO_UVS: &str = " with textures and no texture coordinates: plain values are drawn";
 
 /// By how much [`Mesh::box_of`] is larger than what it holds on either side, of its longest side: rounding must not miss a flat part.
 pub const BOX_MARGIN: f32 = 1e-3;
 
 /// Triangles with a normal at every vertex.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertex positions, object space.
     pub positions: Vec<Vec3>,
@@ -38,54 +36,32 @@ pub struct Part {
 }
 
 impl Mesh {
-    /// A mesh of one part.
-    pub(crate) fn single(
-        name: &str,
-        positions: Vec<Vec3>,
-        normals: Vec<Vec3>,
-        triangles: Vec<[u32; 3]>,
-        material: &Material,
-    ) -> Self {
+    /// The same triangles as one part.
+    pub(crate) fn into_part(self, name: impl Into<String>, material: Material) -> Self {
         Self {
             parts: vec![Part {
-                name: name.to_owned(),
-                triangles: 0..triangles.len(),
-                material: material.clone(),
+                name: name.into(),
+                triangles: 0..self.triangles.len(),
+                material,
             }],
-            positions,
-            normals,
-            colors: Vec::new(),
-            uvs: Vec::new(),
-            triangles,
+            ..self
         }
     }
 
-    /// A mesh without triangles, to be filled part by part.
-    pub(crate) const fn empty() -> Self {
-        Self {
-            positions: Vec::new(),
-            normals: Vec::new(),
-            colors: Vec::new(),
-            uvs: Vec::new(),
-            triangles: Vec::new(),
-            parts: Vec::new(),
-        }
-    }
-
-    /// Appends a mesh of one part. Where that has maps and no UVs, its maps are dropped: the warning [`NO_UVS`] is about it.
-    #[must_use]
-    pub(crate) fn append(&mut self, mut other: Self) -> bool {
-        let mut lost = false;
+    /// Appends a mesh of one part. Where that has maps and no UVs, its maps are dropped, with a warning behind the name of the file.
+    pub(crate) fn append(&mut self, mut other: Self, file: &str, warnings: &mut Warnings) {
         for part in &mut other.parts {
             if other.uvs.is_empty() && part.material.maps.has_any() {
                 part.material.maps = Maps::NONE;
-                lost = true;
+                let name = format!("'{}'", printable(&part.name));
+                let after = " with textures and no texture coordinates: plain values are drawn";
+                warnings.about(file, &name, after);
             }
         }
         if self.parts.is_empty() {
             // Not copied: most large files are one part.
             *self = other;
-            return lost;
+            return;
         }
         let (base, first) = (self.positions.len(), self.triangles.len());
         let (vertices, triangles) = (other.positions.len(), other.triangles.len());
@@ -105,7 +81,6 @@ impl Mesh {
             triangles: first + part.triangles.start..first + part.triangles.end,
             ..part
         }));
-        lost
     }
 
     /// Tangents of a run of triangles, for normal maps: direction of u, and 1 or −1 where v runs against or along normal × tangent,
@@ -301,6 +276,7 @@ pub(crate) fn normals_by_position<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::{Shape, Torus};
 
     /// An edge and a difference of UVs near the smallest number: MikkTSpace's own squares vanish. Found by fuzzing.
     #[test]
@@ -318,7 +294,7 @@ mod tests {
                 Vec2::new(1.682_942, 1.080_605),
                 Vec2::new(2.421_404e-38, -3.771_113e-38),
             ]],
-            ..Mesh::empty()
+            ..Mesh::default()
         };
         let tangents = mesh.tangents(0..1).expect("there are UVs");
         let mut all = tangents.iter().flatten().flatten();
@@ -329,14 +305,12 @@ mod tests {
     #[test]
     fn a_cut_surface_is_the_same() {
         let material = Material::unlit([1.0; 3], 0.5);
-        let torus = crate::shapes::Torus {
+        let torus = Torus {
             tube: 0.3,
             triangles: 200,
             ..Default::default()
         };
-        let mesh = crate::shapes::Shape::Torus(torus)
-            .build(&material, true)
-            .expect("builds");
+        let mesh = Shape::Torus(torus).build(&material, true).expect("builds");
         let cut = mesh.colored_by_height([[0.0; 4], [1.0; 4]]).subdivided();
         assert_eq!(cut.triangles.len(), 4 * mesh.triangles.len());
         assert_eq!(cut.parts[0].triangles, 0..cut.triangles.len());
@@ -347,10 +321,7 @@ mod tests {
         // A torus has three edges for two triangles: as many middles.
         let edges = mesh.triangles.len() * 3 / 2;
         assert_eq!(cut.positions.len(), mesh.positions.len() + edges);
-        let area = |mesh: &Mesh, t: usize| {
-            let [a, b, c] = mesh.triangles[t].map(|i| mesh.positions[i as usize]);
-            (b - a).cross(c - a)
-        };
+        let area = |mesh: &Mesh, t: usize| area_of(&mesh.positions, mesh.triangles[t]);
         for t in 0..mesh.triangles.len() {
             let whole = area(&mesh, t);
             for k in 0..4 {
@@ -363,20 +334,12 @@ mod tests {
     #[test]
     fn tangents_of_a_rectangle() {
         for mirrored in [false, true] {
-            let u = |x: f32| if mirrored { 1.0 - x } else { x };
-            let uvs = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)];
-            let uvs = uvs.map(|(x, y)| Vec2::new(u(x), y));
-            let triangles = vec![[0, 1, 2], [0, 2, 3]];
-            let mesh = Mesh {
-                positions: vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y],
-                normals: vec![Vec3::Z; 4],
-                uvs: triangles
-                    .iter()
-                    .map(|t: &[u32; 3]| t.map(|i| uvs[i as usize]))
-                    .collect(),
-                triangles,
-                ..Mesh::empty()
-            };
+            let mut mesh = Shape::Quad(Default::default())
+                .build(&Material::unlit([1.0; 3], 0.5), true)
+                .expect("builds");
+            for uv in mesh.uvs.iter_mut().flatten().filter(|_| mirrored) {
+                uv.x = 1.0 - uv.x;
+            }
             let tangents = mesh.tangents(0..2).expect("has UVs");
             for [x, y, z, sign] in tangents.into_iter().flatten() {
                 let tangent = Vec3::new(x, y, z);

@@ -2,7 +2,10 @@
 
 mod letters;
 
-use crate::texture::{Texture, normals_of};
+use crate::{
+    parameters::parameters,
+    texture::{Texture, normals_of},
+};
 use glam::{IVec2, Vec2};
 use peelnet_core::{hash::pixel_hash, srgb};
 use rayon::prelude::*;
@@ -26,48 +29,31 @@ pub(crate) enum Field {
     Puff,
 }
 
-/// A generated map: `color_map = { pattern = "cracks", cells = 12, colors = [[1, 1, 1], [0.2, 0.1, 0]] }`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(crate) struct Pattern {
-    pub pattern: Field,
-    /// Cells across and down the texture.
-    pub cells: u32,
-    /// Another seed, another pattern.
-    pub seed: u32,
-    /// Width and height in texels.
-    pub size: u32,
-    /// Where the field goes from 0 to 1: values below the first are 0, above the second 1.
-    pub range: [f32; 2],
-    /// Width of cracks as a part of a cell.
-    pub width: f32,
-    /// Linear RGB, or RGB and alpha, at 0 and at 1; for colours and emission.
-    pub colors: [Vec<f32>; 2],
-    /// Rise of 1 over 0 in widths of a cell; for normals.
-    pub height: f32,
-    /// Metallic factor at 0 and at 1.
-    pub metallic: [f32; 2],
-    /// Roughness factor at 0 and at 1.
-    pub roughness: [f32; 2],
-    /// Share of ambient light that arrives at 0 and at 1.
-    pub occlusion: [f32; 2],
-}
-
-impl Default for Pattern {
-    fn default() -> Self {
-        Self {
-            pattern: Field::Checker,
-            cells: 8,
-            seed: 0,
-            size: 512,
-            range: [0.0, 1.0],
-            width: 1.0 / 12.0,
-            colors: [vec![0.0; 3], vec![1.0; 3]],
-            height: 1.0 / 12.0,
-            metallic: [0.0, 1.0],
-            roughness: [0.0, 1.0],
-            occlusion: [0.0, 1.0],
-        }
+parameters! {
+    /// A generated map: `color_map = { pattern = "cracks", cells = 12, colors = [[1, 1, 1], [0.2, 0.1, 0]] }`.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) struct Pattern {
+        pattern: Field = Field::Checker,
+        /// Cells across and down the texture.
+        cells: u32 = 8,
+        /// Another seed, another pattern.
+        seed: u32 = 0,
+        /// Width and height in texels.
+        size: u32 = 512,
+        /// Where the field goes from 0 to 1: values below the first are 0, above the second 1.
+        range: [f32; 2] = [0.0, 1.0],
+        /// Width of cracks as a part of a cell.
+        width: f32 = 1.0 / 12.0,
+        /// Linear RGB, or RGB and alpha, at 0 and at 1; for colours and emission.
+        colors: [Vec<f32>; 2] = [vec![0.0; 3], vec![1.0; 3]],
+        /// Rise of 1 over 0 in widths of a cell; for normals.
+        height: f32 = 1.0 / 12.0,
+        /// Metallic factor at 0 and at 1.
+        metallic: [f32; 2] = [0.0, 1.0],
+        /// Roughness factor at 0 and at 1.
+        roughness: [f32; 2] = [0.0, 1.0],
+        /// Share of ambient light that arrives at 0 and at 1.
+        occlusion: [f32; 2] = [0.0, 1.0],
     }
 }
 

@@ -2,7 +2,7 @@ use crate::{
     camera::Camera,
     error::SceneError,
     material::{Lighting, Material},
-    mesh::{Mesh, Part},
+    mesh::Mesh,
 };
 use glam::{Mat4, Vec3};
 use peelnet_files::printable;
@@ -50,20 +50,14 @@ impl Object {
         let mesh = Mesh {
             positions: triangles.iter().flatten().copied().collect(),
             normals: triangles.iter().flat_map(|t| [normal(t); 3]).collect(),
-            colors: Vec::new(),
-            uvs: Vec::new(),
             triangles: (0..triangles.len() as u32)
                 .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
                 .collect(),
-            parts: vec![Part {
-                name: name.to_owned(),
-                triangles: 0..triangles.len(),
-                material: material.clone(),
-            }],
+            ..Mesh::default()
         };
         Self {
             name: name.to_owned(),
-            mesh: Arc::new(mesh),
+            mesh: Arc::new(mesh.into_part(name, material.clone())),
             world_from_object: Mat4::IDENTITY,
             layer: None,
             materials: vec![material],

@@ -10,6 +10,7 @@ use crate::{
     budget::MAX_COORDINATE,
     material::Material,
     mesh::{Mesh, smooth_normals},
+    parameters::parameters,
 };
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
@@ -18,7 +19,7 @@ use std::f32::consts::TAU;
 /// Most triangles of a shape.
 const MAX_TRIANGLES: usize = 20_000_000;
 
-/// Declares the shapes with their parameters and defaults: a struct for each, which builds a [`Surface`], and [`Shape`], which is any of them.
+/// Declares the shapes with their parameters and defaults: a struct for each, which builds a [`Mesh`], and [`Shape`], which is any of them.
 macro_rules! shapes {
     ($($(#[$doc:meta])* $kind:ident $name:literal { $($field:ident: $type:ty = $default:expr),* $(,)? })*) => {
         /// A generated shape: `mesh = { shape = "torus", radius = 1.0 }`. Lengths are scene units, all shapes are centred on the
@@ -29,22 +30,16 @@ macro_rules! shapes {
             $(#[serde(rename = $name)] $kind($kind),)*
         }
 
-        $($(#[$doc])*
-        #[derive(Clone, Debug, PartialEq, Deserialize)]
-        #[serde(default, deny_unknown_fields)]
-        pub(crate) struct $kind {
-            $(pub $field: $type,)*
-        }
-
-        impl Default for $kind {
-            fn default() -> Self {
-                Self { $($field: $default,)* }
-            }
+        $(parameters! {
+            $(#[$doc])*
+            #[derive(Clone, Debug, PartialEq)]
+            pub(crate) struct $kind { $($field: $type = $default),* }
         })*
 
         impl Shape {
-            /// Its name in a scene file, and its surface.
-            fn surface(&self) -> (&'static str, Result<Surface, String>) {
+            /// Its name in a scene file, and its surface: normals are to be computed where there are none, UVs are u once around, v from the top down
+            /// along the profile.
+            fn surface(&self) -> (&'static str, Result<Mesh, String>) {
                 match self {
                     $(Self::$kind(shape) => ($name, shape.surface()),)*
                 }
@@ -82,21 +77,19 @@ shapes! {
     Terrain "terrain" { size: [f32; 2] = [2.0; 2], height: f32 = 0.5, seed: u64 = 0, triangles: usize = 2000 }
 }
 
-/// What a shape is made of.
-#[derive(Default)]
-struct Surface {
-    positions: Vec<Vec3>,
-    /// One for each position; empty where they are to be computed, smooth.
-    normals: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-    /// UVs of each triangle's vertices: u once around, v from the top down along the profile.
-    uvs: Vec<[Vec2; 3]>,
-}
-
-impl Surface {
+impl Mesh {
     /// Appends the two triangles of a rectangle whose vertices are `a`, `b` and, above them, `c`, `d`.
     fn push_rectangle(&mut self, [a, b, c, d]: [u32; 4]) {
         self.triangles.extend([[a, b, d], [a, d, c]]);
+    }
+
+    /// Appends the rectangles of a grid, whose vertices have these numbers.
+    fn push_grid(&mut self, [rows, columns]: [usize; 2], at: impl Fn(usize, usize) -> u32) {
+        for i in 0..rows {
+            for j in 0..columns {
+                self.push_rectangle([at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]);
+            }
+        }
     }
 
     /// Sets UVs that belong to vertices.
@@ -130,21 +123,15 @@ impl Shape {
         if surface.normals.is_empty() {
             surface.normals = smooth_normals(&surface.positions, &surface.triangles);
         }
-        Ok(Mesh {
-            uvs: if has_uvs { surface.uvs } else { Vec::new() },
-            ..Mesh::single(
-                name,
-                surface.positions,
-                surface.normals,
-                surface.triangles,
-                material,
-            )
-        })
+        if !has_uvs {
+            surface.uvs.clear();
+        }
+        Ok(surface.into_part(name, material.clone()))
     }
 }
 
 impl Torus {
-    fn surface(&self) -> Result<Surface, String> {
+    fn surface(&self) -> Result<Mesh, String> {
         let &Self { radius, tube, .. } = self;
         length("tube", tube)?;
         length("radius", radius)?;
@@ -154,7 +141,7 @@ impl Torus {
         let triangles = count(self.triangles)? as f32;
         let around = ((triangles / 2.0 * (tube / radius)).sqrt().round() as usize).max(3);
         let along = ((triangles / (2.0 * around as f32)).round() as usize).max(3);
-        let mut surface = Surface::default();
+        let mut surface = Mesh::default();
         for i in 0..along {
             let a = TAU * i as f32 / along as f32;
             let out = Vec3::new(a.cos(), 0.0, -a.sin());
@@ -166,11 +153,7 @@ impl Torus {
             }
         }
         let at = |i: usize, j: usize| ((i % along) * around + j % around) as u32;
-        for i in 0..along {
-            for j in 0..around {
-                surface.push_rectangle([at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]);
-            }
-        }
+        surface.push_grid([along, around], at);
         surface.unwrap(|i| {
             let (i, j) = (i / around, i % around);
             Vec2::new(i as f32 / along as f32, 1.0 - j as f32 / around as f32)
@@ -197,10 +180,10 @@ const RECTANGLE: [Vec2; 4] = [Vec2::Y, Vec2::ONE, Vec2::X, Vec2::ZERO];
 
 impl Cuboid {
     /// Four vertices a side.
-    fn surface(&self) -> Result<Surface, String> {
+    fn surface(&self) -> Result<Mesh, String> {
         self.size.iter().try_for_each(|s| length("size", *s))?;
         let half = Vec3::from_array(self.size) / 2.0;
-        let mut surface = Surface::default();
+        let mut surface = Mesh::default();
         for (axis, sign) in [0, 0, 1, 1, 2, 2].into_iter().zip([1.0, -1.0].repeat(3)) {
             let unit = |k: usize| Vec3::AXES[k % 3];
             let n = unit(axis) * sign;
@@ -218,14 +201,14 @@ impl Cuboid {
 }
 
 impl Quad {
-    fn surface(&self) -> Result<Surface, String> {
+    fn surface(&self) -> Result<Mesh, String> {
         self.size.iter().try_for_each(|s| length("size", *s))?;
         let [x, y] = self.size.map(|s| s / 2.0);
         let corners = [(-x, -y), (x, -y), (x, y), (-x, y)];
-        let mut surface = Surface {
+        let mut surface = Mesh {
             positions: corners.map(|(x, y)| Vec3::new(x, y, 0.0)).to_vec(),
             normals: vec![Vec3::Z; 4],
-            ..Surface::default()
+            ..Mesh::default()
         };
         surface.push_rectangle([0, 1, 3, 2]);
         surface.unwrap(|i| RECTANGLE[i]);

@@ -81,6 +81,15 @@ impl Maps {
         nearest: false,
     };
 
+    /// The keys in scene files of the five that are drawn, in the order of their bindings.
+    pub(crate) const KEYS: [&str; 5] = [
+        "color_map",
+        "normal_map",
+        "metallic_roughness_map",
+        "occlusion_map",
+        "emissive_map",
+    ];
+
     /// Whether there is any, or a displacement.
     pub(crate) fn has_any(&self) -> bool {
         self.displacement.is_some() || self.all().iter().any(Option::is_some)
@@ -316,16 +325,7 @@ mod tests {
         assert!(flat.texels.iter().all(|t| *t == [128, 128, 255, 255]));
     }
 
-    #[cfg(feature = "images")]
-    #[test]
-    fn files_that_are_no_images_are_errors() {
-        let e = Texture::decode("x", b"RIFF....WEBP").expect_err("no PNG");
-        assert!(e.contains("PNG"), "{e}");
-        let e = Texture::decode("x", b"\x89PNG\r\n\x1a\n\0\0").expect_err("cut off");
-        assert!(e.contains("save it again"), "{e}");
-    }
-
-    /// Decoders' errors show their inner state; ours are sentences. A damaged chunk, and sides beyond the limit.
+    /// Decoders' errors show their inner state; ours are sentences. Sides beyond the limit, a damaged chunk, another format, and a file cut off.
     #[cfg(feature = "images")]
     #[test]
     fn errors_of_images_are_sentences() {
@@ -335,7 +335,12 @@ mod tests {
         let wide = written.map(|()| bytes.into_inner()).expect("encodes");
         let mut damaged = wide.clone();
         damaged[20] ^= 0x11;
-        for (bytes, word) in [(&wide, "8192"), (&damaged, "damaged")] {
+        for (bytes, word) in [
+            (&*wide, "8192"),
+            (&*damaged, "damaged"),
+            (b"RIFF....WEBP", "PNG"),
+            (b"\x89PNG\r\n\x1a\n\0\0", "save it again"),
+        ] {
             let e = Texture::decode("x", bytes).expect_err("is not read");
             assert!(e.contains(word) && !e.contains(['{', '(', ':']), "{e}");
         }

@@ -1,34 +1,21 @@
 //! Variations of a scene, for training: the same geometry with other colours, opacities, cameras and scales.
 
-use crate::{material::Material, scene::Scene};
+use crate::scene::{Object, Scene};
 use glam::{Quat, Vec3};
 use peelnet_core::random::Random;
 
-/// How a copy's opacities are drawn. The hardest cases for networks are among them: extremes in one pixel, near-opaque and
-/// very faint layers.
-#[derive(Clone, Copy, Debug)]
-enum Alphas {
-    /// Each object its own, from the whole range.
-    Uniform,
-    /// One for all.
-    Same,
-    /// Each object nearly nothing or nearly opaque.
-    Extremes,
-    /// All near-opaque.
-    Dense,
-    /// All faint.
-    Faint,
-    /// Nearer objects one range, farther ones another.
-    Bands,
-}
-
-const SCHEMES: [Alphas; 6] = [
-    Alphas::Uniform,
-    Alphas::Same,
-    Alphas::Extremes,
-    Alphas::Dense,
-    Alphas::Faint,
-    Alphas::Bands,
+/// How a copy's opacities are drawn: from a number of the object, 0 … 1, one of the copy, and one of all objects as near. The hardest
+/// cases for networks are among them: extremes in one pixel, near-opaque and very faint layers.
+const SCHEMES: [fn(f32, f32, f32) -> f32; 6] = [
+    // From the whole range.
+    |own, _, _| 0.02 + 0.96 * own,
+    |_, same, _| same,
+    |own, _, _| if own < 0.5 { 0.02 } else { 0.98 },
+    // All near-opaque, all faint.
+    |own, _, _| 0.8 + 0.19 * own,
+    |own, _, _| 0.02 + 0.18 * own,
+    // Nearer objects one range, farther ones another.
+    |own, _, band| (band + 0.1 * (own - 0.5)).clamp(0.02, 0.98),
 ];
 
 impl Scene {
@@ -44,8 +31,7 @@ impl Scene {
         vary_materials(&mut scene, &mut random);
         vary_cameras(&mut scene, &mut random);
         let exponent = random.between(-2.0, 2.0);
-        scene = scene.scaled(10f32.powf(exponent));
-        scene
+        scene.scaled(10f32.powf(exponent))
     }
 }
 
@@ -53,16 +39,13 @@ fn vary_materials(scene: &mut Scene, random: &mut Random) {
     let scheme = SCHEMES[random.below(SCHEMES.len())];
     let same = random.between(0.02, 0.98);
     let eye = scene.views[0].position;
-    let mut distances: Vec<f32> = scene
-        .objects
-        .iter()
-        .map(|o| (o.world_from_object.w_axis.truncate() - eye).length())
-        .collect();
-    let of: Vec<f32> = distances.clone();
-    distances.sort_by(f32::total_cmp);
-    let middle = distances.get(distances.len() / 2).copied().unwrap_or(0.0);
+    let distance = |o: &Object| (o.world_from_object.w_axis.truncate() - eye).length();
+    let distances: Vec<f32> = scene.objects.iter().map(distance).collect();
+    let mut sorted = distances.clone();
+    sorted.sort_by(f32::total_cmp);
+    let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     let bands = [random.between(0.02, 0.98), random.between(0.02, 0.98)];
-    for (object, distance) in scene.objects.iter_mut().zip(of) {
+    for (object, distance) in scene.objects.iter_mut().zip(distances) {
         for material in &mut object.materials {
             // Drawn even for opaque surfaces, so that one more of them changes nothing else.
             let (color, u) = (random.color(), random.unit());
@@ -70,27 +53,8 @@ fn vary_materials(scene: &mut Scene, random: &mut Random) {
             if material.is_opaque() {
                 continue;
             }
-            let alpha = match scheme {
-                Alphas::Uniform => 0.02 + 0.96 * u,
-                Alphas::Same => same,
-                Alphas::Extremes => {
-                    if u < 0.5 {
-                        0.02
-                    } else {
-                        0.98
-                    }
-                }
-                Alphas::Dense => 0.8 + 0.19 * u,
-                Alphas::Faint => 0.02 + 0.18 * u,
-                Alphas::Bands => {
-                    (bands[usize::from(distance > middle)] + 0.1 * (u - 0.5)).clamp(0.02, 0.98)
-                }
-            };
-            *material = Material {
-                alpha,
-                blend: true,
-                ..material.clone()
-            };
+            material.alpha = scheme(u, same, bands[usize::from(distance > middle)]);
+            material.blend = true;
         }
     }
 }
@@ -106,11 +70,8 @@ fn vary_cameras(scene: &mut Scene, random: &mut Random) {
         let side = offset.cross(turned.up).normalize_or(Vec3::X);
         let tilted = Quat::from_axis_angle(side, pitch.to_radians()) * offset;
         // A pitch that would look along `up` is left out.
-        let steep = tilted
-            .normalize_or_zero()
-            .dot(turned.up.normalize_or_zero())
-            .abs()
-            > 0.99;
+        let [along, up] = [tilted, turned.up].map(Vec3::normalize_or_zero);
+        let steep = along.dot(up).abs() > 0.99;
         let offset = if steep { offset } else { tilted };
         *view = turned;
         view.position = turned.target + offset * distance;

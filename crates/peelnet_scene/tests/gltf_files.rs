@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
+mod common;
+
+use common::{assert_refused, image, load_files};
 use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Scene, Source, Wrap};
 use serde_json::{Value, json};
@@ -79,15 +82,6 @@ fn document() -> Value {
     })
 }
 
-/// Loads the files of a folder, of which the first is the scene.
-fn load_files(files: &[(&str, &[u8])]) -> Result<Scene, String> {
-    let dir = tempfile::tempdir().unwrap();
-    for (name, bytes) in files {
-        std::fs::write(dir.path().join(name), bytes).unwrap();
-    }
-    Scene::load(dir.path().join(files[0].0)).map_err(|e| e.to_string())
-}
-
 fn load_bytes(bytes: &[u8]) -> Result<Scene, String> {
     load_files(&[("thing.glb", bytes)])
 }
@@ -113,21 +107,14 @@ fn set(document: &mut Value, path: &str, value: Value) {
     *at = value;
 }
 
-/// The document with other values: ` ; ` between paths with what is there.
+/// The document with other values: paths with what is there, a line each, or ` ; ` between them.
 fn changed(changes: &str) -> Value {
     let mut document = document();
-    for change in changes.split(" ; ") {
+    for change in changes.replace(" ; ", "\n").trim().lines() {
         let (path, value) = change.split_once(" = ").unwrap();
         set(&mut document, path, serde_json::from_str(value).unwrap());
     }
     document
-}
-
-fn assert_refused(loaded: Result<Scene, String>, what: &str, words: &str) {
-    let e = loaded.map(|_| ()).expect_err(what);
-    for word in words.split(" & ") {
-        assert!(e.contains(word), "{what}: no '{word}' in: {e}");
-    }
 }
 
 #[test]
@@ -192,56 +179,42 @@ fn a_file_without_a_camera_is_framed() {
     }
 }
 
-/// An image of two texels.
-fn image(texel: [u8; 4]) -> Vec<u8> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let image = image::RgbaImage::from_pixel(2, 1, image::Rgba(texel));
-    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-    bytes.into_inner()
-}
+/// A material with all of it: an image in a buffer and one beside the file, a texture transform, a sampler, vertex colours; and three with one
+/// thing each. `LENGTH` is that of the image.
+const IMAGES: &str = r#"
+buffers/1 = {"byteLength": 32, "uri": "uvs.bin"}
+buffers/2 = {"byteLength": 48, "uri": "colors.bin"}
+buffers/3 = {"byteLength": LENGTH, "uri": "red.bin"}
+bufferViews/2 = {"buffer": 1, "byteLength": 32}
+bufferViews/3 = {"buffer": 2, "byteLength": 48}
+bufferViews/4 = {"buffer": 3, "byteLength": LENGTH}
+accessors/2 = {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"}
+accessors/3 = {"bufferView": 3, "componentType": 5126, "count": 4, "type": "VEC3"}
+meshes/0/primitives/0/attributes = {"POSITION": 0, "TEXCOORD_0": 2, "COLOR_0": 3}
+meshes/0/primitives/1/attributes = {"POSITION": 0, "TEXCOORD_0": 2, "COLOR_0": 3}
+meshes/0/primitives/2/attributes = {"POSITION": 0, "TEXCOORD_0": 2, "COLOR_0": 3}
+images = [{"bufferView": 4, "mimeType": "image/png"}, {"uri": "a%20map.png"}]
+samplers = [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]
+textures = [{"source": 0, "sampler": 0}, {"source": 1, "sampler": 0}]
+materials/0/pbrMetallicRoughness/baseColorTexture/index = 0
+materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform = {"offset": [0.25, 0.5], "scale": [2, 1], "rotation": 0}
+materials/0/normalTexture = {"index": 1, "scale": 0.5}
+materials/1/pbrMetallicRoughness = {"baseColorTexture": {"index": 0}}
+materials/2/pbrMetallicRoughness = {"baseColorTexture": {"index": 0}}
+materials/3/extensions = {"KHR_materials_transmission": {"transmissionFactor": 0.75}}
+"#;
 
-/// An image in a buffer, one beside the file and one in a data URI; a texture transform, a sampler, vertex colours, and transmission.
 #[test]
 fn images_vertex_colours_and_transmission() {
-    let mut buffer = square();
-    let mut views = document()["bufferViews"].as_array().unwrap().clone();
-    let mut append = |bytes: Vec<u8>| {
-        views.push(json!({"buffer": 0, "byteOffset": buffer.len(), "byteLength": bytes.len()}));
-        buffer.extend(bytes);
-        buffer.resize(buffer.len().next_multiple_of(4), 0);
-        views.len() - 1
-    };
-    let floats = |all: &[f32]| all.iter().flat_map(|x| x.to_le_bytes()).collect();
-    let uvs = append(floats(&[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]));
-    let colors = append(floats(&[1.0, 0.5, 0.25].repeat(4)));
-    let red = append(image([255, 0, 0, 128]));
-    let mut document = document();
-    document["bufferViews"] = views.clone().into();
-    document["buffers"][0]["byteLength"] = buffer.len().into();
-    let accessors = document["accessors"].as_array_mut().unwrap();
-    accessors.push(json!({"bufferView": uvs, "componentType": 5126, "count": 4, "type": "VEC2"}));
-    accessors
-        .push(json!({"bufferView": colors, "componentType": 5126, "count": 4, "type": "VEC3"}));
-    for primitive in document["meshes"][0]["primitives"].as_array_mut().unwrap() {
-        primitive["attributes"]["TEXCOORD_0"] = 2.into();
-        primitive["attributes"]["COLOR_0"] = 3.into();
-    }
-    document["images"] =
-        json!([{"bufferView": red, "mimeType": "image/png"}, {"uri": "a%20map.png"}]);
-    document["samplers"] = json!([{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]);
-    document["textures"] = json!([{"source": 0, "sampler": 0}, {"source": 1, "sampler": 0}]);
-    let materials = document["materials"].as_array_mut().unwrap();
-    let transform = json!({"KHR_texture_transform": {"offset": [0.25, 0.5], "scale": [2.0, 1.0], "rotation": 0.0}});
-    materials[0]["pbrMetallicRoughness"]["baseColorTexture"] =
-        json!({"index": 0, "extensions": transform});
-    materials[0]["normalTexture"] = json!({"index": 1, "scale": 0.5});
-    materials[1]["pbrMetallicRoughness"] = json!({"baseColorTexture": {"index": 0}});
-    materials[2]["pbrMetallicRoughness"] = json!({"baseColorTexture": {"index": 0}});
-    materials[3]["extensions"] =
-        json!({"KHR_materials_transmission": {"transmissionFactor": 0.75}});
-    let normals = image([128, 128, 255, 255]);
+    let floats = |all: &[f32]| -> Vec<u8> { all.iter().flat_map(|x| x.to_le_bytes()).collect() };
+    let red = image(2, [255, 0, 0, 128]);
+    let document = changed(&IMAGES.replace("LENGTH", &red.len().to_string()));
+    let normals = image(2, [128, 128, 255, 255]);
     let files = [
-        ("thing.glb", &*glb(&document, &buffer)),
+        ("thing.glb", &*glb(&document, &square())),
+        ("uvs.bin", &floats(&[0., 1., 1., 1., 1., 0., 0., 0.])),
+        ("colors.bin", &floats(&[1.0, 0.5, 0.25].repeat(4))),
+        ("red.bin", &red),
         ("a map.png", &normals),
     ];
     let scene = load_files(&files).unwrap();
@@ -278,8 +251,8 @@ fn specular_and_glossiness() {
         ));
         let files = [
             ("thing.glb", glb(&document, &square())),
-            ("diffuse.png", image([0, 0, 0, 128])),
-            ("specular.png", image([255, 255, 255, 102])),
+            ("diffuse.png", image(2, [0, 0, 0, 128])),
+            ("specular.png", image(2, [255, 255, 255, 102])),
         ];
         let scene = load_files(&files.each_ref().map(|(name, bytes)| (*name, &**bytes))).unwrap();
         let warnings = scene.warnings.join("\n");
@@ -352,12 +325,12 @@ images = [{}] => image 0 lacks
 cameras = [{"type": "orthographic", "perspective": {"yfov": 1, "znear": 1}}] => camera 0 lacks
 extensions = {"KHR_lights_punctual": {"lights": [{"type": "spot"}]}} => light 0 lacks spot
 extensions = {} => node 3 shows light 0, but there are 0 lights
-nodes/1/children = [2] => node 2 is a child of nodes & one parent
-nodes = [{"mesh": 0}, {"children": [2]}, {"children": [1]}] => node 1 is among its own descendants & circle
+nodes/1/children = [2] => node 2 is a child of node 1 and of node 0 & one parent
+nodes = [{"children": [1]}, {"children": [2]}, {"children": [1]}] => node 1 is a child of node 0 and of node 2 & one parent
 nodes/1/children = [1] => node 1 is & one parent
-scenes/0/nodes = [0, 1] => node 1 is a child of scene 0 and node 0
-scenes/0/nodes = [0, 0] => node 0 is a child of scene 0 twice
-nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 1 is a child of nodes 0 and 0 & one parent
+scenes/0/nodes = [0, 1] => node 1 is a child of node 0 and of scene 0
+scenes/0/nodes = [0, 0] => node 0 is a child of scene 0 and of scene 0
+nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 1 is a child of node 0 and of node 0 & one parent
 "#;
 
 /// Every bad file gives one error with its place and a fix.
@@ -471,19 +444,14 @@ fn common_files_that_are_not_strict() {
 /// Accessors without a buffer view are zeros, of which a sparse one replaces some.
 #[test]
 fn accessors_without_data_are_zeros() {
-    let mut d = document();
-    let accessors = d["accessors"].as_array_mut().unwrap();
-    accessors.push(json!({"componentType": 5126, "count": 4, "type": "VEC4"}));
-    accessors.push(json!({
-        "componentType": 5126, "count": 4, "type": "VEC3",
-        "sparse": {"count": 2, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 3}},
-    }));
-    d["bufferViews"].as_array_mut().unwrap().extend([
-        json!({"buffer": 0, "byteOffset": 50, "byteLength": 4}),
-        json!({"buffer": 0, "byteOffset": 12, "byteLength": 24}),
-    ]);
-    d["meshes"][0]["primitives"] =
-        json!([{"attributes": {"POSITION": 3, "COLOR_0": 2}, "indices": 1, "material": 0}]);
+    let d = changed(
+        r#"accessors/2 = {"componentType": 5126, "count": 4, "type": "VEC4"}
+accessors/3 = {"componentType": 5126, "count": 4, "type": "VEC3"}
+accessors/3/sparse = {"count": 2, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 3}}
+bufferViews/2 = {"buffer": 0, "byteOffset": 50, "byteLength": 4}
+bufferViews/3 = {"buffer": 0, "byteOffset": 12, "byteLength": 24}
+meshes/0/primitives = [{"attributes": {"POSITION": 3, "COLOR_0": 2}, "indices": 1, "material": 0}]"#,
+    );
     let scene = load(&d).unwrap();
     let mesh = &scene.objects[0].mesh;
     // Indices 1 and 2 become the square's second and third vertices.

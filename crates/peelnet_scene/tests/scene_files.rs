@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
+mod common;
+
+use common::{assert_refused, image, load_at, load_files};
 use glam::{Vec3, Vec4};
 use peelnet_scene::{Lighting, Material, Scene, SceneError};
 use std::{
@@ -16,30 +19,10 @@ const CAMERA: &str = "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear =
 /// A square of four units in the plane z = 0.
 const SQUARE: &str = "mtllib a.mtl\nv -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
 
-/// An image of one texel.
-fn image(texel: [u8; 4]) -> Vec<u8> {
-    let mut bytes = io::Cursor::new(Vec::new());
-    let image = image::RgbaImage::from_pixel(1, 1, image::Rgba(texel));
-    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-    bytes.into_inner()
-}
-
-/// A scene of files in memory, of which the first is loaded.
-fn load_at(files: &[(&str, &[u8])], time: Option<f32>) -> Result<Scene, SceneError> {
-    Scene::from_bytes_at(files[0].0, time, |path| {
-        let found = files.iter().find(|(name, _)| Path::new(name) == path);
-        let found = found.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound));
-        found.map(|(_, bytes)| bytes.to_vec())
-    })
-}
-
-fn load_files(files: &[(&str, &[u8])]) -> Result<Scene, String> {
-    load_at(files, None).map_err(|e| e.to_string())
-}
-
 /// A scene file beside which there are a mesh and three images, at a time. The diffuse one is black, the specular one white with a glossiness of 0.4.
 fn load_text_at(text: &str, time: Option<f32>) -> Result<Scene, String> {
-    let [white, diffuse, specular] = [[255; 4], [0, 0, 0, 128], [255, 255, 255, 102]].map(image);
+    let [white, diffuse, specular] =
+        [[255; 4], [0, 0, 0, 128], [255, 255, 255, 102]].map(|texel| image(1, texel));
     let files: [(&str, &[u8]); 6] = [
         ("s.toml", text.as_bytes()),
         ("a.obj", SQUARE.as_bytes()),
@@ -113,14 +96,6 @@ lighting = 'pbr' ; glossiness = 1 ; roughness = 0 => glossiness & one of them
 lighting = 'pbr' ; glossiness_map = 'white.png' ; specular_glossiness_map = 'white.png' => glossiness_map & one of them
 lighting = 'pbr' ; specular_color_map = 'none.png' => none.png & cannot read
 ";
-
-fn assert_refused(loaded: Result<Scene, String>, text: &str, words: &str) {
-    let e = loaded.map(|_| ()).expect_err(text);
-    for word in words.split(" & ") {
-        assert!(e.contains(word), "{text}\ngives: {e}\nwithout: {word}");
-    }
-    assert!(!e.contains(char::is_control), "{e:?}");
-}
 
 #[test]
 fn bad_scene_files() {
@@ -309,7 +284,7 @@ fn displacements_are_lengths_of_the_scene() {
 /// `disp` of an MTL file: base + gain × luminance, in the file's own lengths. Alone, in a scene file, and scattered.
 #[test]
 fn displacements_of_mtl_files() {
-    let white = image([255; 4]);
+    let white = image(1, [255; 4]);
     for (statement, height) in [
         ("disp white.png", 1.0),
         ("map_disp -mm 0.25 0.5 white.png", 0.75),
@@ -526,15 +501,15 @@ fn room() -> Vec<(&'static str, Vec<u8>)> {
         "buffers": [{"byteLength": 60, "uri": "a%20buffer.bin"}],
     });
     vec![
-        ("room/image.png", image([9; 4])),
-        ("room/meshes/../image two.png", image([9; 4])),
+        ("room/image.png", image(1, [9; 4])),
+        ("room/meshes/../image two.png", image(1, [9; 4])),
         ("room/meshes/a buffer.bin", buffer),
         (
             "room/meshes/a.mtl",
             "newmtl m\nmap_Kd a.png\nmap_Ke a.png\n".into(),
         ),
         ("room/meshes/a.obj", SQUARE.into()),
-        ("room/meshes/a.png", image([9; 4])),
+        ("room/meshes/a.png", image(1, [9; 4])),
         ("room/meshes/b.gltf", gltf.to_string().into()),
         ("room/scene.toml", format!("{CAMERA}{objects}").into()),
     ]

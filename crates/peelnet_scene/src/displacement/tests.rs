@@ -44,23 +44,11 @@ fn shape(text: &str) -> Mesh {
 
 /// A square of two units whose texture coordinates are from a to b.
 fn square(a: f32, b: f32) -> Mesh {
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0f32]];
-    let uv = |[x, y]: [f32; 2]| Vec2::new(a + (b - a) * (x + 1.0) / 2.0, 0.5 - 0.25 * y);
-    let triangles = [[0, 1, 2], [0, 2, 3]];
-    Mesh {
-        positions: corners.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec(),
-        normals: vec![Vec3::Z; 4],
-        uvs: triangles
-            .map(|t: [usize; 3]| t.map(|i| uv(corners[i])))
-            .to_vec(),
-        triangles: triangles.map(|t| t.map(|i| i as u32)).to_vec(),
-        parts: vec![Part {
-            name: "square".into(),
-            triangles: 0..2,
-            material: Material::unlit([1.0; 3], 0.5),
-        }],
-        colors: Vec::new(),
+    let mut mesh = shape("shape = 'quad'");
+    for uv in mesh.uvs.iter_mut().flatten() {
+        *uv = Vec2::new(a + (b - a) * uv.x, 0.25 + 0.5 * uv.y);
     }
+    mesh
 }
 
 /// Whether each edge has exactly one triangle on either side, by position.

@@ -6,6 +6,7 @@ use crate::{
     material::{Lighting, Material},
     scatter::{fixed_axes, from_fixed_axes},
     scene::{Light, Object, Scene, Source},
+    texture::Maps,
 };
 use glam::{Mat4, Quat, Vec3};
 use peelnet_files::printable;
@@ -240,15 +241,8 @@ fn write_material(table: &mut Table, now: &Material, before: &Material) {
             table.insert(key.into(), value);
         }
     }
-    let maps = [
-        "color_map",
-        "normal_map",
-        "metallic_roughness_map",
-        "occlusion_map",
-        "emissive_map",
-    ];
     if now.maps != before.maps {
-        for (key, map) in maps.into_iter().zip(now.maps.all()) {
+        for (key, map) in Maps::KEYS.into_iter().zip(now.maps.all()) {
             if map.is_none() {
                 table.remove(key);
             }

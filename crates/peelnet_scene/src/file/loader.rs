@@ -2,8 +2,8 @@
 
 use super::raw::{MapRef, MeshRef, Reference};
 use crate::{
-    error::{SceneError, shown},
-    files::{FileKind, Files},
+    error::{Fault, SceneError, shown},
+    files::Files,
     import::Format,
     material::{Lighting, Material},
     mesh::Mesh,
@@ -47,6 +47,11 @@ impl<'a> Loader<'a> {
     /// The error for a value of a field.
     pub fn value(&self, field: &str, message: impl Into<String>) -> SceneError {
         SceneError::value(self.path, field, message)
+    }
+
+    /// The error for a fault in a table.
+    pub fn fault(&self, table: &str, (key, message): Fault) -> SceneError {
+        self.value(&format!("{table}.{key}"), message)
     }
 
     /// The path of a file that the scene file names.
@@ -126,11 +131,7 @@ impl<'a> Loader<'a> {
             }
             Reference::File(name) => {
                 let file = self.beside(name);
-                let bytes = self.files.read(&file, FileKind::Image)?;
-                let name = file.display().to_string();
-                let texture = Texture::decode_within(&name, &bytes, &mut self.files.budget);
-                self.files.record(&file, &bytes);
-                texture.map_err(|message| SceneError::file(&file, None, message))?
+                self.files.texture(&file)?
             }
         };
         let texture = Arc::new(texture);

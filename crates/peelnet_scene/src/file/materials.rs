@@ -5,10 +5,9 @@ use super::{
     raw::{AlphaMode, MapRef, RawMaterial},
 };
 use crate::{
-    displacement::{self, Displacement, MAX_LEVEL},
-    error::{Fault, SceneError, check_color, within},
+    displacement::Displacement,
+    error::{Fault, SceneError, check_color},
     material::{Lighting, Material},
-    mesh::Mesh,
     specular_glossiness::{DIELECTRIC, Values, convert},
     texture::{Maps, Texture},
 };
@@ -17,9 +16,6 @@ use std::sync::Arc;
 
 /// glTF's default.
 const ALPHA_CUTOFF: f32 = 0.5;
-
-/// Longest displacement, scene units, and farthest middle.
-const MOST_DISPLACED: f32 = 1e9;
 
 const ADD_MAP: &str = "belongs to a displacement_map: add that, or leave it out";
 const ADD_SCALE: &str = "needs displacement_scale, the length by which white rises over black";
@@ -30,115 +26,65 @@ const ONE_WORKFLOW: &str =
     "belongs to another workflow than metallic and roughness: give one of them";
 const ONE_MAP: &str = "and specular_glossiness_map mean the same: give one of them";
 
+/// Keys of the specular–glossiness workflow, whose `color` and `color_map` are diffuse, and those of the other.
+const SPECULAR: [&str; 5] = [
+    "specular_color",
+    "glossiness",
+    "specular_color_map",
+    "glossiness_map",
+    "specular_glossiness_map",
+];
+const METALLIC: [&str; 3] = ["metallic", "roughness", "metallic_roughness_map"];
+
+/// Keys that need a displacement map.
+const DISPLACED: [&str; 3] = [
+    "displacement_scale",
+    "displacement_middle",
+    "displacement_level",
+];
+
 impl RawMaterial {
     pub fn has_maps(&self) -> bool {
-        let maps = [
-            &self.color_map,
-            &self.normal_map,
-            &self.metallic_roughness_map,
-            &self.specular_color_map,
-            &self.glossiness_map,
-            &self.specular_glossiness_map,
-            &self.occlusion_map,
-            &self.emissive_map,
-            &self.displacement_map,
-        ];
-        maps.into_iter().any(Option::is_some)
+        self.given().iter().any(|key| key.ends_with("_map"))
     }
 
-    /// The first key of the specular–glossiness workflow, whose `color` and `color_map` are diffuse.
-    fn specular_key(&self) -> Option<&'static str> {
-        let keys = [
-            (self.specular_color.is_some(), "specular_color"),
-            (self.glossiness.is_some(), "glossiness"),
-            (self.specular_color_map.is_some(), "specular_color_map"),
-            (self.glossiness_map.is_some(), "glossiness_map"),
-            (
-                self.specular_glossiness_map.is_some(),
-                "specular_glossiness_map",
-            ),
-        ];
-        keys.into_iter()
-            .find_map(|(given, key)| given.then_some(key))
+    /// The first of these keys that is given.
+    fn first(&self, keys: &[&str]) -> Option<&'static str> {
+        self.given().into_iter().find(|key| keys.contains(key))
     }
 
     /// Checks the values, and that keys which need or exclude each other do.
     fn check(&self, lighting: Lighting) -> Result<(), Fault> {
-        let level = self.displacement_level.map(|level| level as f32);
-        for (key, number, low, high) in [
-            ("alpha", self.alpha, 0.0, 1.0),
-            ("metallic", self.metallic, 0.0, 1.0),
-            ("roughness", self.roughness, 0.0, 1.0),
-            ("glossiness", self.glossiness, 0.0, 1.0),
-            ("occlusion_strength", self.occlusion_strength, 0.0, 1.0),
-            ("alpha_cutoff", self.alpha_cutoff, 0.0, 1.0),
-            ("normal_scale", self.normal_scale, -100.0, 100.0),
-            ("specular", self.specular, 0.0, f32::MAX),
-            // pow(0, 0) is not defined in shaders.
-            ("shininess", self.shininess, 1.0, f32::MAX),
-            (
-                "displacement_scale",
-                self.displacement_scale,
-                -MOST_DISPLACED,
-                MOST_DISPLACED,
-            ),
-            (
-                "displacement_middle",
-                self.displacement_middle,
-                -MOST_DISPLACED,
-                MOST_DISPLACED,
-            ),
-            ("displacement_level", level, 0.0, MAX_LEVEL as f32),
-        ] {
-            number.map_or(Ok(()), |x| within(key, x, low, high))?;
-        }
-        for (key, color, high) in [
-            ("transmission_color", self.transmission_color, 1.0),
-            ("specular_color", self.specular_color, 1.0),
-            ("emission", self.emission, f32::MAX),
-        ] {
-            let mut color = color.into_iter().flatten();
-            color.try_for_each(|x| within(key, x, 0.0, high))?;
-        }
+        self.check_bounds()?;
         self.color.map_or(Ok(()), check_color)?;
-        let is_displaced = self.displacement_map.is_some();
-        let has_scale = self.displacement_scale.is_some();
-        let has_middle = self.displacement_middle.is_some();
+        let given = self.given();
+        let has = |key: &str| given.contains(&key);
         let is_phong = lighting == Lighting::Phong;
         let is_masked = self.alpha_mode == Some(AlphaMode::Mask);
-        let metal = self.metallic_roughness_map.is_some();
-        let is_metallic = self.metallic.is_some() || self.roughness.is_some() || metal;
-        let is_separate = self.specular_color_map.is_some() || self.glossiness_map.is_some();
-        let is_packed = self.specular_glossiness_map.is_some();
-        let specular = self.specular_key();
-        let is_specular = specular.is_some();
-        let specular = specular.unwrap_or_default();
+        let is_metallic = self.first(&METALLIC).is_some();
+        let is_separate = has("specular_color_map") || has("glossiness_map");
+        let specular = self.first(&SPECULAR);
         let faults = [
-            (!is_displaced && has_scale, "displacement_scale", ADD_MAP),
-            (!is_displaced && has_middle, "displacement_middle", ADD_MAP),
+            (!has("displacement_map"), self.first(&DISPLACED), ADD_MAP),
             (
-                !is_displaced && level.is_some(),
-                "displacement_level",
-                ADD_MAP,
+                !has("displacement_scale"),
+                self.first(&["displacement_map"]),
+                ADD_SCALE,
             ),
-            (is_displaced && !has_scale, "displacement_map", ADD_SCALE),
+            (!is_masked, self.first(&["alpha_cutoff"]), ADD_MASK),
+            (has("alpha_mode"), self.first(&["blend"]), ONE_MODE),
+            (is_metallic, specular, ONE_WORKFLOW),
             (
-                self.alpha_cutoff.is_some() && !is_masked,
-                "alpha_cutoff",
-                ADD_MASK,
+                is_separate && has("specular_glossiness_map"),
+                specular,
+                ONE_MAP,
             ),
-            (
-                self.alpha_mode.is_some() && self.blend.is_some(),
-                "blend",
-                ONE_MODE,
-            ),
-            (is_specular && is_metallic, specular, ONE_WORKFLOW),
-            (is_separate && is_packed, specular, ONE_MAP),
-            (metal && is_phong, "metallic_roughness_map", ADD_PBR),
-            (is_specular && is_phong, specular, ADD_PBR),
+            (is_phong, self.first(&["metallic_roughness_map"]), ADD_PBR),
+            (is_phong, specular, ADD_PBR),
         ];
-        match faults.into_iter().find(|(is_wrong, ..)| *is_wrong) {
-            Some((_, key, message)) => Err((key, message.into())),
+        let mut faults = faults.into_iter().filter(|(is_wrong, ..)| *is_wrong);
+        match faults.find_map(|(_, key, message)| Some((key?, message.into()))) {
+            Some(fault) => Err(fault),
             None => Ok(()),
         }
     }
@@ -171,8 +117,7 @@ impl Loader<'_> {
     ) -> Result<Material, SceneError> {
         let table = format!("{object}.material");
         let lighting = raw.lighting.unwrap_or(base.lighting);
-        raw.check(lighting)
-            .map_err(|(key, message)| self.value(&format!("{table}.{key}"), message))?;
+        raw.check(lighting).map_err(|e| self.fault(&table, e))?;
         let mut map = |map: &Option<MapRef>, key: &str, base: &Option<Arc<Texture>>| match map {
             Some(map) if read => self.map(map, key, &table).map(Some),
             _ => Ok::<_, SceneError>(base.clone()),
@@ -225,7 +170,7 @@ impl Loader<'_> {
             double_sided: raw.double_sided.unwrap_or(base.double_sided),
             blend,
         };
-        match raw.specular_key() {
+        match raw.first(&SPECULAR) {
             // An unlit surface shows its colour alone.
             Some(key) if lighting != Lighting::Unlit => {
                 self.converted(material, base.roughness, raw, read, [&table, key])
@@ -287,17 +232,6 @@ impl Loader<'_> {
         });
         converted.map_err(|e| self.value(&format!("{table}.{key}"), e))?;
         Ok(material)
-    }
-
-    /// A mesh moved by its materials' displacements, which they have no more.
-    pub fn displaced(
-        &mut self,
-        mesh: Arc<Mesh>,
-        materials: &mut [Material],
-        field: &str,
-    ) -> Result<Arc<Mesh>, SceneError> {
-        displacement::displaced(mesh, materials, &mut self.files.budget)
-            .map_err(|e| self.value(field, e))
     }
 }
 

@@ -6,6 +6,7 @@ use super::{
     raw::{RawMaterial, RawObject},
 };
 use crate::{
+    displacement::displaced,
     error::{Fault, SceneError},
     material::Material,
     mesh::Mesh,
@@ -36,8 +37,7 @@ pub(super) fn place(
         copied.map_err(|e| loader.value(&at, e))?;
         mesh = Arc::new(mesh.colored_by_height(ends));
     }
-    let world_from_object = transform(raw, &mesh)
-        .map_err(|(key, message)| loader.value(&format!("{field}.{key}"), message))?;
+    let world_from_object = transform(raw, &mesh).map_err(|e| loader.fault(&field, e))?;
     let taken = loader.files.budget.take_parts(1, mesh.parts.len());
     taken.map_err(|e| loader.value(&at_mesh, e))?;
     let mut materials = Vec::with_capacity(mesh.parts.len());
@@ -52,8 +52,9 @@ pub(super) fn place(
     let now = &raw.material;
     displace_in_object_space(&mut materials, now, next, share, &world_from_object);
     let at_map = format!("{field}.material.displacement_map");
+    let mesh = displaced(mesh, &mut materials, &mut loader.files.budget);
     Ok(Object {
-        mesh: loader.displaced(mesh, &mut materials, &at_map)?,
+        mesh: mesh.map_err(|e| loader.value(&at_map, e))?,
         name: raw.name.clone().unwrap_or(field),
         world_from_object,
         layer: raw.layer,
@@ -97,9 +98,7 @@ pub(super) fn scatter(
     field: &str,
     eye: Vec3,
 ) -> Result<Vec<Object>, SceneError> {
-    scatter
-        .check()
-        .map_err(|(key, message)| loader.value(&format!("{field}.{key}"), message))?;
+    scatter.check().map_err(|e| loader.fault(field, e))?;
     let map = scatter.color_map.as_ref();
     let map = map.map(|map| loader.map(map, "color_map", field));
     let map = map.transpose()?;
@@ -109,7 +108,8 @@ pub(super) fn scatter(
         let mesh = loader.mesh(mesh, map.is_some(), &at_mesh)?;
         let own = mesh.parts.iter().map(|p| p.material.clone());
         let mut own: Vec<Material> = own.collect();
-        meshes.push(loader.displaced(mesh, &mut own, &at_mesh)?);
+        let mesh = displaced(mesh, &mut own, &mut loader.files.budget);
+        meshes.push(mesh.map_err(|e| loader.value(&at_mesh, e))?);
     }
     let parts = meshes.iter().map(|m| m.parts.len()).max().unwrap_or(0);
     let taken = loader.files.budget.take_parts(scatter.count, parts);

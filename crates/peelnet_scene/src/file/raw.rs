@@ -1,35 +1,48 @@
 //! The scene file as TOML: tables and keys. An unknown key is an error, because a misspelt one would otherwise be silently ignored.
 
 use crate::{
-    camera::Camera, material::Lighting, pattern::Pattern, scatter::Scatter, shapes::Shape,
+    camera::Camera,
+    error::{Fault, within},
+    material::Lighting,
+    parameters::parameters,
+    pattern::Pattern,
+    scatter::Scatter,
+    shapes::Shape,
     texture::Wrap,
 };
 use serde::{Deserialize, Deserializer, de::Error as _};
 use std::path::PathBuf;
 use toml::Value;
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawScene {
-    pub name: Option<String>,
-    #[serde(default)]
-    pub background: [f32; 3],
-    #[serde(default = "one")]
-    pub transparency_scale: f32,
-    #[serde(default)]
-    pub held_out: bool,
-    pub camera: Option<Camera>,
-    #[serde(default)]
-    pub view: Vec<Camera>,
-    pub orbit: Option<RawOrbit>,
-    #[serde(default)]
-    pub light: Vec<RawLight>,
-    #[serde(default)]
-    pub object: Vec<RawObject>,
-    #[serde(default, deserialize_with = "one_or_many")]
-    pub scatter: Vec<Scatter>,
-    #[serde(default)]
-    pub timeline: Vec<RawState>,
+/// Longest displacement, scene units, and farthest middle.
+const MOST_DISPLACED: f32 = 1e9;
+
+parameters! {
+    #[derive(Debug)]
+    pub(super) struct RawScene {
+        name: Option<String> = None,
+        background: [f32; 3] = [0.0; 3],
+        transparency_scale: f32 = 1.0,
+        held_out: bool = false,
+        camera: Option<Camera> = None,
+        view: Vec<Camera> = Vec::new(),
+        orbit: Option<RawOrbit> = None,
+        light: Vec<RawLight> = Vec::new(),
+        object: Vec<RawObject> = Vec::new(),
+        #[serde(deserialize_with = "one_or_many")]
+        scatter: Vec<Scatter> = Vec::new(),
+        timeline: Vec<RawState> = Vec::new(),
+    }
+}
+
+parameters! {
+    #[derive(Debug)]
+    pub(super) struct RawLight {
+        position: Option<[f32; 3]> = None,
+        direction: Option<[f32; 3]> = None,
+        color: [f32; 3] = [1.0; 3],
+        intensity: f32 = 1.0,
+    }
 }
 
 const fn one() -> f32 {
@@ -52,21 +65,6 @@ pub(super) struct RawOrbit {
     pub views: u32,
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawLight {
-    pub position: Option<[f32; 3]>,
-    pub direction: Option<[f32; 3]>,
-    #[serde(default = "white")]
-    pub color: [f32; 3],
-    #[serde(default = "one")]
-    pub intensity: f32,
-}
-
-const fn white() -> [f32; 3] {
-    [1.0; 3]
-}
-
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawObject {
@@ -86,9 +84,9 @@ pub(super) struct RawObject {
     pub material: RawMaterial,
 }
 
-/// Declares the keys of a material, all of which may be left out.
+/// Declares the keys of a material, all of which may be left out, with the bounds of numbers and of each number of a colour.
 macro_rules! material_keys {
-    ($($key:ident: $type:ty,)*) => {
+    ($($key:ident: $type:ty $(=> [$low:expr, $high:expr])? $(=> each [$least:expr, $most:expr])?,)*) => {
         /// The values of a material that a scene file sets; the mesh's own material has the others.
         #[derive(Clone, Debug, Default, Deserialize)]
         #[serde(deny_unknown_fields)]
@@ -101,22 +99,41 @@ macro_rules! material_keys {
             pub fn after(&self, earlier: &Self) -> Self {
                 Self { $($key: self.$key.clone().or_else(|| earlier.$key.clone()),)* }
             }
+
+            /// The keys that are given.
+            pub fn given(&self) -> Vec<&'static str> {
+                let all = [$((self.$key.is_some(), stringify!($key)),)*].into_iter();
+                all.filter_map(|(given, key)| given.then_some(key)).collect()
+            }
+
+            /// Checks that numbers lie within their bounds.
+            pub fn check_bounds(&self) -> Result<(), Fault> {
+                let check = |key, numbers: &[f32], low, high| {
+                    numbers.iter().try_for_each(|x| within(key, *x, low, high))
+                };
+                $(
+                    $(check(stringify!($key), self.$key.as_slice(), $low, $high)?;)?
+                    $(check(stringify!($key), self.$key.as_slice().as_flattened(), $least, $most)?;)?
+                )*
+                Ok(())
+            }
         }
     };
 }
 
 material_keys! {
     color: [f32; 3],
-    alpha: f32,
+    alpha: f32 => [0.0, 1.0],
     lighting: Lighting,
-    specular: f32,
-    shininess: f32,
-    metallic: f32,
-    roughness: f32,
-    specular_color: [f32; 3],
-    glossiness: f32,
-    emission: [f32; 3],
-    transmission_color: [f32; 3],
+    specular: f32 => [0.0, f32::MAX],
+    // pow(0, 0) is not defined in shaders.
+    shininess: f32 => [1.0, f32::MAX],
+    metallic: f32 => [0.0, 1.0],
+    roughness: f32 => [0.0, 1.0],
+    specular_color: [f32; 3] => each [0.0, 1.0],
+    glossiness: f32 => [0.0, 1.0],
+    emission: [f32; 3] => each [0.0, f32::MAX],
+    transmission_color: [f32; 3] => each [0.0, 1.0],
     color_map: MapRef,
     normal_map: MapRef,
     metallic_roughness_map: MapRef,
@@ -126,14 +143,14 @@ material_keys! {
     occlusion_map: MapRef,
     emissive_map: MapRef,
     displacement_map: MapRef,
-    displacement_scale: f32,
-    displacement_middle: f32,
+    displacement_scale: f32 => [-MOST_DISPLACED, MOST_DISPLACED],
+    displacement_middle: f32 => [-MOST_DISPLACED, MOST_DISPLACED],
     displacement_level: u32,
-    normal_scale: f32,
-    occlusion_strength: f32,
+    normal_scale: f32 => [-100.0, 100.0],
+    occlusion_strength: f32 => [0.0, 1.0],
     wrap: Wrap,
     alpha_mode: AlphaMode,
-    alpha_cutoff: f32,
+    alpha_cutoff: f32 => [0.0, 1.0],
     double_sided: bool,
     blend: bool,
 }

@@ -22,10 +22,9 @@ pub(super) fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, 
         (None, []) => return fail("camera", "is missing: add a [camera] or some [[view]]"),
     };
     for (view, i) in views.iter().zip(1..) {
-        view.check().map_err(|(key, message)| match raw.camera {
-            Some(_) => loader.value(&format!("camera.{key}"), message),
-            None => loader.value(&format!("view {i}.{key}"), message),
-        })?;
+        let number = format!("view {i}");
+        let table = raw.camera.map_or(&*number, |_| "camera");
+        view.check().map_err(|e| loader.fault(table, e))?;
     }
     let Some(orbit) = &raw.orbit else {
         return Ok(views);

@@ -3,7 +3,6 @@
 
 mod buffers;
 mod checks;
-mod graph;
 mod materials;
 mod nodes;
 mod primitives;
@@ -86,10 +85,8 @@ pub(super) fn load(
 ) -> Result<Imported, SceneError> {
     let fail = |message: String| SceneError::file(path, None, message);
     let bytes = files.read(path, FileKind::Mesh)?;
-    files.record(path, &bytes);
     let (document, blob) = parse(&bytes).map_err(&fail)?;
     drop(bytes);
-    graph::check_nodes(&document).map_err(&fail)?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let buffers = buffers::read_buffers(&document, folder, blob, files)
         .map_err(|e| fail(format!("its buffer {e}; keep the .bin files beside it")))?;

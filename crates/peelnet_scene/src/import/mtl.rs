@@ -82,7 +82,6 @@ impl<'a, 'f> Libraries<'a, 'f> {
             }
             bytes => bytes?,
         };
-        files.record(&file, &bytes);
         let text = check(&file, &statements(&file, &bytes, warnings)?, warnings)?;
         let (materials, mut numbers) = tobj::load_mtl_buf(&mut text.as_bytes())
             .map_err(|e| SceneError::file(&file, None, format!("{e}; repair it")))?;

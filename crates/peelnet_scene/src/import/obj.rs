@@ -1,15 +1,11 @@
 //! Wavefront OBJ files, read by `tobj` behind a check.
 
-use super::{
-    Imported,
-    mtl::Libraries,
-    polygons::Triangulator,
-    surface::{Surface, assemble},
-};
+use super::{Imported, mtl::Libraries, polygons::Triangulator, surface::assemble};
 use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
+    mesh::Mesh,
     warnings::Warnings,
 };
 use glam::{DVec3, Vec2, Vec3};
@@ -30,7 +26,6 @@ pub(super) fn load(
     files: &mut Files<'_>,
 ) -> Result<Imported, SceneError> {
     let bytes = files.read(path, FileKind::Mesh)?;
-    files.record(path, &bytes);
     let mut warnings = Warnings::default();
     let text = statements(path, &bytes, &mut warnings)?;
     drop(bytes);
@@ -221,7 +216,7 @@ fn numbers(word: &str, counts: [usize; 3], read: [usize; 3]) -> Option<[Option<u
 }
 
 /// The surface of a model. It has UVs only if all of its vertices have them; normals and colours likewise.
-fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Surface, String> {
+fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Mesh, String> {
     let vectors = |flat: &[f32]| -> Vec<Vec3> { flat.chunks(3).map(Vec3::from_slice).collect() };
     let positions = vectors(&mesh.positions);
     let n = positions.len();
@@ -249,7 +244,7 @@ fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Surface
     let colors = vectors(&mesh.vertex_color).into_iter();
     let colors = colors.map(|c| c.clamp(Vec3::ZERO, Vec3::ONE).extend(1.0).to_array());
     let normals = Some(vectors(&mesh.normals)).filter(|all| all.len() == n);
-    Ok(Surface {
+    Ok(Mesh {
         uvs: triangles
             .iter()
             .filter(|_| has_uvs)
@@ -259,5 +254,6 @@ fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Surface
         colors: colors.collect(),
         positions,
         triangles,
+        ..Mesh::default()
     })
 }

@@ -6,11 +6,12 @@
 use super::{
     Imported,
     ply_elements::{Face, INDICES, RED, Skipped, U, Vertex},
-    polygons::Triangulator,
-    surface::{self, Fault, Surface, fault_of},
+    polygons::{Triangulator, strip},
+    surface::{self, Fault, fault_of},
 };
 use crate::{
-    budget::Budget, error::SceneError, files::Files, material::Lighting, warnings::Warnings,
+    budget::Budget, error::SceneError, files::Files, material::Lighting, mesh::Mesh,
+    warnings::Warnings,
 };
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_files::{counted, printable};
@@ -40,7 +41,7 @@ pub(super) fn load(
 }
 
 /// The triangles of a file.
-fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
     let head = head_length(bytes)?;
     let is_text = String::from_utf8_lossy(&bytes[..head]).contains("format ascii");
     let bytes = if is_text {
@@ -72,7 +73,7 @@ fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Su
         warnings.add(message);
     }
     let mut reader = Faces {
-        surface: Surface::default(),
+        surface: Mesh::default(),
         budget,
         triangulator: Triangulator::new(),
         vertex_uvs: Vec::new(),
@@ -207,7 +208,7 @@ fn least_bytes(property: &PropertyType, encoding: Encoding) -> u64 {
 
 /// Makes a surface of elements.
 struct Faces<'a> {
-    surface: Surface,
+    surface: Mesh,
     budget: &'a mut Budget,
     triangulator: Triangulator,
     /// One for each vertex, or none.
@@ -301,7 +302,7 @@ impl Faces<'_> {
         let more = (indices.len() as u64).saturating_sub(3);
         self.budget.take_mesh(more, 0)?;
         let corners = if is_strip {
-            strip(&indices)
+            strips(&indices)
         } else if indices.len() < 3 {
             self.short_faces += 1;
             Vec::new()
@@ -319,20 +320,13 @@ impl Faces<'_> {
 /// Stands in a strip where another one begins.
 const GAP: u32 = u32::MAX;
 
-/// The triangles of strips, as numbers of their vertices: every second one is wound the other way.
-fn strip(indices: &[u32]) -> Vec<[usize; 3]> {
+/// The triangles of strips, as numbers of their vertices.
+fn strips(indices: &[u32]) -> Vec<[usize; 3]> {
     let mut triangles = Vec::new();
     let mut first = 0;
-    for strip in indices.split(|&i| i == GAP) {
-        for k in 0..strip.len().saturating_sub(2) {
-            let i = first + k;
-            triangles.push(if k % 2 == 0 {
-                [i, i + 1, i + 2]
-            } else {
-                [i + 1, i, i + 2]
-            });
-        }
-        first += strip.len() + 1;
+    for vertices in indices.split(|&i| i == GAP) {
+        triangles.extend(strip(vertices.len()).map(|t| t.map(|k| first + k)));
+        first += vertices.len() + 1;
     }
     triangles
 }

@@ -69,6 +69,15 @@ impl Triangulator {
     }
 }
 
+/// The triangles of a strip of so many vertices, as numbers of these: every second one is wound the other way.
+pub(super) fn strip(vertices: usize) -> impl Iterator<Item = [usize; 3]> {
+    let triangle = |i: usize| match i % 2 {
+        0 => [i - 2, i - 1, i],
+        _ => [i - 1, i - 2, i],
+    };
+    (2..vertices).map(triangle)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

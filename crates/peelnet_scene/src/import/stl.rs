@@ -5,18 +5,19 @@
 
 use super::{
     Imported,
-    surface::{self, Fault, Surface, fault_of},
+    surface::{self, Fault, fault_of},
 };
 use crate::{
     budget::Budget,
     error::SceneError,
     files::Files,
     material::Lighting,
-    mesh::{area_of, key_of},
+    mesh::{Mesh, area_of, key_of},
     warnings::Warnings,
 };
 use glam::Vec3;
 use peelnet_files::{counted, printable};
+use rayon::prelude::*;
 use std::{collections::HashMap, path::Path};
 
 #[cfg(test)]
@@ -41,7 +42,7 @@ const COUNT: usize = 4;
 const TRIANGLE: usize = 50;
 
 /// The triangles of a file.
-fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
     let number = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
     let count = number(HEADER).map(|count| u64::from(u32::from_le_bytes(count)));
     let needed = count.map(|n| (HEADER + COUNT) as u64 + n * TRIANGLE as u64);
@@ -91,7 +92,7 @@ fn is_text(bytes: &[u8]) -> bool {
 }
 
 /// Reads a file of text, a statement a line. Normals are not used: many files have wrong ones.
-fn read_text(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+fn read_text(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
     // Names may be of any encoding; all other words are ASCII.
     let text = String::from_utf8_lossy(bytes).replace('\r', "\n");
     let mut soup = Soup::default();
@@ -160,14 +161,14 @@ impl Soup {
     }
 
     /// The surface, with normals.
-    fn into_surface(self, budget: &mut Budget, warnings: &mut Warnings) -> Result<Surface, Fault> {
+    fn into_surface(self, budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
         if self.triangles.is_empty() {
             return Err(Fault::new("holds no facets; is the file empty or cut off?"));
         }
-        let mut surface = Surface {
+        let mut surface = Mesh {
             positions: self.positions,
             triangles: self.triangles,
-            ..Surface::default()
+            ..Mesh::default()
         };
         let lost = surface.drop_degenerate() as u64;
         if lost > 0 {
@@ -189,25 +190,27 @@ const MOST_AROUND: usize = 64;
 
 /// The surface with a normal for every vertex: of the triangles around it that lean by less than 30 degrees against each other. A vertex on a
 /// sharp edge is split, as parts of machines have such edges; files of this format do not say where.
-fn creased(surface: &Surface) -> Surface {
+fn creased(surface: &Mesh) -> Mesh {
     let triangles = surface.triangles.iter();
     let areas: Vec<Vec3> = triangles.map(|t| area_of(&surface.positions, *t)).collect();
     let units: Vec<Vec3> = areas.iter().map(|a| a.normalize_or_zero()).collect();
-    let (starts, adjacent) = adjacent(surface);
+    // Triangles by their vertices.
+    let triangles = surface.triangles.iter().zip(0u32..);
+    let mut adjacent: Vec<(u32, u32)> = triangles.flat_map(|(t, i)| t.map(|v| (v, i))).collect();
+    adjacent.par_sort_unstable();
     let mut positions = Vec::with_capacity(surface.positions.len());
     let mut normals: Vec<Vec3> = Vec::with_capacity(surface.positions.len());
     let mut triangles = surface.triangles.clone();
-    for (v, range) in starts.windows(2).enumerate() {
-        let around = &adjacent[range[0] as usize..range[1] as usize];
+    for around in adjacent.chunk_by(|a, b| a.0 == b.0) {
         let first = positions.len();
         let is_dense = around.len() > MOST_AROUND;
-        let all: Vec3 = around.iter().map(|&t| areas[t as usize]).sum();
-        for &t in around {
+        let all: Vec3 = around.iter().map(|&(_, t)| areas[t as usize]).sum();
+        for &(v, t) in around {
             let unit = units[t as usize];
             let sum = if is_dense {
                 all
             } else {
-                let near = around.iter().map(|&o| o as usize);
+                let near = around.iter().map(|&(_, o)| o as usize);
                 let near = near.filter(|&o| unit.dot(units[o]) >= CREASE);
                 near.map(|o| areas[o]).sum()
             };
@@ -215,41 +218,21 @@ fn creased(surface: &Surface) -> Surface {
             let known = normals[first..].iter().position(|n| *n == normal);
             let index = first + known.unwrap_or(normals.len() - first);
             if known.is_none() {
-                positions.push(surface.positions[v]);
+                positions.push(surface.positions[v as usize]);
                 normals.push(normal);
             }
             let old = surface.triangles[t as usize];
             for (corner, old) in triangles[t as usize].iter_mut().zip(old) {
-                if old as usize == v {
+                if old == v {
                     *corner = index as u32;
                 }
             }
         }
     }
-    Surface {
+    Mesh {
         positions,
         normals,
         triangles,
-        ..Surface::default()
+        ..Mesh::default()
     }
-}
-
-/// The triangles around each vertex, one after another, and where each vertex's begin.
-fn adjacent(surface: &Surface) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0u32; surface.positions.len() + 1];
-    for &v in surface.triangles.iter().flatten() {
-        starts[v as usize + 1] += 1;
-    }
-    for v in 1..starts.len() {
-        starts[v] += starts[v - 1];
-    }
-    let mut next = starts.clone();
-    let mut adjacent = vec![0u32; 3 * surface.triangles.len()];
-    for (triangle, t) in surface.triangles.iter().zip(0u32..) {
-        for &v in triangle {
-            adjacent[next[v as usize] as usize] = t;
-            next[v as usize] += 1;
-        }
-    }
-    (starts, adjacent)
 }

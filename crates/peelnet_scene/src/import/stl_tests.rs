@@ -1,10 +1,10 @@
 //! STL files as CAD programs write them, and as they should not.
 
 use super::*;
+use crate::import::{assert_refused, load_mesh};
 
 fn load(bytes: &[u8]) -> Result<Imported, String> {
-    let (loaded, _) = crate::import::load_from_memory(&[("a.stl", bytes)], Lighting::Phong);
-    loaded.map_err(|e| e.to_string())
+    load_mesh("a.stl", bytes)
 }
 
 /// The twelve triangles of a unit cube.
@@ -126,11 +126,7 @@ fn bad_files() {
         (good[..good.len() - 60].into(), "cut off"),
     ];
     for (text, words) in BAD.trim_matches('\n').lines().map(row).chain(others) {
-        let e = load(text.as_bytes()).expect_err(&text);
-        assert!(e.starts_with("a.stl"), "{e}");
-        for word in words.split(" & ") {
-            assert!(e.contains(word), "no '{word}' in: {e}");
-        }
+        assert_refused(load(text.as_bytes()), "a.stl", words);
     }
 }
 
@@ -139,23 +135,19 @@ fn bad_files() {
 fn bad_binary_files() {
     let good = binary(&cube(), b"");
     for length in 0..good.len() {
-        let e = load(&good[..length]).expect_err("is cut off");
-        assert!(e.starts_with("a.stl") && e.contains("cut off"), "{e}");
+        assert_refused(load(&good[..length]), "a.stl", "cut off");
     }
     let mut many = good.clone();
     many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    let e = load(&many).expect_err("too many");
-    assert!(e.contains("4,294,967,295 triangles"), "{e}");
+    assert_refused(load(&many), "a.stl", "4,294,967,295 triangles");
     let mut nan = good.clone();
     nan[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    let e = load(&nan).expect_err("not a number");
-    assert!(e.contains("triangle 1") && e.contains("not finite"), "{e}");
+    assert_refused(load(&nan), "a.stl", "triangle 1 & not finite");
     let mut more = good;
     more.extend([0; 7]);
     let warnings = load(&more).expect("loads").warnings;
     assert!(warnings[0].contains("7 bytes"), "{warnings:?}");
-    let e = load(&binary(&[], b"")).expect_err("nothing");
-    assert!(e.contains("no facets"), "{e}");
+    assert_refused(load(&binary(&[], b"")), "a.stl", "no facets");
 }
 
 #[test]

@@ -6,11 +6,11 @@ use crate::{
     error::{SceneError, shown},
     files::{FileKind, Files},
     material::{Lighting, Material},
-    mesh::{Mesh, NO_UVS, Part, area_of, key_of, normals_by_position},
+    mesh::{Mesh, area_of, key_of, normals_by_position},
     warnings::Warnings,
 };
 use glam::{Vec2, Vec3};
-use peelnet_files::{counted, printable};
+use peelnet_files::counted;
 use std::{collections::HashMap, path::Path};
 
 /// Positions beyond this overflow when they are squared.
@@ -21,10 +21,9 @@ pub(super) fn load(
     path: &Path,
     lighting: Lighting,
     files: &mut Files<'_>,
-    surface: impl FnOnce(&[u8], &mut Budget, &mut Warnings) -> Result<Surface, Fault>,
+    surface: impl FnOnce(&[u8], &mut Budget, &mut Warnings) -> Result<Mesh, Fault>,
 ) -> Result<Imported, SceneError> {
     let bytes = files.read(path, FileKind::Mesh)?;
-    files.record(path, &bytes);
     let mut warnings = Warnings::default();
     let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|mut surface| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -62,19 +61,6 @@ impl Fault {
     }
 }
 
-/// Triangles of a file, before they are checked. What a file does not have is empty.
-#[derive(Default)]
-pub(super) struct Surface {
-    pub positions: Vec<Vec3>,
-    /// One for each position.
-    pub normals: Vec<Vec3>,
-    /// One for each position: linear RGB and alpha.
-    pub colors: Vec<[f32; 4]>,
-    /// One for each vertex of each triangle.
-    pub uvs: Vec<[Vec2; 3]>,
-    pub triangles: Vec<[u32; 3]>,
-}
-
 /// What is wrong with a position.
 pub(super) fn fault_of(position: Vec3) -> Option<String> {
     if !position.is_finite() {
@@ -84,7 +70,7 @@ pub(super) fn fault_of(position: Vec3) -> Option<String> {
     is_far.then(|| format!("lies farther than {FARTHEST:e} from the origin"))
 }
 
-impl Surface {
+impl Mesh {
     /// An opaque light grey material, which is white under vertex colours.
     fn material(&mut self, lighting: Lighting, warnings: &mut Warnings) -> Material {
         let mut material = Material::default_with(lighting);
@@ -101,7 +87,7 @@ impl Surface {
     }
 
     /// Drops triangles without area: exactly zero, as a sliver is a triangle. Returns how many.
-    pub fn drop_degenerate(&mut self) -> usize {
+    pub(super) fn drop_degenerate(&mut self) -> usize {
         let all = self.triangles.len();
         let has_area = |t: &[u32; 3]| area_of(&self.positions, *t) != Vec3::ZERO;
         if self.triangles.iter().all(has_area) {
@@ -115,10 +101,10 @@ impl Surface {
     }
 }
 
-/// The mesh of all parts: without triangles that have no area, and with computed normals where a part has none or zeros. Parts split
+/// The mesh of all parts, of which each may lack anything but positions: without triangles that have no area, and with computed normals where a part has none or zeros. Parts split
 /// vertices, but not the surface: computed normals are those of all triangles around a position.
 pub(super) fn assemble(
-    mut parts: Vec<(String, Material, Surface)>,
+    mut parts: Vec<(String, Material, Mesh)>,
     file: &str,
     warnings: &mut Warnings,
 ) -> Result<Mesh, String> {
@@ -140,37 +126,22 @@ pub(super) fn assemble(
         }
     }
     parts.retain(|(_, _, surface)| !surface.triangles.is_empty());
-    let is_incomplete = |(_, _, s): &(_, _, Surface)| s.normals.len() < s.positions.len();
+    let is_incomplete = |(_, _, s): &(_, _, Mesh)| s.normals.len() < s.positions.len();
     let mut smooth = HashMap::new();
     if lost_normals > 0 || parts.iter().any(is_incomplete) {
         let surfaces = parts.iter().map(|(_, _, s)| (&*s.positions, &*s.triangles));
         smooth = normals_by_position(surfaces);
     }
-    let mut mesh = Mesh::empty();
-    for (name, material, surface) in parts {
-        let mut normals = surface.normals;
-        normals.resize(surface.positions.len(), Vec3::ZERO);
-        for (normal, position) in normals.iter_mut().zip(&surface.positions) {
+    let mut mesh = Mesh::default();
+    for (name, material, mut surface) in parts {
+        let n = surface.positions.len();
+        surface.normals.resize(n, Vec3::ZERO);
+        for (normal, position) in surface.normals.iter_mut().zip(&surface.positions) {
             if *normal == Vec3::ZERO {
                 *normal = smooth.get(&key_of(*position)).copied().unwrap_or(Vec3::Z);
             }
         }
-        let shown = format!("'{}'", printable(&name));
-        let lost_maps = mesh.append(Mesh {
-            positions: surface.positions,
-            normals,
-            colors: surface.colors,
-            uvs: surface.uvs,
-            parts: vec![Part {
-                name,
-                triangles: 0..surface.triangles.len(),
-                material,
-            }],
-            triangles: surface.triangles,
-        });
-        if lost_maps {
-            warnings.about(file, &shown, NO_UVS);
-        }
+        mesh.append(surface.into_part(name, material), file, warnings);
     }
     for (count, what, why) in [
         (lost_uvs, "UV", "that is not finite is taken as 0"),

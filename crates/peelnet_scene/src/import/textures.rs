@@ -3,7 +3,7 @@
 use crate::{
     displacement::Displacement,
     error::{SceneError, shown},
-    files::{FileKind, Files},
+    files::Files,
     material::{Lighting, Material},
     texture::{Made, Maps, Texture, Wrap},
     warnings::Warnings,
@@ -132,24 +132,16 @@ impl<'a, 'f> Textures<'a, 'f> {
         if let Some(known) = self.read.get(file) {
             return known.clone();
         }
-        let files = &mut *self.files;
-        let read = match files.read(file, FileKind::Image) {
-            Err(SceneError::Read { source, .. }) => Err(format!("cannot be read: {source}")),
-            Err(e) => Err(e.to_string()),
-            Ok(bytes) => {
-                let name = file.display().to_string();
-                let texture = Texture::decode_within(&name, &bytes, &mut files.budget);
-                texture.inspect(|_| files.record(file, &bytes))
-            }
-        };
-        let texture = match read {
-            Ok(texture) => Some(Arc::new(texture)),
-            Err(e) => {
-                let after = format!(" {e}; drawn without it");
-                self.warnings.about("", &shown(file), after);
-                None
-            }
-        };
+        let texture = self.files.texture(file).map(Arc::new).map_err(|e| {
+            let why = match e {
+                SceneError::Read { source, .. } => format!("cannot be read: {source}"),
+                SceneError::File { message, .. } => message,
+                e => e.to_string(),
+            };
+            let after = format!(" {why}; drawn without it");
+            self.warnings.about("", &shown(file), after);
+        });
+        let texture = texture.ok();
         self.read.insert(file.to_owned(), texture.clone());
         texture
     }
@@ -167,44 +159,38 @@ impl<'a, 'f> Textures<'a, 'f> {
             .filter_map(|(key, text)| Some((key, text.as_ref()?)));
         let others = m.unknown_param.iter().map(|(key, text)| (&**key, text));
         let statements: BTreeMap<&str, &String> = known.chain(others).collect();
-        let mut uses: BTreeMap<Use, Statement> = BTreeMap::new();
+        let mut found: BTreeMap<Use, (Statement, Arc<Texture>)> = BTreeMap::new();
         for (key, text) in statements {
             if let Some(kind) = drawn_as(key)
                 && let Some(statement) = self.statement(library, key, text)
+                && let Some(texture) = self.texture(&statement.file)
             {
-                uses.insert(kind, statement);
+                found.insert(kind, (statement, texture));
             }
         }
-        let mut found: BTreeMap<Use, Arc<Texture>> = BTreeMap::new();
-        for (kind, statement) in &uses {
-            if let Some(texture) = self.texture(&statement.file) {
-                found.insert(*kind, texture);
-            }
-        }
+        let map = |kind| found.get(&kind).map(|(_, texture)| texture);
         let mut maps = Maps::NONE;
-        if uses.values().any(|s| s.clamp) {
+        if found.values().any(|(statement, _)| statement.clamp) {
             maps.wrap = [Wrap::Clamp; 2];
         }
-        maps.color = self.color_map(found.get(&Use::Color), found.get(&Use::Alpha));
-        if found.contains_key(&Use::Alpha) {
+        maps.color = self.color_map(map(Use::Color), map(Use::Alpha));
+        if map(Use::Alpha).is_some() {
             material.blend = true;
         }
-        maps.normal = match (found.get(&Use::Normal), found.get(&Use::Bump)) {
+        maps.normal = match (map(Use::Normal), found.get(&Use::Bump)) {
             (Some(normals), _) => Some(Arc::clone(normals)),
-            (None, Some(bump)) if bump.is_grey() => {
+            (None, Some((statement, bump))) if bump.is_grey() => {
                 // White rises over black by an eightieth of the texture's width.
-                let slope = uses[&Use::Bump].strength * bump.size[0] as f32 / 80.0;
+                let slope = statement.strength * bump.size[0] as f32 / 80.0;
                 let what = format!("normals by {slope}");
-                let made = self
-                    .made
-                    .of(&what, [Some(bump), None], &mut self.files.budget, || {
-                        bump.normals_of_heights(slope)
-                    });
+                let (sources, budget) = ([Some(bump), None], &mut self.files.budget);
+                let normals = || bump.normals_of_heights(slope);
+                let made = self.made.of(&what, sources, budget, normals);
                 self.drawn(made, &format!("{what} of {}", bump.name))
             }
-            (None, bump) => bump.cloned(),
+            (None, _) => map(Use::Bump).cloned(),
         };
-        let (rough, metal) = (found.get(&Use::Roughness), found.get(&Use::Metallic));
+        let (rough, metal) = (map(Use::Roughness), map(Use::Metallic));
         if rough.is_some() || metal.is_some() {
             let budget = &mut self.files.budget;
             let what = "roughness and metallic";
@@ -224,8 +210,7 @@ impl<'a, 'f> Textures<'a, 'f> {
                 material.metallic = 1.0;
             }
         }
-        maps.displacement = found.get(&Use::Displacement).and_then(|map| {
-            let statement = &uses[&Use::Displacement];
+        maps.displacement = found.get(&Use::Displacement).and_then(|(statement, map)| {
             let [base, gain] = statement.range;
             // Heights are base + gain × luminance, in the file's own lengths.
             let scale = gain * statement.strength;
@@ -237,7 +222,7 @@ impl<'a, 'f> Textures<'a, 'f> {
                 level: None,
             })
         });
-        maps.emissive = found.get(&Use::Emission).cloned();
+        maps.emissive = map(Use::Emission).cloned();
         if maps.emissive.is_some() && m.emissive.is_none() {
             material.emission = [1.0; 3];
         }

@@ -1,6 +1,7 @@
 //! Surfaces of revolution about y.
 
-use super::{Bumpy, Capsule, Cup, Lathe, Sphere, Surface, count, length, unseam, waves::Waves};
+use super::{Bumpy, Capsule, Cup, Lathe, Sphere, count, length, unseam, waves::Waves};
+use crate::mesh::Mesh;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -14,9 +15,9 @@ fn grid(triangles: usize) -> Result<(usize, usize), String> {
 }
 
 /// A surface of revolution. The profile (radius, y) runs from pole to pole, outside to its right.
-fn revolve(profile: &[Vec2], segments: usize) -> Surface {
+fn revolve(profile: &[Vec2], segments: usize) -> Mesh {
     let rings = profile.len() - 2;
-    let mut surface = Surface::default();
+    let mut surface = Mesh::default();
     let positions = &mut surface.positions;
     positions.push(Vec3::new(0.0, profile[0].y, 0.0));
     for p in &profile[1..=rings] {
@@ -75,7 +76,7 @@ fn half_circle(rings: usize) -> impl Iterator<Item = Vec2> {
 }
 
 impl Sphere {
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         length("radius", self.radius)?;
         let (rings, segments) = grid(self.triangles)?;
         let profile: Vec<Vec2> = half_circle(rings).map(|p| self.radius * p).collect();
@@ -87,7 +88,7 @@ impl Sphere {
 }
 
 impl Capsule {
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         let &Self { radius, height, .. } = self;
         length("radius", radius)?;
         length("height", height)?;
@@ -115,7 +116,7 @@ impl Capsule {
 }
 
 impl Bumpy {
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         length("radius", self.radius)?;
         if !(0.0..0.5).contains(&self.amplitude) {
             return Err(format!("amplitude {} must lie in 0 … 0.5", self.amplitude));
@@ -131,7 +132,7 @@ impl Bumpy {
 }
 
 impl Cup {
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         let &Self {
             radius,
             height,
@@ -180,7 +181,7 @@ fn resample(line: &[Vec2], rings: usize) -> Vec<Vec2> {
 const MAX_POINTS: usize = 10_000;
 
 impl Lathe {
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         let (rings, segments) = grid(self.triangles)?;
         self.check()?;
         Ok(revolve(&self.profile(rings), segments))

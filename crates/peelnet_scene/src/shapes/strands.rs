@@ -1,6 +1,7 @@
 //! Hair.
 
-use super::{MAX_TRIANGLES, Strands, Surface, length};
+use super::{MAX_TRIANGLES, Strands, length};
+use crate::mesh::Mesh;
 use glam::{Vec2, Vec3};
 use peelnet_core::random::Random;
 use std::f32::consts::{PI, TAU};
@@ -24,10 +25,10 @@ impl Strands {
     }
 
     /// The ribbons, and UVs: u across a ribbon, v from its tip down to its root.
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         self.check()?;
         let rows = self.segments + 1;
-        let mut surface = Surface::default();
+        let mut surface = Mesh::default();
         let mut random = Random::new(self.seed, &[0x4a_1e]);
         for strand in 0..self.count {
             let (course, mut side) = self.course(&mut random);

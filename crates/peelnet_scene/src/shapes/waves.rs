@@ -1,6 +1,7 @@
 //! Waves, and land that is made of them.
 
-use super::{Surface, Terrain, count, length};
+use super::{Terrain, count, length};
+use crate::mesh::Mesh;
 use glam::{Vec2, Vec3};
 use peelnet_core::random::Random;
 use std::f32::consts::TAU;
@@ -32,7 +33,7 @@ const FALL: f32 = 0.45;
 
 impl Terrain {
     /// A grid of squares with ridged noise as its height (after Musgrave, in Ebert et al., "Texturing and Modeling", 1994), facing up.
-    pub(super) fn surface(&self) -> Result<Surface, String> {
+    pub(super) fn surface(&self) -> Result<Mesh, String> {
         let size = self.size;
         size.iter().try_for_each(|s| length("size", *s))?;
         length("height", self.height)?;
@@ -53,18 +54,11 @@ impl Terrain {
             let [x, z] = [uv.x - 0.5, uv.y - 0.5];
             Vec3::new(x * size[0], y * self.height, z * size[1])
         });
-        let mut surface = Surface {
+        let mut surface = Mesh {
             positions: positions.collect(),
-            ..Surface::default()
+            ..Mesh::default()
         };
-        let at = |x: usize, z: usize| (z * (nx + 1) + x) as u32;
-        for z in 0..nz {
-            for x in 0..nx {
-                let [a, b] = [at(x, z), at(x + 1, z)];
-                let [c, d] = [at(x, z + 1), at(x + 1, z + 1)];
-                surface.triangles.extend([[a, c, d], [a, d, b]]);
-            }
-        }
+        surface.push_grid([nz, nx], |z, x| (z * (nx + 1) + x) as u32);
         surface.unwrap(|i| uvs[i]);
         Ok(surface)
     }

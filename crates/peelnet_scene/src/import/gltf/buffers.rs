@@ -37,21 +37,16 @@ pub(super) fn read_uri(
     }
     let name = absolute.unwrap_or(uri);
     let decoded = urlencoding::decode(name);
-    let read = |name: &str| {
-        let path = folder.join(name);
-        files.read(&path, kind).map(|bytes| (path, bytes))
-    };
+    let mut read = |name: &str| files.read(&folder.join(name), kind);
     // Some exporters write names as they are, with percent signs that encode nothing.
     let found = match decoded {
         Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
         _ => read(name),
     };
-    let (path, bytes) = found.map_err(|e| match e {
+    found.map_err(|e| match e {
         SceneError::Read { source, .. } => fail(&format!("cannot be read: {source}")),
         e => e.to_string(),
-    })?;
-    files.record(&path, &bytes);
-    Ok(bytes)
+    })
 }
 
 /// The bytes of a data URI, behind its scheme.

@@ -5,6 +5,7 @@ use super::{
     nodes::{Reader, finite},
 };
 use crate::{
+    budget::Budget,
     files::FileKind,
     material::{Lighting, Material},
     specular_glossiness::{Values, convert},
@@ -83,22 +84,10 @@ fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Pl
 }
 
 impl Reader<'_, '_> {
-    /// A texture, read once; `None`, with a warning, where it cannot be drawn. An `opaque` one drops the opacity in its file.
-    fn image(&mut self, image: &gltf::Image<'_>, opaque: bool) -> Option<Arc<Texture>> {
-        let key = (image.index(), opaque);
-        if let Some(known) = self.images.get(&key) {
+    /// A texture, read once; `None`, with a warning, where it cannot be drawn.
+    fn image(&mut self, image: &gltf::Image<'_>) -> Option<Arc<Texture>> {
+        if let Some(known) = self.images.get(&image.index()) {
             return known.clone();
-        }
-        if opaque {
-            let whole = self.image(image, false);
-            let found = whole.map(|whole| {
-                if !whole.has_alpha() {
-                    return whole;
-                }
-                Arc::new(whole.opaque())
-            });
-            self.images.insert(key, found.clone());
-            return found;
         }
         let name = image
             .name()
@@ -127,7 +116,7 @@ impl Reader<'_, '_> {
                 None
             }
         };
-        self.images.insert(key, found.clone());
+        self.images.insert(image.index(), found.clone());
         found
     }
 
@@ -159,7 +148,14 @@ impl Reader<'_, '_> {
                     .add("a map on other texture coordinates than the first map's");
                 return None;
             }
-            self.image(&texture.source(), opaque)
+            let found = self.image(&texture.source())?;
+            if !(opaque && found.has_alpha()) {
+                return Some(found);
+            }
+            // It takes the place of the one with an opacity.
+            let (sources, room) = ([Some(&found), None], &mut Budget::default());
+            let made = self.made.of("colours", sources, room, || found.opaque());
+            made.ok()
         });
         let repeat = (WrappingMode::Repeat, WrappingMode::Repeat, None);
         let (wrap_s, wrap_t, filter) = samplers.first().copied().unwrap_or(repeat);

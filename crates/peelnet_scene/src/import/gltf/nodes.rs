@@ -19,10 +19,10 @@ pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
     pub buffers: Vec<Vec<u8>>,
-    /// Of materials of the specular–glossiness workflow.
+    /// Of the specular–glossiness workflow, and without opacity.
     pub made: Made,
-    /// By number, and whether their opacity is dropped; `None` for those that cannot be drawn.
-    pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
+    /// By number; `None` for those that cannot be drawn.
+    pub images: HashMap<usize, Option<Arc<Texture>>>,
     /// What the file uses and is not drawn.
     pub missing: Warnings,
     pub loaded: Imported,
@@ -67,7 +67,7 @@ impl<'a, 'f> Reader<'a, 'f> {
             made: Made::default(),
             images: HashMap::new(),
             missing: Warnings::default(),
-            loaded: Imported::mesh(Mesh::empty(), Vec::new()),
+            loaded: Imported::mesh(Mesh::default(), Vec::new()),
         }
     }
 
@@ -77,86 +77,94 @@ impl<'a, 'f> Reader<'a, 'f> {
 
     /// Adds a scene's nodes.
     pub fn scene(&mut self, scene: &gltf::Scene<'_>) -> Result<(), SceneError> {
-        self.count(scene)?;
-        // Children come before siblings, in the file's order. Not by recursion: trees may be deep.
-        let mut open: Vec<(gltf::Node<'_>, Mat4)> = Vec::new();
-        open.extend(scene.nodes().map(|node| (node, Mat4::IDENTITY)));
-        open.reverse();
-        while let Some((node, parent)) = open.pop() {
-            let world = self.node(&node, parent)?;
-            let before = open.len();
-            open.extend(node.children().map(|child| (child, world)));
-            open[before..].reverse();
-        }
-        Ok(())
-    }
-
-    /// Counts what a scene's nodes instance, before any of it is made.
-    fn count(&mut self, scene: &gltf::Scene<'_>) -> Result<(), SceneError> {
+        let nodes = self.nodes(scene)?;
+        // What they instance is counted before any of it is made.
         let mut meshes: HashMap<usize, [u64; 3]> = HashMap::new();
-        let mut all = [0; 3];
-        let mut open: Vec<gltf::Node<'_>> = scene.nodes().collect();
-        while let Some(node) = open.pop() {
-            if let Some(mesh) = node.mesh() {
-                let of = meshes.entry(mesh.index()).or_insert_with(|| size(&mesh));
-                all = sum(all, *of);
-            }
-            open.extend(node.children());
-        }
+        let shown = nodes.iter().filter_map(|(node, _)| node.mesh());
+        let all = shown.fold([0; 3], |all, mesh| {
+            let own = meshes.entry(mesh.index()).or_insert_with(|| size(&mesh));
+            sum(all, *own)
+        });
         let [primitives, triangles, vertices] = all;
         let budget = &mut self.files.budget;
         check_parts(primitives)
             .and_then(|()| budget.take_mesh(triangles, vertices))
-            .map_err(|e| self.fail(format!("its nodes show {primitives} primitives with {e}")))
+            .map_err(|e| self.fail(format!("its nodes show {primitives} primitives with {e}")))?;
+        nodes
+            .into_iter()
+            .try_for_each(|(node, world)| self.node(&node, world))
     }
 
-    /// Adds a node without its children; returns its place in the world.
-    fn node(&mut self, node: &gltf::Node<'_>, parent: Mat4) -> Result<Mat4, SceneError> {
-        let world = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
-        if !world.is_finite() {
-            return Err(self.fail(format!(
-                "node {}: its transform is not finite; repair it",
-                node.index()
-            )));
+    /// The nodes of a scene, and their places in the world: children before siblings, in the file's order. Not by recursion: trees may be deep. A
+    /// node with two parents is an error: it would be drawn twice, and so on at every level below it, or without end in a circle.
+    fn nodes<'d>(
+        &self,
+        scene: &gltf::Scene<'d>,
+    ) -> Result<Vec<(gltf::Node<'d>, Mat4)>, SceneError> {
+        let mut nodes = Vec::new();
+        let mut parents: HashMap<usize, Option<usize>> = HashMap::new();
+        let mut open: Vec<(gltf::Node<'d>, Option<usize>, Mat4)> = Vec::new();
+        open.extend(scene.nodes().map(|node| (node, None, Mat4::IDENTITY)));
+        open.reverse();
+        while let Some((node, parent, place)) = open.pop() {
+            let number = node.index();
+            if let Some(other) = parents.insert(number, parent) {
+                let root = || format!("scene {}", scene.index());
+                let name = |p: Option<usize>| p.map_or_else(root, |p| format!("node {p}"));
+                return Err(self.fail(format!(
+                    "node {number} is a child of {} and of {}: a node has one parent; give each place a node of its own, which may name the same mesh",
+                    name(other),
+                    name(parent)
+                )));
+            }
+            let world = place * Mat4::from_cols_array_2d(&node.transform().matrix());
+            if !world.is_finite() {
+                let message = "its transform is not finite; repair it";
+                return Err(self.fail(format!("node {number}: {message}")));
+            }
+            let before = open.len();
+            open.extend(node.children().map(|child| (child, Some(number), world)));
+            open[before..].reverse();
+            nodes.push((node, world));
         }
+        Ok(nodes)
+    }
+
+    fn node(&mut self, node: &gltf::Node<'_>, world: Mat4) -> Result<(), SceneError> {
         if let Some(mesh) = node.mesh() {
             for primitive in mesh.primitives() {
                 self.primitive(&mesh, &primitive, world)?;
             }
         }
         if let Some(light) = node.light() {
-            self.light(&light, world);
-        }
-        if let Some(camera) = node.camera() {
-            match camera.projection() {
-                Projection::Perspective(p) => self.loaded.cameras.push(FileCamera {
-                    file_from_camera: world,
-                    fov_y: p.yfov(),
-                    near: p.znear(),
-                    far: p.zfar(),
-                }),
-                Projection::Orthographic(_) => {
-                    self.missing.add("orthographic cameras");
+            let source = match light.kind() {
+                Kind::Point => Some(Source::Point(world.transform_point3(Vec3::ZERO))),
+                // It shines along −z.
+                Kind::Directional => {
+                    let toward = world.transform_vector3(Vec3::Z);
+                    Some(Source::Toward(toward.normalize_or(Vec3::Y)))
                 }
-            }
-        }
-        Ok(world)
-    }
-
-    fn light(&mut self, light: &gltf::khr_lights_punctual::Light<'_>, world: Mat4) {
-        match light.kind() {
-            Kind::Point => self.loaded.lights.push(Light {
-                source: Source::Point(world.transform_point3(Vec3::ZERO)),
+                Kind::Spot { .. } => {
+                    self.missing.add("spot lights");
+                    None
+                }
+            };
+            self.loaded.lights.extend(source.map(|source| Light {
+                source,
                 color: light.color(),
                 intensity: light.intensity(),
-            }),
-            // It shines along −z.
-            Kind::Directional => self.loaded.lights.push(Light {
-                source: Source::Toward(world.transform_vector3(Vec3::Z).normalize_or(Vec3::Y)),
-                color: light.color(),
-                intensity: light.intensity(),
-            }),
-            Kind::Spot { .. } => self.missing.add("spot lights"),
+            }));
         }
+        match node.camera().map(|camera| camera.projection()) {
+            Some(Projection::Perspective(p)) => self.loaded.cameras.push(FileCamera {
+                file_from_camera: world,
+                fov_y: p.yfov(),
+                near: p.znear(),
+                far: p.zfar(),
+            }),
+            Some(Projection::Orthographic(_)) => self.missing.add("orthographic cameras"),
+            None => {}
+        }
+        Ok(())
     }
 }

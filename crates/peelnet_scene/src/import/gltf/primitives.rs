@@ -6,14 +6,11 @@ use super::{
 };
 use crate::{
     error::SceneError,
-    mesh::{Mesh, NO_UVS, Part, smooth_normals},
+    import::{polygons::strip, surface::fault_of},
+    mesh::{Mesh, smooth_normals},
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{material::AlphaMode, mesh::Mode};
-use peelnet_files::printable;
-
-/// Positions beyond this overflow when they are squared.
-const FARTHEST: f32 = 1e15;
 
 impl Reader<'_, '_> {
     /// Adds a primitive of a mesh in its place in the world.
@@ -42,7 +39,11 @@ impl Reader<'_, '_> {
         let positions: Vec<Vec3> = positions
             .map(|p| world.transform_point3(p.into()))
             .collect();
-        check_positions(&positions).map_err(fail)?;
+        let numbered = positions.iter().enumerate();
+        let fault = |(i, p): (usize, &Vec3)| fault_of(*p).map(|what| (i, what));
+        if let Some((i, what)) = numbered.into_iter().find_map(fault) {
+            return Err(fail(format!(": position {i} {what}; repair the mesh")));
+        }
         let indices: Vec<u32> = match reader.read_indices() {
             Some(indices) => indices.into_u32().collect(),
             None => (0..positions.len() as u32).collect(),
@@ -90,23 +91,16 @@ impl Reader<'_, '_> {
             });
         let corners = triangles.iter().filter(|_| uvs.len() == n);
         let uvs = corners.map(|t| t.map(|i| uvs[i as usize])).collect();
-        let part = Part {
-            name: mesh.name().unwrap_or(&place).to_owned(),
-            triangles: 0..triangles.len(),
-            material,
-        };
-        let name = format!("'{}'", printable(&part.name));
-        let lost_maps = self.loaded.mesh.append(Mesh {
+        let part = Mesh {
             uvs,
             colors: colors.filter(|c| c.len() == n).unwrap_or_default(),
             positions,
             normals,
             triangles,
-            parts: vec![part],
-        });
-        if lost_maps {
-            self.missing.about("", &name, NO_UVS);
-        }
+            ..Mesh::default()
+        };
+        let part = part.into_part(mesh.name().unwrap_or(&place), material);
+        self.loaded.mesh.append(part, "", &mut self.missing);
         Ok(())
     }
 }
@@ -141,47 +135,14 @@ fn check_accessors(primitive: &gltf::Primitive<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// What is wrong with the first position that cannot be drawn.
-fn check_positions(positions: &[Vec3]) -> Result<(), String> {
-    let is_far = |p: &Vec3| p.is_finite() && p.abs().max_element() > FARTHEST;
-    let Some(i) = positions.iter().position(|p| !p.is_finite() || is_far(p)) else {
-        return Ok(());
-    };
-    let what = if is_far(&positions[i]) {
-        format!("lies farther than {FARTHEST:e} from the origin")
-    } else {
-        "is not finite".to_owned()
-    };
-    Err(format!(": position {i} {what}; repair the mesh"))
-}
-
 /// The triangles of a list, strip or fan.
 fn triangles(mode: Mode, indices: &[u32], is_mirrored: bool) -> Vec<[u32; 3]> {
-    let wound = |a: u32, b: u32, c: u32| {
-        if is_mirrored { [a, c, b] } else { [a, b, c] }
+    let n = indices.len();
+    let corners: Box<dyn Iterator<Item = [usize; 3]>> = match mode {
+        Mode::TriangleStrip => Box::new(strip(n)),
+        Mode::TriangleFan => Box::new((2..n).map(|i| [0, i - 1, i])),
+        _ => Box::new((2..n).step_by(3).map(|i| [i - 2, i - 1, i])),
     };
-    match mode {
-        // Every second triangle of a strip is wound the other way.
-        Mode::TriangleStrip => indices
-            .windows(3)
-            .enumerate()
-            .map(|(i, t)| {
-                if i % 2 == 0 {
-                    wound(t[0], t[1], t[2])
-                } else {
-                    wound(t[1], t[0], t[2])
-                }
-            })
-            .collect(),
-        Mode::TriangleFan => indices
-            .get(1..)
-            .unwrap_or_default()
-            .windows(2)
-            .map(|t| wound(indices[0], t[0], t[1]))
-            .collect(),
-        _ => indices
-            .chunks_exact(3)
-            .map(|t| wound(t[0], t[1], t[2]))
-            .collect(),
-    }
+    let turned = corners.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
+    turned.map(|t| t.map(|k| indices[k])).collect()
 }
