@@ -155,15 +155,16 @@ impl<'a, 'f> Reader<'a, 'f> {
                 intensity: light.intensity(),
             }));
         }
-        match node.camera().map(|camera| camera.projection()) {
-            Some(Projection::Perspective(p)) => self.loaded.cameras.push(FileCamera {
-                file_from_camera: world,
-                fov_y: p.yfov(),
-                near: p.znear(),
-                far: p.zfar(),
-            }),
-            Some(Projection::Orthographic(_)) => self.missing.add("orthographic cameras"),
-            None => {}
+        if let Some(camera) = node.camera() {
+            match camera.projection() {
+                Projection::Perspective(p) => self.loaded.cameras.push(FileCamera {
+                    file_from_camera: world,
+                    fov_y: p.yfov(),
+                    near: p.znear(),
+                    far: p.zfar(),
+                }),
+                Projection::Orthographic(_) => self.missing.add("orthographic cameras"),
+            }
         }
         Ok(())
     }
