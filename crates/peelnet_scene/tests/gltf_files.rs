@@ -330,7 +330,7 @@ nodes = [{"children": [1]}, {"children": [2]}, {"children": [1]}] => node 1 is a
 nodes/1/children = [1] => node 1 is & one parent
 scenes/0/nodes = [0, 1] => node 1 is a child of node 0 and of scene 0
 scenes/0/nodes = [0, 0] => node 0 is a child of scene 0 and of scene 0
-nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 1 is a child of node 0 and of node 0 & one parent
+nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 2 is a child of node 1 and of node 1 & one parent
 "#;
 
 /// Every bad file gives one error with its place and a fix.
