@@ -1,7 +1,7 @@
 //! False contours: borders at which a method's error jumps although the surfaces stay the same.
 //!
 //! A *pair* is two pixels that share a side and show the same transparent surfaces in the same order, at least one. A surface is one side of
-//! a part of an object with one material, see [`peelnet_render::methods::surfaces`]. A *contour pair* is a pair whose errors differ in some
+//! a part of an object with one material, see [`peelnet_render::methods::views`]. A *contour pair* is a pair whose errors differ in some
 //! channel by more than [`THRESHOLD`]; the errors are those of [`crate::metrics::error_image`], which keep their sign. The figure is the
 //! number of contour pairs over the number of pairs, of the whole frame.
 //!

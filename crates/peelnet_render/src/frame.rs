@@ -4,7 +4,14 @@
 //! composited by itself: statistics and sums are never averaged over samples, which would mix what belongs to different surfaces at
 //! their edges.
 
-use crate::{error::RenderError, image::Image, methods::FrameStats};
+use crate::{
+    error::RenderError,
+    image::Image,
+    methods::{
+        FrameStats,
+        plan::{Blend, Target},
+    },
+};
 use peelnet_files::counted;
 use peelnet_gpu::{
     Gpu,
@@ -116,23 +123,13 @@ impl Canvas {
     pub fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
         let none = wgpu::TextureUsages::empty();
         let view = gpu.texture("canvas", FORMAT, size, 1, none)?;
-        let add = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        };
-        let target = wgpu::ColorTargetState {
-            format: FORMAT,
-            blend: Some(wgpu::BlendState {
-                color: add,
-                alpha: add,
-            }),
-            write_mask: wgpu::ColorWrites::ALL,
-        };
         let mean = if samples > 1 {
             let (shader, entries) = ("methods::samples::average", [Bind::Texture(&view)]);
-            let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &[Some(target)])?;
-            Some((pass, gpu.texture("mean", FORMAT, size, 1, none)?))
+            let mean = Target::half("mean", 4, Blend::Add);
+            let target = [Some(mean.state())];
+            let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target)?;
+            let view = gpu.texture(mean.label, mean.format(), size, 1, none)?;
+            Some((pass, view))
         } else {
             None
         };

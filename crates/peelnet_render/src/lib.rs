@@ -40,7 +40,7 @@ pub use frame::{Frame, Profile, milliseconds, of_method};
 pub use image::{Image, ImageFormat};
 pub use methods::{
     FrameStats, METHODS, Method, MethodSpec, Role,
-    layers::{LayerFormula, LayerView},
+    views::{LayerFormula, LayerView},
 };
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
 pub use pixel::PixelFragment;

@@ -4,11 +4,10 @@ use crate::{
     error::RenderError,
     frame::Canvas,
     methods::{
-        self,
+        self, METHODS,
         compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
-        layers::{self, LayerView},
         spec::MethodSpec,
-        surfaces,
+        views::{LayerView, Shows},
     },
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
@@ -29,19 +28,12 @@ use std::collections::VecDeque;
 /// Frames whose counts may be on their way at one time.
 const FRAMES_IN_FLIGHT: usize = 3;
 
-/// What draws: a method by name, or a view that is no method of transparency.
-#[derive(Clone, Debug)]
-enum Kind {
-    Method(MethodSpec),
-    Layers(LayerView),
-    Surfaces,
-}
-
 /// A method made ready for one renderer. It keeps its targets and counts from frame to frame; another size, target format or depth buffer
 /// makes targets anew, and takes pipelines from the device's cache.
 #[derive(Debug)]
 pub struct Prepared {
-    kind: Kind,
+    spec: MethodSpec,
+    shows: Shows,
     options: MethodOptions,
     pub(crate) ready: Option<Ready>,
     /// The target of profiles.
@@ -188,7 +180,7 @@ impl Renderer {
     ) -> Result<Prepared, RenderError> {
         let shipped = || LearnedWeight::shipped(spec);
         options.learned = options.learned.or_else(shipped);
-        self.made(Kind::Method(spec.clone()), options)
+        self.prepare(spec.clone(), Shows::Colors, options)
     }
 
     /// Makes the view of layers ready, of a scene that [`Scene::layer_view`] made.
@@ -196,24 +188,34 @@ impl Renderer {
     /// # Errors
     /// A frame beyond the adapter's limits.
     pub fn layers(&self, view: LayerView, size: [u32; 2]) -> Result<Prepared, RenderError> {
-        self.made(Kind::Layers(view), MethodOptions::sized(size))
+        self.exact(Shows::Layers(view), MethodOptions::sized(size))
     }
 
-    /// Makes an image ready that tells, instead of a colour, which transparent surfaces a pixel shows: see [`crate::methods::surfaces`].
+    /// Makes an image ready that tells, instead of a colour, which transparent surfaces a pixel shows: see [`crate::methods::views`].
     ///
     /// # Errors
     /// A frame beyond the adapter's limits.
     pub fn surfaces(&self, size: [u32; 2], samples: u32) -> Result<Prepared, RenderError> {
-        let options = MethodOptions::sized(size).sampled(samples);
-        self.made(Kind::Surfaces, options)
+        self.exact(Shows::Surfaces, MethodOptions::sized(size).sampled(samples))
     }
 
-    fn made(&self, kind: Kind, options: MethodOptions) -> Result<Prepared, RenderError> {
+    /// What shows sorted fragments: drawn as by the exact method, the first of all.
+    fn exact(&self, shows: Shows, options: MethodOptions) -> Result<Prepared, RenderError> {
+        self.prepare(MethodSpec::representative(&METHODS[0]), shows, options)
+    }
+
+    fn prepare(
+        &self,
+        spec: MethodSpec,
+        shows: Shows,
+        options: MethodOptions,
+    ) -> Result<Prepared, RenderError> {
         if !matches!(options.samples, 1 | 4) {
             return Err(RenderError::Samples(options.samples));
         }
         let mut method = Prepared {
-            kind,
+            spec,
+            shows,
             options,
             ready: None,
             canvas: None,
@@ -261,18 +263,15 @@ impl Renderer {
     ) -> Result<Ready, RenderError> {
         let frame = self.scene.targets(&self.gpu, size, output, depth)?;
         let (gpu, scene) = (&self.gpu, &self.scene);
-        let compositor = match &method.kind {
-            Kind::Method(spec) => methods::build(&Build {
-                gpu,
-                scene,
-                frame: &frame,
-                spec,
-                learned: method.options.learned.as_ref(),
-                sums: method.options.sums,
-            })?,
-            Kind::Layers(view) => layers::build(gpu, scene, &frame, *view)?,
-            Kind::Surfaces => surfaces::build(gpu, scene, &frame)?,
-        };
+        let compositor = methods::build(&Build {
+            gpu,
+            scene,
+            frame: &frame,
+            spec: &method.spec,
+            learned: method.options.learned.as_ref(),
+            shows: method.shows,
+            sums: method.options.sums,
+        })?;
         Ok(Ready {
             generation: scene.generation(),
             callers_depth: depth.cloned(),

@@ -4,13 +4,13 @@ import package::helpers::screen::screen_corner;
 import package::helpers::stored::{Stored, restored};
 import package::scene::camera::Camera;
 
-@group(0) @binding(0) var<uniform> camera: Camera;
-@group(0) @binding(1) var<storage, read> heads: array<u32>;
-@group(0) @binding(2) var<storage, read_write> next: array<u32>;
+@group(0) @binding(0) var background: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> camera: Camera;
+@group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> depths: array<f32>;
 @group(0) @binding(4) var<storage, read> triangles: array<u32>;
 @group(0) @binding(5) var<storage, read> colors: array<Stored>;
-@group(0) @binding(6) var background: texture_2d<f32>;
+@group(0) @binding(6) var<storage, read_write> next: array<u32>;
 @group(0) @binding(7) var<storage, read_write> found: Found;
 
 // What is found of a frame's lists. The first word is the number of nodes used, which `build` counts.

@@ -2,7 +2,7 @@
 //!
 //! A frame's storage has the room that an earlier frame needed. Fragments beyond it are left out and counted, and the next frame has room.
 
-use super::prelude::*;
+use super::{prelude::*, views::Composite};
 use peelnet_core::methods::over;
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_raster::{
@@ -39,17 +39,6 @@ pub(super) const METHOD: Method = Method {
 /// Fragments that the first frame has room for, a pixel, where nothing is known yet.
 pub(super) const FIRST_GUESS: u64 = 4;
 
-/// The pass that composites the sorted runs of a tile.
-#[derive(Debug)]
-pub(super) struct Composite {
-    pub shader: &'static str,
-    /// The feature of `peel::fold` that stands for it.
-    pub fold: &'static str,
-    pub features: &'static [&'static str],
-    /// The text of its module `parameters`.
-    pub parameters: String,
-}
-
 #[derive(Debug)]
 struct ABuffer {
     sbuffer: SBuffer,
@@ -68,46 +57,25 @@ struct ABuffer {
     version: u64,
 }
 
-impl Composite {
-    /// Front to back.
-    pub const fn exact(tinted: bool) -> Self {
-        Self {
-            shader: "methods::abuffer::composite",
-            fold: "abuffer",
-            features: if tinted { &["tinted"] } else { &[] },
-            parameters: String::new(),
-        }
-    }
-}
-
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let (budget, composite) = (BUDGET.count(b.spec), Composite::exact(b.scene.tinted));
-    build_with(
-        b.gpu,
-        b.scene,
-        b.frame,
-        budget,
-        composite.features,
-        composite,
-    )
+    build_with(b, None)
 }
 
-/// Stores, sorts and composites every pixel's run; `features` are those of storing.
+/// Stores, sorts and composites every pixel's run; `rounding` is the feature of how colours are stored.
 pub(super) fn build_with(
-    gpu: &Gpu,
-    scene: &SceneBuffers,
-    frame: &FrameTargets,
-    budget: Option<u64>,
-    features: &[&str],
-    composite: Composite,
+    b: &Build<'_>,
+    rounding: Option<&'static str>,
 ) -> Result<Box<dyn Compositor>, RenderError> {
+    let composite = b.shows.composite(b.scene.tinted);
+    let features: Vec<_> = rounding.into_iter().chain(composite.stored).collect();
+    let budget = BUDGET.count(b.spec);
     Ok(Box::new(ABuffer {
-        sbuffer: SBuffer::new(gpu, scene, frame, budget, features)?,
+        sbuffer: SBuffer::new(b.gpu, b.scene, b.frame, budget, &features)?,
         composite,
         pass: None,
         fold: None,
         tiles: Vec::new(),
-        ends: gpu.storage("tile ends", 4)?,
+        ends: b.gpu.storage("tile ends", 4)?,
         is_counted: false,
         // A first frame may need several tiles.
         wants_offsets: true,
@@ -141,19 +109,19 @@ impl ABuffer {
                 Bind::Read(&storage.colors),
                 Bind::Texture(&frame.background),
             ];
-            let mut features = self.composite.features.to_vec();
+            let mut features = self.composite.features.clone();
             let parameters = self.composite.parameters.clone() + &long_runs::parameters();
             self.fold = None;
             if let Some(long) = self.sbuffer.long_runs() {
                 entries.push(Bind::Write(&long.order));
                 features.push("long");
-                let of_fold = [features.as_slice(), &[self.composite.fold]].concat();
+                let of_fold = [features.as_slice(), &[self.composite.name]].concat();
                 let most = self.sbuffer.most();
                 self.fold = Some(Fold::new(gpu, &of_fold, &parameters, &entries, most)?);
             }
             self.pass = Some(FullscreenPass::resolve(
                 gpu,
-                self.composite.shader,
+                &format!("methods::{}::composite", self.composite.name),
                 &features,
                 &[("parameters", &parameters)],
                 &entries,

@@ -83,19 +83,18 @@ pub(super) const MEDIUM: Method = Method {
     ..anchored("deep-anchored-medium", "the same with exact ends, 5-12-1")
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let recipe = b.learned_weight()?.recipe;
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let recipe = p.b.learned_weight()?.recipe;
     let ends = (recipe.output == Output::AnchoredShareSeparateEnds).then_some(ENDS);
     let feature = ends.map(|_| "separate_ends");
     let statistic = |label, blend| Target {
         full: recipe.sums == SumPrecision::Exact,
         ..Target::half(label, 4, blend)
     };
-    let mut p = Plan::new();
-    let sums = p.target(SUMS);
-    let moments = p.target(statistic("moments", Blend::Add));
-    let extent = p.target(statistic("extent", Blend::MaxAdd));
-    let ends = p.targets(ends);
+    let sums = p.target(SUMS)?;
+    let moments = p.target(statistic("moments", Blend::Add))?;
+    let extent = p.target(statistic("extent", Blend::MaxAdd))?;
+    let ends = p.targets(ends)?;
     p.geometry("methods::anchored::statistics")
         .features(feature)
         .writes([moments, extent]);
@@ -107,6 +106,5 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
     p.resolve("methods::anchored::resolve", [sums, moments])
         .features(feature)
         .reads(ends);
-    p.tint(b);
-    Ok(p)
+    p.tint()
 }

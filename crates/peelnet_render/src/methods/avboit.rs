@@ -42,14 +42,13 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let (cell, slices) = (CELL.count(b.spec).unwrap_or_default(), slices(b.spec));
-    let [columns, rows] = b.frame.size.map(|s| u64::from(s).div_ceil(cell));
-    let mut p = Plan::new();
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let (cell, slices) = (CELL.count(p.b.spec).unwrap_or_default(), slices(p.b.spec));
+    let [columns, rows] = p.b.frame.size.map(|s| u64::from(s).div_ceil(cell));
     p.parameters = format!("const CELL: u32 = {cell}u;\nconst SLICES: u32 = {slices}u;\n");
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
-    let voxels = p.storage_of_frame("voxels", columns * rows * slices * 4);
+    let sums = p.target(SUMS)?;
+    let transmittance = p.target(TRANSMITTANCE)?;
+    let voxels = p.storage("voxels", 0, columns * rows * slices * 4)?;
     p.geometry("methods::avboit::voxels")
         .writes([transmittance, voxels]);
     p.compute("methods::avboit::integrate", columns * rows)
@@ -58,5 +57,5 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
         .reads([voxels])
         .writes([sums]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(p)
+    Ok(())
 }

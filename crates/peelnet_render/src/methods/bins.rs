@@ -31,14 +31,14 @@ pub(super) fn bounds(spec: &MethodSpec, parameter: Parameter) -> Bounds {
 
 /// The pass that finds a pixel's bounds, where those are asked for: the target that holds the warped depths of its nearest fragment,
 /// negated, and of its farthest.
-pub(super) fn range_pass(p: &mut Plan, bounds: Bounds) -> Option<Handle> {
+pub(super) fn range_pass(p: &mut Plan<'_>, bounds: Bounds) -> Result<Option<Handle>, RenderError> {
     if bounds == Bounds::Frame {
-        return None;
+        return Ok(None);
     }
     // There is no alpha to add.
-    let range = p.target(Target::full("bounds", 2, Blend::MaxAdd));
+    let range = p.target(Target::full("bounds", 2, Blend::MaxAdd))?;
     p.geometry("methods::bins::bounds").writes([range]);
-    Some(range)
+    Ok(Some(range))
 }
 
 impl Pass {
@@ -93,23 +93,22 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let number = b.spec.number();
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let number = p.b.spec.number();
     let parameters =
         |first: usize| format!("const BINS: f32 = {number}.0;\nconst FIRST: u32 = {first}u;\n");
     let features = |targets: usize| {
         let two = (targets > 1).then_some("two");
         two.into_iter().chain((targets > 2).then_some("four"))
     };
-    let mut p = Plan::new();
     p.parameters = parameters(0);
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
+    let sums = p.target(SUMS)?;
+    let transmittance = p.target(TRANSMITTANCE)?;
     let four = Target::half("bins", 4, Blend::Add);
-    let fours = p.targets((0..number / 4).map(|_| four));
-    let range = range_pass(&mut p, bounds(b.spec, BOUNDS));
+    let fours = p.targets((0..number / 4).map(|_| four))?;
+    let range = range_pass(p, bounds(p.b.spec, BOUNDS))?;
     // One pass of portable WebGPU writes 32 bytes a pixel: four targets of 16 bits, two of 32.
-    let at_once = match b.spec.targets() {
+    let at_once = match p.b.spec.targets() {
         Some(Precision::Full) => 2,
         _ => 4,
     };
@@ -127,5 +126,5 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
         .reads_range(range)
         .writes([sums, transmittance]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(p)
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! What a method draws behind, and with.
 
-use super::spec::MethodSpec;
+use super::{spec::MethodSpec, views::Shows};
 use crate::{error::RenderError, target::LearnedWeight};
 use peelnet_gpu::{Gpu, record::Recorder, wgpu};
 use peelnet_raster::{FrameTargets, SamplePoint, SceneBuffers, fullscreen::FullscreenPass};
@@ -132,6 +132,7 @@ pub(crate) struct Build<'a> {
     pub frame: &'a FrameTargets,
     pub spec: &'a MethodSpec,
     pub learned: Option<&'a LearnedWeight>,
+    pub shows: Shows,
     /// Whether the image holds the blended sums, not the colour.
     pub sums: bool,
 }

@@ -65,17 +65,17 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let mut p = Plan::new();
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
-    let statistics = p.target(Target::half("statistics", 2, Blend::Add));
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let printed = is_printed(p.b.spec).then_some("printed");
+    let sums = p.target(SUMS)?;
+    let transmittance = p.target(TRANSMITTANCE)?;
+    let statistics = p.target(Target::half("statistics", 2, Blend::Add))?;
     p.geometry("methods::deep_thesis::statistics")
         .writes([statistics]);
     p.geometry("methods::deep_thesis::gather")
-        .features(is_printed(b.spec).then_some("printed"))
+        .features(printed)
         .reads([statistics])
         .writes([sums, transmittance]);
     p.resolve("methods::deep_thesis::resolve", [sums, transmittance]);
-    Ok(p)
+    Ok(())
 }

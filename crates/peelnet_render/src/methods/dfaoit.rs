@@ -4,6 +4,7 @@
 use super::{
     depth_peel::{COINCIDENT, Layers},
     peeling::{self, Peel as _},
+    plan::Resource,
     prelude::*,
 };
 use peelnet_core::methods::dfaoit;
@@ -56,22 +57,22 @@ struct Dfaoit {
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let front = Layers::new(b, &peeling::found(b.gpu)?)?;
-    let mut p = Plan::new();
+    let mut p = Plan::new(b);
     b.learned_weight()?.wgsl.clone_into(&mut p.network);
     // Sums over the fragments behind the front, over all fragments, and the number of those behind.
     let sums = p.targets([
         Target::half("behind", 4, Blend::Add),
         Target::half("all", 4, Blend::AddTransmit),
         Target::half("count", 1, Blend::Add),
-    ]);
-    let second_key = p.integers(&front.peel.keys[0]);
-    let composited = p.texture(&front.accumulated[0]);
+    ])?;
+    let second_key = p.resource(Resource::Integers(front.peel.keys[0].clone()));
+    let composited = p.resource(Resource::Texture(front.accumulated[0].clone()));
     p.geometry("methods::dfaoit::gather")
         .reads([second_key])
         .writes(sums.iter().copied());
     p.resolve("methods::dfaoit::resolve", [composited])
         .reads(sums);
-    let rest = p.build(b)?;
+    let rest = p.build()?;
     Ok(Box::new(Dfaoit { front, rest }))
 }
 

@@ -59,47 +59,32 @@ pub(super) const METHOD: Method = Method {
 #[derive(Debug)]
 struct Dual {
     peel: DualPeel,
-    fronts: wgpu::TextureView,
-    backs: wgpu::TextureView,
+    /// Layers from the front and from the back, with what they start from; alpha is the transmittance of each stack.
+    stacks: [(wgpu::TextureView, [f64; 4]); 2],
     /// By parity of the pass.
     blend: [FullscreenPass; 2],
     resolve: FullscreenPass,
-    /// Bytes a pixel of fronts and backs.
+    /// Bytes a pixel of both stacks.
     blended_bytes: f64,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    use wgpu::BlendFactor::{DstAlpha, One, OneMinusSrcAlpha, Zero};
     let (gpu, frame) = (b.gpu, b.frame);
-    let (format, bytes) = match colors(b.spec) {
-        Precision::Half => (wgpu::TextureFormat::Rgba16Float, 8.0),
-        Precision::Full => (wgpu::TextureFormat::Rgba32Float, 16.0),
+    let full = colors(b.spec) == Precision::Full;
+    let stack = |label, blend| Target {
+        full,
+        ..Target::half(label, 4, blend)
     };
+    let targets = [stack("fronts", Blend::Under), stack("backs", Blend::Over)];
     let none = wgpu::TextureUsages::empty();
-    let texture = |label: &str| gpu.texture(label, format, frame.size, 1, none);
-    let (fronts, backs) = (texture("fronts")?, texture("backs")?);
+    let texture = |t: Target| {
+        let view = gpu.texture(t.label, t.format(), frame.size, 1, none)?;
+        Ok::<_, RenderError>((view, t.blend.start()))
+    };
+    let stacks = [texture(targets[0])?, texture(targets[1])?];
     let found = peeling::found(gpu)?;
     let peel = DualPeel::new(gpu, b.scene, frame, &[], Some(&found))?;
-    let component = |src_factor, dst_factor| wgpu::BlendComponent {
-        src_factor,
-        dst_factor,
-        operation: wgpu::BlendOperation::Add,
-    };
-    let target = |color| {
-        Some(wgpu::ColorTargetState {
-            format,
-            blend: Some(wgpu::BlendState {
-                color,
-                alpha: component(Zero, OneMinusSrcAlpha),
-            }),
-            write_mask: wgpu::ColorWrites::ALL,
-        })
-    };
-    // Under-blending for the front, over-blending for the back; alpha is the transmittance of each stack.
-    let targets = [
-        target(component(DstAlpha, One)),
-        target(component(One, OneMinusSrcAlpha)),
-    ];
+    let states = targets.map(|t| Some(t.state()));
     let blend = |from: usize| {
         let entries = [
             Bind::Texture(&peel.ranges[from]),
@@ -108,24 +93,17 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             Bind::Texture(&peel.back),
             Bind::Write(&found),
         ];
-        FullscreenPass::new(
-            gpu,
-            "methods::dual_peel::blend",
-            &[],
-            &[],
-            &entries,
-            &targets,
-        )
+        let shader = "methods::dual_peel::blend";
+        FullscreenPass::new(gpu, shader, &[], &[], &entries, &states)
     };
-    let entries = [&frame.background, &fronts, &backs].map(Bind::Texture);
+    let entries = [&frame.background, &stacks[0].0, &stacks[1].0].map(Bind::Texture);
     let shader = "methods::dual_peel::resolve";
     let dual = Dual {
         blend: [blend(0)?, blend(1)?],
         resolve: FullscreenPass::resolve(gpu, shader, &[], &[], &entries, frame.output)?,
         peel,
-        fronts,
-        backs,
-        blended_bytes: 2.0 * bytes,
+        stacks,
+        blended_bytes: if full { 32.0 } else { 16.0 },
     };
     Peeling::boxed(b, found, dual)
 }
@@ -135,16 +113,16 @@ impl Peel for Dual {
 
     fn begin(&self, cx: &mut DrawContext<'_, '_>) {
         self.peel.init(cx.recorder, cx.scene, cx.frame);
-        let start = [0.0, 0.0, 0.0, 1.0];
-        let clear = [&self.fronts, &self.backs].map(|view| clear_color(view, start));
+        let clear = self.stacks.each_ref();
+        let clear = clear.map(|(view, start)| clear_color(view, *start));
         drop(cx.recorder.render("clear", &clear, None));
     }
 
     fn pass(&self, cx: &mut DrawContext<'_, '_>, number: u32) {
         self.peel
             .peel(cx.recorder, cx.scene, cx.frame, number, cx.counting);
-        let loaded = |view| attachment(view, wgpu::LoadOp::Load);
-        let targets = [loaded(&self.fronts), loaded(&self.backs)];
+        let stacks = self.stacks.each_ref();
+        let targets = stacks.map(|(view, _)| attachment(view, wgpu::LoadOp::Load));
         self.blend[(number % 2) as usize].draw(cx.recorder, &targets);
     }
 

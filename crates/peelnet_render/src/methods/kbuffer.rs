@@ -81,24 +81,23 @@ pub(super) const HYBRID: Method = Method {
     ..method("hybrid", "the K nearest exactly, the rest blended by eq 6")
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let k = b.spec.number();
-    let (_, bytes, layout) = stored::layout(b.spec);
-    let mut p = Plan::new();
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let (k, (_, weight)) = (p.b.spec.number(), tail(p.b.spec));
+    let (_, bytes, layout) = stored::layout(p.b.spec);
     p.parameters = format!("const K: u32 = {k}u;\n");
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
-    let nearest = p.storage("nearest depths", 4 * k);
-    let triangles = p.storage("nearest triangles", 4 * k);
-    let colors = p.storage("nearest colours", bytes * k);
+    let sums = p.target(SUMS)?;
+    let transmittance = p.target(TRANSMITTANCE)?;
+    let nearest = p.storage("nearest depths", 4 * k, 0)?;
+    let triangles = p.storage("nearest triangles", 4 * k, 0)?;
+    let colors = p.storage("nearest colours", bytes * k, 0)?;
     p.geometry("methods::kbuffer::insert").writes([nearest]);
     p.geometry("methods::kbuffer::gather")
-        .features([tail(b.spec).1])
+        .features([weight])
         .features(layout)
         .reads([nearest])
         .writes([sums, transmittance, triangles, colors]);
     let read = [sums, transmittance, nearest, triangles, colors];
     p.resolve("methods::kbuffer::resolve", read)
         .features(layout);
-    Ok(p)
+    Ok(())
 }

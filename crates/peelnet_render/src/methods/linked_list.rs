@@ -5,21 +5,15 @@
 //! colours rounded as the list rounds them.
 
 use super::{
-    abuffer::{self, Composite, FIRST_GUESS},
+    abuffer::{self, FIRST_GUESS},
+    plan::Resource,
     prelude::*,
     stored::{self, COLORS},
+    views::Shows,
 };
 use peelnet_core::methods::over;
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    wgpu,
-};
-use peelnet_raster::{
-    FrameTargets, GeometryPass, GeometryPipelines, SceneBuffers, Surfaces,
-    count::{Faults, unwritten, unwritten_attachment, unwritten_texture},
-    fullscreen::FullscreenPass,
-};
+use peelnet_gpu::wgpu;
+use peelnet_raster::count::Faults;
 use std::ops::Range;
 
 const NODES: Parameter = Parameter::whole(
@@ -65,160 +59,79 @@ const FOUND: Range<u64> = 0..20;
 
 #[derive(Debug)]
 struct LinkedList {
-    shared: Shared,
-    attachment: wgpu::TextureView,
-    pool: Pool,
-    version: u64,
-    /// What draws instead, since a list was too long.
-    long: Option<Box<dyn Compositor>>,
-}
-
-/// What every pool is bound with.
-#[derive(Debug)]
-struct Shared {
-    heads: wgpu::Buffer,
-    /// `Found` in `methods/linked_list/composite.wgsl`.
-    found: wgpu::Buffer,
-    background: wgpu::TextureView,
-    /// How colours are stored: features of the shaders, and bytes of a fragment's.
-    features: Vec<&'static str>,
-    color_bytes: u64,
-}
-
-#[derive(Debug)]
-struct Pool {
+    spec: MethodSpec,
+    /// Nodes of the pool.
     nodes: u64,
-    build: GeometryPipelines,
-    build_group: Bound,
-    composite: FullscreenPass,
+    /// `Found` in `methods/linked_list/composite.wgsl`; none where the S-buffer draws instead, since a list was too long.
+    found: Option<wgpu::Buffer>,
+    passes: Box<dyn Compositor>,
+    version: u64,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let (gpu, frame, tinted) = (b.gpu, b.frame, b.scene.tinted);
-    let pixels = u64::from(frame.pixels());
-    let (_, bytes, layout) = stored::layout(b.spec);
-    let shared = Shared {
-        heads: gpu.storage("list heads", pixels * 4)?,
-        found: gpu.storage("nodes found", FOUND.end)?,
-        background: frame.background.clone(),
-        features: layout
-            .into_iter()
-            .chain(tinted.then_some("tinted"))
-            .collect(),
-        // Where light takes a colour two of a fragment.
-        color_bytes: u64::from(bytes) * if tinted { 2 } else { 1 },
-    };
-    let first = NODES.count(b.spec).unwrap_or(pixels * FIRST_GUESS);
+    let found = b.gpu.storage("nodes found", FOUND.end)?;
+    let pixels = u64::from(b.frame.pixels());
+    let nodes = NODES.count(b.spec).unwrap_or(pixels * FIRST_GUESS);
     Ok(Box::new(LinkedList {
-        attachment: unwritten_texture(gpu, frame)?,
-        pool: Pool::new(gpu, b.scene, frame, &shared, first)?,
-        shared,
+        spec: b.spec.clone(),
+        nodes,
+        passes: passes(b, &found, nodes)?,
+        found: Some(found),
         version: 0,
-        long: None,
     }))
 }
 
-impl Pool {
-    fn new(
-        gpu: &Gpu,
-        scene: &SceneBuffers,
-        frame: &FrameTargets,
-        shared: &Shared,
-        nodes: u64,
-    ) -> Result<Self, RenderError> {
-        let features = &shared.features;
-        let storage = |label, bytes| gpu.storage(label, nodes * bytes);
-        let next = storage("list links", 4)?;
-        let depths = storage("fragment depths", 4)?;
-        let triangles = storage("fragment triangles", 4)?;
-        let colors = storage("fragment colours", shared.color_bytes)?;
-        let written = [
-            &shared.heads,
-            &shared.found,
-            &next,
-            &depths,
-            &triangles,
-            &colors,
-        ];
-        let stages = wgpu::ShaderStages::FRAGMENT;
-        let build_group = gpu.bind("build", stages, &written.map(Bind::Write));
-        let build = scene.pipelines(
-            gpu,
-            frame,
-            Surfaces::Transparent,
-            &GeometryPass {
-                label: "build",
-                shader: "methods::linked_list::build",
-                features,
-                group: Some(&build_group),
-                targets: &[unwritten()],
-                ..GeometryPass::NONE
-            },
-        )?;
-        let composite = FullscreenPass::resolve(
-            gpu,
-            "methods::linked_list::composite",
-            features,
-            &[],
-            &[
-                Bind::Uniform(scene.camera_buffer()),
-                Bind::Read(&shared.heads),
-                Bind::Write(&next),
-                Bind::Read(&depths),
-                Bind::Read(&triangles),
-                Bind::Read(&colors),
-                Bind::Texture(&shared.background),
-                Bind::Write(&shared.found),
-            ],
-            frame.output,
-        )?;
-        Ok(Self {
-            nodes,
-            build,
-            build_group,
-            composite,
-        })
-    }
+/// The passes with a pool of so many nodes.
+fn passes(
+    b: &Build<'_>,
+    found: &wgpu::Buffer,
+    nodes: u64,
+) -> Result<Box<dyn Compositor>, RenderError> {
+    let (_, color_bytes, layout) = stored::layout(b.spec);
+    let tinted = b.scene.tinted;
+    let features = || layout.into_iter().chain(tinted.then_some("tinted"));
+    let mut p = Plan::new(b);
+    let heads = p.storage("list heads", 4, 0)?;
+    let found = p.resource(Resource::Storage(found.clone()));
+    let camera = p.resource(Resource::Uniform(b.scene.camera_buffer().clone()));
+    // Not cleared: lists end where their links say.
+    let mut pool = |label, bytes: u32| {
+        let bytes = nodes * u64::from(bytes);
+        p.frame_bytes += bytes;
+        let buffer = b.gpu.storage(label, bytes)?;
+        Ok::<_, RenderError>(p.resource(Resource::Storage(buffer)))
+    };
+    let next = pool("list links", 4)?;
+    let depths = pool("fragment depths", 4)?;
+    let triangles = pool("fragment triangles", 4)?;
+    // Where light takes a colour two of a fragment.
+    let colors = pool("fragment colours", color_bytes * if tinted { 2 } else { 1 })?;
+    p.geometry("methods::linked_list::build")
+        .features(features())
+        .writes([heads, found, next, depths, triangles, colors]);
+    let read = [camera, heads, depths, triangles, colors];
+    p.resolve("methods::linked_list::composite", read)
+        .features(features())
+        .writes([next, found]);
+    p.build()
 }
 
 impl Compositor for LinkedList {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        if let Some(long) = &mut self.long {
-            return long.draw(cx);
+        if let Some(found) = &self.found {
+            cx.recorder.encoder().clear_buffer(found, 0, None);
         }
-        let encoder = cx.recorder.encoder();
-        encoder.clear_buffer(&self.shared.heads, 0, None);
-        encoder.clear_buffer(&self.shared.found, 0, None);
-        {
-            let attachment = [unwritten_attachment(&self.attachment)];
-            let mut pass = cx.recorder.render("build", &attachment, None);
-            pass.set_bind_group(1, &self.pool.build_group.group, &[]);
-            let build = &self.pool.build;
-            cx.scene
-                .draw(&mut pass, cx.frame, Surfaces::Transparent, build);
-        }
-        cx.resolve(&self.pool.composite);
-        let pixels = f64::from(cx.frame.pixels());
-        // Depth, triangle, link, and colours.
-        let node = 3 * 4 + self.shared.color_bytes;
-        Ok(FrameStats {
-            tiles: 1,
-            geometry_passes: 1,
-            fullscreen_passes: 1,
-            // Heads and the unwritten attachment; then the pool.
-            bytes_per_pixel: 5.0 + (self.pool.nodes * node) as f64 / pixels,
-            ..Default::default()
-        })
+        self.passes.draw(cx)
     }
 
     fn is_ready(&self) -> bool {
-        self.long.as_ref().is_none_or(|long| long.is_ready())
+        self.passes.is_ready()
     }
 
     fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
-        match &self.long {
-            Some(long) => long.feedback(),
-            None => vec![(self.shared.found.clone(), FOUND)],
+        match &self.found {
+            Some(found) => vec![(found.clone(), FOUND)],
+            None => self.passes.feedback(),
         }
     }
 
@@ -228,38 +141,46 @@ impl Compositor for LinkedList {
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
-        if let Some(long) = &mut self.long {
-            return long.learn(cx, words, stats);
-        }
+        let Some(found) = &self.found else {
+            return self.passes.learn(cx, words, stats);
+        };
         let &[used, too_long, composited, unsorted, pixel] = words[0].as_slice() else {
             return Ok(Fit::TooSmall);
         };
         let needed = u64::from(used);
         stats.fragments = Some(needed);
+        if too_long == 0 && needed <= self.nodes {
+            let (lost, uncounted) = (
+                used.saturating_sub(composited),
+                composited.saturating_sub(used),
+            );
+            let faults = [unsorted, lost, uncounted, pixel];
+            Faults::check(&faults, cx.frame.size[0])?;
+            return Ok(Fit::Whole);
+        }
+        let b = Build {
+            gpu: cx.gpu,
+            scene: cx.scene,
+            frame: cx.frame,
+            spec: &self.spec,
+            learned: None,
+            shows: Shows::Colors,
+            sums: false,
+        };
         if too_long > 0 {
-            let (features, composite) = (&self.shared.features, Composite::exact(cx.scene.tinted));
-            let long = abuffer::build_with(cx.gpu, cx.scene, cx.frame, None, features, composite);
-            self.long = Some(long?);
-            self.version += 1;
-            return Ok(Fit::TooSmall);
-        }
-        if needed > self.pool.nodes {
+            let (_, _, layout) = stored::layout(&self.spec);
+            self.passes = abuffer::build_with(&b, layout)?;
+            self.found = None;
+        } else {
             // A quarter more, so that a moving camera does not grow it every frame.
-            let nodes = needed + needed / 4;
-            self.pool = Pool::new(cx.gpu, cx.scene, cx.frame, &self.shared, nodes)?;
-            self.version += 1;
-            return Ok(Fit::TooSmall);
+            self.nodes = needed + needed / 4;
+            self.passes = passes(&b, found, self.nodes)?;
         }
-        let (lost, uncounted) = (
-            used.saturating_sub(composited),
-            composited.saturating_sub(used),
-        );
-        let faults = [unsorted, lost, uncounted, pixel];
-        Faults::check(&faults, cx.frame.size[0])?;
-        Ok(Fit::Whole)
+        self.version += 1;
+        Ok(Fit::TooSmall)
     }
 
     fn version(&self) -> u64 {
-        self.version + self.long.as_ref().map_or(0, |long| long.version())
+        self.version + self.passes.version()
     }
 }

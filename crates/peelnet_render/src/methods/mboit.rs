@@ -251,17 +251,9 @@ pub(super) const TRIGONOMETRIC: Method = Method {
 /// What a pass that sums moments has as its feature, and its targets with their channels.
 type Part = (Option<&'static str>, &'static [(&'static str, u32)]);
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let (name, number) = (b.spec.name(), b.spec.number());
-    let [sum, gather] = match name {
-        "mboit4" => ["methods::mboit4::moments", "methods::mboit4::gather"],
-        "mboit6" => ["methods::mboit6::moments", "methods::mboit6::gather"],
-        "mboit8" => ["methods::mboit8::moments", "methods::mboit8::gather"],
-        _ => [
-            "methods::mboit_trig::moments",
-            "methods::mboit_trig::gather",
-        ],
-    };
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let (name, number) = (p.b.spec.name(), p.b.spec.number());
+    let folder = name.replace('-', "_");
     let parts: &[Part] = match (name, number) {
         ("mboit4", _) => &[(None, &[("moments", 4)])],
         ("mboit6", _) => &[(None, &[("moments 1 to 4", 4), ("moments 5 and 6", 2)])],
@@ -272,30 +264,30 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
         (_, 2) => &[(None, &[("moments 1 and 2", 4)])],
         _ => &[(Some("upper"), &[("moments 1 and 2", 4), ("moment 3", 2)])],
     };
-    let settings = settings(b.spec);
+    let settings = settings(p.b.spec);
     let (bias, overestimation) = (settings.bias as f32, settings.overestimation as f32);
-    let mut p = Plan::new();
     // `{:?}` prints the shortest text that reads back the same, with a point or an exponent.
     p.parameters = format!(
         "const BIAS: f32 = {bias:?};\nconst OVERESTIMATION: f32 = {overestimation:?};\nconst MOMENTS: i32 = {number};\n"
     );
     let target = |&(label, channels): &(_, _)| Target::full(label, channels, Blend::Add);
-    let sums = p.target(SUMS);
-    let absorbance = p.target(target(&("absorbance", 1)));
+    let sums = p.target(SUMS)?;
+    let absorbance = p.target(target(&("absorbance", 1)))?;
     let (mut found, mut written) = (Vec::new(), vec![absorbance]);
     for (feature, targets) in parts {
-        written.extend(p.targets(targets.iter().map(target)));
+        written.extend(p.targets(targets.iter().map(target))?);
         found.extend(written.iter().copied());
-        p.geometry(sum).features(*feature).writes(written.drain(..));
+        p.geometry(&format!("methods::{folder}::moments"))
+            .features(*feature)
+            .writes(written.drain(..));
     }
-    p.geometry(gather)
+    p.geometry(&format!("methods::{folder}::gather"))
         .features(own_share(settings.own_share_out))
         .features((number == 3).then_some("upper"))
         .reads(found)
         .writes([sums]);
     p.resolve("methods::mboit4::resolve", [sums, absorbance]);
-    p.tint(b);
-    Ok(p)
+    p.tint()
 }
 
 /// The shader feature that leaves a fragment's own absorbance out of the absorbance in front of it.

@@ -46,7 +46,7 @@ pub struct Method {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Draws {
     /// By a fixed list of passes.
-    Plan(fn(&Build<'_>) -> Result<Plan, RenderError>),
+    Plan(fn(&mut Plan<'_>) -> Result<(), RenderError>),
     /// By itself.
     Own(fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>),
 }
@@ -232,21 +232,8 @@ impl Method {
     pub(super) const fn new(
         name: &'static str,
         about: &'static str,
-        plan: fn(&Build<'_>) -> Result<Plan, RenderError>,
+        plan: fn(&mut Plan<'_>) -> Result<(), RenderError>,
     ) -> Self {
-        Self::drawn(name, about, Draws::Plan(plan))
-    }
-
-    /// The same for a method that draws by itself.
-    pub(super) const fn own(
-        name: &'static str,
-        about: &'static str,
-        build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
-    ) -> Self {
-        Self::drawn(name, about, Draws::Own(build))
-    }
-
-    const fn drawn(name: &'static str, about: &'static str, draws: Draws) -> Self {
         Self {
             name,
             about,
@@ -259,7 +246,19 @@ impl Method {
             twin: None,
             transmittances: None,
             flaws: &[],
-            draws,
+            draws: Draws::Plan(plan),
+        }
+    }
+
+    /// The same for a method that draws by itself.
+    pub(super) const fn own(
+        name: &'static str,
+        about: &'static str,
+        build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
+    ) -> Self {
+        Self {
+            draws: Draws::Own(build),
+            ..Self::new(name, about, |_| Ok(()))
         }
     }
 
@@ -267,11 +266,12 @@ impl Method {
     pub(super) fn build(&self, b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         match self.draws {
             Draws::Plan(plan) => {
-                let mut plan = plan(b)?;
+                let mut p = Plan::new(b);
                 if self.learned {
-                    b.learned_weight()?.wgsl.clone_into(&mut plan.network);
+                    b.learned_weight()?.wgsl.clone_into(&mut p.network);
                 }
-                plan.build(b)
+                plan(&mut p)?;
+                p.build()
             }
             Draws::Own(build) => build(b),
         }

@@ -50,18 +50,17 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn plan(_: &Build<'_>) -> Result<Plan, RenderError> {
-    let mut p = Plan::new();
-    let sums = p.target(Target { full: true, ..SUMS });
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let sums = p.target(Target { full: true, ..SUMS })?;
     // b_0 and the number of fragments: published with four channels.
-    let totals = p.target(Target::full("totals", 4, Blend::Add));
-    let moments = p.target(Target::full("moments", 4, Blend::Add));
-    let extent = p.target(Target::full("extent", 2, Blend::MaxAdd));
+    let totals = p.target(Target::full("totals", 4, Blend::Add))?;
+    let moments = p.target(Target::full("moments", 4, Blend::Add))?;
+    let extent = p.target(Target::full("extent", 2, Blend::MaxAdd))?;
     p.geometry("methods::nmt::statistics")
         .writes([totals, moments, extent]);
     p.geometry("methods::nmt::gather")
         .reads([totals, moments, extent])
         .writes([sums]);
     p.resolve("methods::nmt::resolve", [sums, totals]);
-    Ok(p)
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! `painter-object` and `painter-triangle`: sort on the CPU, blend in hardware: what engines do by default. Not exact for
 //! surfaces that intersect, or overlap in a cycle.
 
-use super::prelude::*;
+use super::{plan::Resource, prelude::*};
 use peelnet_core::{fragment::Fragment, methods::over};
 use peelnet_raster::Order;
 
@@ -79,16 +79,16 @@ const SHADER: &str = "methods::weighted_sum::gather";
 
 const PASS: &str = "blend";
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let mut p = Plan::new();
-    p.order = order(b.spec);
-    if b.frame.output.is_over() {
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    p.order = order(p.b.spec);
+    if p.b.frame.output.is_over() {
         // As engines draw: no targets of its own and no pass over the pixels.
-        p.geometry(SHADER).label(PASS).onto_output();
+        let output = p.resource(Resource::Output);
+        p.geometry(SHADER).label(PASS).writes([output]);
     } else {
-        let layers = p.target(Target::half("layers", 4, Blend::Over));
+        let layers = p.target(Target::half("layers", 4, Blend::Over))?;
         p.geometry(SHADER).label(PASS).writes([layers]);
         p.resolve("methods::depth_peel::resolve", [layers]);
     }
-    Ok(p)
+    Ok(())
 }

@@ -65,14 +65,13 @@ impl<P: Peel + 'static> Peeling<P> {
         found: wgpu::Buffer,
         peel: P,
     ) -> Result<Box<dyn Compositor>, RenderError> {
-        let most = PASSES.count(b.spec).map(u32::try_from);
         Ok(Box::new(Self {
             peel,
             found,
             log: b.gpu.storage("found by pass", 4 * u64::from(FIRST_GUESS))?,
             count: None,
             known: None,
-            most: most.and_then(Result::ok).unwrap_or(u32::MAX),
+            most: PASSES.count(b.spec).map_or(u32::MAX, |n| n as u32),
             recorded: 0,
             counted: false,
             version: 0,

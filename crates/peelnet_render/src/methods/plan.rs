@@ -31,6 +31,8 @@ pub(crate) enum Blend {
     AddTransmit,
     /// `src + dst · (1 − src.a)` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
     Over,
+    /// `dst + src · dst.a` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
+    Under,
     /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
     MaxAdd,
     /// `max(dst, src)`, from the smallest half.
@@ -41,12 +43,12 @@ pub(crate) enum Blend {
 
 impl Blend {
     /// What a target is cleared to.
-    fn start(self) -> [f64; 4] {
+    pub fn start(self) -> [f64; 4] {
         let least = -f64::from(HALF_MAX);
         match self {
             Self::Add | Self::MaxBytes => [0.0; 4],
             Self::Max => [least; 4],
-            Self::Over | Self::AddTransmit => [0.0, 0.0, 0.0, 1.0],
+            Self::Over | Self::Under | Self::AddTransmit => [0.0, 0.0, 0.0, 1.0],
             Self::Transmit => [1.0; 4],
             Self::MaxAdd => [least, least, least, 0.0],
         }
@@ -64,9 +66,11 @@ impl Blend {
         let transmit = component(F::Zero, F::OneMinusSrc, O::Add);
         let transmit_alpha = component(F::Zero, F::OneMinusSrcAlpha, O::Add);
         let over = component(F::One, F::OneMinusSrcAlpha, O::Add);
+        let under = component(F::DstAlpha, F::One, O::Add);
         let (color, alpha) = match self {
             Self::Add => (add, add),
             Self::Over => (over, transmit_alpha),
+            Self::Under => (under, transmit_alpha),
             Self::Transmit => (transmit, transmit),
             Self::AddTransmit => (add, transmit_alpha),
             Self::MaxAdd => (max, add),
@@ -118,7 +122,7 @@ impl Target {
         }
     }
 
-    const fn format(&self) -> wgpu::TextureFormat {
+    pub const fn format(&self) -> wgpu::TextureFormat {
         use wgpu::TextureFormat as F;
         match (self.blend, self.channels, self.full) {
             (Blend::MaxBytes, 1, _) => F::R8Unorm,
@@ -133,51 +137,29 @@ impl Target {
         }
     }
 
-    fn state(&self) -> wgpu::ColorTargetState {
+    pub fn state(&self) -> wgpu::ColorTargetState {
         wgpu::ColorTargetState {
             format: self.format(),
             blend: Some(self.blend.state()),
             write_mask: wgpu::ColorWrites::ALL,
         }
     }
-
-    fn texture(&self, b: &Build<'_>) -> Result<wgpu::TextureView, RenderError> {
-        if self.full {
-            b.gpu.need(
-                wgpu::Features::FLOAT32_BLENDABLE,
-                "float32-blendable",
-                &b.spec.to_string(),
-                "use targets=f16",
-            )?;
-        }
-        let none = wgpu::TextureUsages::empty();
-        let texture = b
-            .gpu
-            .texture(self.label, self.format(), b.frame.size, 1, none);
-        Ok(texture?)
-    }
 }
 
 /// What passes read and write.
 #[derive(Clone, Debug)]
-enum Resource {
-    Target(Target),
-    /// A buffer, zero at the start of every frame: bytes of each pixel, and of the frame besides.
-    Storage(&'static str, u32, u64),
-    /// What something else writes.
-    Made(Made),
-}
-
-/// A resource made ready.
-#[derive(Clone, Debug)]
-enum Made {
+pub(crate) enum Resource {
+    Target(Target, wgpu::TextureView),
     Texture(wgpu::TextureView),
     /// A texture of unsigned integers.
     Integers(wgpu::TextureView),
     Storage(wgpu::Buffer),
+    Uniform(wgpu::Buffer),
+    /// Where the finished picture goes, blended as that is; there is no resolve then.
+    Output,
 }
 
-/// A target, storage or texture of a plan.
+/// A resource of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Handle(usize);
 
@@ -187,20 +169,20 @@ enum Draws {
     Surfaces,
     /// Boxes around transparent parts instead of their surfaces.
     Boxes,
-    /// Surfaces onto the output itself, blended as the output is.
-    Output,
     /// Nothing: a compute shader with so many threads, in workgroups of 64.
     Threads(u64),
     /// Finished pixels.
     Pixels,
+    /// The blended sums in their place.
+    Sums,
 }
 
 /// One pass: its shader, what it reads and what it writes. Its bindings are what it reads, then the storage that it writes, in bind
 /// group 1; behind the frame's size as `vec4u` in group 0 of a compute shader, and behind `C_0` in group 0 of the resolve.
 #[derive(Debug)]
 pub(crate) struct Pass {
-    shader: &'static str,
-    label: &'static str,
+    shader: String,
+    label: String,
     draws: Draws,
     features: Vec<&'static str>,
     parameters: Option<String>,
@@ -210,20 +192,14 @@ pub(crate) struct Pass {
 
 impl Pass {
     /// Times are listed under this label instead of the shader's name.
-    pub fn label(&mut self, label: &'static str) -> &mut Self {
-        self.label = label;
+    pub fn label(&mut self, label: &str) -> &mut Self {
+        self.label = label.into();
         self
     }
 
     /// Draws boxes around transparent parts instead of their surfaces.
     pub fn boxes(&mut self) -> &mut Self {
         self.draws = Draws::Boxes;
-        self
-    }
-
-    /// Blends onto the output itself instead of targets of its own; there is no resolve then.
-    pub fn onto_output(&mut self) -> &mut Self {
-        self.draws = Draws::Output;
         self
     }
 
@@ -251,10 +227,14 @@ impl Pass {
 }
 
 /// What a method allocates, and its passes in their order; the last is the resolve.
-#[derive(Debug)]
-pub(crate) struct Plan {
+pub(crate) struct Plan<'b> {
+    pub b: &'b Build<'b>,
     resources: Vec<Resource>,
     passes: Vec<Pass>,
+    /// Storage, cleared at the start of every frame.
+    cleared: Vec<wgpu::Buffer>,
+    pixel_bytes: u32,
+    pub frame_bytes: u64,
     /// The text of the module `parameters` of all passes.
     pub parameters: String,
     /// The exported text of a learned method's network.
@@ -263,236 +243,227 @@ pub(crate) struct Plan {
     pub order: Order,
 }
 
-impl Plan {
-    pub const fn new() -> Self {
+impl<'b> Plan<'b> {
+    pub const fn new(b: &'b Build<'b>) -> Self {
         Self {
+            b,
             resources: Vec::new(),
             passes: Vec::new(),
+            cleared: Vec::new(),
+            pixel_bytes: 0,
+            frame_bytes: 0,
             parameters: String::new(),
             network: String::new(),
             order: Order::Scene,
         }
     }
 
-    fn resource(&mut self, resource: Resource) -> Handle {
+    /// A resource that something else makes.
+    pub fn resource(&mut self, resource: Resource) -> Handle {
         self.resources.push(resource);
         Handle(self.resources.len() - 1)
     }
 
-    pub fn target(&mut self, target: Target) -> Handle {
-        self.resource(Resource::Target(target))
+    /// A target, of 16 or 32 bits as the method's `targets` says.
+    pub fn target(&mut self, mut target: Target) -> Result<Handle, RenderError> {
+        let (gpu, spec) = (self.b.gpu, self.b.spec);
+        if let Some(precision) = spec.targets() {
+            target.full = precision == Precision::Full;
+        }
+        if target.full {
+            let (feature, hint) = (wgpu::Features::FLOAT32_BLENDABLE, "use targets=f16");
+            gpu.need(feature, "float32-blendable", &spec.to_string(), hint)?;
+        }
+        let (format, none) = (target.format(), wgpu::TextureUsages::empty());
+        let view = gpu.texture(target.label, format, self.b.frame.size, 1, none)?;
+        self.pixel_bytes += format.block_copy_size(None).unwrap_or_default();
+        Ok(self.resource(Resource::Target(target, view)))
     }
 
-    pub fn targets(&mut self, all: impl IntoIterator<Item = Target>) -> Vec<Handle> {
+    pub fn targets(
+        &mut self,
+        all: impl IntoIterator<Item = Target>,
+    ) -> Result<Vec<Handle>, RenderError> {
         all.into_iter().map(|target| self.target(target)).collect()
     }
 
-    /// A buffer of so many bytes a pixel.
-    pub fn storage(&mut self, label: &'static str, bytes_per_pixel: u32) -> Handle {
-        self.resource(Resource::Storage(label, bytes_per_pixel, 0))
+    /// A buffer, zero at the start of every frame: so many bytes of each pixel, and of the frame besides.
+    pub fn storage(&mut self, label: &str, pixel: u32, frame: u64) -> Result<Handle, RenderError> {
+        self.pixel_bytes += pixel;
+        self.frame_bytes += frame;
+        let bytes = u64::from(self.b.frame.pixels()) * u64::from(pixel) + frame;
+        let buffer = self.b.gpu.storage(label, bytes)?;
+        self.cleared.push(buffer.clone());
+        Ok(self.resource(Resource::Storage(buffer)))
     }
 
-    /// A buffer of so many bytes.
-    pub fn storage_of_frame(&mut self, label: &'static str, bytes: u64) -> Handle {
-        self.resource(Resource::Storage(label, 0, bytes))
-    }
-
-    /// A texture of colours that something else writes.
-    pub fn texture(&mut self, view: &wgpu::TextureView) -> Handle {
-        self.resource(Resource::Made(Made::Texture(view.clone())))
-    }
-
-    /// A texture of unsigned integers that something else writes.
-    pub fn integers(&mut self, view: &wgpu::TextureView) -> Handle {
-        self.resource(Resource::Made(Made::Integers(view.clone())))
-    }
-
-    fn pass(&mut self, shader: &'static str, label: &'static str, draws: Draws) -> &mut Pass {
-        let place = self.passes.len();
+    fn pass(&mut self, shader: &str, draws: Draws) -> &mut Pass {
         self.passes.push(Pass {
-            shader,
-            label,
+            shader: shader.into(),
+            label: shader.into(),
             draws,
             features: Vec::new(),
             parameters: None,
             reads: Vec::new(),
             writes: Vec::new(),
         });
+        let place = self.passes.len() - 1;
         &mut self.passes[place]
     }
 
     /// A pass over the transparent surfaces. Times are listed under the last part of the shader's name.
-    pub fn geometry(&mut self, shader: &'static str) -> &mut Pass {
+    pub fn geometry(&mut self, shader: &str) -> &mut Pass {
         let label = shader.rsplit("::").next().unwrap_or(shader);
-        self.pass(shader, label, Draws::Surfaces)
+        self.pass(shader, Draws::Surfaces).label(label)
     }
 
     /// A compute shader.
-    pub fn compute(&mut self, shader: &'static str, threads: u64) -> &mut Pass {
-        self.pass(shader, shader, Draws::Threads(threads))
+    pub fn compute(&mut self, shader: &str, threads: u64) -> &mut Pass {
+        self.pass(shader, Draws::Threads(threads))
     }
 
     /// The pass that writes finished pixels: the last.
-    pub fn resolve(
-        &mut self,
-        shader: &'static str,
-        reads: impl IntoIterator<Item = Handle>,
-    ) -> &mut Pass {
-        self.pass(shader, shader, Draws::Pixels).reads(reads)
+    pub fn resolve(&mut self, shader: &str, reads: impl IntoIterator<Item = Handle>) -> &mut Pass {
+        self.pass(shader, Draws::Pixels).reads(reads)
     }
 
     /// Where light takes a colour, the pass before the resolve also writes what fragments cover of each channel into one more target, and
     /// the resolve reads that.
-    pub fn tint(&mut self, b: &Build<'_>) {
-        if !b.scene.tinted {
-            return;
+    pub fn tint(&mut self) -> Result<(), RenderError> {
+        if !self.b.scene.tinted {
+            return Ok(());
         }
-        let tint = self.target(TINTED);
+        let tint = self.target(TINTED)?;
         if let [.., gather, resolve] = self.passes.as_mut_slice() {
             gather.features(["tinted"]).writes([tint]);
             resolve.features(["tinted"]).reads([tint]);
         }
+        Ok(())
     }
 
-    /// Shows the sums instead: the first target, and that of the pixel's ends where they stand apart.
+    fn find(&self, is: impl Fn(&Target) -> bool) -> Option<Handle> {
+        let mut all = self.resources.iter();
+        let found = all.position(|r| matches!(r, Resource::Target(target, _) if is(target)));
+        found.map(Handle)
+    }
+
+    /// Shows the sums instead of what is made of them: the first target, and that of the pixel's ends where they stand apart.
     fn show_sums(&mut self) {
-        let is_ends = |r: &Resource| matches!(r, Resource::Target(t) if t.label == ENDS.label);
-        let ends = self.resources.iter().position(is_ends).map(Handle);
-        self.passes.pop();
-        self.resolve("methods::sums::resolve", [Handle(0)])
-            .reads(ends)
-            .features(ends.map(|_| "separate_ends"));
+        let Some(sums) = self.find(|_| true) else {
+            return;
+        };
+        let ends = self.find(|target| target.label == ENDS.label);
+        if self
+            .passes
+            .pop_if(|last| last.draws == Draws::Pixels)
+            .is_some()
+        {
+            self.pass("methods::sums::resolve", Draws::Sums)
+                .reads([sums])
+                .reads(ends)
+                .features(ends.map(|_| "separate_ends"));
+        }
     }
 
-    /// Makes the plan ready, with 16- or 32-bit targets as the method's `targets` says.
-    pub fn build(mut self, b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-        if b.sums && self.passes.last().is_some_and(|p| p.draws == Draws::Pixels) {
+    /// Makes the plan ready.
+    pub fn build(mut self) -> Result<Box<dyn Compositor>, RenderError> {
+        let b = self.b;
+        if b.sums {
             self.show_sums();
         }
-        let pixels = u64::from(b.frame.pixels());
-        let (mut pixel_bytes, mut frame_bytes) = (0, 0);
-        let (mut made, mut cleared) = (Vec::new(), Vec::new());
-        for resource in &mut self.resources {
-            made.push(match resource {
-                Resource::Target(target) => {
-                    if let Some(precision) = b.spec.targets() {
-                        target.full = precision == Precision::Full;
-                    }
-                    pixel_bytes += target.format().block_copy_size(None).unwrap_or_default();
-                    Made::Texture(target.texture(b)?)
-                }
-                Resource::Storage(label, of_pixel, of_frame) => {
-                    pixel_bytes += *of_pixel;
-                    frame_bytes += *of_frame;
-                    let bytes = pixels * u64::from(*of_pixel) + *of_frame;
-                    cleared.push(b.gpu.storage(label, bytes)?);
-                    Made::Storage(cleared[cleared.len() - 1].clone())
-                }
-                Resource::Made(made) => made.clone(),
-            });
-        }
-        let passes = self
-            .passes
-            .iter()
-            .map(|pass| self.build_pass(b, pass, &made));
+        let passes = self.passes.iter().map(|pass| self.build_pass(pass));
         let passes: Vec<PlannedPass> = passes.collect::<Result<_, _>>()?;
-        let is_bare = |p: &PlannedPass| p.targets.is_empty() && matches!(p.work, Work::Surfaces(_));
+        let is_bare = |p: &PlannedPass| p.colors.is_empty() && matches!(p.work, Work::Surfaces(_));
         let attachment = match passes.iter().any(is_bare) {
             true => Some(unwritten_texture(b.gpu, b.frame)?),
             false => None,
         };
-        pixel_bytes += u32::from(attachment.is_some());
+        let pixel_bytes = self.pixel_bytes + u32::from(attachment.is_some());
         let sorted = Sorted::new(b.gpu, b.scene, self.order)?;
-        frame_bytes += sorted.as_ref().map_or(0, Sorted::bytes);
+        let frame_bytes = self.frame_bytes + sorted.as_ref().map_or(0, Sorted::bytes);
         Ok(Box::new(Planned {
             passes,
-            cleared,
+            cleared: self.cleared,
             attachment,
             sorted,
-            bytes_per_pixel: f64::from(pixel_bytes) + frame_bytes as f64 / pixels as f64,
+            bytes_per_pixel: f64::from(pixel_bytes)
+                + frame_bytes as f64 / f64::from(b.frame.pixels()),
         }))
     }
 
-    /// The targets that a pass writes.
-    fn written<'p>(
-        &'p self,
-        pass: &'p Pass,
-        made: &'p [Made],
-    ) -> Vec<(&'p Target, &'p wgpu::TextureView)> {
-        let of = |h: &Handle| match (&self.resources[h.0], &made[h.0]) {
-            (Resource::Target(target), Made::Texture(view)) => Some((target, view)),
-            _ => None,
-        };
-        pass.writes.iter().filter_map(of).collect()
-    }
-
-    fn build_pass(
-        &self,
-        b: &Build<'_>,
-        pass: &Pass,
-        made: &[Made],
-    ) -> Result<PlannedPass, RenderError> {
-        let (gpu, shader, mut features) = (b.gpu, pass.shader, pass.features.clone());
+    fn build_pass(&self, pass: &Pass) -> Result<PlannedPass, RenderError> {
+        let (b, gpu, output) = (self.b, self.b.gpu, self.b.frame.output);
+        let (shader, mut features) = (pass.shader.as_str(), pass.features.clone());
         let parameters = pass.parameters.as_ref().unwrap_or(&self.parameters);
         let modules = [
-            ("parameters", parameters),
+            ("parameters", parameters.as_str()),
             ("learned::weight", &self.network),
         ];
-        let modules: Vec<_> = modules
-            .into_iter()
-            .filter(|(_, text)| !text.is_empty())
-            .map(|(name, text)| (name, text.as_str()))
-            .collect();
+        let modules: Vec<_> = modules.into_iter().filter(|m| !m.1.is_empty()).collect();
         let [width, height] = b.frame.size;
         let size = [width, height, 0, 0];
-        let size = || gpu.upload("frame size", &size, wgpu::BufferUsages::UNIFORM);
-        let size = matches!(pass.draws, Draws::Threads(_)).then(size);
-        let mut entries: Vec<_> = size.iter().map(Bind::Uniform).collect();
-        if pass.draws == Draws::Pixels && !b.sums {
-            entries.push(Bind::Texture(&b.frame.background));
+        let size = gpu.upload("frame size", &size, wgpu::BufferUsages::UNIFORM);
+        let mut entries = match pass.draws {
+            Draws::Threads(_) => vec![Bind::Uniform(&size)],
+            Draws::Pixels => vec![Bind::Texture(&b.frame.background)],
+            _ => Vec::new(),
+        };
+        entries.extend(
+            pass.reads
+                .iter()
+                .filter_map(|h| match &self.resources[h.0] {
+                    Resource::Target(_, view) | Resource::Texture(view) => {
+                        Some(Bind::Texture(view))
+                    }
+                    Resource::Integers(view) => Some(Bind::Uint(view)),
+                    Resource::Storage(buffer) => Some(Bind::Read(buffer)),
+                    Resource::Uniform(buffer) => Some(Bind::Uniform(buffer)),
+                    Resource::Output => None,
+                }),
+        );
+        let (mut colors, mut states, mut samples) = (Vec::new(), Vec::new(), 1);
+        for written in &pass.writes {
+            match &self.resources[written.0] {
+                Resource::Target(target, view) => {
+                    colors.push(Some((view.clone(), target.blend.start())));
+                    states.push(Some(target.state()));
+                }
+                Resource::Output => {
+                    colors.push(None);
+                    states.push(Some(output.state()));
+                    samples = output.samples();
+                }
+                Resource::Storage(buffer) => entries.push(Bind::Write(buffer)),
+                Resource::Texture(_) | Resource::Integers(_) | Resource::Uniform(_) => {}
+            }
         }
-        entries.extend(pass.reads.iter().map(|h| match &made[h.0] {
-            Made::Texture(view) => Bind::Texture(view),
-            Made::Integers(view) => Bind::Uint(view),
-            Made::Storage(buffer) => Bind::Read(buffer),
-        }));
-        entries.extend(pass.writes.iter().filter_map(|h| match &made[h.0] {
-            Made::Storage(buffer) => Some(Bind::Write(buffer)),
-            _ => None,
-        }));
-        let bind = |stages| gpu.bind(pass.label, stages, &entries);
-        let (targets, mut group) = (self.written(pass, made), None);
+        let mut group = None;
         let work = match pass.draws {
             Draws::Threads(threads) => {
-                let bound = group.insert(bind(wgpu::ShaderStages::COMPUTE));
+                let stages = wgpu::ShaderStages::COMPUTE;
+                let bound = group.insert(gpu.bind(&pass.label, stages, &entries));
                 let wgsl = peelnet_shaders::link(shader, &features, &modules)?;
                 let groups = groups_2d(u32::try_from(threads).unwrap_or(u32::MAX));
                 Work::Threads(gpu.compute(shader, &wgsl, bound), groups)
             }
-            Draws::Pixels => {
-                let is_full = |r: &Resource| matches!(r, Resource::Target(t) if t.label == SUMS.label && t.full);
-                let has_full_sums = !b.sums && self.resources.iter().any(is_full);
+            Draws::Pixels | Draws::Sums => {
+                let is_full = |target: &Target| target.label == SUMS.label && target.full;
+                let has_full_sums = pass.draws == Draws::Pixels && self.find(is_full).is_some();
                 features.extend(has_full_sums.then_some("full_sums"));
-                let output = b.frame.output;
                 let resolve =
                     FullscreenPass::resolve(gpu, shader, &features, &modules, &entries, output);
                 Work::Pixels(resolve?)
             }
-            Draws::Surfaces | Draws::Boxes | Draws::Output => {
-                group = (!entries.is_empty()).then(|| bind(wgpu::ShaderStages::FRAGMENT));
-                let mut states: Vec<_> = targets.iter().map(|(t, _)| Some(t.state())).collect();
-                let output = b.frame.output;
-                let samples = match pass.draws {
-                    Draws::Output => output.samples(),
-                    _ => 1,
-                };
-                if pass.draws == Draws::Output {
-                    states.push(Some(output.state()));
-                } else if states.is_empty() {
+            Draws::Surfaces | Draws::Boxes => {
+                if !entries.is_empty() {
+                    let stages = wgpu::ShaderStages::FRAGMENT;
+                    group = Some(gpu.bind(&pass.label, stages, &entries));
+                }
+                if states.is_empty() {
                     states.push(unwritten());
                 }
                 let geometry = GeometryPass {
-                    label: pass.label,
+                    label: &pass.label,
                     shader,
                     features: &features,
                     extra: &modules,
@@ -501,21 +472,17 @@ impl Plan {
                     samples,
                     ..GeometryPass::NONE
                 };
-                let half = Surfaces::Transparent;
-                let surfaces = || b.scene.pipelines(gpu, b.frame, half, &geometry);
-                match pass.draws {
-                    Draws::Boxes => Work::Boxes(BoxPass::new(gpu, b.scene, b.frame, &geometry)?),
-                    Draws::Output => Work::Output(surfaces()?),
-                    _ => Work::Surfaces(surfaces()?),
+                if pass.draws == Draws::Boxes {
+                    Work::Boxes(BoxPass::new(gpu, b.scene, b.frame, &geometry)?)
+                } else {
+                    let half = Surfaces::Transparent;
+                    Work::Surfaces(b.scene.pipelines(gpu, b.frame, half, &geometry)?)
                 }
             }
         };
-        let starts = targets
-            .into_iter()
-            .map(|(t, view)| (view.clone(), t.blend.start()));
         Ok(PlannedPass {
-            label: pass.label,
-            targets: starts.collect(),
+            label: pass.label.clone(),
+            colors,
             group,
             work,
         })
@@ -536,9 +503,9 @@ struct Planned {
 
 #[derive(Debug)]
 struct PlannedPass {
-    label: &'static str,
-    /// With what they are cleared to.
-    targets: Vec<(wgpu::TextureView, [f64; 4])>,
+    label: String,
+    /// What it writes with what that is cleared to; `None` for the output.
+    colors: Vec<Option<(wgpu::TextureView, [f64; 4])>>,
     group: Option<Bound>,
     work: Work,
 }
@@ -546,7 +513,6 @@ struct PlannedPass {
 #[derive(Debug)]
 enum Work {
     Surfaces(GeometryPipelines),
-    Output(GeometryPipelines),
     Boxes(BoxPass),
     Threads(wgpu::ComputePipeline, [u32; 2]),
     Pixels(FullscreenPass),
@@ -558,28 +524,27 @@ impl Planned {
     }
 
     fn draw_geometry(&self, cx: &mut DrawContext<'_, '_>, p: &PlannedPass) {
-        let targets = p.targets.iter();
-        let mut colors: Vec<_> = targets.map(|(v, start)| clear_color(v, *start)).collect();
-        match &p.work {
-            Work::Output(_) => colors.push(cx.output()),
-            _ if colors.is_empty() => {
-                colors.extend(self.attachment.as_ref().map(unwritten_attachment))
-            }
-            _ => {}
+        let colors = p.colors.iter().map(|color| match color {
+            Some((view, start)) => clear_color(view, *start),
+            None => cx.output(),
+        });
+        let mut colors: Vec<_> = colors.collect();
+        if colors.is_empty() {
+            colors.extend(self.attachment.as_ref().map(unwritten_attachment));
         }
         if let Work::Boxes(boxes) = &p.work {
             boxes.update(cx.recorder, cx.scene);
         }
-        let mut pass = cx.recorder.render(p.label, &colors, None);
+        let mut pass = cx.recorder.render(&p.label, &colors, None);
         if let Some(group) = &p.group {
             pass.set_bind_group(1, &group.group, &[]);
         }
         match (&p.work, &self.sorted) {
             (Work::Boxes(boxes), _) => boxes.draw(&mut pass, cx.frame),
-            (Work::Surfaces(pipelines) | Work::Output(pipelines), Some(sorted)) => {
+            (Work::Surfaces(pipelines), Some(sorted)) => {
                 sorted.draw(&mut pass, cx.scene, cx.frame, pipelines);
             }
-            (Work::Surfaces(pipelines) | Work::Output(pipelines), None) => {
+            (Work::Surfaces(pipelines), None) => {
                 let half = Surfaces::Transparent;
                 cx.scene.draw(&mut pass, cx.frame, half, pipelines);
             }
@@ -600,7 +565,7 @@ impl Compositor for Planned {
             match (&p.work, &p.group) {
                 (Work::Pixels(resolve), _) => cx.resolve(resolve),
                 (Work::Threads(pipeline, [x, y]), Some(group)) => {
-                    let mut pass = cx.recorder.compute(p.label);
+                    let mut pass = cx.recorder.compute(&p.label);
                     pass.set_pipeline(pipeline);
                     pass.set_bind_group(0, &group.group, &[]);
                     pass.dispatch_workgroups(*x, *y, 1);
@@ -610,7 +575,7 @@ impl Compositor for Planned {
         }
         Ok(FrameStats {
             tiles: 1,
-            geometry_passes: self.count(|w| matches!(w, Work::Surfaces(_) | Work::Output(_))),
+            geometry_passes: self.count(|w| matches!(w, Work::Surfaces(_))),
             fullscreen_passes: self.count(|w| matches!(w, Work::Threads(..) | Work::Pixels(_))),
             bytes_per_pixel: self.bytes_per_pixel,
             ..Default::default()

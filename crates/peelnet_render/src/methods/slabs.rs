@@ -174,10 +174,9 @@ fn kept(layout: Layout) -> Vec<Target> {
     }
 }
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let mut p = Plan::new();
-    let layout = if b.spec.needs_model() {
-        let Inputs::Slabs(design, _) = b.learned_weight()?.recipe.inputs else {
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let layout = if p.b.spec.needs_model() {
+        let Inputs::Slabs(design, _) = p.b.learned_weight()?.recipe.inputs else {
             unreachable!("the recipe of a method of slabs reads slabs");
         };
         let layout = design.layout();
@@ -187,30 +186,32 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
             "// The guess without a network: the middle between the bounds.\n\
              fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
         );
-        let layout = plain_layout(b.spec);
+        let layout = plain_layout(p.b.spec);
         for module in peelnet_shaders::slab_modules(layout.name()) {
             p.network.push_str(peelnet_shaders::source(module)?);
         }
         layout
     };
-    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(b.spec) == word);
+    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(p.b.spec) == word);
     // The shaders' own case is the largest, over a range of its own.
     let is_large = layout == Layout::Large;
     let own_layout = (!is_large).then_some(layout.name());
     let features = || own_layout.into_iter().chain(framed.then_some("frame"));
-    let sums = p.target(SUMS);
-    let kept = p.targets(kept(layout));
-    let range = (!framed).then(|| p.target(Target::half("range of depths", 2, Blend::MaxBytes)));
+    let sums = p.target(SUMS)?;
+    let kept = p.targets(kept(layout))?;
+    let range = (!framed).then_some(Target::half("range of depths", 2, Blend::MaxBytes));
+    let range = p.targets(range)?;
     if boxes {
         let pass = p.geometry("methods::slabs::boxes").boxes();
-        pass.label("range").writes(range);
+        pass.label("range").writes(range.iter().copied());
     } else if !framed {
-        p.geometry("methods::slabs::range").writes(range);
+        p.geometry("methods::slabs::range")
+            .writes(range.iter().copied());
     }
     let first = kept[0];
     p.geometry("methods::slabs::statistics")
         .features(features())
-        .reads(range)
+        .reads(range.iter().copied())
         .writes(kept.iter().copied());
     p.geometry("methods::slabs::gather")
         .features(features())
@@ -219,6 +220,5 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
         .writes([sums]);
     p.resolve("methods::slabs::resolve", [sums, first])
         .features((!is_large).then_some("three"));
-    p.tint(b);
-    Ok(p)
+    p.tint()
 }

@@ -142,6 +142,25 @@ impl MethodSpec {
         Ok(changed)
     }
 
+    /// The same method with a parameter's default.
+    #[must_use]
+    pub fn without(&self, name: &str) -> Self {
+        let mut changed = self.clone();
+        changed.values.remove(name);
+        changed
+    }
+
+    /// The same method with another number at the end of its name; unchanged where it cannot have that.
+    #[must_use]
+    pub fn with_number(&self, number: u32) -> Self {
+        let numbered = self.method().numbered;
+        let allowed = numbered.and_then(|n| n.parse(self.name, &number.to_string()).ok());
+        Self {
+            number: allowed.or(self.number),
+            ..self.clone()
+        }
+    }
+
     fn set(&mut self, name: &str, text: &str) -> Result<(), RenderError> {
         let all = || self.method().all_parameters();
         let Some(parameter) = all().find(|p| p.name == name) else {
@@ -239,6 +258,11 @@ mod tests {
         ] {
             assert_eq!(text.parse::<MethodSpec>().unwrap().to_string(), text);
         }
+        let of = |text: &str| text.parse::<MethodSpec>().unwrap();
+        let one = of("wboit-eq10:factor=3e4,targets=f32").without("factor");
+        assert_eq!(one, of("wboit-eq10:targets=f32"));
+        assert_eq!(of("kbuffer-4").with_number(8), of("kbuffer-8"));
+        assert_eq!(of("kbuffer-4").with_number(0), of("kbuffer-4"));
         let points: usize = METHODS.iter().map(|m| m.curve.len()).sum();
         assert_eq!(MethodSpec::compared().len(), points);
         for method in METHODS {

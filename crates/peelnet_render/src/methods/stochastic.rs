@@ -33,18 +33,17 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let samples = b.spec.number();
-    let mut p = Plan::new();
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let samples = p.b.spec.number();
     p.parameters = format!("const SAMPLES: u32 = {samples}u;\n");
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
-    let nearest = p.storage("sample depths", 4 * samples);
+    let sums = p.target(SUMS)?;
+    let transmittance = p.target(TRANSMITTANCE)?;
+    let nearest = p.storage("sample depths", 4 * samples, 0)?;
     p.geometry("methods::stochastic::depths")
         .writes([transmittance, nearest]);
     p.geometry("methods::stochastic::gather")
         .reads([nearest])
         .writes([sums]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(p)
+    Ok(())
 }

@@ -84,26 +84,25 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
     let Settings {
         rank,
         bounds,
         own_share_out,
-    } = settings(b.spec);
+    } = settings(p.b.spec);
     let four = |label| Target::half(label, 4, Blend::Add);
-    let mut p = Plan::new();
     p.parameters = format!("const BINS: f32 = {}.0;\n", 2 << rank);
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
-    let lower = p.targets(["average, whole and halves", "quarters"].map(four));
+    let sums = p.target(SUMS)?;
+    let transmittance = p.target(TRANSMITTANCE)?;
+    let lower = p.targets(["average, whole and halves", "quarters"].map(four))?;
     let eighths = match rank {
-        3 => p.targets(["near eighths", "far eighths"].map(four)),
+        3 => p.targets(["near eighths", "far eighths"].map(four))?,
         _ => Vec::new(),
     };
     let (rank_3, all) = (rank == 3, [lower.clone(), eighths.clone()].concat());
-    let range = range_pass(&mut p, bounds);
+    let range = range_pass(p, bounds)?;
     // One pass of portable WebGPU writes 32 bytes a pixel: four targets of 16 bits, two of 32.
-    let parts: Vec<(&[&'static str], _)> = match b.spec.targets() {
+    let parts: Vec<(&[&'static str], _)> = match p.b.spec.targets() {
         Some(Precision::Full) if rank_3 => vec![(&["lower"], lower), (&["eighths"], eighths)],
         _ if rank_3 => vec![(&["lower", "eighths"], all.clone())],
         _ => vec![(&["lower"], lower)],
@@ -121,5 +120,5 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
         .reads_range(range)
         .writes([sums, transmittance]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(p)
+    Ok(())
 }

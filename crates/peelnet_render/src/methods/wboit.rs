@@ -67,8 +67,8 @@ pub(super) const BLENDED: Method = Method {
         Flaw::swallowed("alpha-tiny deep near-overflow"),
         Flaw::BLIND,
     ],
-    ..Method::new("blended", "McGuire & Bavoil 2013, eq 5", |b| {
-        Ok(sums(b, "methods::blended::gather", &[]))
+    ..Method::new("blended", "McGuire & Bavoil 2013, eq 5", |p| {
+        sums(p, "methods::blended::gather", &[])
     })
 };
 
@@ -200,8 +200,8 @@ pub(super) const SMOKE: Method = Method {
     )
 };
 
-fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
-    let (weight, feature) = weight(b.spec);
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let (weight, feature) = weight(p.b.spec);
     let (mut factor, mut power, mut offset) = (0.0, 0, 0.0);
     match weight {
         Weight::Eq10 { factor: f } => factor = f,
@@ -210,34 +210,32 @@ fn plan(b: &Build<'_>) -> Result<Plan, RenderError> {
         _ => {}
     }
     // Only the thesis's weight has the parameter.
-    let printed = (weight == Weight::Papakostas && is_printed(b.spec)).then_some("printed");
+    let printed = (weight == Weight::Papakostas && is_printed(p.b.spec)).then_some("printed");
     let features: Vec<_> = [feature].into_iter().chain(printed).collect();
-    let mut p = sums(b, "methods::wboit::gather", &features);
     // `{:?}` prints a float with a point or exponent, and as the shortest text that reads back the same.
     p.parameters = format!(
         "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
     );
-    Ok(p)
+    sums(p, "methods::wboit::gather", &features)
 }
 
 /// Weighted sums and a transmittance in the targets that the scene's colours need: of grey colours one target less, with `T_∞` where
 /// alpha is.
-fn sums(b: &Build<'_>, shader: &'static str, features: &[&'static str]) -> Plan {
+fn sums(p: &mut Plan<'_>, shader: &str, features: &[&'static str]) -> Result<(), RenderError> {
     let packed = Target {
         blend: Blend::AddTransmit,
         ..SUMS
     };
-    let (targets, feature): (&[Target], _) = match (b.scene.grey, b.scene.tinted) {
+    let (targets, feature): (&[Target], _) = match (p.b.scene.grey, p.b.scene.tinted) {
         (true, _) => (&[packed], Some("packed")),
         (false, true) => (&[SUMS, TINTED], Some("tinted")),
         (false, false) => (&[SUMS, TRANSMITTANCE], None),
     };
-    let mut p = Plan::new();
-    let targets = p.targets(targets.iter().copied());
+    let targets = p.targets(targets.iter().copied())?;
     let features = features.iter().copied().chain(feature);
     let gather = p.geometry(shader).features(features);
     gather.writes(targets.iter().copied());
     p.resolve("methods::wboit::resolve", targets)
         .features(feature);
-    p
+    Ok(())
 }

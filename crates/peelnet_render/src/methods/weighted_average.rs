@@ -18,12 +18,11 @@ pub(super) const METHOD: Method = Method {
     ..Method::new("weighted-average", "Bavoil & Myers 2008", plan)
 };
 
-fn plan(_: &Build<'_>) -> Result<Plan, RenderError> {
-    let mut p = Plan::new();
-    let sums = p.target(SUMS);
-    let count = p.target(Target::half("fragment count", 1, Blend::Add));
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let sums = p.target(SUMS)?;
+    let count = p.target(Target::half("fragment count", 1, Blend::Add))?;
     p.geometry("methods::weighted_average::gather")
         .writes([sums, count]);
     p.resolve("methods::weighted_average::resolve", [sums, count]);
-    Ok(p)
+    Ok(())
 }

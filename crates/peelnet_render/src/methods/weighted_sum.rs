@@ -28,10 +28,9 @@ pub(super) const METHOD: Method = Method {
     ..Method::new("weighted-sum", "Meshkin 2007", plan)
 };
 
-fn plan(_: &Build<'_>) -> Result<Plan, RenderError> {
-    let mut p = Plan::new();
-    let sums = p.target(SUMS);
+fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
+    let sums = p.target(SUMS)?;
     p.geometry("methods::weighted_sum::gather").writes([sums]);
     p.resolve("methods::weighted_sum::resolve", [sums]);
-    Ok(p)
+    Ok(())
 }

@@ -12,6 +12,7 @@ use peelnet_render::{
     METHODS, Method, MethodSpec,
     methods::{Numbered, Parameter, Precision, Values},
 };
+use std::ops::RangeInclusive;
 
 /// Methods that a GPU draws.
 pub(crate) fn offered() -> impl Iterator<Item = &'static Method> {
@@ -86,40 +87,50 @@ fn parameters(ui: &mut Ui, salt: &str, spec: &mut MethodSpec) {
     grid.show(ui, |ui| {
         if let Some(numbered) = spec.method().numbered {
             let label = ui.label("number");
-            let number = number(ui, salt, numbered, spec.number(), label.id);
-            if number != spec.number() {
-                *spec = renamed(spec, &format!("{}-{number}", spec.name()), "");
-            }
+            let now = spec.number();
+            let changed = number(ui, salt, numbered, now, label.id);
+            *spec = changed.map_or_else(|| spec.clone(), |n| spec.with_number(n));
             ui.end_row();
         }
         for parameter in spec.method().all_parameters() {
             let name = parameter.name;
             let label = ui.label(name).on_hover_text(parameter.about);
-            let changed = match control(ui, salt, parameter, spec, label.id) {
-                Some(Some(value)) => spec.with(name, &value).ok(),
-                Some(None) => Some(renamed(spec, "", name)),
-                None => None,
-            };
-            *spec = changed.unwrap_or_else(|| spec.clone());
+            match control(ui, salt, parameter, spec, label.id) {
+                Some(Some(value)) => {
+                    if let Ok(changed) = spec.with(name, &value) {
+                        *spec = changed;
+                    }
+                }
+                Some(None) => *spec = spec.without(name),
+                None => {}
+            }
             ui.end_row();
         }
     });
 }
 
-fn number(ui: &mut Ui, salt: &str, numbered: Numbered, now: u32, label: egui::Id) -> u32 {
-    let mut number = now;
-    if numbered.power_of_two {
-        let all = numbered.least..=numbered.most;
-        let powers = (0..32).map(|k| 1u32 << k).filter(|n| all.contains(n));
-        let powers = powers.map(|n| (n.to_string(), Some(n)));
-        if let Some(chosen) = chosen(ui, (salt, "number"), &now.to_string(), powers, label) {
-            number = chosen.unwrap_or(now);
-        }
-    } else {
-        let drag = DragValue::new(&mut number).range(numbered.least..=numbered.most);
-        ui.add(drag).labelled_by(label);
+/// The number at the end of the name, where it was changed.
+fn number(ui: &mut Ui, salt: &str, numbered: Numbered, now: u32, label: egui::Id) -> Option<u32> {
+    let all = numbered.least..=numbered.most;
+    if !numbered.power_of_two {
+        return drag(ui, now, all, 1.0, label);
     }
-    number
+    let powers = (0..32).map(|k| 1u32 << k).filter(|n| all.contains(n));
+    let powers = powers.map(|n| (n.to_string(), n));
+    chosen(ui, (salt, "number"), &now.to_string(), powers, label)
+}
+
+/// A number that is dragged, where it was changed.
+fn drag<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    mut number: N,
+    limits: RangeInclusive<N>,
+    speed: f64,
+    label: egui::Id,
+) -> Option<N> {
+    let drag = DragValue::new(&mut number).range(limits).speed(speed);
+    let drag = ui.add(drag).labelled_by(label);
+    drag.changed().then_some(number)
 }
 
 /// The control of a parameter; its new value where that was changed, `Some(None)` for the default.
@@ -130,58 +141,46 @@ fn control(
     spec: &MethodSpec,
     label: egui::Id,
 ) -> Option<Option<String>> {
-    let (name, about) = (parameter.name, parameter.about);
+    let salt = (salt, parameter.name);
     match parameter.values {
         Values::Number { most, .. } => {
-            let mut x = parameter.number(spec);
+            let x = parameter.number(spec);
             // As fast as the number is large.
             let speed = (x.abs() * 0.01).max(1e-3);
-            let drag = DragValue::new(&mut x).range(0.0..=most).speed(speed);
-            let drag = ui.add(drag).labelled_by(label).on_hover_text(about);
-            drag.changed().then(|| Some(x.to_string()))
+            drag(ui, x, 0.0..=most, speed, label).map(|x| Some(x.to_string()))
         }
         Values::Whole {
-            default: Some(_),
+            default,
             least,
             most,
         } => {
-            let mut n = parameter.count(spec).unwrap_or(least);
-            let drag = ui.add(DragValue::new(&mut n).range(least..=most));
-            let drag = drag.labelled_by(label).on_hover_text(about);
-            drag.changed().then(|| Some(n.to_string()))
-        }
-        Values::Whole {
-            default: None,
-            least,
-            most,
-        } => {
-            let given = parameter.count(spec);
-            let (mut is_given, mut n) = (given.is_some(), given.unwrap_or(least));
-            let mut change = None;
-            ui.horizontal(|ui| {
-                let check = ui.checkbox(&mut is_given, "limit").on_hover_text(about);
-                if check.changed() {
-                    change = Some(is_given.then(|| n.to_string()));
-                }
-                if given.is_some() {
-                    let drag = ui.add(DragValue::new(&mut n).range(least..=most));
-                    if drag.labelled_by(label).changed() {
-                        change = Some(Some(n.to_string()));
-                    }
-                }
+            let count = parameter.count(spec);
+            let (mut is_given, n) = (count.is_some(), count.unwrap_or(least));
+            let number = |ui: &mut Ui| {
+                let changed = drag(ui, n, least..=most, 1.0, label);
+                changed.map(|n| Some(n.to_string()))
+            };
+            if default.is_some() {
+                return number(ui);
+            }
+            let row = ui.horizontal(|ui| {
+                let check = ui.checkbox(&mut is_given, "limit");
+                let dragged = count.and_then(|_| number(ui));
+                let checked = check.on_hover_text(parameter.about).changed();
+                dragged.or_else(|| checked.then(|| is_given.then(|| n.to_string())))
             });
-            change
+            row.inner
         }
         Values::Words(words) => {
             let words = words.iter().map(|word| (*word, Some(word.to_string())));
-            chosen(ui, (salt, name), parameter.word(spec), words, label)
+            chosen(ui, salt, parameter.word(spec), words, label)
         }
         Values::Precision => {
             let now = parameter.word(spec);
             let now = if now.is_empty() { "its own" } else { now };
             let words = Precision::WORDS.map(|word| (word, Some(word.to_string())));
             let all = std::iter::once(("its own", None)).chain(words);
-            chosen(ui, (salt, name), now, all, label)
+            chosen(ui, salt, now, all, label)
         }
     }
 }
@@ -191,9 +190,9 @@ fn chosen<W: AsRef<str>, T>(
     ui: &mut Ui,
     salt: (&str, &str),
     now: &str,
-    words: impl Iterator<Item = (W, Option<T>)>,
+    words: impl Iterator<Item = (W, T)>,
     label: egui::Id,
-) -> Option<Option<T>> {
+) -> Option<T> {
     let mut change = None;
     let list = ComboBox::from_id_salt(salt).selected_text(now);
     let list = list.show_ui(ui, |ui| {
@@ -206,18 +205,6 @@ fn chosen<W: AsRef<str>, T>(
     });
     list.response.labelled_by(label);
     change
-}
-
-/// The same method with another name, which the number is a part of, unless that is empty; and without a parameter.
-fn renamed(spec: &MethodSpec, name: &str, without: &str) -> MethodSpec {
-    let text = spec.to_string();
-    let (own, parameters) = text.split_once(':').unwrap_or((&text, ""));
-    let name = if name.is_empty() { own } else { name };
-    let is_left = |pair: &&str| pair.split('=').next() != Some(without);
-    let left: Vec<&str> = parameters.split(',').filter(is_left).collect();
-    let text = format!("{name}:{}", left.join(","));
-    let text = text.trim_end_matches(':');
-    text.parse().unwrap_or_else(|_| spec.clone())
 }
 
 /// Which network draws.
@@ -247,29 +234,4 @@ fn network(app: &mut App, ui: &mut Ui) {
             app.open_network(Source::named(&app.panels.model));
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_and_defaults_are_set() {
-        for (spec, name, without, want) in [
-            (
-                "wboit-eq10:factor=3e4,targets=f32",
-                "",
-                "factor",
-                "wboit-eq10:targets=f32",
-            ),
-            ("wboit-eq10:factor=3e4", "", "factor", "wboit-eq10"),
-            ("mboit4", "", "targets", "mboit4"),
-            ("kbuffer-4", "kbuffer-8", "", "kbuffer-8"),
-            // What is not allowed changes nothing.
-            ("kbuffer-4", "kbuffer-0", "", "kbuffer-4"),
-        ] {
-            let spec = spec.parse().expect("a method");
-            assert_eq!(renamed(&spec, name, without).to_string(), want);
-        }
-    }
 }

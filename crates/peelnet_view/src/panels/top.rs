@@ -1,7 +1,7 @@
 //! The bar on top: what is open, and how the window looks.
 
 use crate::{app::App, input::KEYS};
-use egui::{ThemePreference, Ui, Window};
+use egui::{Ui, Window};
 use peelnet_scene::suite;
 use std::path::{Path, PathBuf};
 
@@ -75,24 +75,9 @@ fn path(app: &mut App, ui: &mut Ui, chosen: &mut Option<PathBuf>) {
 }
 
 fn look(ui: &mut Ui) {
-    let ctx = ui.ctx().clone();
-    let mut theme = ctx.options(|o| o.theme_preference);
-    for (value, name) in [
-        (ThemePreference::System, "As the system"),
-        (ThemePreference::Light, "Light"),
-        (ThemePreference::Dark, "Dark"),
-    ] {
-        if ui.radio_value(&mut theme, value, name).changed() {
-            ctx.set_theme(theme);
-        }
-    }
+    egui::widgets::global_theme_preference_buttons(ui);
     ui.separator();
-    let mut percent = (ctx.zoom_factor() * 100.0).round();
-    let slider = egui::Slider::new(&mut percent, 100.0..=200.0).step_by(25.0);
-    // Taken when the pointer is released: the slider itself grows with it.
-    if ui.add(slider.suffix(" %").text("Size")).drag_stopped() {
-        ctx.set_zoom_factor(percent / 100.0);
-    }
+    egui::gui_zoom::zoom_menu_buttons(ui);
 }
 
 pub(super) fn help(app: &mut App, ui: &Ui) {
