@@ -66,15 +66,15 @@ fn the_worked_example_as_rows() {
     let dataset = Dataset::open(&out).unwrap();
     let columns = [Column::Transmittance, Column::LinearDepth, Column::AlphaSum];
     let columns = dataset.read_columns(&columns).unwrap();
-    for pixel in columns[0].as_f32().unwrap().chunks(4) {
+    for pixel in columns.transmittance.chunks(4) {
         assert_eq!(pixel, [1.0, 0.5, 0.25, 0.125]);
     }
-    for pixel in columns[1].as_f32().unwrap().chunks(4) {
+    for pixel in columns.linear_depth.chunks(4) {
         for (z, want) in pixel.iter().zip([1.0f32, 2.0, 4.0, 8.0]) {
             assert!((z - want).abs() <= 16.0 * f32::EPSILON * want);
         }
     }
-    assert!(columns[2].as_f32().unwrap().iter().all(|&s| s == 2.4));
+    assert!(columns.alpha_sum.iter().all(|&s| s == 2.4));
 }
 
 /// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same.
@@ -126,7 +126,7 @@ fn extraction_repeats_and_shards_add_up() {
     assert_eq!(files(&at("a")), files(&at("b")));
     assert_eq!(whole.hash, again.hash);
     for i in [2, 1, 3] {
-        let shard = Shard::new(i, 3).unwrap();
+        let shard = Shard { index: i, of: 3 };
         run(&gpu, &scenes(), &sampled(&at("c"), Some(shard)));
     }
     let merged = Dataset::open(at("c")).unwrap();

@@ -81,7 +81,7 @@ fn remote(path: &Path, action: &'static str, error: DatasetError) -> ModelError 
     let (path, source) = match error {
         DatasetError::Io { path, source, .. } => (path, source),
         // Its path is without what could be a password.
-        DatasetError::Usage { path, reason } => (path, Error::other(reason)),
+        DatasetError::Invalid { path, reason } => (path, Error::other(reason)),
         other => (path.to_owned(), Error::other(other)),
     };
     ModelError::Io {

@@ -1,8 +1,12 @@
 //! The fourteen columns: names, order and types, in one table. Everything else in the crate asks this list.
 
 use std::fmt;
+use std::ops::Range;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+
+use crate::error::DatasetError;
 
 /// The type of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,6 +66,46 @@ macro_rules! columns {
             pub(crate) fn column_mut(&mut self, column: Column) -> ColumnMut<'_> {
                 match column {
                     $(Column::$variant => ColumnMut::$kind(&mut self.$name),)+
+                }
+            }
+
+            /// An empty batch with room for `rows` rows.
+            pub fn with_capacity(rows: usize) -> Self {
+                Self {
+                    $($name: Vec::with_capacity(rows),)+
+                }
+            }
+
+            /// Appends some rows of another batch.
+            ///
+            /// # Panics
+            /// If the range is out of bounds.
+            pub fn extend_from(&mut self, other: &Self, rows: Range<usize>) {
+                $(self.$name.extend_from_slice(&other.$name[rows.clone()]);)+
+            }
+
+            /// Appends all values of another batch, of which columns may be empty.
+            pub(crate) fn append(&mut self, other: &Self) {
+                $(self.$name.extend_from_slice(&other.$name);)+
+            }
+
+            /// Drops all rows from `rows` on.
+            pub fn truncate(&mut self, rows: usize) {
+                $(self.$name.truncate(rows);)+
+            }
+
+            /// Checks that all columns have the same length.
+            ///
+            /// # Errors
+            /// Names the first column that differs.
+            pub fn check(&self) -> Result<(), DatasetError> {
+                let rows = self.len();
+                let columns = [$((Column::$variant, self.$name.len()),)+];
+                match columns.into_iter().find(|(_, found)| *found != rows) {
+                    None => Ok(()),
+                    Some((column, found)) => Err(DatasetError::Setting(format!(
+                        "column {column} has {found} values where the others have {rows}"
+                    ))),
                 }
             }
         }
@@ -132,57 +176,7 @@ impl fmt::Display for Column {
     }
 }
 
-/// The values of one column, owned.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ColumnData {
-    /// Values of a float column.
-    F32(Vec<f32>),
-    /// Values of an integer column.
-    U32(Vec<u32>),
-}
-
-impl ColumnData {
-    pub(crate) fn empty(column: Column) -> Self {
-        match column.kind() {
-            ColumnKind::F32 => Self::F32(Vec::new()),
-            ColumnKind::U32 => Self::U32(Vec::new()),
-        }
-    }
-
-    pub(crate) fn extend(&mut self, values: ColumnSlice<'_>) {
-        match (self, values) {
-            (Self::F32(to), ColumnSlice::F32(from)) => to.extend_from_slice(from),
-            (Self::U32(to), ColumnSlice::U32(from)) => to.extend_from_slice(from),
-            _ => unreachable!("a column has one type"),
-        }
-    }
-
-    /// The values of a float column; `None` for an integer column.
-    pub fn as_f32(&self) -> Option<&[f32]> {
-        match self {
-            Self::F32(v) => Some(v),
-            Self::U32(_) => None,
-        }
-    }
-
-    /// The values of an integer column; `None` for a float column.
-    pub fn as_u32(&self) -> Option<&[u32]> {
-        match self {
-            Self::U32(v) => Some(v),
-            Self::F32(_) => None,
-        }
-    }
-
-    /// A view of the values.
-    pub fn as_slice(&self) -> ColumnSlice<'_> {
-        match self {
-            Self::F32(v) => ColumnSlice::F32(v),
-            Self::U32(v) => ColumnSlice::U32(v),
-        }
-    }
-}
-
-/// The values of one column, borrowed.
+/// The values of one column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ColumnSlice<'a> {
     /// Values of a float column.
@@ -191,34 +185,84 @@ pub enum ColumnSlice<'a> {
     U32(&'a [u32]),
 }
 
-impl<'a> ColumnSlice<'a> {
-    /// The values from `start` to `end` (not included).
-    ///
-    /// # Panics
-    /// If the range is out of bounds.
-    pub fn range(self, range: std::ops::Range<usize>) -> ColumnSlice<'a> {
-        match self {
-            Self::F32(v) => Self::F32(&v[range]),
-            Self::U32(v) => Self::U32(&v[range]),
-        }
-    }
-
-    /// Number of values.
-    pub fn len(self) -> usize {
-        match self {
-            Self::F32(v) => v.len(),
-            Self::U32(v) => v.len(),
-        }
-    }
-
-    /// Whether there are no values.
-    pub fn is_empty(self) -> bool {
-        self.len() == 0
-    }
-}
-
 /// The values of one column, for appending.
 pub(crate) enum ColumnMut<'a> {
     F32(&'a mut Vec<f32>),
     U32(&'a mut Vec<u32>),
+}
+
+impl FragmentBatch {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.one_minus_alpha.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Removes all rows and keeps the memory.
+    pub fn clear(&mut self) {
+        self.truncate(0);
+    }
+
+    /// Whether row `a` and row `b` belong to the same pixel.
+    pub(crate) fn same_pixel(&self, a: usize, b: usize) -> bool {
+        self.x[a] == self.x[b] && self.y[a] == self.y[b] && self.view[a] == self.view[b]
+    }
+
+    /// The rows of each pixel, in order.
+    pub fn pixels(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let mut start = 0;
+        std::iter::from_fn(move || {
+            let mut behind = start + 1..self.len();
+            let end = behind.find(|&i| !self.same_pixel(start, i));
+            let pixel = start..end.unwrap_or(self.len());
+            start = pixel.end;
+            (!pixel.is_empty()).then_some(pixel)
+        })
+    }
+
+    /// Finds the first value of a column, from row `start` on, that is not allowed. `first_row` is the number of that row in its part,
+    /// counted from 0; `view` is the part's index, which the `view` column must repeat. `path` is named in the error.
+    pub(crate) fn check_column(
+        &self,
+        path: &Path,
+        column: Column,
+        start: usize,
+        first_row: u64,
+        view: u32,
+    ) -> Result<(), DatasetError> {
+        let (bad, allowed) = match (self.column(column), column) {
+            (ColumnSlice::F32(values), _) => {
+                let values = &values[start..];
+                let (least, most, allowed) = column.float_range();
+                let good = |v: f32| v >= least && v <= most;
+                // Without leaving early, so that it becomes vector instructions; only a failure searches.
+                let all_good = values.iter().fold(true, |all, &v| all & good(v));
+                let bad = || values.iter().position(|&v| !good(v));
+                (if all_good { None } else { bad() }, allowed)
+            }
+            (ColumnSlice::U32(values), Column::View) => (
+                values[start..].iter().position(|&v| v != view),
+                "it must be the index of the part",
+            ),
+            (ColumnSlice::U32(values), Column::FragmentCount) => (
+                values[start..].iter().position(|&v| v == 0),
+                "it must be at least 1",
+            ),
+            (ColumnSlice::U32(_), _) => return Ok(()),
+        };
+        let Some(i) = bad else { return Ok(()) };
+        let value = match self.column(column) {
+            ColumnSlice::F32(v) => v[start + i].to_string(),
+            ColumnSlice::U32(v) => v[start + i].to_string(),
+        };
+        let row = first_row + i as u64 + 1;
+        let reason = format!(
+            "row {row}, column {column}: {value} is not allowed, {allowed}; fix or remove the whole pixel, or write the dataset again"
+        );
+        Err(DatasetError::invalid(path, reason))
+    }
 }

@@ -13,10 +13,10 @@ use peelnet_files::Unfinished;
 
 use crate::error::DatasetError;
 use crate::formats::hash_file;
-use crate::manifest::{FileEntry, Manifest};
+use crate::manifest::Manifest;
+use crate::parts::{PartRecord, part_of_file};
 use crate::plan::{Plan, host};
-use crate::record::{self, PartRecord};
-use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PLAN, Place};
+use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, store_at};
 
 /// Prefix of the hidden folder of a writer.
 const PARTIAL: &str = ".partial-";
@@ -35,24 +35,21 @@ const JUST_MADE: Duration = Duration::from_mins(1);
 /// Where a writer that is alive has parts until they are finished. Dropping it removes the folder.
 #[derive(Debug)]
 pub(crate) struct Partial {
-    path: PathBuf,
-    /// Of a folder inside the dataset's.
+    pub path: PathBuf,
     lock: Option<File>,
     _unfinished: Unfinished,
 }
 
 impl Partial {
-    /// Creates and locks a hidden folder in a dataset's.
-    pub(crate) fn hidden(folder: &Path) -> Result<Self, DatasetError> {
-        let meta = folder.join(META);
-        fs::create_dir_all(&meta).map_err(DatasetError::io(&meta, "create the folder"))?;
-        let builder = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(&meta);
-        let hidden = builder.map_err(DatasetError::io(folder, "write into"))?;
+    /// Creates and locks a hidden folder.
+    pub(crate) fn create(parent: &Path) -> Result<Self, DatasetError> {
+        let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(parent);
+        let hidden = hidden.map_err(DatasetError::io(parent, "write into"))?;
         let _unfinished = Unfinished::new(hidden.path());
         let lock_path = hidden.path().join(LOCK);
         // Locked before it has its name: nobody sees the folder of a living writer with a lock that is free.
         let lock = || -> std::io::Result<File> {
-            let mut lock = tempfile::Builder::new().prefix(PUT).tempfile_in(&meta)?;
+            let mut lock = tempfile::Builder::new().prefix(PUT).tempfile_in(parent)?;
             lock.as_file().lock()?;
             lock.write_all(host().as_bytes())?;
             lock.persist(&lock_path).map_err(|e| e.error)
@@ -64,27 +61,6 @@ impl Partial {
             lock,
             _unfinished,
         })
-    }
-
-    /// Creates a folder on this machine, for a dataset on another one.
-    pub(crate) fn local() -> Result<Self, DatasetError> {
-        let folder = tempfile::tempdir().map_err(DatasetError::io(
-            &std::env::temp_dir(),
-            "create a temporary folder",
-        ))?;
-        Ok(Self {
-            _unfinished: Unfinished::new(folder.path()),
-            path: folder.keep(),
-            lock: None,
-        })
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub(crate) fn is_hidden(&self) -> bool {
-        self.lock.is_some()
     }
 }
 
@@ -112,31 +88,40 @@ fn remove_partial(path: &Path) -> std::io::Result<()> {
     fs::remove_dir(path)
 }
 
-/// The files of the dataset in a folder, in an order in which they can be removed: those that list others last.
-///
-/// # Errors
-/// The first file in the folder that is not a dataset's.
+/// The files of the dataset in a folder, in an order in which they can be removed: those that list others last. What living writers have
+/// in `_peelnet/` is left out. The first file in the folder that is not a dataset's is an error.
 fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
+    let store = folder_store(folder);
     let mut control = Vec::new();
+    for meta in [META, PARTS.trim_end_matches('/')] {
+        match fs::symlink_metadata(folder.join(meta)) {
+            Err(e) if e.kind() == ErrorKind::NotFound => continue,
+            Ok(found) if found.is_dir() => {}
+            _ => return Err(not_ours(folder, meta, None)),
+        }
+        let inside = names_in(&folder.join(meta))?.into_iter();
+        let inside = inside.filter(|n| !n.starts_with(PARTIAL) && !n.starts_with(PUT));
+        control.extend(inside.map(|n| format!("{meta}/{n}")));
+    }
+    control.retain(|name| format!("{name}/") != PARTS);
+    control.sort();
     let mut listed: BTreeMap<String, u64> = BTreeMap::new();
-    let mut list =
-        |files: Vec<FileEntry>| listed.extend(files.into_iter().map(|f| (f.name, f.bytes)));
-    let store = Folder::new(folder, folder);
-    for name in control_names(folder)? {
-        let refuse = |e| not_ours(folder, &name, Some(e));
-        if name == PLAN {
+    for name in &control {
+        let refuse = |e| not_ours(folder, name, Some(e));
+        let parts = if name == PLAN {
             Plan::read(&store).map_err(refuse)?;
+            Vec::new()
         } else if name == MANIFEST {
             let manifest = Manifest::read(&store).map_err(refuse)?;
-            let parts = manifest.into_iter().flat_map(|m| m.parts);
-            parts.for_each(|part| list(part.files));
-        } else if let Some(index) = record::index(&name) {
+            manifest.map_or(Vec::new(), |m| m.parts)
+        } else if let Some(index) = PartRecord::index(name) {
             let record = PartRecord::read(&store, index, None).map_err(refuse)?;
-            record.into_iter().for_each(|r| list(r.part.files));
+            record.map(|r| r.part).into_iter().collect()
         } else {
-            return Err(not_ours(folder, &name, None));
-        }
-        control.push(folder.join(name));
+            return Err(not_ours(folder, name, None));
+        };
+        let files = parts.into_iter().flat_map(|part| part.files);
+        listed.extend(files.map(|f| (f.name, f.bytes)));
     }
     let mut files = Vec::new();
     for name in names_in(folder)?.into_iter().filter(|n| n != META) {
@@ -147,26 +132,15 @@ fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
         }
         files.push(path);
     }
-    files.extend(control.into_iter().rev());
+    files.extend(control.iter().rev().map(|name| folder.join(name)));
     Ok(files)
 }
 
-/// Names of what lies in `_peelnet/`, sorted, without what living writers have there.
-fn control_names(folder: &Path) -> Result<Vec<String>, DatasetError> {
-    let mut names = Vec::new();
-    for meta in [META.to_owned(), format!("{META}/parts")] {
-        match fs::symlink_metadata(folder.join(&meta)) {
-            Err(e) if e.kind() == ErrorKind::NotFound => continue,
-            Ok(found) if found.is_dir() => {}
-            _ => return Err(not_ours(folder, &meta, None)),
-        }
-        let inside = names_in(&folder.join(&meta))?.into_iter();
-        let inside = inside.filter(|n| !n.starts_with(PARTIAL) && !n.starts_with(PUT));
-        names.extend(inside.map(|n| format!("{meta}/{n}")));
+fn folder_store(folder: &Path) -> Folder {
+    Folder {
+        path: folder.to_owned(),
+        scratch: None,
     }
-    names.retain(|n| *n != format!("{META}/parts"));
-    names.sort();
-    Ok(names)
 }
 
 fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetError {
@@ -183,34 +157,35 @@ fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetErr
 /// # Errors
 /// Those of [`DatasetWriter::create`](crate::DatasetWriter::create) for the folder.
 pub fn replaces(folder: &Path, join: bool) -> Result<bool, DatasetError> {
-    // An object store's dataset is never replaced.
-    let Place::Folder(folder) = Place::of(folder)? else {
+    let store = store_at(folder)?;
+    let Some(folder) = store.folder().filter(|f| !join && f.is_dir()) else {
         return Ok(false);
     };
     // What a writer that died left behind is for the next writer to sort out.
-    if !folder.is_dir() || join || !hidden_folders(&folder)?.is_empty() {
-        return Ok(false);
-    }
-    Ok(!older_files(&folder)?.is_empty())
+    let is_left = hidden_names(folder)?.iter().any(|n| n.starts_with(PARTIAL));
+    Ok(!is_left && !older_files(folder)?.is_empty())
 }
 
-/// Prepares a folder for a whole dataset: removes what writers that died left in it. Returns whether there is an older dataset.
-///
-/// # Errors
-/// A foreign file, or a writer that is alive.
-pub(crate) fn prepare(folder: &Path) -> Result<bool, DatasetError> {
-    if remove_abandoned(folder)? {
-        return Err(DatasetError::Busy {
-            path: folder.to_owned(),
-        });
+/// Prepares a folder for a writer: removes what writers that died left in it. Returns whether there is an older dataset that a writer of a
+/// whole one is going to replace; one that joins replaces nothing. A foreign file is an error, and for a whole dataset a living writer.
+pub(crate) fn prepare(folder: &Path, joins: bool) -> Result<bool, DatasetError> {
+    let any_alive = remove_abandoned(folder)?;
+    if !joins {
+        return match any_alive {
+            true => Err(DatasetError::busy(folder)),
+            false => Ok(!older_files(folder)?.is_empty()),
+        };
     }
-    Ok(!older_files(folder)?.is_empty())
+    // First the names, then the plan: whatever another writer created before its plan is ours.
+    let names = names_in(folder)?;
+    let found = names.iter().find(|n| *n != META);
+    match found.filter(|_| !folder.join(PLAN).exists()) {
+        Some(found) => Err(not_ours(folder, found, None)),
+        None => Ok(false),
+    }
 }
 
-/// Removes the older dataset.
-///
-/// # Errors
-/// A file that came meanwhile and is foreign, before anything is removed.
+/// Removes the older dataset, or nothing where a foreign file came meanwhile.
 pub(crate) fn remove_older(folder: &Path) -> Result<(), DatasetError> {
     for path in older_files(folder)? {
         fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
@@ -218,32 +193,15 @@ pub(crate) fn remove_older(folder: &Path) -> Result<(), DatasetError> {
     Ok(())
 }
 
-/// Prepares a folder for one of several writers of a dataset.
-///
-/// # Errors
-/// A foreign file where there is no dataset yet.
-pub(crate) fn prepare_to_join(folder: &Path) -> Result<(), DatasetError> {
-    remove_abandoned(folder)?;
-    // First the names, then the plan: whatever another writer created before its plan is ours.
-    let names = names_in(folder)?;
-    if Plan::read(&Folder::new(folder, folder))?.is_some() {
-        return Ok(());
-    }
-    match names.iter().find(|n| *n != META) {
-        Some(found) => Err(not_ours(folder, found, None)),
-        None => Ok(()),
-    }
-}
-
-/// The hidden folders of writers, alive or not.
-fn hidden_folders(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
+/// Names in `_peelnet/` of what writers have there, alive or not.
+fn hidden_names(folder: &Path) -> Result<Vec<String>, DatasetError> {
     let meta = folder.join(META);
     if !meta.is_dir() {
         return Ok(Vec::new());
     }
-    let names = names_in(&meta)?.into_iter();
-    let names = names.filter(|n| n.starts_with(PARTIAL));
-    Ok(names.map(|n| meta.join(n)).collect())
+    let mut names = names_in(&meta)?;
+    names.retain(|n| n.starts_with(PARTIAL) || n.starts_with(PUT));
+    Ok(names)
 }
 
 /// Whether a hidden folder's writer may be alive.
@@ -271,7 +229,16 @@ fn is_younger(path: &Path, than: Duration) -> bool {
 pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
     let mut dead = Vec::new();
     let mut any_alive = false;
-    for hidden in hidden_folders(folder)? {
+    for name in hidden_names(folder)? {
+        let hidden = folder.join(META).join(&name);
+        if name.starts_with(PUT) {
+            // A small file of a writer that was killed while it created this one.
+            if hidden.is_file() && !is_younger(&hidden, ABANDONED_AFTER) {
+                // Another writer may have done it.
+                let _ = fs::remove_file(&hidden);
+            }
+            continue;
+        }
         let Ok(inside) = names_in(&hidden) else {
             // Its writer came to its end between the two looks.
             continue;
@@ -282,8 +249,7 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
         let is_known = |n: &String| n == LOCK || n.starts_with(FRAGMENTS) || n.starts_with(PUT);
         let has_lock = inside.is_empty() || inside.iter().any(|n| n == LOCK);
         if !has_lock || !inside.iter().all(is_known) {
-            let name = hidden.strip_prefix(folder).unwrap_or(&hidden);
-            return Err(not_ours(folder, &name.to_string_lossy(), None));
+            return Err(not_ours(folder, &format!("{META}/{name}"), None));
         }
         if is_alive(&hidden) {
             any_alive = true;
@@ -291,7 +257,6 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
             dead.push((hidden, inside));
         }
     }
-    remove_old_puts(folder)?;
     for (hidden, inside) in dead {
         // Beside a living writer, a file without a record may be that one's.
         if !any_alive {
@@ -306,22 +271,6 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
     Ok(any_alive)
 }
 
-/// Removes small files of writers that were killed while they created these.
-fn remove_old_puts(folder: &Path) -> Result<(), DatasetError> {
-    let meta = folder.join(META);
-    if !meta.is_dir() {
-        return Ok(());
-    }
-    for name in names_in(&meta)?.iter().filter(|n| n.starts_with(PUT)) {
-        let path = meta.join(name);
-        if path.is_file() && !is_younger(&path, ABANDONED_AFTER) {
-            // Another writer may have done it.
-            let _ = fs::remove_file(&path);
-        }
-    }
-    Ok(())
-}
-
 /// Removes the files of a part that a writer had moved into place without a record. They are still in its hidden folder, so they are known
 /// by their contents.
 fn remove_unrecorded(folder: &Path, hidden: &Path, inside: &[String]) -> Result<(), DatasetError> {
@@ -329,11 +278,11 @@ fn remove_unrecorded(folder: &Path, hidden: &Path, inside: &[String]) -> Result<
         return Ok(());
     }
     for name in inside {
-        let Some(index) = record::part_index(name) else {
+        let Some(index) = part_of_file(name) else {
             continue;
         };
         let (path, copy) = (folder.join(name), hidden.join(name));
-        if !path.is_file() || folder.join(record::name(index)).exists() {
+        if !path.is_file() || folder.join(PartRecord::name(index)).exists() {
             continue;
         }
         let hash = |path: &Path| hash_file(path).map_err(DatasetError::io(path, "read"));

@@ -7,8 +7,9 @@ mod parquet;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read as _, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::{Mutex, PoisonError};
 
 use peelnet_files::hex;
 use serde::{Deserialize, Serialize};
@@ -110,8 +111,10 @@ impl FromStr for Format {
 
     fn from_str(text: &str) -> Result<Self, DatasetError> {
         let found = Self::ALL.into_iter().find(|f| f.name() == text);
-        found.ok_or_else(|| DatasetError::UnknownFormat {
-            text: text.to_owned(),
+        found.ok_or_else(|| {
+            DatasetError::Setting(format!(
+                "dataset format {text:?}: expected csv, parquet or npy"
+            ))
         })
     }
 }
@@ -134,54 +137,78 @@ pub(crate) trait PartSource: Send {
 /// Compares a file's column names with the schema's.
 fn check_names(path: &Path, place: &str, found: &[String]) -> Result<(), DatasetError> {
     let expected = Column::ALL.map(Column::name);
-    if let Some(missing) = expected.iter().find(|c| !found.iter().any(|n| n == *c)) {
-        return Err(DatasetError::format(
-            path,
-            format!(
-                "{place}: column {missing} is missing; the columns must be {}",
-                expected.join(", ")
-            ),
-        ));
-    }
-    for (k, name) in found.iter().enumerate() {
-        let wanted = expected.get(k).copied().unwrap_or("no column");
-        if name != wanted {
-            return Err(DatasetError::format(
-                path,
-                format!(
-                    "{place}: column {} is {name:?} where {wanted} is expected; the columns must be {}, in this order",
-                    k + 1,
-                    expected.join(", ")
-                ),
-            ));
+    let missing = expected.iter().find(|c| !found.iter().any(|n| n == *c));
+    let wanted = |k: usize| expected.get(k).copied().unwrap_or("no column");
+    let problem = if let Some(missing) = missing {
+        format!("column {missing} is missing")
+    } else if let Some(k) = (0..found.len()).find(|&k| found[k] != wanted(k)) {
+        let (number, name, wanted) = (k + 1, &found[k], wanted(k));
+        format!("column {number} is {name:?} where {wanted} is expected")
+    } else {
+        return Ok(());
+    };
+    let expected = expected.join(", ");
+    let reason = format!("{place}: {problem}; the columns must be {expected}, in this order");
+    Err(DatasetError::invalid(path, reason))
+}
+
+/// The results of some work on each item, in the items' order, from so many threads. Items may cost very different times: each thread
+/// takes the next one.
+pub(crate) fn in_parallel<T: Send, R: Send>(
+    threads: usize,
+    items: impl IntoIterator<Item = T, IntoIter: Send>,
+    work: impl Fn(T) -> R + Sync,
+) -> Vec<R> {
+    let items = Mutex::new(items.into_iter().enumerate());
+    let take = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work_some = || {
+        let mut done = Vec::new();
+        while let Some((k, item)) = take() {
+            done.push((k, work(item)));
         }
-    }
-    Ok(())
+        done
+    };
+    let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work_some)).collect();
+        let threads = threads.into_iter();
+        threads
+            .flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
+            .collect()
+    });
+    done.sort_unstable_by_key(|(k, _)| *k);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Writes to a file and hashes the bytes on the way. Give it large slices: it does not buffer.
 struct HashedFile {
+    path: PathBuf,
     file: File,
     hasher: Sha256,
     bytes: u64,
 }
 
 impl HashedFile {
-    fn create(path: &Path) -> Result<Self, DatasetError> {
+    fn create(path: PathBuf) -> Result<Self, DatasetError> {
         Ok(Self {
-            file: File::create_new(path).map_err(DatasetError::io(path, "create"))?,
+            file: File::create_new(&path).map_err(DatasetError::io(&path, "create"))?,
+            path,
             hasher: Sha256::new(),
             bytes: 0,
         })
     }
 
-    fn finish(self, name: String) -> FileEntry {
+    fn finish(self) -> FileEntry {
         FileEntry {
-            name,
+            name: file_name(&self.path),
             bytes: self.bytes,
             sha256: hex(&self.hasher.finalize()),
         }
     }
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 impl Write for HashedFile {

@@ -52,32 +52,30 @@
 //! one run, by shards, or with interruptions. [`summary`] recomputes what the rows claim about one another, and [`split`] says which pixels
 //! train and which judge.
 
-mod batch;
 mod column;
 mod error;
 mod folder;
 mod formats;
 mod manifest;
+mod parts;
 mod plan;
 mod reader;
-mod record;
-mod seal;
 pub mod split;
 mod store;
 pub mod summary;
 mod writer;
 
-pub use column::{Column, ColumnData, ColumnKind, ColumnSlice, FragmentBatch};
+pub use column::{Column, ColumnKind, ColumnSlice, FragmentBatch};
 pub use error::DatasetError;
 pub use folder::replaces;
 pub use formats::{Format, ROW_GROUP_ROWS, sha256};
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
+pub use parts::{seal, unsealed_parts};
 pub use plan::{Header, Shard, worker_name};
 pub use reader::{Batches, Dataset};
-pub use seal::{seal, unsealed_parts};
 pub use split::{Split, SplitBy, Subset};
 pub use store::{create_object, is_remote, read_object};
 pub use summary::Summary;
-pub use writer::{DatasetWriter, PartCounts, PartInfo, PartWriter};
+pub use writer::{DatasetWriter, PartWriter};

@@ -1,7 +1,6 @@
 //! `_peelnet/manifest.json`: what a dataset is made of and where it comes from. And what its JSON files have in common.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 use peelnet_files::hex;
 use serde::de::DeserializeOwned;
@@ -19,8 +18,8 @@ pub const SCHEMA_VERSION: u32 = 2;
 /// Work items (scene × copy × view) of one dataset.
 pub const MAX_WORK_ITEMS: u32 = 1 << 16;
 
-/// Bytes of a manifest or plan that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
-pub(crate) const MAX_BYTES: u64 = 1 << 28;
+/// Bytes of a manifest, plan or record that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
+const MAX_BYTES: u64 = 1 << 28;
 
 /// The whole manifest. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +95,7 @@ pub struct SceneEntry {
 }
 
 /// A view's camera, in the scene file's terms.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CameraInfo {
     /// Eye, scene units.
     pub position: [f32; 3],
@@ -112,8 +111,8 @@ pub struct CameraInfo {
     pub far: f32,
 }
 
-/// A work item's rows: one view of one copy of one scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A work item's rows: one view of one copy of one scene. From `rows` on, its writer fills the fields in.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Index of the work item: the rows' `view` value.
     pub index: u32,
@@ -154,17 +153,29 @@ pub struct FileEntry {
     pub sha256: String,
 }
 
+impl Part {
+    /// First part of the names of the part's files: `fragments-00003-cups-v1`, with `-c2` for a varied copy.
+    pub(crate) fn stem(&self, scene_name: &str) -> String {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+        let scene = scene_name.chars().take(64);
+        let scene: String = scene.map(|c| if is_plain(c) { c } else { '-' }).collect();
+        let copy = match self.copy {
+            0 => String::new(),
+            copy => format!("-c{copy}"),
+        };
+        format!("{FRAGMENTS}{:05}-{scene}{copy}-v{}", self.index, self.view)
+    }
+}
+
 impl Manifest {
     /// Reads and checks the manifest of a sealed dataset; `None` where there is none.
     pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let Some(bytes) = store.get(MANIFEST, MAX_BYTES)? else {
-            return Ok(None);
-        };
-        let path = store.shown(MANIFEST);
-        let manifest: Self = from_json(&path, "manifest", &bytes)?;
-        let checked = manifest.check();
-        checked.map_err(|reason| DatasetError::manifest(&path, reason))?;
-        Ok(Some(manifest))
+        let wrong = |reason: String| DatasetError::manifest(&store.shown(MANIFEST), reason);
+        let manifest: Option<Self> = read_json(store, MANIFEST, "manifest", wrong)?;
+        if let Some(manifest) = &manifest {
+            manifest.check().map_err(wrong)?;
+        }
+        Ok(manifest)
     }
 
     /// What the types cannot say.
@@ -261,18 +272,6 @@ impl Manifest {
         self.parts.len() == self.work_items as usize
     }
 
-    /// Recomputes the totals and the hash from the parts.
-    pub(crate) fn total(&mut self) {
-        self.parts.sort_by_key(|p| p.index);
-        // Records come from outside, with any numbers in them.
-        let sum = |of: fn(&Part) -> u64| self.parts.iter().map(of).fold(0, u64::saturating_add);
-        self.rows = sum(|p| p.rows);
-        self.pixels = sum(|p| p.pixels);
-        self.lost_fragments = sum(|p| p.lost_fragments);
-        self.coplanar_ties = sum(|p| p.coplanar_ties);
-        self.hash = hash_of_parts(&self.parts);
-    }
-
     /// Rows of each scene, by name: for a training run's provenance.
     pub fn rows_by_scene(&self) -> BTreeMap<&str, u64> {
         let mut rows = BTreeMap::new();
@@ -284,29 +283,37 @@ impl Manifest {
     }
 }
 
-/// Reads a manifest, plan or record: the schema version first, because another version's fields are bound to look wrong.
-pub(crate) fn from_json<T: DeserializeOwned>(
-    path: &Path,
+/// Reads a manifest, plan or record; `None` where there is none. The schema version first, because another version's fields are bound to
+/// look wrong.
+pub(crate) fn read_json<T: DeserializeOwned>(
+    store: &dyn Store,
+    name: &str,
     what: &str,
-    bytes: &[u8],
-) -> Result<T, DatasetError> {
+    wrong: impl Fn(String) -> DatasetError,
+) -> Result<Option<T>, DatasetError> {
     /// The version alone; everything else is skipped.
     #[derive(Deserialize)]
     struct Version {
         #[serde(default)]
         schema: serde_json::Value,
     }
-    let wrong = |reason: String| DatasetError::manifest(path, reason);
+    let Some(bytes) = store.get(name, MAX_BYTES)? else {
+        return Ok(None);
+    };
     let version: Version =
-        serde_json::from_slice(bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
+        serde_json::from_slice(&bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
     match version.schema.as_u64() {
         None => Err(wrong("the field `schema` is missing".to_owned())),
-        Some(found) if found != u64::from(SCHEMA_VERSION) => Err(DatasetError::Schema {
-            path: path.to_owned(),
-            found,
-        }),
+        Some(found) if found != u64::from(SCHEMA_VERSION) => Err(DatasetError::invalid(
+            &store.shown(name),
+            format!(
+                "schema version {found}, but this program reads version {SCHEMA_VERSION}; write the dataset again with this version's `peelnet extract`"
+            ),
+        )),
         // From the text again, so that the message has the line.
-        Some(_) => serde_json::from_slice(bytes).map_err(|e| wrong(format!("wrong {what}: {e}"))),
+        Some(_) => serde_json::from_slice(&bytes)
+            .map(Some)
+            .map_err(|e| wrong(format!("wrong {what}: {e}"))),
     }
 }
 
@@ -326,7 +333,7 @@ pub(crate) fn columns() -> Vec<ColumnEntry> {
 }
 
 /// The dataset's hash: sha256 over one line `index sha256` for each file, by part and then by column.
-fn hash_of_parts(parts: &[Part]) -> String {
+pub(crate) fn hash_of_parts(parts: &[Part]) -> String {
     let mut hasher = Sha256::new();
     for part in parts {
         for file in &part.files {

@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::DatasetError;
 use crate::formats::{Format, sha256};
 use crate::manifest::{
-    MAX_BYTES, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns, from_json,
+    MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns, hash_of_parts, read_json,
     to_json,
 };
 use crate::store::{PLAN, Store};
 
 /// What is known about a dataset before its first row: what all its writers agree on, and who this one is. The plan's file is its JSON,
 /// with these names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Version of the program.
     pub tool_version: String,
@@ -57,11 +57,6 @@ pub struct Header {
 }
 
 impl Header {
-    /// Whether the writer adds to a dataset that may be there.
-    pub(crate) const fn joins(&self) -> bool {
-        self.resume || self.shard.is_some()
-    }
-
     /// Refuses what no dataset has.
     pub(crate) fn check(&self, folder: &Path) -> Result<(), DatasetError> {
         if self.work_items > MAX_WORK_ITEMS {
@@ -69,15 +64,14 @@ impl Header {
                 items: self.work_items.into(),
             });
         }
-        if self.scenes.is_empty() || self.work_items == 0 {
-            let reason = "a dataset needs at least one scene and one view";
-            return Err(DatasetError::usage(folder, reason));
-        }
-        if !(self.pixels_fraction > 0.0 && self.pixels_fraction <= 1.0) {
-            let reason = "the fraction of pixels must be above 0 and at most 1";
-            return Err(DatasetError::usage(folder, reason));
-        }
-        Ok(())
+        let reason = if self.scenes.is_empty() || self.work_items == 0 {
+            "a dataset needs at least one scene and one view"
+        } else if !(self.pixels_fraction > 0.0 && self.pixels_fraction <= 1.0) {
+            "the fraction of pixels must be above 0 and at most 1"
+        } else {
+            return Ok(());
+        };
+        Err(DatasetError::invalid(folder, reason))
     }
 }
 
@@ -148,31 +142,27 @@ impl Plan {
     }
 
     /// Reads and checks a dataset's plan; `None` where there is none.
-    ///
-    /// # Errors
-    /// A plan that cannot be read or was edited.
     pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let Some(bytes) = store.get(PLAN, MAX_BYTES)? else {
+        let wrong = |reason: String| DatasetError::manifest(&store.shown(PLAN), reason);
+        let Some(plan) = read_json::<Self>(store, PLAN, "plan", wrong)? else {
             return Ok(None);
         };
-        let path = store.shown(PLAN);
-        let plan: Self = from_json(&path, "plan", &bytes)?;
         let items = plan.header.work_items;
         if items == 0 || items > MAX_WORK_ITEMS {
-            let reason = format!("{items} work items, and from 1 to {MAX_WORK_ITEMS} are read");
-            return Err(DatasetError::manifest(&path, reason));
+            return Err(wrong(format!(
+                "{items} work items, and from 1 to {MAX_WORK_ITEMS} are read"
+            )));
         }
         if plan.hash != plan.computed_hash() {
-            let reason = "`hash` does not fit the plan: it was edited";
-            return Err(DatasetError::manifest(&path, reason));
+            return Err(wrong(
+                "`hash` does not fit the plan: it was edited".to_owned(),
+            ));
         }
         Ok(Some(plan))
     }
 
-    /// Makes this the dataset's plan, or checks that the one that is there is the same. Returns the dataset's plan, and whether it is new.
-    ///
-    /// # Errors
-    /// A plan that differs, which names the first difference.
+    /// Makes this the dataset's plan, or checks that the one that is there is the same; the error names the first difference. Returns the
+    /// dataset's plan, and whether it is new.
     pub(crate) fn agree(&self, store: &dyn Store) -> Result<(Self, bool), DatasetError> {
         // The plan that is there first: one request less for all writers but the first.
         let there = match Self::read(store)? {
@@ -183,26 +173,27 @@ impl Plan {
             there => there,
         };
         let Some(there) = there else {
-            return Err(DatasetError::Busy {
-                path: store.path().to_owned(),
-            });
+            return Err(DatasetError::busy(store.path()));
         };
         match self.difference(&there) {
             None => Ok((there, false)),
-            Some((field, mine, theirs)) => Err(DatasetError::PlanDiffers {
-                path: store.path().to_owned(),
-                difference: format!(
-                    "its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}",
+            Some((field, mine, theirs)) => Err(DatasetError::invalid(
+                store.path(),
+                format!(
+                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder",
                     there.header.worker, self.header.worker
                 ),
-            }),
+            )),
         }
     }
 
     /// The manifest of these parts.
-    pub(crate) fn manifest(&self, parts: Vec<Part>) -> Manifest {
+    pub(crate) fn manifest(&self, mut parts: Vec<Part>) -> Manifest {
+        parts.sort_by_key(|p| p.index);
+        // Records come from outside, with any numbers in them.
+        let sum = |of: fn(&Part) -> u64| parts.iter().map(of).fold(0, u64::saturating_add);
         let header = self.header.clone();
-        let mut manifest = Manifest {
+        Manifest {
             schema: self.schema,
             plan: self.hash.clone(),
             tool_version: header.tool_version,
@@ -217,15 +208,13 @@ impl Plan {
             settings: header.settings,
             scenes: header.scenes,
             work_items: header.work_items,
-            rows: 0,
-            pixels: 0,
-            lost_fragments: 0,
-            coplanar_ties: 0,
-            hash: String::new(),
+            rows: sum(|p| p.rows),
+            pixels: sum(|p| p.pixels),
+            lost_fragments: sum(|p| p.lost_fragments),
+            coplanar_ties: sum(|p| p.coplanar_ties),
+            hash: hash_of_parts(&parts),
             parts,
-        };
-        manifest.total();
-        manifest
+        }
     }
 }
 
@@ -241,19 +230,6 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Shard `index` of `of`.
-    ///
-    /// # Errors
-    /// [`DatasetError::Shard`] if `index` is not from 1 to `of`, or `of` is above [`MAX_WORK_ITEMS`].
-    pub fn new(index: u32, of: u32) -> Result<Self, DatasetError> {
-        if !(1..=of).contains(&index) || of > MAX_WORK_ITEMS {
-            return Err(DatasetError::Shard {
-                text: format!("{index}/{of}"),
-            });
-        }
-        Ok(Self { index, of })
-    }
-
     /// Whether this shard writes work item `item`.
     pub const fn contains(self, item: u32) -> bool {
         item % self.of == self.index % self.of
@@ -266,10 +242,14 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, DatasetError> {
         let numbers = text.split_once('/');
         let numbers = numbers.and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-        let shard = numbers.and_then(|(index, of)| Self::new(index, of).ok());
-        shard.ok_or_else(|| DatasetError::Shard {
-            text: text.to_owned(),
-        })
+        match numbers {
+            Some((index, of)) if (1..=of).contains(&index) && of <= MAX_WORK_ITEMS => {
+                Ok(Self { index, of })
+            }
+            _ => Err(DatasetError::Setting(format!(
+                "shard {text:?}: expected I/N with whole numbers N from 1 to {MAX_WORK_ITEMS} and I from 1 to N, for example 2/4"
+            ))),
+        }
     }
 }
 

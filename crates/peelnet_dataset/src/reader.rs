@@ -5,14 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::batch::check_column;
-use crate::column::{Column, ColumnData, FragmentBatch};
+use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
 use crate::formats::PartSource;
 use crate::manifest::{Manifest, Part};
+use crate::parts;
 use crate::plan::Plan;
-use crate::seal;
-use crate::store::{Fetched, Place, Store};
+use crate::store::{Fetched, Store, open_store};
 
 /// Rows that are read and checked at once.
 const CHUNK_ROWS: usize = 1 << 16;
@@ -35,20 +34,17 @@ impl Dataset {
     /// its rows are read, or all at once by [`Dataset::verify`].
     ///
     /// # Errors
-    /// [`DatasetError::Unsealed`] if parts or the seal are missing; if the manifest is missing or wrong, or a file is missing or has
-    /// another length.
+    /// If parts or the seal are missing, the manifest is missing or wrong, or a file is missing or has another length.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, DatasetError> {
         let path = path.as_ref();
-        let store = Place::of(path)?.open()?;
+        let store = open_store(path)?;
         let Some(manifest) = Manifest::read(&*store)? else {
             return Err(match Plan::read(&*store)? {
-                Some(plan) => seal::unsealed(&*store, &plan),
-                None => DatasetError::NoManifest {
-                    path: path.to_owned(),
-                },
+                Some(plan) => parts::unsealed(&*store, &plan),
+                None => parts::no_manifest(path),
             });
         };
-        seal::check_files(&*store, &manifest, false)?;
+        parts::check_files(&*store, &manifest, false)?;
         let files = |part: &Part| part.files.iter().map(|_| AtomicBool::new(false)).collect();
         Ok(Self {
             path: path.to_owned(),
@@ -61,7 +57,7 @@ impl Dataset {
     /// Recomputes the sha256 of every file.
     ///
     /// # Errors
-    /// [`DatasetError::PartDamaged`] names the first file that differs from the manifest.
+    /// Names the first file that differs from the manifest.
     pub fn verify(&self) -> Result<(), DatasetError> {
         for (k, part) in self.manifest.parts.iter().enumerate() {
             for (file, entry) in part.files.iter().enumerate() {
@@ -81,7 +77,12 @@ impl Dataset {
                 "was cut or changed: sha256 {found} where the manifest says {}",
                 peelnet_files::printable(&entry.sha256)
             );
-            return Err(seal::damaged(&*self.store, part.index, &entry.name, reason));
+            return Err(parts::damaged(
+                &*self.store,
+                part.index,
+                &entry.name,
+                &reason,
+            ));
         }
         self.verified[k][file].store(true, Ordering::Relaxed);
         Ok(())
@@ -151,6 +152,9 @@ impl Dataset {
         let mut columns = columns.to_vec();
         columns.sort();
         columns.dedup();
+        if columns.is_empty() {
+            return Ok(());
+        }
         let mut table = FragmentBatch::default();
         for k in (0..self.manifest.parts.len()).filter(|&k| keep(&self.manifest.parts[k])) {
             let mut part = OpenPart::open(self, k, &columns)?;
@@ -162,34 +166,15 @@ impl Dataset {
         Ok(())
     }
 
-    /// Reads columns into memory, in the order asked for. Parquet and NPY read these columns only; memory grows with the rows.
+    /// Reads columns into memory; the other columns are empty. Parquet and NPY read these columns only; memory grows with the rows.
     ///
     /// # Errors
     /// If a file cannot be read, or a value is out of its column's range.
-    pub fn read_columns(&self, columns: &[Column]) -> Result<Vec<ColumnData>, DatasetError> {
-        self.read_columns_where(columns, |_| true)
-    }
-
-    /// As [`Dataset::read_columns`], of the parts that the filter keeps.
-    ///
-    /// # Errors
-    /// If a file cannot be read, or a value is out of its column's range.
-    pub fn read_columns_where(
-        &self,
-        columns: &[Column],
-        keep: impl FnMut(&Part) -> bool,
-    ) -> Result<Vec<ColumnData>, DatasetError> {
-        if columns.is_empty() {
-            return Ok(Vec::new());
-        }
+    pub fn read_columns(&self, columns: &[Column]) -> Result<FragmentBatch, DatasetError> {
         // No room is taken ahead: the manifest can promise any number of rows.
-        let mut data: Vec<ColumnData> = columns.iter().map(|&c| ColumnData::empty(c)).collect();
-        self.read_pieces(columns, keep, |piece| {
-            for (data, &column) in data.iter_mut().zip(columns) {
-                data.extend(piece.column(column));
-            }
-        })?;
-        Ok(data)
+        let mut all = FragmentBatch::default();
+        self.read_pieces(columns, |_| true, |piece| all.append(piece))?;
+        Ok(all)
     }
 }
 
@@ -212,33 +197,28 @@ impl OpenPart {
         let fetch = |&file: &usize| dataset.store.fetch(&part.files[file].name);
         let files: Vec<Fetched> = numbers.iter().map(fetch).collect::<Result<_, _>>()?;
         // Once for all readers.
-        let mut unverified = numbers.iter().zip(&files);
-        let verified = unverified.try_for_each(|(&file, fetched)| {
-            match dataset.verified[k][file].load(Ordering::Relaxed) {
-                true => Ok(()),
-                false => dataset.verify_file(k, file, fetched),
+        let is_verified = |file: usize| dataset.verified[k][file].load(Ordering::Relaxed);
+        let mut unverified = numbers
+            .iter()
+            .zip(&files)
+            .filter(|(f, _)| !is_verified(**f));
+        let verified = unverified.try_for_each(|(&f, file)| dataset.verify_file(k, f, file));
+        let mut open = Self {
+            index: part.index,
+            expected: part.rows,
+            columns: columns.to_vec(),
+            source: format.source(&files, columns)?,
+            files,
+            rows: 0,
+        };
+        if verified.is_err() {
+            // The place of what is wrong says more than a hash.
+            let mut table = FragmentBatch::default();
+            while open.read(CHUNK_ROWS, &mut table)? > 0 {
+                table.clear();
             }
-        });
-        let open = || -> Result<Self, DatasetError> {
-            Ok(Self {
-                index: part.index,
-                expected: part.rows,
-                columns: columns.to_vec(),
-                source: format.source(&files, columns)?,
-                files,
-                rows: 0,
-            })
-        };
-        let Err(changed) = verified else {
-            return open();
-        };
-        // The place of what is wrong says more than a hash.
-        let mut table = FragmentBatch::default();
-        let mut part = open()?;
-        while part.read(CHUNK_ROWS, &mut table)? > 0 {
-            table.clear();
         }
-        Err(changed)
+        verified.map(|()| open)
     }
 
     /// The path of a column's file, for messages.
@@ -248,12 +228,11 @@ impl OpenPart {
 
     /// Appends up to `max` rows and says how many; 0 at the end.
     fn read(&mut self, max: usize, table: &mut FragmentBatch) -> Result<usize, DatasetError> {
-        let before = self.columns.first().map_or(0, |&c| table.column(c).len());
+        // Where this part reads some columns only, the table is empty.
+        let before = table.len();
         let count = self.source.read(max, table)?;
         for (k, &column) in self.columns.iter().enumerate() {
-            let values = table.column(column);
-            let values = values.range(before..values.len());
-            check_column(self.shown(k), column, values, self.rows, self.index)?;
+            table.check_column(self.shown(k), column, before, self.rows, self.index)?;
         }
         self.rows += count as u64;
         if (count == 0 && self.rows < self.expected) || self.rows > self.expected {
@@ -305,23 +284,20 @@ impl Batches<'_> {
                 continue;
             }
             // The last pixel may go on behind the rows that were read.
-            let mut end = batch.len() - 1;
-            while end > 0 && batch.same_pixel(end - 1, end) {
-                end -= 1;
-            }
-            if end > 0 {
+            let last = batch.len() - 1;
+            let ends = |&i: &usize| !batch.same_pixel(i - 1, last);
+            if let Some(end) = (1..=last).rev().find(ends) {
                 self.held_back.extend_from(&batch, end..batch.len());
                 batch.truncate(end);
                 return Ok(Some(batch));
             }
             // A single pixel fills the batch: read on until it ends.
             if batch.len() > MAX_PIXEL_ROWS {
-                return Err(DatasetError::LargePixel {
-                    path: part.shown(0).to_owned(),
-                    x: batch.x[0],
-                    y: batch.y[0],
-                    most: MAX_PIXEL_ROWS,
-                });
+                let (x, y) = (batch.x[0], batch.y[0]);
+                let reason = format!(
+                    "pixel ({x}, {y}) has more than {MAX_PIXEL_ROWS} fragments; leave it out, or write the dataset again"
+                );
+                return Err(DatasetError::invalid(part.shown(0), reason));
             }
         }
     }

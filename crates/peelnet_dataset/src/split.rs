@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 use peelnet_core::hash::{pcg, pixel_hash};
 use serde::{Deserialize, Serialize};
 
-use crate::column::FragmentBatch;
 use crate::error::DatasetError;
 
 /// What a pixel is for.
@@ -53,10 +52,12 @@ impl Split {
     /// A split with these fractions; the rest trains.
     ///
     /// # Errors
-    /// [`DatasetError::Split`] if the fractions are negative, not numbers, or more than 1 together.
+    /// If the fractions are negative, not numbers, or more than 1 together.
     pub fn new(seed: u64, validation: f64, test: f64) -> Result<Self, DatasetError> {
         if !(validation >= 0.0 && test >= 0.0 && validation + test <= 1.0) {
-            return Err(DatasetError::Split { validation, test });
+            return Err(DatasetError::Setting(format!(
+                "split {validation} for validation and {test} for testing: both must be 0 or more, and together at most 1"
+            )));
         }
         Ok(Self {
             seed,
@@ -75,17 +76,6 @@ impl Split {
         } else {
             Subset::Train
         }
-    }
-
-    /// The subset of every row of a batch, of a scene that is not held out.
-    pub fn rows(&self, batch: &FragmentBatch) -> Vec<Subset> {
-        let mut subsets = Vec::with_capacity(batch.len());
-        for pixel in batch.pixels() {
-            let i = pixel.start;
-            let subset = self.pixel(batch.view[i], batch.x[i], batch.y[i]);
-            subsets.resize(pixel.end, subset);
-        }
-        subsets
     }
 
     /// Whole scenes for each subset, by name: in an order drawn from the seed, scenes are set aside for testing until they have the

@@ -56,6 +56,11 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     /// The dataset's path, for messages.
     fn path(&self) -> &Path;
 
+    /// The folder of this machine that it is, where it is one: its files are replaced, and what writers that died left there is removed.
+    fn folder(&self) -> Option<&Path> {
+        None
+    }
+
     /// Names and lengths of the files directly under a prefix, which is empty or ends with `/`. None where there is no such prefix.
     fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError>;
 
@@ -83,24 +88,18 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
 /// A folder.
 #[derive(Clone, Debug)]
 pub(crate) struct Folder {
-    path: PathBuf,
-    /// Where unfinished files are made: on the same file system.
-    scratch: PathBuf,
-}
-
-impl Folder {
-    /// A folder; what is unfinished lies in `scratch`.
-    pub(crate) fn new(path: &Path, scratch: &Path) -> Self {
-        Self {
-            path: path.to_owned(),
-            scratch: scratch.to_owned(),
-        }
-    }
+    pub path: PathBuf,
+    /// Where unfinished files are made, on the same file system; beside the finished ones if there is none.
+    pub scratch: Option<PathBuf>,
 }
 
 impl Store for Folder {
     fn path(&self) -> &Path {
         &self.path
+    }
+
+    fn folder(&self) -> Option<&Path> {
+        Some(&self.path)
     }
 
     fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
@@ -146,7 +145,9 @@ impl Store for Folder {
             // Temporary files are private by default; a dataset has the permissions of any new file.
             #[cfg(unix)]
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-            let mut file = builder.prefix(PUT).tempfile_in(&self.scratch)?;
+            let mut file = builder
+                .prefix(PUT)
+                .tempfile_in(self.scratch.as_deref().unwrap_or(folder))?;
             let _unfinished = peelnet_files::Unfinished::new(file.path());
             file.write_all(bytes)?;
             match file.persist_noclobber(&target) {
@@ -172,8 +173,8 @@ impl Store for Folder {
 
     fn fetch(&self, name: &str) -> Result<Fetched, DatasetError> {
         Ok(Fetched {
-            path: self.path.join(name),
-            shown: self.path.join(name),
+            path: self.shown(name),
+            shown: self.shown(name),
             _copy: None,
         })
     }
@@ -187,59 +188,42 @@ impl Store for Folder {
     }
 }
 
-/// Where a path leads.
-#[derive(Clone, Debug)]
-pub(crate) enum Place {
-    /// A folder of this machine.
-    Folder(PathBuf),
-    /// An object store's prefix.
-    Remote(Arc<dyn Store>),
+/// The store that a path stands for: `scheme://…` is an object store, `file:///…` a folder. Nothing need be there.
+pub(crate) fn store_at(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
+    let folder = match path.to_str().filter(|_| is_remote(path)) {
+        None => path,
+        Some(url) => match url.strip_prefix("file://") {
+            Some(folder) if folder.starts_with('/') => Path::new(folder),
+            Some(_) => {
+                let reason = "an address of a folder is file:///path";
+                return Err(DatasetError::invalid(path, reason));
+            }
+            None => return remote(url),
+        },
+    };
+    Ok(Arc::new(Folder {
+        path: folder.to_owned(),
+        scratch: None,
+    }))
 }
 
-impl Place {
-    /// What a path stands for: `scheme://…` is an object store, `file:///…` a folder.
-    pub(crate) fn of(path: &Path) -> Result<Self, DatasetError> {
-        match path.to_str().filter(|_| is_remote(path)) {
-            None => Ok(Self::Folder(path.to_owned())),
-            Some(url) => match url.strip_prefix("file://") {
-                Some(folder) if folder.starts_with('/') => Ok(Self::Folder(PathBuf::from(folder))),
-                Some(_) => {
-                    let reason = "an address of a folder is file:///path";
-                    Err(DatasetError::usage(path, reason))
-                }
-                None => remote(url).map(Self::Remote),
-            },
-        }
+/// The store of a dataset that should be there.
+pub(crate) fn open_store(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
+    let store = store_at(path)?;
+    if let Some(folder) = store.folder() {
+        // The error of the system says what is wrong with it.
+        fs::read_dir(folder).map_err(DatasetError::io(folder, "open the dataset's folder"))?;
     }
-
-    /// The store of a dataset that should be there.
-    pub(crate) fn open(&self) -> Result<Arc<dyn Store>, DatasetError> {
-        if let Self::Folder(folder) = self {
-            // The error of the system says what is wrong with it.
-            fs::read_dir(folder).map_err(DatasetError::io(folder, "open the dataset's folder"))?;
-        }
-        Ok(self.store())
-    }
-
-    /// The store, to read.
-    pub(crate) fn store(&self) -> Arc<dyn Store> {
-        match self {
-            Self::Folder(path) => Arc::new(Folder::new(path, &path.join(META))),
-            Self::Remote(store) => Arc::clone(store),
-        }
-    }
+    Ok(store)
 }
 
 /// Whether a path is the address of an object store, `scheme://…`, and no folder.
 pub fn is_remote(path: &Path) -> bool {
-    path.to_str()
-        .and_then(|text| text.split_once("://"))
-        .is_some_and(|(scheme, _)| {
-            scheme.len() > 1
-                && scheme
-                    .bytes()
-                    .all(|b| b.is_ascii_alphanumeric() || b == b'+')
-        })
+    let address = path.to_str().and_then(|text| text.split_once("://"));
+    address.is_some_and(|(scheme, _)| {
+        let mut letters = scheme.bytes();
+        scheme.len() > 1 && letters.all(|b| b.is_ascii_alphanumeric() || b == b'+')
+    })
 }
 
 /// The bytes of one object, of at most `most`; `None` where it does not exist. The path is an address, see [`is_remote`].
@@ -264,17 +248,13 @@ pub fn create_object(path: &Path, bytes: &[u8]) -> Result<bool, DatasetError> {
 fn object(path: &Path) -> Result<(Arc<dyn Store>, String), DatasetError> {
     let text = path.to_str().unwrap_or_default();
     let (prefix, name) = text.rsplit_once('/').unwrap_or_default();
-    let place = Place::of(Path::new(prefix))?;
+    let store = store_at(Path::new(prefix))?;
     if name.is_empty() || !is_remote(Path::new(prefix)) || prefix.ends_with('/') {
+        let reason = "the address of a file is scheme://bucket/prefix/name";
         // An address may have a password in it.
         let scheme = text.split_once("://").map_or("", |(scheme, _)| scheme);
-        let reason = "the address of a file is scheme://bucket/prefix/name";
-        return Err(DatasetError::usage(Path::new(scheme), reason));
+        return Err(DatasetError::invalid(Path::new(scheme), reason));
     }
-    let store: Arc<dyn Store> = match place {
-        Place::Folder(folder) => Arc::new(Folder::new(&folder, &folder)),
-        Place::Remote(store) => store,
-    };
     Ok((store, name.to_owned()))
 }
 
@@ -288,7 +268,7 @@ fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
 #[cfg(not(feature = "object-store"))]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
     let scheme = url.split_once("://").map_or("", |(scheme, _)| scheme);
-    Err(DatasetError::usage(
+    Err(DatasetError::invalid(
         // An address may have a password in it.
         Path::new(&format!("{scheme}://…")),
         "this build reads and writes folders only; build peelnet with `--features object-store`",

@@ -6,58 +6,14 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::batch::check_column;
 use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
 use crate::folder::{self, MadeFolders, Partial};
 use crate::formats::PartSink;
-use crate::manifest::{CameraInfo, Manifest, Part};
+use crate::manifest::{Manifest, Part};
+use crate::parts::{self, PartRecord};
 use crate::plan::{Header, Plan};
-use crate::record::{self, PartRecord};
-use crate::seal;
-use crate::store::{FRAGMENTS, Folder, PLAN, Place, Store};
-
-/// What is known about a part before its first row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PartInfo {
-    /// Index of the work item, from 0 to `work_items − 1`: the rows' `view` value.
-    pub index: u32,
-    /// Index into [`Header::scenes`].
-    pub scene: u32,
-    /// 0 for the scene itself, then its varied copies.
-    pub copy: u32,
-    /// The view's number in the scene file.
-    pub view: u32,
-    /// The view's camera.
-    pub camera: CameraInfo,
-    /// Image width, pixels.
-    pub width: u32,
-    /// Image height, pixels.
-    pub height: u32,
-}
-
-/// What peeling could not write, known when a part ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PartCounts {
-    /// Fragments that peeling left out.
-    pub lost_fragments: u64,
-    /// Pairs of neighbouring fragments at the same depth.
-    pub coplanar_ties: u64,
-}
-
-impl PartInfo {
-    /// First part of the names of the part's files: `fragments-00003-cups-v1`, with `-c2` for a varied copy.
-    pub fn stem(&self, scene_name: &str) -> String {
-        let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
-        let scene = scene_name.chars().take(64);
-        let scene: String = scene.map(|c| if is_plain(c) { c } else { '-' }).collect();
-        let copy = match self.copy {
-            0 => String::new(),
-            copy => format!("-c{copy}"),
-        };
-        format!("{FRAGMENTS}{:05}-{scene}{copy}-v{}", self.index, self.view)
-    }
-}
+use crate::store::{FRAGMENTS, Folder, META, PLAN, Store, store_at};
 
 /// Writes a dataset, or some parts of it.
 ///
@@ -92,50 +48,43 @@ impl DatasetWriter {
     /// If the folder holds anything but a dataset, the dataset there has another plan, another process writes a whole dataset there at the
     /// moment, or the folder cannot be written.
     pub fn create(folder: impl AsRef<Path>, header: Header) -> Result<Self, DatasetError> {
-        let folder = folder.as_ref();
-        header.check(folder)?;
-        match Place::of(folder)? {
-            Place::Folder(folder) => {
-                let made = MadeFolders::create(&folder)?;
-                let replaces = if header.joins() {
-                    folder::prepare_to_join(&folder)?;
-                    false
-                } else {
-                    folder::prepare(&folder)?
-                };
-                let scratch = Partial::hidden(&folder)?;
-                let store = Arc::new(Folder::new(&folder, scratch.path()));
-                Self::new(store, header, replaces, scratch, Some(made))
+        let path = folder.as_ref();
+        header.check(path)?;
+        let mut store = store_at(path)?;
+        let joins = header.resume || header.shard.is_some();
+        let (mut replaces, mut made) = (false, None);
+        let scratch = match store.folder().map(Path::to_owned) {
+            Some(path) => {
+                made = Some(MadeFolders::create(&path)?);
+                replaces = folder::prepare(&path, joins)?;
+                let meta = path.join(META);
+                std::fs::create_dir_all(&meta)
+                    .map_err(DatasetError::io(&meta, "create the folder"))?;
+                let scratch = Partial::create(&meta)?;
+                store = Arc::new(Folder {
+                    path,
+                    scratch: Some(scratch.path.clone()),
+                });
+                scratch
             }
-            Place::Remote(store) => {
+            None => {
                 let mut names = store.list("")?.into_keys();
                 let has_rows = names.any(|name| name.starts_with(FRAGMENTS));
-                if !header.joins() && (has_rows || Plan::read(&*store)?.is_some()) {
+                if !joins && (has_rows || Plan::read(&*store)?.is_some()) {
                     let reason = "a dataset is there already, and one in an object store is not replaced; complete it with `--resume`, or choose another prefix";
-                    return Err(DatasetError::usage(store.path(), reason));
+                    return Err(DatasetError::invalid(path, reason));
                 }
-                Self::new(store, header, false, Partial::local()?, None)
+                Partial::create(&std::env::temp_dir())?
             }
-        }
-    }
-
-    fn new(
-        store: Arc<dyn Store>,
-        header: Header,
-        replaces: bool,
-        scratch: Partial,
-        _made: Option<MadeFolders>,
-    ) -> Result<Self, DatasetError> {
-        let mine = Plan::new(&header);
-        let (plan, plan_is_new) = if replaces {
-            (mine, false)
-        } else {
-            mine.agree(&*store)?
         };
-        let done = if replaces || plan_is_new {
-            BTreeSet::new()
-        } else {
-            finished(&*store, &plan)?
+        let mine = Plan::new(&header);
+        let (plan, plan_is_new) = match replaces {
+            true => (mine, false),
+            false => mine.agree(&*store)?,
+        };
+        let done = match replaces || plan_is_new {
+            true => BTreeSet::new(),
+            false => finished(&*store, &plan)?,
         };
         Ok(Self {
             store,
@@ -147,7 +96,7 @@ impl DatasetWriter {
             threads: std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
             parts: Mutex::new(Vec::new()),
             scratch,
-            _made,
+            _made: made,
         })
     }
 
@@ -157,50 +106,43 @@ impl DatasetWriter {
         self
     }
 
-    /// The dataset's folder.
-    pub fn folder(&self) -> &Path {
-        self.store.path()
-    }
-
     /// Whether a work item is for this writer to do: it is of its shard, and was not finished when the writer began.
     pub fn needs(&self, index: u32) -> bool {
         self.header.shard.is_none_or(|s| s.contains(index)) && !self.done.contains(&index)
     }
 
-    /// Starts the part of a work item.
+    /// Starts the part of a work item, of which everything is known but what follows from its rows.
     ///
     /// # Errors
     /// If the work item is not this dataset's (or shard's), was begun before, or its files cannot be created.
-    pub fn begin(&self, info: PartInfo) -> Result<PartWriter<'_>, DatasetError> {
-        let (index, header) = (info.index, &self.header);
-        let usage = |reason: String| Err(DatasetError::usage(self.folder(), reason));
-        let Some(scene) = header.scenes.get(info.scene as usize) else {
-            let scene = info.scene;
-            return usage(format!("work item {index}: scene {scene} is not listed"));
+    pub fn begin(&self, part: Part) -> Result<PartWriter<'_>, DatasetError> {
+        let (index, header) = (part.index, &self.header);
+        let usage = |reason: &str| {
+            let reason = format!("work item {index}{reason}");
+            Err(DatasetError::invalid(self.store.path(), reason))
+        };
+        let Some(scene) = header.scenes.get(part.scene as usize) else {
+            return usage(&format!(": scene {} is not listed", part.scene));
         };
         if index >= header.work_items {
-            return usage(format!("work item {index} of {}", header.work_items));
+            return usage(&format!(" of {}", header.work_items));
         }
         if let Some(shard) = header.shard.filter(|s| !s.contains(index)) {
-            return usage(format!(
-                "work item {index} does not belong to shard {shard}"
-            ));
+            return usage(&format!(" does not belong to shard {shard}"));
         }
         if self.parts().iter().any(|p| p.index == index) {
-            return usage(format!("work item {index} was written before"));
+            return usage(" was written before");
         }
-        let stem = info.stem(&scene.name);
+        let stem = part.stem(&scene.name);
         // A second part of the same work item fails here, because its files exist.
         let sink = header
             .format
-            .sink(self.scratch.path(), &stem, self.threads)?;
+            .sink(&self.scratch.path, &stem, self.threads)?;
         Ok(PartWriter {
             name: PathBuf::from(&stem),
             dataset: self,
-            info,
+            part,
             sink,
-            rows: 0,
-            pixels: 0,
             last_pixel: None,
         })
     }
@@ -218,7 +160,7 @@ impl DatasetWriter {
             record.check_same(store, &there)?;
         }
         for file in &part.files {
-            let aside = self.scratch.path().join(&file.name);
+            let aside = self.scratch.path.join(&file.name);
             if store.put_file_if_absent(&file.name, &aside)?
                 || store.fetch(&file.name)?.hash()? == (file.bytes, file.sha256.clone())
             {
@@ -229,27 +171,29 @@ impl DatasetWriter {
                 Some(there) => {
                     record.check_same(store, &there)?;
                     let reason = "was changed after it was written";
-                    seal::damaged(store, part.index, &file.name, reason)
+                    parts::damaged(store, part.index, &file.name, reason)
                 }
-                None => DatasetError::PartInTheWay {
-                    path: store.shown(&file.name),
-                    index: part.index,
-                    worker: self.header.worker.clone(),
-                },
+                None => DatasetError::invalid(
+                    &store.shown(&file.name),
+                    format!(
+                        "part {}: worker {} computed other bytes than this file has, and no record says whose it is; if no other extraction is running, remove the file and resume",
+                        part.index, self.header.worker
+                    ),
+                ),
             });
         }
         record.commit(store, &self.plan)?;
         for file in &part.files {
             // It is linked, moved or sent: what stays here goes with the folder.
-            let _ = std::fs::remove_file(self.scratch.path().join(&file.name));
+            let _ = std::fs::remove_file(self.scratch.path.join(&file.name));
         }
         Ok(())
     }
 
     /// While it lives, a process that ends waits; but not for a network.
     fn moving(&self) -> Option<peelnet_files::Moving> {
-        let is_hidden = self.scratch.is_hidden();
-        is_hidden.then(peelnet_files::Moving::begin)
+        let folder = self.store.folder();
+        folder.map(|_| peelnet_files::Moving::begin())
     }
 
     /// Ends this writer. Where every part of the dataset is finished now, the dataset is sealed, and its manifest is returned; otherwise a
@@ -265,18 +209,18 @@ impl DatasetWriter {
         if let Some(first) = missing.clone().next() {
             let count = missing.count();
             let reason = format!("{count} work items were not written, the first is {first}");
-            return Err(DatasetError::usage(self.folder(), reason));
+            return Err(DatasetError::invalid(self.store.path(), reason));
         }
         let _moving = self.replaces.then(|| self.moving());
         if self.replaces {
-            folder::remove_older(self.folder())?;
+            folder::remove_older(self.store.path())?;
         }
         // The plan again: a first writer that gave up may have taken it away.
         self.plan.agree(&*self.store)?;
         if self.replaces {
             parts.iter().try_for_each(|part| self.commit(part))?;
         }
-        if let Some(manifest) = seal::whole(&*self.store, &self.plan)? {
+        if let Some(manifest) = parts::whole(&*self.store, &self.plan)? {
             return Ok(manifest);
         }
         let is_mine = |k: &&u32| self.header.shard.is_none_or(|s| s.contains(**k));
@@ -292,12 +236,12 @@ impl DatasetWriter {
 fn finished(store: &dyn Store, plan: &Plan) -> Result<BTreeSet<u32>, DatasetError> {
     let mut files: BTreeMap<u32, usize> = BTreeMap::new();
     for name in store.list("")?.keys() {
-        if let Some(index) = record::part_index(name) {
+        if let Some(index) = parts::part_of_file(name) {
             *files.entry(index).or_default() += 1;
         }
     }
     let expected = plan.header.format.files_of_a_part();
-    let mut done = seal::recorded(store)?;
+    let mut done = parts::recorded(store, plan)?;
     done.retain(|k| files.get(k).is_some_and(|&found| found >= expected));
     Ok(done)
 }
@@ -305,7 +249,8 @@ fn finished(store: &dyn Store, plan: &Plan) -> Result<BTreeSet<u32>, DatasetErro
 impl Drop for DatasetWriter {
     fn drop(&mut self) {
         // What was made for this dataset goes, as far as nothing was finished in it.
-        let nothing = || seal::recorded(&*self.store).is_ok_and(|done| done.is_empty());
+        let nothing =
+            || parts::recorded(&*self.store, &self.plan).is_ok_and(|done| done.is_empty());
         if self.plan_is_new && self.header.shard.is_none() && nothing() {
             // Other writers put it back when they come to their end.
             let _ = self.store.remove(PLAN);
@@ -316,11 +261,9 @@ impl Drop for DatasetWriter {
 /// Writes the rows of one work item, whole pixels in order, each from its nearest fragment to its farthest.
 pub struct PartWriter<'a> {
     dataset: &'a DatasetWriter,
-    info: PartInfo,
+    part: Part,
     name: PathBuf,
     sink: Box<dyn PartSink>,
-    rows: u64,
-    pixels: u64,
     last_pixel: Option<[u32; 2]>,
 }
 
@@ -331,46 +274,33 @@ impl PartWriter<'_> {
     /// If the columns differ in length, a value is out of range (see [`Column`]), or the disk refuses.
     pub fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
         rows.check()?;
+        let part = &mut self.part;
         for column in Column::ALL {
-            let values = rows.column(column);
-            check_column(&self.name, column, values, self.rows, self.info.index)?;
+            rows.check_column(&self.name, column, 0, part.rows, part.index)?;
         }
         for (&x, &y) in rows.x.iter().zip(&rows.y) {
             let pixel = Some([x, y]);
-            self.pixels += u64::from(pixel != self.last_pixel);
+            part.pixels += u64::from(pixel != self.last_pixel);
             self.last_pixel = pixel;
         }
-        self.sink.write(rows)?;
-        self.rows += rows.len() as u64;
-        Ok(())
+        part.rows += rows.len() as u64;
+        self.sink.write(rows)
     }
 
-    /// Rows written so far.
-    pub fn rows(&self) -> u64 {
-        self.rows
-    }
-
-    /// Ends the part, which from then on is the dataset's. A part without rows is a part. If another writer finished the same part with the
-    /// same bytes, that is no error.
+    /// Ends the part, which from then on is the dataset's, with the numbers of fragments that peeling left out and of neighbouring
+    /// fragments at the same depth. A part without rows is a part. If another writer finished the same part with the same bytes, that is
+    /// no error.
     ///
     /// # Errors
     /// If the disk refuses, or another writer finished the part with other bytes.
-    pub fn finish(self, counts: PartCounts) -> Result<(), DatasetError> {
+    pub fn finish(self, lost_fragments: u64, coplanar_ties: u64) -> Result<(), DatasetError> {
         let (row_groups, files) = self.sink.finish()?;
         let part = Part {
-            index: self.info.index,
-            scene: self.info.scene,
-            copy: self.info.copy,
-            view: self.info.view,
-            camera: self.info.camera,
-            width: self.info.width,
-            height: self.info.height,
-            rows: self.rows,
-            pixels: self.pixels,
-            lost_fragments: counts.lost_fragments,
-            coplanar_ties: counts.coplanar_ties,
+            lost_fragments,
+            coplanar_ties,
             row_groups,
             files,
+            ..self.part
         };
         if !self.dataset.replaces {
             let _moving = self.dataset.moving();

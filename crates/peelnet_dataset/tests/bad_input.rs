@@ -60,26 +60,47 @@ fn writing_fails(folder: &Path) -> String {
     error.to_string()
 }
 
+type Change = Box<dyn Fn(&mut Vec<u8>)>;
+
 /// Changes a line of a text.
-fn line(line: usize, edit: impl Fn(&str) -> String) -> impl Fn(&mut Vec<u8>) {
-    move |bytes| {
+fn line(line: usize, edit: impl Fn(&str) -> String + 'static) -> Change {
+    Box::new(move |bytes| {
         let text = std::str::from_utf8(bytes).unwrap();
         let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
         lines[line - 1] = edit(&lines[line - 1]);
         *bytes = (lines.join("\n") + "\n").into_bytes();
-    }
+    })
+}
+
+/// Changes a field of row 4.
+fn field(k: usize, value: &'static str) -> Change {
+    line(5, move |line| {
+        let mut fields: Vec<&str> = line.split(',').collect();
+        fields[k] = value;
+        fields.join(",")
+    })
 }
 
 /// Replaces some bytes by as many others.
-fn bytes(from: &'static [u8], to: &'static [u8]) -> impl Fn(&mut Vec<u8>) {
-    move |bytes| {
+fn bytes(from: &'static [u8], to: &'static [u8]) -> Change {
+    Box::new(move |bytes| {
         let at = bytes.windows(from.len()).position(|w| w == from).unwrap();
         bytes[at..at + to.len()].copy_from_slice(to);
-    }
+    })
 }
 
+/// Values that are not allowed and contents that are no part's. Memory is taken only for rows that a file's bytes can hold, whatever its
+/// header claims.
 #[test]
-fn values_out_of_range_in_csv() {
+fn contents_that_are_none() {
+    let refused = |format, file: &str, change: Change, words: &[&str]| {
+        let folder = changed(format, file, change);
+        let message = reading_fails(folder.path());
+        has(&message, words);
+        has(&message, &[file]);
+        folder
+    };
+    let csv = |change, words: &[&str]| drop(refused(Format::Csv, CSV, change, words));
     for (k, value, words) in [
         (0, "NaN", ["row 4,", "one_minus_alpha", "from 0 to 1"]),
         (0, "1.5", ["row 4,", "one_minus_alpha: 1.5", "from 0 to 1"]),
@@ -95,83 +116,62 @@ fn values_out_of_range_in_csv() {
         (6, "-1", ["line 5,", "column x", "u32"]),
         (1, "", ["line 5,", "linear_depth", "f32"]),
     ] {
-        let edit = |line: &str| {
-            let mut fields: Vec<&str> = line.split(',').collect();
-            fields[k] = value;
-            fields.join(",")
-        };
-        let folder = changed(Format::Csv, CSV, line(5, edit));
-        has(&reading_fails(folder.path()), &words);
-        has(&reading_fails(folder.path()), &[CSV]);
+        csv(field(k, value), &words);
     }
-}
+    let header = |from: &'static str, to: &'static str| line(1, move |l| l.replace(from, to));
+    csv(
+        header("linear_depth,", ""),
+        &["header: column linear_depth is missing"],
+    );
+    csv(
+        header("view,x,y", "x,view,y"),
+        &["column 6 is \"x\" where view is expected"],
+    );
+    csv(
+        line(9, |l| l[..l.len() - 9].to_owned()),
+        &["line 9", "fields"],
+    );
+    let long: Change = Box::new(|bytes| bytes.resize(1 << 20, b'1'));
+    csv(long, &["a line has more", "65536"]);
 
-/// Contents that are no part's. Memory is taken only for rows that a file's bytes can hold, whatever its header claims.
-#[test]
-fn contents_that_are_none() {
-    type Change = Box<dyn Fn(&mut Vec<u8>)>;
-    let csv: [(Change, [&str; 3]); 4] = [
-        (
-            Box::new(line(1, |l| l.replace("linear_depth,", ""))),
-            [CSV, "header", "linear_depth is missing"],
-        ),
-        (
-            Box::new(line(1, |l| l.replace("view,x,y", "x,view,y"))),
-            [CSV, "column 6 is \"x\"", "view is expected"],
-        ),
-        (
-            Box::new(line(9, |l| l[..l.len() - 9].to_owned())),
-            [CSV, "line 9", "fields"],
-        ),
-        (
-            Box::new(|bytes| bytes.resize(1 << 20, b'1')),
-            [CSV, "a line has more", "65536"],
-        ),
-    ];
-    for (change, words) in csv {
-        has(
-            &reading_fails(changed(Format::Csv, CSV, change).path()),
-            &words,
-        );
-    }
-    for (column, change, words) in [
-        ("layer", bytes(b"<u4", b"<i8"), ["<i8", "<u4"]),
-        (
-            "x",
-            bytes(b"'shape': (", b"'shape': (1000"),
-            ["(1000", "header"],
-        ),
-        (
-            "y",
-            bytes(b"v\0{", b"\xff\xff{"),
-            ["not an NPY file", "header"],
-        ),
-        // The first value behind the header.
-        (
-            "transmittance",
-            bytes(b"\n\0\0\x80\x3f", b"\n\0\0\xc0\x7f"),
-            ["row 1, column transmittance", "NaN"],
-        ),
-    ] {
+    let npy = |column, change, words: &[&str]| {
         let file = format!("fragments-00000-cups-v0.{column}.npy");
-        let folder = changed(Format::Npy, &file, change);
-        let message = reading_fails(folder.path());
-        has(&message, &words);
-        has(&message, &[&file]);
+        let folder = refused(Format::Npy, &file, change, words);
         // The other columns are whole.
         let dataset = Dataset::open(folder.path()).unwrap();
         let columns = [Column::from_name(column).unwrap()];
         assert!(dataset.read_columns(&columns).is_err());
         assert!(dataset.read_columns(&[Column::LinearDepth]).is_ok());
-    }
-    let footer = changed(Format::Parquet, PARQUET, |bytes| {
+    };
+    npy("layer", bytes(b"<u4", b"<i8"), &["<i8", "<u4"]);
+    npy(
+        "x",
+        bytes(b"'shape': (", b"'shape': (1000"),
+        &["(1000", "header"],
+    );
+    npy(
+        "y",
+        bytes(b"v\0{", b"\xff\xff{"),
+        &["not an NPY file", "header"],
+    );
+    // The first value behind the header.
+    let nan = bytes(b"\n\0\0\x80\x3f", b"\n\0\0\xc0\x7f");
+    npy(
+        "transmittance",
+        nan,
+        &["row 1, column transmittance", "NaN"],
+    );
+
+    let footer: Change = Box::new(|bytes| {
         let end = bytes.len() - 8;
         bytes[end..end + 4].copy_from_slice(&0x7fff_ffffu32.to_le_bytes());
     });
-    has(
-        &reading_fails(footer.path()),
-        &[PARQUET, "2147483647 bytes"],
-    );
+    drop(refused(
+        Format::Parquet,
+        PARQUET,
+        footer,
+        &["2147483647 bytes"],
+    ));
 }
 
 #[test]
@@ -241,53 +241,50 @@ fn manifests() {
     write(folder, Format::Csv, None, 1, 1000).unwrap();
     let path = folder.join(MANIFEST);
     let good = fs::read_to_string(&path).unwrap();
-    let plain = ["parts[0]", "plain file name"];
-    for (from, to, words) in [
-        (
-            "\"schema\": 2,",
-            "\"schema\": 9,",
-            ["version 9", "version 2"],
-        ),
-        ("\"schema\": 2,", "", ["`schema`", "missing"]),
-        ("\"seed\": 7,", "", ["missing field `seed`", "line"]),
-        (
-            "\"format\": \"csv\"",
-            "\"format\": \"xls\"",
-            ["xls", "line"],
-        ),
-        (
-            "\"name\": \"view\"",
-            "\"name\": \"eye\"",
-            ["eye", "in this order"],
-        ),
-        (
-            "\"work_items\": 4",
-            "\"work_items\": 5",
-            ["5 work items", "4 parts"],
-        ),
-        (
-            "\"work_items\": 4",
-            "\"work_items\": 4294967295",
-            ["4294967295", "65536"],
-        ),
-        (CSV, "../secret.csv", plain),
-        (CSV, "/etc/passwd", plain),
-        (CSV, "fragments-/../../x", plain),
-        (CSV, "fragments-\\\\..\\\\x", plain),
-        (CSV, "C:fragments-x", plain),
-        (CSV, "fragments-x:stream", plain),
-        (CSV, "manifest.json", plain),
-        (
-            CSV,
-            "fragments-00001-cups-v1.csv",
-            ["listed twice", "v1.csv"],
-        ),
-        ("\"rows\"", "rows", ["not JSON", "line"]),
-    ] {
+    let wrong = |from: &str, to: &str, words: &[&str]| {
         fs::write(&path, good.replace(from, to)).unwrap();
-        has(&opening_fails(folder), &words);
-        has(&opening_fails(folder), &["manifest.json"]);
+        let message = opening_fails(folder);
+        has(&message, words);
+        has(&message, &["manifest.json"]);
+    };
+    wrong(
+        "\"schema\": 2,",
+        "\"schema\": 9,",
+        &["version 9", "version 2"],
+    );
+    wrong("\"schema\": 2,", "", &["`schema`", "missing"]);
+    wrong("\"seed\": 7,", "", &["missing field `seed`", "line"]);
+    wrong(
+        "\"format\": \"csv\"",
+        "\"format\": \"xls\"",
+        &["xls", "line"],
+    );
+    wrong(
+        "\"name\": \"view\"",
+        "\"name\": \"eye\"",
+        &["eye", "in this order"],
+    );
+    let items = "\"work_items\": 4";
+    wrong(items, "\"work_items\": 5", &["5 work items", "4 parts"]);
+    wrong(
+        items,
+        "\"work_items\": 4294967295",
+        &["4294967295", "65536"],
+    );
+    for name in [
+        "../secret.csv",
+        "/etc/passwd",
+        "fragments-/../../x",
+        "fragments-\\\\..\\\\x",
+        "C:fragments-x",
+        "fragments-x:stream",
+        "manifest.json",
+    ] {
+        wrong(CSV, name, &["parts[0]", "plain file name"]);
     }
+    let other = "fragments-00001-cups-v1.csv";
+    wrong(CSV, other, &["listed twice", "v1.csv"]);
+    wrong("\"rows\"", "rows", &["not JSON", "line"]);
     // More rows than any file holds.
     for format in Format::ALL {
         let folder = tempfile::tempdir().unwrap();
@@ -310,12 +307,12 @@ fn the_writer_refuses_bad_rows() {
     let out = folder.path().join("a/b");
     let writer = DatasetWriter::create(&out, header(Format::Parquet, None)).unwrap();
     let mut part = writer.begin(info(1)).unwrap();
-    part.write(&view(1, 10, 1)).unwrap();
-    let before = part.rows();
+    let good = view(1, 10, 1);
+    part.write(&good).unwrap();
     let mut rows = view(1, 10, 2);
     rows.linear_depth[3] = f32::NAN;
     let message = part.write(&rows).unwrap_err().to_string();
-    let row = format!("row {}", before + 4);
+    let row = format!("row {}", good.len() + 4);
     has(&message, &["fragments-00001-cups-v1", &row, "linear_depth"]);
     rows.linear_depth.pop();
     let message = part.write(&rows).unwrap_err().to_string();
@@ -323,7 +320,7 @@ fn the_writer_refuses_bad_rows() {
     drop(part);
     // A second part of the same item, one out of range, an item left out.
     assert!(writer.begin(info(1)).is_err());
-    let wrong = PartInfo {
+    let wrong = Part {
         index: 4,
         ..info(0)
     };
@@ -371,7 +368,7 @@ fn files_that_no_manifest_lists_are_never_removed() {
             &writing_fails(folder),
             &[shown, "not empty", "move that file away"],
         );
-        let shard = Some(Shard::new(1, 2).unwrap());
+        let shard = Some(Shard { index: 1, of: 2 });
         if !name.contains('/') {
             assert!(write(folder, Format::Csv, shard, 1, 1000).is_err());
         }

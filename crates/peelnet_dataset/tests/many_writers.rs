@@ -10,7 +10,7 @@ use common::*;
 use peelnet_dataset::*;
 
 fn shard(index: u32, of: u32) -> Option<Shard> {
-    Some(Shard::new(index, of).unwrap())
+    Some(Shard { index, of })
 }
 
 /// A header of a worker.

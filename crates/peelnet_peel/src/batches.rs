@@ -2,21 +2,21 @@
 
 use crate::{
     ExtractOptions, PeelError,
-    extract::{Inbox, Message, ROWS_AT_A_TIME, peel, work},
-    rows::{ViewConstants, append_rows},
+    extract::{Event, Inbox, peel, receive, work},
 };
 use peelnet_dataset::FragmentBatch;
 use peelnet_gpu::Gpu;
 use peelnet_scene::Scene;
-use std::{collections::VecDeque, thread::JoinHandle};
+use std::{
+    sync::mpsc::{Receiver, sync_channel},
+    thread::JoinHandle,
+};
 
-/// The rows of some scenes, batch by batch, while another thread peels. Dropping it ends the peeling.
+/// The rows of some scenes, batch by batch, while other threads peel. Dropping it ends the peeling.
 #[derive(Debug)]
 pub struct Batches {
-    /// `None` once there is nothing more to come.
-    inbox: Option<Inbox>,
-    view: Option<ViewConstants>,
-    ready: VecDeque<FragmentBatch>,
+    /// `None` once nobody asks any more.
+    rows: Option<Receiver<Result<FragmentBatch, PeelError>>>,
     peeling: Option<JoinHandle<()>>,
 }
 
@@ -43,49 +43,35 @@ pub fn batches(
 ) -> Result<Batches, PeelError> {
     let (_, mine) = work(scenes, options)?;
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
-    let (outbox, inbox) = Inbox::new();
-    let peeling = std::thread::spawn(move || peel(&gpu, &scenes, &options, &mine, &outbox));
+    let (send, rows) = sync_channel(1);
+    let peeling = std::thread::spawn(move || {
+        let received = std::thread::scope(|scope| {
+            let (outbox, inbox) = Inbox::new();
+            let (gpu, scenes, options, mine) = (&gpu, &scenes, &options, &mine);
+            scope.spawn(move || peel(gpu, scenes, options, mine, &outbox));
+            receive(&inbox, |event| match event {
+                Event::Rows(rows) => {
+                    let sent = send.send(Ok(rows.clone()));
+                    sent.map_err(|_| PeelError::Interrupted)
+                }
+                Event::Begin(_) | Event::End(..) => Ok(()),
+            })
+        });
+        if let Err(error) = received {
+            // Nobody may ask any more.
+            let _ = send.send(Err(error));
+        }
+    });
     Ok(Batches {
-        inbox: Some(inbox),
-        view: None,
-        ready: VecDeque::new(),
+        rows: Some(rows),
         peeling: Some(peeling),
     })
 }
 
 impl Batches {
-    /// Takes messages until there are rows, or nothing more comes.
-    fn fill(&mut self) -> Result<(), PeelError> {
-        while self.ready.is_empty() {
-            let Some(message) = self.inbox.as_ref().and_then(Inbox::next) else {
-                return Ok(());
-            };
-            match message {
-                Message::Begin(info) => self.view = Some(ViewConstants::from(&info)),
-                Message::Tile(tile) => {
-                    // A tile comes behind the beginning of its view.
-                    let Some(view) = self.view else { continue };
-                    let mut rows = FragmentBatch::default();
-                    let ready = &mut self.ready;
-                    let counts = append_rows(&tile, view, &mut rows, ROWS_AT_A_TIME, |rows| {
-                        ready.push_back(rows.clone());
-                        Ok::<_, PeelError>(())
-                    })?;
-                    if let Some(inbox) = &self.inbox {
-                        inbox.give_back(tile);
-                    }
-                    counts.check()?;
-                }
-                Message::End(_) => {}
-                Message::Failed(error) => return Err(error),
-            }
-        }
-        Ok(())
-    }
-
     /// Ends the peeling, which finds nobody to send to.
     fn end(&mut self) -> std::thread::Result<()> {
-        self.inbox = None;
+        self.rows = None;
         self.peeling.take().map_or(Ok(()), JoinHandle::join)
     }
 }
@@ -94,18 +80,13 @@ impl Iterator for Batches {
     type Item = Result<FragmentBatch, PeelError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Err(error) = self.fill() {
-            self.ready.clear();
-            self.inbox = None;
-            return Some(Err(error));
-        }
-        let next = self.ready.pop_front();
+        let next = self.rows.as_ref()?.recv().ok();
         if next.is_none()
             && let Err(panic) = self.end()
         {
             std::panic::resume_unwind(panic);
         }
-        next.map(Ok)
+        next
     }
 }
 

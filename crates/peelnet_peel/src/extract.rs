@@ -7,8 +7,8 @@ use crate::{
     rows::{RawTile, RowCounts, ViewConstants, append_rows},
 };
 use peelnet_dataset::{
-    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, PartInfo, SceneEntry,
-    Shard, worker_name,
+    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, Part, SceneEntry, Shard,
+    worker_name,
 };
 use peelnet_files::thousands;
 use peelnet_gpu::Gpu;
@@ -16,7 +16,7 @@ use peelnet_raster::PixelSample;
 use peelnet_scene::{Camera, Census, Scene};
 use std::{
     collections::BTreeMap,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
         atomic::{AtomicBool, Ordering},
         mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
@@ -28,7 +28,7 @@ use std::{
 const DEFAULT_BUDGET: u64 = 4 << 20;
 
 /// Rows handed to the writer at a time.
-pub(crate) const ROWS_AT_A_TIME: usize = 1 << 18;
+const ROWS_AT_A_TIME: usize = 1 << 18;
 
 /// What to extract, and where to.
 #[derive(Clone, Debug)]
@@ -127,7 +127,7 @@ pub struct ExtractReport {
 
 /// What the GPU's side sends, view by view.
 pub(crate) enum Message {
-    Begin(PartInfo),
+    Begin(Part),
     Tile(RawTile),
     End(Harvest),
     /// The last one.
@@ -153,21 +153,51 @@ impl Inbox {
         let (give_back, take) = channel();
         (Outbox { send, take }, Self { receive, give_back })
     }
+}
 
-    /// What comes next; `None` at the end.
-    pub(crate) fn next(&self) -> Option<Message> {
-        self.receive.recv().ok()
-    }
+/// What comes of a view's messages.
+pub(crate) enum Event<'a> {
+    Begin(Part),
+    Rows(&'a FragmentBatch),
+    End(Harvest, RowCounts),
+}
 
-    /// Lets a tile's memory be used again.
-    pub(crate) fn give_back(&self, tile: RawTile) {
-        // The other side may have ended; then the tile is freed.
-        let _ = self.give_back.send(tile);
+/// Makes rows of what the GPU's side sends, view by view, until it ends.
+pub(crate) fn receive(
+    inbox: &Inbox,
+    mut each: impl FnMut(Event<'_>) -> Result<(), PeelError>,
+) -> Result<(), PeelError> {
+    let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
+    let mut current = None;
+    while let Ok(message) = inbox.receive.recv() {
+        match (message, &mut current) {
+            (Message::Begin(part), _) => {
+                current = Some((ViewConstants::from(&part), RowCounts::default()));
+                each(Event::Begin(part))?;
+            }
+            (Message::Tile(tile), Some((view, counts))) => {
+                let rows = |rows: &FragmentBatch| each(Event::Rows(rows));
+                *counts += append_rows(&tile, *view, &mut batch, ROWS_AT_A_TIME, rows)?;
+                counts.check()?;
+                // Its memory is used again, unless the other side has ended.
+                let _ = inbox.give_back.send(tile);
+            }
+            (Message::End(found), Some((_, counts))) => each(Event::End(found, *counts))?,
+            (Message::Failed(error), _) => return Err(error),
+            // A view begins first.
+            (Message::Tile(_) | Message::End(_), None) => {}
+        }
     }
+    Ok(())
 }
 
 impl Outbox {
-    fn deliver(&self, message: Message) -> Result<(), PeelError> {
+    /// A tile to fill, with the memory of an earlier one where there is one.
+    pub(crate) fn spare(&self) -> RawTile {
+        self.take.try_recv().unwrap_or_default()
+    }
+
+    pub(crate) fn deliver(&self, message: Message) -> Result<(), PeelError> {
         let sent = self.send.send(message);
         sent.map_err(|_| PeelError::Interrupted)
     }
@@ -185,12 +215,9 @@ pub(crate) fn work(
     if all.is_empty() {
         return Err(PeelError::NoScene);
     }
-    let mine = all
-        .iter()
-        .copied()
-        .filter(|i| options.shard.is_none_or(|s| s.contains(i.index)))
-        .collect();
-    Ok((all.len() as u32, mine))
+    let (count, mut mine) = (all.len() as u32, all);
+    mine.retain(|i| options.shard.is_none_or(|s| s.contains(i.index)));
+    Ok((count, mine))
 }
 
 /// Peels the scenes and writes the dataset. Every part is the dataset's when it is finished, so that an extraction that is killed or fails
@@ -206,82 +233,78 @@ pub fn extract(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
+    let (all, mine) = work(scenes, options)?;
+    let header = Header {
+        format: options.format,
+        seed: options.seed,
+        adapter: gpu.info.name.clone(),
+        adapter_class: adapter_class(gpu),
+        tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+        command: options.command.clone(),
+        peel: options.peel.to_string(),
+        pixels_fraction: options.pixels,
+        augment: options.augment,
+        settings: settings(scenes, options)?,
+        scenes: scenes.iter().map(scene_entry).collect(),
+        work_items: all,
+        shard: options.shard,
+        resume: options.resume,
+        worker: worker_name(),
+    };
+    write(&options.out, header, stop, progress, |missing, outbox| {
+        let missing = mine.iter().filter(|item| missing.contains(&item.index));
+        peel(gpu, scenes, options, missing, outbox);
+    })
+}
+
+/// Writes the parts that a dataset lacks: `make` is called with their numbers on another thread, and sends them view by view.
+pub(crate) fn write(
+    out: &Path,
+    header: Header,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+    make: impl FnOnce(&[u32], &Outbox) + Send,
+) -> Result<ExtractReport, PeelError> {
     let start = Instant::now();
-    let (all, mut mine) = work(scenes, options)?;
-    let writer = DatasetWriter::create(
-        &options.out,
-        Header {
-            format: options.format,
-            seed: options.seed,
-            adapter: gpu.info.name.clone(),
-            adapter_class: adapter_class(gpu),
-            tool_version: env!("CARGO_PKG_VERSION").to_owned(),
-            command: options.command.clone(),
-            peel: options.peel.to_string(),
-            pixels_fraction: options.pixels,
-            augment: options.augment,
-            settings: settings(scenes, options)?,
-            scenes: scenes.iter().map(scene_entry).collect(),
-            work_items: all,
-            shard: options.shard,
-            resume: options.resume,
-            worker: worker_name(),
-        },
-    )?;
-    mine.retain(|item| writer.needs(item.index));
+    let all = 0..header.work_items;
+    let writer = DatasetWriter::create(out, header)?;
+    let missing: Vec<u32> = all.filter(|k| writer.needs(*k)).collect();
     let mut state = Progress {
-        items: mine.len() as u32,
+        items: missing.len() as u32,
         ..Default::default()
     };
     progress(&state);
     let (mut total, mut gpu_micros, mut tiles) = (RowCounts::default(), 0.0, 0);
     std::thread::scope(|scope| {
         let (outbox, inbox) = Inbox::new();
-        let mine = &mine;
-        scope.spawn(move || peel(gpu, scenes, options, mine, &outbox));
-        let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
-        while let Some(message) = inbox.next() {
-            let info = match message {
-                Message::Begin(info) => info,
-                Message::Failed(error) => return Err(error),
-                Message::Tile(_) | Message::End(_) => continue,
-            };
-            let view = ViewConstants::from(&info);
-            let mut part = writer.begin(info)?;
-            let mut counts = RowCounts::default();
-            let found = loop {
-                if stop.load(Ordering::Relaxed) {
-                    return Err(PeelError::Interrupted);
+        let missing = &missing;
+        scope.spawn(move || make(missing, &outbox));
+        let mut part = None;
+        receive(&inbox, |event| {
+            match event {
+                Event::Begin(info) => part = Some(writer.begin(info)?),
+                Event::Rows(rows) => part.iter_mut().try_for_each(|part| part.write(rows))?,
+                Event::End(found, counts) => {
+                    let mut part = part.take().into_iter();
+                    part.try_for_each(|part| part.finish(counts.lost, counts.coplanar))?;
+                    total += counts;
+                    gpu_micros += found.gpu_micros;
+                    tiles += u64::from(found.tiles);
+                    state.items_done += 1;
+                    state.rows = total.rows;
+                    state.seconds = start.elapsed().as_secs_f64();
+                    progress(&state);
                 }
-                match inbox.next() {
-                    Some(Message::Tile(tile)) => {
-                        let write = |rows: &FragmentBatch| part.write(rows);
-                        counts += append_rows(&tile, view, &mut batch, ROWS_AT_A_TIME, write)?;
-                        inbox.give_back(tile);
-                    }
-                    Some(Message::End(found)) => break found,
-                    Some(Message::Failed(error)) => return Err(error),
-                    Some(Message::Begin(_)) | None => return Err(PeelError::Interrupted),
-                }
-            };
-            counts.check()?;
-            part.finish(counts.of_part())?;
-            total += counts;
-            gpu_micros += found.gpu_micros;
-            tiles += u64::from(found.tiles);
-            state.items_done += 1;
-            state.rows += found.fragments;
-            state.seconds = start.elapsed().as_secs_f64();
-            progress(&state);
-            if stop.load(Ordering::Relaxed) {
-                return Err(PeelError::Interrupted);
             }
-        }
-        Ok(())
+            match stop.load(Ordering::Relaxed) {
+                true => Err(PeelError::Interrupted),
+                false => Ok(()),
+            }
+        })
     })?;
     Ok(ExtractReport {
         manifest: writer.finish()?,
-        parts: mine.len() as u32,
+        parts: missing.len() as u32,
         rows: total.rows,
         gpu_micros,
         wall_micros: start.elapsed().as_secs_f64() * 1e6,
@@ -292,11 +315,11 @@ pub fn extract(
 }
 
 /// The GPU's side: every item's tiles into the channel.
-pub(crate) fn peel(
+pub(crate) fn peel<'a>(
     gpu: &Gpu,
     scenes: &[Scene],
     options: &ExtractOptions,
-    items: &[Item],
+    items: impl IntoIterator<Item = &'a Item>,
     outbox: &Outbox,
 ) {
     let mut current = None;
@@ -304,20 +327,14 @@ pub(crate) fn peel(
         let peeled = peel_item(gpu, scenes, options, item, &mut current, outbox);
         if let Err(error) = peeled {
             // The other side may have stopped it.
-            let _ = outbox
-                .send
-                .send(Message::Failed(in_part(error, options, item, scenes)));
+            let _ = outbox.deliver(Message::Failed(in_part(error, options, item, scenes)));
             return;
         }
     }
 }
 
-/// A scene or a varied copy of one that is on the GPU.
-struct Current {
-    key: (u32, u32),
-    scene: Scene,
-    harvester: Harvester,
-}
+/// A scene or a varied copy of one that is on the GPU, behind their numbers.
+type Current = ((u32, u32), Scene, Harvester);
 
 fn peel_item(
     gpu: &Gpu,
@@ -329,32 +346,19 @@ fn peel_item(
 ) -> Result<(), PeelError> {
     let key = (item.scene, item.copy);
     // The old scene's buffers go before the new one's come.
-    let kept = current.take().filter(|c| c.key == key);
-    let kept = if let Some(kept) = kept {
-        kept
-    } else {
-        let scene = scenes[item.scene as usize].varied(options.seed, item.copy);
-        let budget = options.budget.unwrap_or(DEFAULT_BUDGET);
-        let sampled = options.pixels < 1.0;
-        let harvester = Harvester::new(
-            gpu,
-            &scene,
-            options.size,
-            options.peel,
-            sampled,
-            Some(budget),
-        )?;
-        Current {
-            key,
-            scene,
-            harvester,
+    let kept = match current.take().filter(|(of, _, _)| *of == key) {
+        Some(kept) => kept,
+        None => {
+            let scene = scenes[item.scene as usize].varied(options.seed, item.copy);
+            let (size, sampled) = (options.size, options.pixels < 1.0);
+            let budget = Some(options.budget.unwrap_or(DEFAULT_BUDGET));
+            let harvester = Harvester::new(gpu, &scene, size, options.peel, sampled, budget)?;
+            (key, scene, harvester)
         }
     };
-    let Current {
-        scene, harvester, ..
-    } = current.insert(kept);
+    let (_, scene, harvester) = current.insert(kept);
     let camera = &scene.views[item.view as usize];
-    outbox.deliver(Message::Begin(PartInfo {
+    outbox.deliver(Message::Begin(Part {
         index: item.index,
         scene: item.scene,
         copy: item.copy,
@@ -362,6 +366,7 @@ fn peel_item(
         camera: camera_info(camera),
         width: options.size[0],
         height: options.size[1],
+        ..Part::default()
     }))?;
     // The hash takes 32 bits of seed; both halves count.
     let sample = PixelSample {
@@ -373,7 +378,7 @@ fn peel_item(
         camera,
         sample,
         options.max_passes,
-        || outbox.take.try_recv().unwrap_or_default(),
+        || outbox.spare(),
         |tile| outbox.deliver(Message::Tile(tile)),
     )?;
     outbox.deliver(Message::End(found))
@@ -433,17 +438,14 @@ fn settings(
 }
 
 fn scene_entry(scene: &Scene) -> SceneEntry {
+    let census = Census::of(scene);
+    let effects = census.effects.iter().filter(|e| e.on);
     SceneEntry {
         name: scene.name.clone(),
         file: scene.source.display().to_string(),
         sha256: scene.hash.clone(),
         held_out: scene.held_out,
-        effects: Census::of(scene)
-            .effects
-            .iter()
-            .filter(|e| e.on)
-            .map(|e| e.name.to_owned())
-            .collect(),
+        effects: effects.map(|e| e.name.to_owned()).collect(),
     }
 }
 

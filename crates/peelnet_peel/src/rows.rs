@@ -1,7 +1,7 @@
 //! From a tile's runs of fragments to rows of the dataset.
 
 use crate::PeelError;
-use peelnet_dataset::{FragmentBatch, PartCounts, PartInfo};
+use peelnet_dataset::{FragmentBatch, Part};
 use std::ops::AddAssign;
 
 /// What a tile left in GPU storage, read back.
@@ -33,13 +33,13 @@ pub struct ViewConstants {
     pub far: f32,
 }
 
-impl From<&PartInfo> for ViewConstants {
-    fn from(info: &PartInfo) -> Self {
+impl From<&Part> for ViewConstants {
+    fn from(part: &Part) -> Self {
         Self {
-            view: info.index,
-            width: info.width,
-            near: info.camera.near,
-            far: info.camera.far,
+            view: part.index,
+            width: part.width,
+            near: part.camera.near,
+            far: part.camera.far,
         }
     }
 }
@@ -64,14 +64,6 @@ impl RowCounts {
         match self.unsorted {
             0 => Ok(()),
             rows => Err(PeelError::Unsorted(rows)),
-        }
-    }
-
-    /// What the dataset says of a part.
-    pub fn of_part(&self) -> PartCounts {
-        PartCounts {
-            lost_fragments: self.lost,
-            coplanar_ties: self.coplanar,
         }
     }
 }

@@ -8,18 +8,13 @@
 
 use crate::{
     ExtractReport, PeelError, Progress,
-    rows::{RawTile, ViewConstants, append_rows},
+    extract::{Message, Outbox, write},
+    harvest::Harvest,
+    rows::RawTile,
 };
 use peelnet_core::random::Random;
-use peelnet_dataset::{
-    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, MAX_WORK_ITEMS, PartInfo, SceneEntry,
-    worker_name,
-};
-use std::{
-    path::PathBuf,
-    sync::atomic::{AtomicBool, Ordering},
-    time::Instant,
-};
+use peelnet_dataset::{CameraInfo, Format, Header, MAX_WORK_ITEMS, Part, SceneEntry, worker_name};
+use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 /// Lists of one world.
 pub const PIXELS: u64 = 32 * 32;
@@ -189,97 +184,72 @@ pub fn synthetic(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
-    let start = Instant::now();
     if options.lists > MAX_LISTS {
         return Err(PeelError::TooManyLists(options.lists));
     }
-    let worlds = options.lists.div_ceil(PIXELS) as u32;
-    let writer = DatasetWriter::create(
-        &options.out,
-        Header {
-            format: options.format,
-            seed: options.seed,
-            adapter: "none".to_owned(),
-            adapter_class: "none".to_owned(),
-            tool_version: env!("CARGO_PKG_VERSION").to_owned(),
-            command: options.command.clone(),
-            peel: NAME.to_owned(),
-            pixels_fraction: 1.0,
-            augment: 0,
-            settings: [("number of lists".to_owned(), options.lists.to_string())].into(),
-            scenes: vec![SceneEntry {
-                name: NAME.to_owned(),
-                file: NAME.to_owned(),
-                // Nothing is read; the lists follow from the seed and this version.
-                sha256: "0".repeat(64),
-                held_out: false,
-                effects: Vec::new(),
-            }],
-            work_items: worlds,
-            shard: None,
-            resume: options.resume,
-            worker: worker_name(),
-        },
-    )?;
-    let mut batch = FragmentBatch::default();
-    let (mut rows, mut coplanar) = (0, 0);
-    let mut parts = 0;
-    for index in (0..worlds).filter(|k| writer.needs(*k)) {
-        if stop.load(Ordering::Relaxed) {
-            return Err(PeelError::Interrupted);
-        }
-        let mut random = Random::new(options.seed, &[0x5e7f, index.into()]);
-        let world = World::new(&mut random);
-        let lists = PIXELS.min(options.lists - u64::from(index) * PIXELS);
-        let (tile, range) = tile(&world, lists, &mut random);
-        let info = PartInfo {
-            index,
-            scene: 0,
-            copy: 0,
-            view: index,
-            camera: CameraInfo {
-                position: [0.0; 3],
-                target: [0.0, 0.0, -1.0],
-                up: [0.0, 1.0, 0.0],
-                fov_y_degrees: 45.0,
-                near: range[0],
-                far: range[1],
-            },
-            width: 32,
-            height: 32,
-        };
-        let view = ViewConstants::from(&info);
-        let mut part = writer.begin(info)?;
-        let counts = append_rows(&tile, view, &mut batch, usize::MAX, |b| part.write(b))?;
-        part.finish(counts.of_part())?;
-        parts += 1;
-        rows += counts.rows;
-        coplanar += counts.coplanar;
-        progress(&Progress {
-            items_done: index + 1,
-            items: worlds,
-            rows,
-            seconds: start.elapsed().as_secs_f64(),
-        });
-    }
-    Ok(ExtractReport {
-        manifest: writer.finish()?,
-        parts,
-        rows,
-        gpu_micros: 0.0,
-        wall_micros: start.elapsed().as_secs_f64() * 1e6,
-        lost: 0,
-        coplanar,
-        tiles: 0,
+    let header = Header {
+        format: options.format,
+        seed: options.seed,
+        adapter: "none".to_owned(),
+        adapter_class: "none".to_owned(),
+        tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+        command: options.command.clone(),
+        peel: NAME.to_owned(),
+        pixels_fraction: 1.0,
+        settings: [("number of lists".to_owned(), options.lists.to_string())].into(),
+        scenes: vec![SceneEntry {
+            name: NAME.to_owned(),
+            file: NAME.to_owned(),
+            // Nothing is read; the lists follow from the seed and this version.
+            sha256: "0".repeat(64),
+            held_out: false,
+            effects: Vec::new(),
+        }],
+        work_items: options.lists.div_ceil(PIXELS) as u32,
+        resume: options.resume,
+        worker: worker_name(),
+        ..Header::default()
+    };
+    write(&options.out, header, stop, progress, |missing, outbox| {
+        // The other side may have stopped it.
+        let _ = missing
+            .iter()
+            .try_for_each(|&index| make(options, index, outbox));
     })
 }
 
-/// A world's lists, sorted, and clip distances around them.
-fn tile(world: &World, lists: u64, random: &mut Random) -> (RawTile, [f32; 2]) {
-    let mut tile = RawTile {
-        offsets: vec![0],
-        ..Default::default()
-    };
+/// One world into the channel.
+fn make(options: &SyntheticOptions, index: u32, outbox: &Outbox) -> Result<(), PeelError> {
+    let mut random = Random::new(options.seed, &[0x5e7f, index.into()]);
+    let world = World::new(&mut random);
+    let lists = PIXELS.min(options.lists - u64::from(index) * PIXELS);
+    let mut tile = outbox.spare();
+    let [near, far] = fill(&mut tile, &world, lists, &mut random);
+    outbox.deliver(Message::Begin(Part {
+        index,
+        view: index,
+        camera: CameraInfo {
+            position: [0.0; 3],
+            target: [0.0, 0.0, -1.0],
+            up: [0.0, 1.0, 0.0],
+            fov_y_degrees: 45.0,
+            near,
+            far,
+        },
+        width: 32,
+        height: 32,
+        ..Part::default()
+    }))?;
+    outbox.deliver(Message::Tile(tile))?;
+    outbox.deliver(Message::End(Harvest::default()))
+}
+
+/// Fills a tile with a world's lists, sorted, and returns clip distances around them.
+fn fill(tile: &mut RawTile, world: &World, lists: u64, random: &mut Random) -> [f32; 2] {
+    tile.offsets.clear();
+    tile.depths.clear();
+    tile.colors.clear();
+    tile.offsets.push(0);
     for _ in 0..lists {
         let mut list = world.list(random);
         list.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -291,10 +261,10 @@ fn tile(world: &World, lists: u64, random: &mut Random) -> (RawTile, [f32; 2]) {
     }
     let near = tile.depths.iter().copied().fold(f32::MAX, f32::min);
     let far = tile.depths.iter().copied().fold(0.0, f32::max);
-    if far == 0.0 {
-        return (tile, [0.1, 100.0]);
+    match far > 0.0 {
+        true => [near * 0.5, far * 2.0],
+        false => [0.1, 100.0],
     }
-    (tile, [near * 0.5, far * 2.0])
 }
 
 #[cfg(test)]
@@ -330,7 +300,8 @@ mod tests {
         for seed in 0..300 {
             let mut random = Random::new(seed, &[]);
             let world = World::new(&mut random);
-            let (tile, range) = tile(&world, 64, &mut random);
+            let mut tile = RawTile::default();
+            let range = fill(&mut tile, &world, 64, &mut random);
             assert_eq!(tile.offsets.len(), 65);
             for run in tile.offsets.windows(2) {
                 let depths = &tile.depths[run[0] as usize..run[1] as usize];

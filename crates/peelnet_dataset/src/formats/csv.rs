@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::{HashedFile, PartSink, PartSource, check_names};
+use super::{HashedFile, PartSink, PartSource, check_names, in_parallel};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::manifest::FileEntry;
@@ -16,8 +16,6 @@ const ROWS_A_BUFFER: usize = 1 << 14;
 
 /// Writes a part as CSV.
 pub(super) struct CsvSink {
-    path: PathBuf,
-    name: String,
     file: HashedFile,
     rows: u64,
     threads: usize,
@@ -25,51 +23,38 @@ pub(super) struct CsvSink {
 
 impl CsvSink {
     pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
-        let name = format!("{stem}.csv");
-        let path = folder.join(&name);
-        let mut file = HashedFile::create(&path)?;
         let header = Column::ALL.map(Column::name).join(",") + "\n";
-        file.write_all(header.as_bytes())
-            .map_err(DatasetError::io(&path, "write"))?;
-        Ok(Self {
-            path,
-            name,
-            file,
+        let mut sink = Self {
+            file: HashedFile::create(folder.join(format!("{stem}.csv")))?,
             rows: 0,
-            threads: threads.max(1),
-        })
+            threads,
+        };
+        sink.append(header.as_bytes())?;
+        Ok(sink)
+    }
+
+    fn append(&mut self, text: &[u8]) -> Result<(), DatasetError> {
+        let written = self.file.write_all(text);
+        written.map_err(DatasetError::io(&self.file.path, "write"))
     }
 }
 
 impl PartSink for CsvSink {
     fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
         let starts: Vec<usize> = (0..rows.len()).step_by(ROWS_A_BUFFER).collect();
+        // As many buffers as threads are in memory.
         for starts in starts.chunks(self.threads) {
-            let texts: Vec<Vec<u8>> = std::thread::scope(|scope| {
-                let threads: Vec<_> = starts
-                    .iter()
-                    .map(|&start| {
-                        let end = rows.len().min(start + ROWS_A_BUFFER);
-                        scope.spawn(move || lines(rows, start..end))
-                    })
-                    .collect();
-                let threads = threads.into_iter();
-                threads
-                    .map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
-                    .collect()
+            let texts = in_parallel(self.threads, starts, |&start| {
+                lines(rows, start..rows.len().min(start + ROWS_A_BUFFER))
             });
-            for text in texts {
-                self.file
-                    .write_all(&text)
-                    .map_err(DatasetError::io(&self.path, "write"))?;
-            }
+            texts.iter().try_for_each(|text| self.append(text))?;
         }
         self.rows += rows.len() as u64;
         Ok(())
     }
 
     fn finish(self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
-        Ok((vec![self.rows], vec![self.file.finish(self.name)]))
+        Ok((vec![self.rows], vec![self.file.finish()]))
     }
 }
 
@@ -182,7 +167,7 @@ fn csv_error(path: &Path, error: &csv::Error) -> DatasetError {
         }
         _ => error.to_string(),
     };
-    DatasetError::format(path, reason)
+    DatasetError::invalid(path, reason)
 }
 
 impl PartSource for CsvSource {
@@ -205,14 +190,13 @@ impl PartSource for CsvSource {
                         ColumnKind::F32 => "f32",
                         ColumnKind::U32 => "u32",
                     };
-                    return Err(DatasetError::format(
-                        &self.path,
-                        format!(
-                            "line {}, column {column}: {:?} is not a number of type {kind}; fix the line or write the dataset again",
-                            self.record.position().map_or(0, csv::Position::line),
-                            peelnet_files::printable(&String::from_utf8_lossy(field)),
-                        ),
-                    ));
+                    let line = self.record.position().map_or(0, csv::Position::line);
+                    let text = String::from_utf8_lossy(field);
+                    let text = peelnet_files::printable(&text);
+                    let reason = format!(
+                        "line {line}, column {column}: {text:?} is not a number of type {kind}; fix the line or write the dataset again"
+                    );
+                    return Err(DatasetError::invalid(&self.path, reason));
                 }
             }
             count += 1;

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{PartSink, PartSource, hash_file};
+use super::{PartSink, PartSource, file_name, hash_file, in_parallel};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::manifest::FileEntry;
@@ -46,7 +46,6 @@ pub(super) struct NpySink {
 
 struct ColumnFile {
     column: Column,
-    name: String,
     path: PathBuf,
     file: BufWriter<File>,
 }
@@ -54,26 +53,18 @@ struct ColumnFile {
 impl NpySink {
     pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
         let create = |column: Column| {
-            let name = format!("{stem}.{column}.npy");
-            let path = folder.join(&name);
+            let path = folder.join(format!("{stem}.{column}.npy"));
             let file = File::create_new(&path).map_err(DatasetError::io(&path, "create"))?;
             let mut file = BufWriter::with_capacity(BUFFER, file);
             file.write_all(&header(column.kind(), 0))
                 .map_err(DatasetError::io(&path, "write"))?;
-            Ok(ColumnFile {
-                column,
-                name,
-                path,
-                file,
-            })
+            Ok(ColumnFile { column, path, file })
         };
+        let columns = Column::ALL.into_iter().map(create);
         Ok(Self {
             rows: 0,
-            threads: threads.max(1),
-            columns: Column::ALL
-                .into_iter()
-                .map(create)
-                .collect::<Result<_, DatasetError>>()?,
+            threads,
+            columns: columns.collect::<Result<_, DatasetError>>()?,
         })
     }
 }
@@ -98,7 +89,7 @@ impl ColumnFile {
         let (bytes, sha256) =
             hash_file(&self.path).map_err(DatasetError::io(&self.path, "read"))?;
         Ok(FileEntry {
-            name: self.name.clone(),
+            name: file_name(&self.path),
             bytes,
             sha256,
         })
@@ -118,23 +109,8 @@ impl PartSink for NpySink {
     /// Hashing takes the time, on as many threads as there may be.
     fn finish(mut self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
         let rows = self.rows;
-        let share = self.columns.len().div_ceil(self.threads);
-        let files = std::thread::scope(|scope| {
-            let threads: Vec<_> = self
-                .columns
-                .chunks_mut(share)
-                .map(|files| {
-                    scope.spawn(move || {
-                        let files = files.iter_mut().map(|file| file.finish(rows));
-                        files.collect::<Vec<_>>()
-                    })
-                })
-                .collect();
-            let threads = threads.into_iter();
-            threads
-                .flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
-                .collect::<Result<_, _>>()
-        })?;
+        let files = in_parallel(self.threads, &mut self.columns, |file| file.finish(rows));
+        let files = files.into_iter().collect::<Result<_, _>>()?;
         Ok((vec![rows], files))
     }
 }
@@ -153,22 +129,16 @@ struct OpenColumn {
 
 impl NpySource {
     pub(super) fn open(files: &[Fetched], columns: &[Column]) -> Result<Self, DatasetError> {
-        let open = files
-            .iter()
-            .zip(columns)
-            .map(|(f, &c)| OpenColumn::open(f, c));
+        let open = files.iter().zip(columns);
+        let open = open.map(|(file, &column)| OpenColumn::open(file, column));
         let columns: Vec<OpenColumn> = open.collect::<Result<_, _>>()?;
-        if let Some((first, other)) = columns
-            .first()
-            .zip(columns.iter().find(|c| c.left != columns[0].left))
-        {
-            return Err(DatasetError::format(
-                &other.path,
-                format!(
-                    "{} rows, but column {} of the same part has {}; write the dataset again",
-                    other.left, first.column, first.left
-                ),
-            ));
+        if let Some(other) = columns.iter().find(|c| c.left != columns[0].left) {
+            let (column, rows) = (columns[0].column, columns[0].left);
+            let reason = format!(
+                "{} rows, but column {column} of the same part has {rows}; write the dataset again",
+                other.left
+            );
+            return Err(DatasetError::invalid(&other.path, reason));
         }
         Ok(Self { columns })
     }
@@ -193,14 +163,12 @@ impl OpenColumn {
             text.replace(", }", "}").trim_end().to_owned()
         };
         if text(&found) != text(&expected) || !length.is_multiple_of(4) {
-            return Err(DatasetError::format(
-                &path,
-                format!(
-                    "not an NPY file of column {column}: {length} bytes need the header {:?}, and it is {:?}; write the dataset again",
-                    text(&expected[10..]),
-                    peelnet_files::printable(&text(found.get(10..).unwrap_or_default())),
-                ),
-            ));
+            let reason = format!(
+                "not an NPY file of column {column}: {length} bytes need the header {:?}, and it is {:?}; write the dataset again",
+                text(&expected[10..]),
+                peelnet_files::printable(&text(found.get(10..).unwrap_or_default())),
+            );
+            return Err(DatasetError::invalid(&path, reason));
         }
         Ok(Self {
             column,
@@ -212,11 +180,10 @@ impl OpenColumn {
 
     fn read(&mut self, rows: usize, to: ColumnMut<'_>) -> Result<(), DatasetError> {
         let mut bytes = vec![0; 4 * rows];
-        self.file.read_exact(&mut bytes).map_err(|e| {
-            DatasetError::changed(
-                &self.path,
-                format!("{} more rows were expected: {e}", self.left),
-            )
+        let read = self.file.read_exact(&mut bytes);
+        read.map_err(|e| {
+            let reason = format!("{} more rows were expected: {e}", self.left);
+            DatasetError::changed(&self.path, reason)
         })?;
         let words = bytes.chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
         match to {

@@ -7,11 +7,11 @@
 //! Every row group and page has its least and greatest value, and the footer has where pages lie: a reader that asks for one view fetches
 //! one view.
 
+use std::fmt;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
@@ -26,7 +26,7 @@ use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
-use super::{HashedFile, PartSink, PartSource, ROW_GROUP_ROWS, check_names};
+use super::{HashedFile, PartSink, PartSource, ROW_GROUP_ROWS, check_names, in_parallel};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::manifest::FileEntry;
@@ -78,7 +78,6 @@ fn properties() -> WriterPropertiesPtr {
 /// Writes a part as Parquet.
 pub(super) struct ParquetSink {
     path: PathBuf,
-    name: String,
     writer: SerializedFileWriter<HashedFile>,
     /// Rows that do not fill a row group yet.
     pending: FragmentBatch,
@@ -88,18 +87,16 @@ pub(super) struct ParquetSink {
 
 impl ParquetSink {
     pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
-        let name = format!("{stem}.parquet");
-        let path = folder.join(&name);
-        let file = HashedFile::create(&path)?;
+        let path = folder.join(format!("{stem}.parquet"));
+        let file = HashedFile::create(path.clone())?;
         let writer = SerializedFileWriter::new(file, schema(), properties())
             .map_err(|e| write_error(&path, e))?;
         Ok(Self {
             path,
-            name,
             writer,
             pending: FragmentBatch::default(),
             row_groups: Vec::new(),
-            threads: threads.max(1),
+            threads,
         })
     }
 
@@ -108,29 +105,13 @@ impl ParquetSink {
         let mut rows = std::mem::take(&mut self.pending);
         let descriptors = self.writer.schema_descr().columns().to_vec();
         let properties = self.writer.properties().clone();
-        let next = AtomicUsize::new(0);
-        // Columns are taken from a common counter: they cost very different times.
-        let encode_some = || {
-            let mut done = Vec::new();
-            while let Some(&column) = Column::ALL.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let descriptor = &descriptors[column.index()];
-                done.push((column, encode(descriptor, &properties, rows.column(column))));
-            }
-            done
-        };
-        let mut encoded: Vec<_> = std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..self.threads)
-                .map(|_| scope.spawn(encode_some))
-                .collect();
-            let threads = threads.into_iter();
-            threads
-                .flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
-                .collect()
+        let encoded = in_parallel(self.threads, Column::ALL, |column| {
+            let descriptor = &descriptors[column.index()];
+            encode(descriptor, &properties, rows.column(column))
         });
-        encoded.sort_by_key(|(column, _)| *column);
         let append = || -> Result<(), ParquetError> {
             let mut group = self.writer.next_row_group()?;
-            for (_, column) in encoded {
+            for column in encoded {
                 let (bytes, close) = column?;
                 group.append_column(&bytes, close)?;
             }
@@ -150,7 +131,7 @@ fn encode(
     properties: &WriterPropertiesPtr,
     values: ColumnSlice<'_>,
 ) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
-    let mut sink = TrackedWrite::new(Vec::with_capacity(values.len()));
+    let mut sink = TrackedWrite::new(Vec::new());
     let pages = Box::new(SerializedPageWriter::new(&mut sink));
     let mut writer = get_column_writer(descriptor.clone(), properties.clone(), pages);
     match (&mut writer, values) {
@@ -204,11 +185,9 @@ impl PartSink for ParquetSink {
             self.row_group()?;
         }
         // Writes the footer and empties the buffers.
-        let file = self
-            .writer
-            .into_inner()
-            .map_err(|e| write_error(&self.path, e))?;
-        Ok((self.row_groups, vec![file.finish(self.name)]))
+        let file = self.writer.into_inner();
+        let file = file.map_err(|e| write_error(&self.path, e))?;
+        Ok((self.row_groups, vec![file.finish()]))
     }
 }
 
@@ -230,7 +209,7 @@ impl ParquetSource {
         let path = file.shown.clone();
         let mut file = file.open()?;
         let length = check_footer(&path, &mut file)?;
-        let file = SerializedFileReader::new(file).map_err(|e| read_error(&path, &e))?;
+        let file = SerializedFileReader::new(file).map_err(|e| read_error(&path, e))?;
         let found = file.metadata().file_metadata().schema_descr().columns();
         let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
         check_names(&path, "schema", &names)?;
@@ -240,14 +219,12 @@ impl ParquetSource {
                 ColumnKind::U32 => PhysicalType::INT32,
             };
             if descriptor.physical_type() != expected || descriptor.max_def_level() != 0 {
-                return Err(DatasetError::format(
-                    &path,
-                    format!(
-                        "column {column} is {} (definition level {}), expected a required {expected}",
-                        descriptor.physical_type(),
-                        descriptor.max_def_level()
-                    ),
-                ));
+                let reason = format!(
+                    "column {column} is {} (definition level {}), expected a required {expected}",
+                    descriptor.physical_type(),
+                    descriptor.max_def_level()
+                );
+                return Err(DatasetError::invalid(&path, reason));
             }
         }
         check_places(&path, length, &file)?;
@@ -270,16 +247,16 @@ impl ParquetSource {
         let group = self
             .file
             .get_row_group(self.next_group)
-            .map_err(|e| read_error(&self.path, &e))?;
+            .map_err(|e| read_error(&self.path, e))?;
         self.left = usize::try_from(group.metadata().num_rows()).map_err(|_| {
-            DatasetError::format(&self.path, "a row group has a negative number of rows")
+            DatasetError::invalid(&self.path, "a row group has a negative number of rows")
         })?;
         self.readers = self
             .columns
             .iter()
             .map(|c| group.get_column_reader(c.index()))
             .collect::<Result<_, _>>()
-            .map_err(|e| read_error(&self.path, &e))?;
+            .map_err(|e| read_error(&self.path, e))?;
         self.next_group += 1;
         Ok(true)
     }
@@ -299,12 +276,8 @@ fn check_footer(path: &Path, file: &mut File) -> Result<u64, DatasetError> {
     // A file without the eight bytes is the reader's to refuse.
     let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]);
     if read.is_ok() && length > MAX_FOOTER {
-        return Err(DatasetError::format(
-            path,
-            format!(
-                "not a readable Parquet file: a footer of {length} bytes, and at most {MAX_FOOTER} are read; write the dataset again"
-            ),
-        ));
+        let what = format!("a footer of {length} bytes, and at most {MAX_FOOTER} are read");
+        return Err(read_error(path, what));
     }
     Ok(whole.len())
 }
@@ -325,24 +298,20 @@ fn check_places(
                 .zip(u64::try_from(column.compressed_size()).ok())
                 .and_then(|(first, bytes)| first.checked_add(bytes));
             if end.is_none_or(|end| end > length) {
-                return Err(DatasetError::format(
-                    path,
-                    format!(
-                        "the footer says that column {} lies outside of the file; write the dataset again",
-                        column.column_path().string()
-                    ),
-                ));
+                let column = column.column_path().string();
+                let reason = format!(
+                    "the footer says that column {column} lies outside of the file; write the dataset again"
+                );
+                return Err(DatasetError::invalid(path, reason));
             }
         }
     }
     Ok(())
 }
 
-fn read_error(path: &Path, error: &ParquetError) -> DatasetError {
-    DatasetError::format(
-        path,
-        format!("not a readable Parquet file: {error}; write the dataset again"),
-    )
+fn read_error(path: &Path, what: impl fmt::Display) -> DatasetError {
+    let reason = format!("not a readable Parquet file: {what}; write the dataset again");
+    DatasetError::invalid(path, reason)
 }
 
 impl PartSource for ParquetSource {
@@ -366,15 +335,12 @@ impl PartSource for ParquetSource {
                 }
                 _ => unreachable!("the types were compared when the file was opened"),
             };
-            let (read, _, _) = read.map_err(|e| read_error(&self.path, &e))?;
+            let (read, _, _) = read.map_err(|e| read_error(&self.path, e))?;
             if read != count {
-                return Err(DatasetError::format(
-                    &self.path,
-                    format!(
-                        "column {column} ends {} rows early; write the dataset again",
-                        count - read
-                    ),
-                ));
+                let missing = count - read;
+                let reason =
+                    format!("column {column} ends {missing} rows early; write the dataset again");
+                return Err(DatasetError::invalid(&self.path, reason));
             }
         }
         self.left -= count;

@@ -44,7 +44,7 @@ impl Remote {
         let (bucket, prefix) = rest.split_once('/').unwrap_or((rest, ""));
         // Without what could be a password.
         let shown = PathBuf::from(format!("{scheme}://…"));
-        let refused = |reason: &str| DatasetError::usage(&shown, reason);
+        let refused = |reason: &str| DatasetError::invalid(&shown, reason);
         if bucket.is_empty() {
             return Err(refused(
                 "the address has no bucket; write scheme://bucket/prefix",
@@ -63,22 +63,16 @@ impl Remote {
             ..RetryConfig::default()
         };
         let address = format!("{scheme}://{bucket}");
-        let built: object_store::Result<Box<dyn ObjectStore>> = match scheme {
-            "s3" => AmazonS3Builder::from_env()
-                .with_url(address)
-                .with_retry(retry)
-                .build()
-                .map(|s| Box::new(s) as _),
-            "gs" => GoogleCloudStorageBuilder::from_env()
-                .with_url(address)
-                .with_retry(retry)
-                .build()
-                .map(|s| Box::new(s) as _),
-            "az" => MicrosoftAzureBuilder::from_env()
-                .with_url(address)
-                .with_retry(retry)
-                .build()
-                .map(|s| Box::new(s) as _),
+        macro_rules! built {
+            ($builder:ident) => {{
+                let builder = $builder::from_env().with_url(address).with_retry(retry);
+                builder.build().map(|s| Box::new(s) as Box<dyn ObjectStore>)
+            }};
+        }
+        let built = match scheme {
+            "s3" => built!(AmazonS3Builder),
+            "gs" => built!(GoogleCloudStorageBuilder),
+            "az" => built!(MicrosoftAzureBuilder),
             _ => return Err(refused("expected s3://, gs://, az:// or file://")),
         };
         let path = PathBuf::from(url.trim_end_matches('/'));
@@ -168,10 +162,9 @@ impl Store for Remote {
         match self.retried(get) {
             Ok(Ok(bytes)) => Ok(Some(bytes.into())),
             Ok(Err(size)) => {
-                let error = peelnet_files::check_size(size, most).err();
-                Err(DatasetError::io(&shown, "read")(error.unwrap_or_else(
-                    || std::io::Error::other("its length changed"),
-                )))
+                let checked = peelnet_files::check_size(size, most);
+                let larger = checked.map(|()| None);
+                larger.map_err(DatasetError::io(&shown, "read"))
             }
             Err(e @ object_store::Error::NotFound { .. }) if !lacks_bucket(&e) => Ok(None),
             Err(e) => Err(fault(&shown, "read", &e)),
@@ -199,13 +192,11 @@ impl Store for Remote {
             let file = tempfile::Builder::new().prefix("peelnet-").tempfile()?;
             fs::write(file.path(), &bytes)?;
             let copy = file.into_temp_path();
+            let unfinished = peelnet_files::Unfinished::new(&copy);
             Ok(Fetched {
                 path: copy.to_path_buf(),
                 shown: self.shown(name),
-                _copy: Some({
-                    let unfinished = peelnet_files::Unfinished::new(&copy);
-                    (copy, unfinished)
-                }),
+                _copy: Some((copy, unfinished)),
             })
         };
         write().map_err(DatasetError::io(&self.shown(name), "keep a copy of"))
@@ -267,42 +258,43 @@ fn fault(path: &Path, action: &'static str, error: &object_store::Error) -> Data
     let text = secret_text(error);
     let code = code(&text);
     let status = status(&text);
+    let cut = format!(
+        "the server does not answer, or its connection was cut {TRIES} times; check the address and the network, and resume"
+    );
     let why = match (code, error) {
         (Some("NoSuchBucket" | "ContainerNotFound"), _) => {
-            "the bucket does not exist; create it, or correct the address".to_owned()
+            "the bucket does not exist; create it, or correct the address"
         }
         (Some("QuotaExceeded" | "XMinioStorageFull" | "InsufficientCapacity"), _) => {
-            "the bucket is full; make room, and resume".to_owned()
+            "the bucket is full; make room, and resume"
         }
         (Some("RequestTimeTooSkewed" | "RequestExpired"), _) => {
-            "the clock of this machine is off by minutes; set it".to_owned()
+            "the clock of this machine is off by minutes; set it"
         }
-        (Some("InvalidAccessKeyId" | "SignatureDoesNotMatch" | "InvalidToken" | "ExpiredToken"), _)
+        (
+            Some("InvalidAccessKeyId" | "SignatureDoesNotMatch" | "InvalidToken" | "ExpiredToken"),
+            _,
+        )
         | (_, object_store::Error::Unauthenticated { .. }) => {
-            "the server refused the credentials; set those of an account that may use the bucket in the environment".to_owned()
+            "the server refused the credentials; set those of an account that may use the bucket in the environment"
         }
         (_, object_store::Error::PermissionDenied { .. }) => {
-            "the account may not do this; give it the right to read, list and write this prefix".to_owned()
+            "the account may not do this; give it the right to read, list and write this prefix"
         }
-        (_, object_store::Error::NotFound { .. }) => {
-            "there is no such object or bucket".to_owned()
-        }
+        (_, object_store::Error::NotFound { .. }) => "there is no such object or bucket",
         (Some("SlowDown" | "ServerBusy" | "RequestLimitExceeded"), _) => {
-            "the server asked for fewer requests again and again; start fewer workers, and resume".to_owned()
+            "the server asked for fewer requests again and again; start fewer workers, and resume"
         }
-        _ if is_cut(error) => {
-            format!("the server does not answer, or its connection was cut {TRIES} times; check the address and the network, and resume")
-        }
+        _ if is_cut(error) => &cut,
         _ if status.is_none() => {
-            "the settings in the environment are incomplete, or no credentials were found there".to_owned()
+            "the settings in the environment are incomplete, or no credentials were found there"
         }
-        _ => "the server refused the request".to_owned(),
+        _ => "the server refused the request",
     };
     let details: Vec<&str> = [status, code].into_iter().flatten().collect();
-    let details = if details.is_empty() {
-        String::new()
-    } else {
-        format!(" ({})", details.join(" "))
+    let details = match details.join(" ") {
+        none if none.is_empty() => none,
+        details => format!(" ({details})"),
     };
     DatasetError::io(path, action)(std::io::Error::other(format!("{why}{details}")))
 }

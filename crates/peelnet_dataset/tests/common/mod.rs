@@ -74,18 +74,17 @@ pub fn header(format: Format, shard: Option<Shard>) -> Header {
         command: "peelnet extract".to_owned(),
         peel: "sbuffer".to_owned(),
         pixels_fraction: 1.0,
-        augment: 0,
         settings: [("size".to_owned(), "640x480".to_owned())].into(),
         scenes: vec![scene("cups", false), scene("smoke in a box", true)],
         work_items: 4,
         shard,
-        resume: false,
         worker: "test".to_owned(),
+        ..Header::default()
     }
 }
 
-pub fn info(index: u32) -> PartInfo {
-    PartInfo {
+pub fn info(index: u32) -> Part {
+    Part {
         index,
         scene: index / 2,
         copy: 0,
@@ -93,6 +92,7 @@ pub fn info(index: u32) -> PartInfo {
         camera: camera(),
         width: 640,
         height: 480,
+        ..Part::default()
     }
 }
 
@@ -177,7 +177,7 @@ pub fn part(
         piece.extend_from(rows, start..rows.len().min(start + batch_rows));
         part.write(&piece)?;
     }
-    part.finish(PartCounts::default())
+    part.finish(0, 0)
 }
 
 /// Writes a dataset of one part.

@@ -4,8 +4,7 @@
 use std::path::Path;
 
 use peelnet_dataset::{
-    CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, PartCounts, PartInfo,
-    SceneEntry,
+    CameraInfo, Dataset, DatasetWriter, Format, FragmentBatch, Header, Part, SceneEntry,
 };
 
 pub fn scene(name: &str, held_out: bool) -> SceneEntry {
@@ -37,19 +36,16 @@ pub fn write_views(
             command: "test".to_owned(),
             peel: "sbuffer".to_owned(),
             pixels_fraction: 1.0,
-            augment: 0,
-            settings: std::collections::BTreeMap::new(),
             scenes,
             work_items: parts,
-            shard: None,
-            resume: false,
             worker: "test".to_owned(),
+            ..Header::default()
         },
     )
     .unwrap();
     for index in 0..parts {
         let mut part = writer
-            .begin(PartInfo {
+            .begin(Part {
                 index,
                 scene: index,
                 copy: 0,
@@ -64,10 +60,11 @@ pub fn write_views(
                 },
                 width: side,
                 height: side,
+                ..Part::default()
             })
             .unwrap();
         part.write(&rows(index)).unwrap();
-        part.finish(PartCounts::default()).unwrap();
+        part.finish(0, 0).unwrap();
     }
     writer.finish().unwrap();
     Dataset::open(folder).unwrap()

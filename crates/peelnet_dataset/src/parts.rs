@@ -1,0 +1,258 @@
+//! Which parts of a dataset are there: `_peelnet/parts/00003.json` says that one is finished, and by whom, and the seal over all of them
+//! makes them one dataset.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::DatasetError;
+use crate::folder;
+use crate::formats::in_parallel;
+use crate::manifest::{Manifest, Part, SCHEMA_VERSION, read_json, to_json};
+use crate::plan::Plan;
+use crate::store::{FRAGMENTS, MANIFEST, PARTS, Store, open_store, store_at};
+
+/// Records that are read at a time: an object store answers each after tens of milliseconds.
+const READERS: usize = 32;
+
+/// A finished part. It is the dataset's once this record is there. The file is its JSON, with these names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PartRecord {
+    /// [`SCHEMA_VERSION`] of the writer.
+    schema: u32,
+    /// Hash of the plan that the writer followed.
+    plan: String,
+    /// The writer's name.
+    pub worker: String,
+    /// The part, as it will be in the manifest.
+    pub part: Part,
+}
+
+impl PartRecord {
+    pub(crate) fn new(plan: &Plan, worker: &str, part: Part) -> Self {
+        Self {
+            schema: SCHEMA_VERSION,
+            plan: plan.hash.clone(),
+            worker: worker.to_owned(),
+            part,
+        }
+    }
+
+    /// The name of a part's record.
+    pub(crate) fn name(index: u32) -> String {
+        format!("{PARTS}{index:05}.json")
+    }
+
+    /// The part whose record has this name.
+    pub(crate) fn index(name: &str) -> Option<u32> {
+        let digits = name.strip_prefix(PARTS)?.strip_suffix(".json")?;
+        digits.parse().ok().filter(|&k| Self::name(k) == name)
+    }
+
+    /// Reads a part's record; `None` where there is none. It must be of this part, and follow this plan.
+    pub(crate) fn read(
+        store: &dyn Store,
+        index: u32,
+        plan: Option<&Plan>,
+    ) -> Result<Option<Self>, DatasetError> {
+        let name = Self::name(index);
+        let wrong = |reason: String| {
+            let fix = "remove this record and finish the part with `peelnet extract --resume`";
+            DatasetError::invalid(
+                &store.shown(&name),
+                format!("part {index}: {reason}; {fix}"),
+            )
+        };
+        let Some(record) = read_json::<Self>(store, &name, "record", wrong)? else {
+            return Ok(None);
+        };
+        let worker = peelnet_files::printable(&record.worker);
+        if record.part.index != index {
+            return Err(wrong(format!(
+                "the record of worker {worker} is of part {}, so it was copied or renamed",
+                record.part.index
+            )));
+        }
+        if let Some(plan) = plan.filter(|p| p.hash != record.plan) {
+            let start = |hash: &str| -> String {
+                let hash = peelnet_files::printable(hash);
+                hash.chars().take(12).collect()
+            };
+            return Err(wrong(format!(
+                "worker {worker} wrote it by another plan ({}) than the dataset's ({}): another version, size, seed, flag or adapter",
+                start(&record.plan),
+                start(&plan.hash)
+            )));
+        }
+        Ok(Some(record))
+    }
+
+    /// Makes this the part's record. Where there is one already, it must be of the same bytes.
+    pub(crate) fn commit(&self, store: &dyn Store, plan: &Plan) -> Result<(), DatasetError> {
+        let index = self.part.index;
+        if store.put_if_absent(&Self::name(index), to_json(self).as_bytes())? {
+            return Ok(());
+        }
+        match Self::read(store, index, Some(plan))? {
+            Some(there) => self.check_same(store, &there),
+            // Gone again: somebody removes records while this works.
+            None => Err(DatasetError::busy(store.path())),
+        }
+    }
+
+    /// An error if another record of this part is of other bytes.
+    pub(crate) fn check_same(&self, store: &dyn Store, there: &Self) -> Result<(), DatasetError> {
+        if there.part.files == self.part.files {
+            return Ok(());
+        }
+        let (index, worker, other) = (self.part.index, &self.worker, &there.worker);
+        let reason = format!(
+            "part {index}: worker {worker} and worker {other} wrote different bytes for it, so one of the machines computes differently, or a file was changed; the part of {other} stays; extract all parts on machines of one kind"
+        );
+        Err(DatasetError::invalid(store.path(), reason))
+    }
+}
+
+/// The part that a file of rows belongs to, by its name.
+pub(crate) fn part_of_file(name: &str) -> Option<u32> {
+    let (digits, _) = name.strip_prefix(FRAGMENTS)?.split_once('-')?;
+    let index = digits.parse().ok();
+    index.filter(|k| format!("{k:05}") == digits)
+}
+
+/// The work items of a plan that have a record.
+pub(crate) fn recorded(store: &dyn Store, plan: &Plan) -> Result<BTreeSet<u32>, DatasetError> {
+    let names = store.list(PARTS)?.into_keys();
+    let parts = names.filter_map(|name| PartRecord::index(&format!("{PARTS}{name}")));
+    Ok(parts.filter(|k| *k < plan.header.work_items).collect())
+}
+
+/// Seals a dataset of which every part is finished: checks the parts and writes the manifest. A dataset that is sealed stays as it is, and
+/// its manifest is returned. The bytes of the manifest do not depend on who seals, or when.
+///
+/// # Errors
+/// If parts are missing; an error that names part and worker if a part is of another plan, or a file of it is missing, has another
+/// length, or is there twice.
+pub fn seal(path: impl AsRef<Path>) -> Result<Manifest, DatasetError> {
+    let store = open_store(path.as_ref())?;
+    let plan = Plan::read(&*store)?.ok_or_else(|| no_manifest(path.as_ref()))?;
+    let Some(manifest) = whole(&*store, &plan)? else {
+        return Err(unsealed(&*store, &plan));
+    };
+    if let Some(folder) = store.folder() {
+        folder::remove_abandoned(folder)?;
+    }
+    Ok(manifest)
+}
+
+/// The error of a place where no dataset is.
+pub(crate) fn no_manifest(path: &Path) -> DatasetError {
+    let reason = "no _peelnet/manifest.json here: this is not a dataset, or its extraction was interrupted; run `peelnet extract` again";
+    DatasetError::invalid(path, reason)
+}
+
+/// The error of a dataset that lacks parts, or lacks its seal alone.
+pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> DatasetError {
+    let recorded = match recorded(store, plan) {
+        Ok(recorded) => recorded,
+        Err(error) => return error,
+    };
+    let of = plan.header.work_items;
+    let reason = match (0..of).find(|k| !recorded.contains(k)) {
+        Some(first) => format!(
+            "{} of {of} parts are missing, the first is {first}; write them with `peelnet extract --resume` and the same command, or with the shards that did not run, then seal the dataset with `peelnet seal`",
+            of - recorded.len() as u32
+        ),
+        None => format!(
+            "all {of} parts are there, but the dataset is not sealed; run `peelnet seal` on it"
+        ),
+    };
+    DatasetError::invalid(store.path(), reason)
+}
+
+/// How many parts of a dataset that is not sealed are finished, and how many it will have; `None` if it is sealed, or none.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, DatasetError> {
+    let store = store_at(path.as_ref())?;
+    match Plan::read(&*store)? {
+        Some(plan) if Manifest::read(&*store)?.is_none() => {
+            let recorded = recorded(&*store, &plan)?;
+            Ok(Some((recorded.len() as u32, plan.header.work_items)))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Writes the manifest if every part is there and it is not, and returns it; `None` if parts are missing.
+pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, DatasetError> {
+    let wrong = |reason: &str| DatasetError::manifest(&store.shown(MANIFEST), reason);
+    if let Some(manifest) = Manifest::read(store)? {
+        if manifest.plan != plan.hash {
+            return Err(wrong("the manifest is of another plan than plan.json"));
+        }
+        check_files(store, &manifest, true)?;
+        return Ok(Some(manifest));
+    }
+    let recorded = recorded(store, plan)?;
+    if recorded.len() < plan.header.work_items as usize {
+        return Ok(None);
+    }
+    let read = |index| Ok(PartRecord::read(store, index, Some(plan))?.map(|r| r.part));
+    let parts = in_parallel(READERS, recorded, read).into_iter();
+    let Some(parts) = parts.collect::<Result<Option<Vec<Part>>, DatasetError>>()? else {
+        return Ok(None);
+    };
+    let manifest = plan.manifest(parts);
+    check_files(store, &manifest, true)?;
+    let checked = manifest.check();
+    checked.map_err(|reason| DatasetError::manifest(&store.shown(PARTS), reason))?;
+    if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())? {
+        // Another writer came to its end at the same time.
+        if Manifest::read(store)?.as_ref() != Some(&manifest) {
+            return Err(wrong("the manifest that is there is of other parts"));
+        }
+    }
+    Ok(Some(manifest))
+}
+
+/// Every file of the parts must be there with its length. For a seal, no other file of rows may lie beside them.
+pub(crate) fn check_files(
+    store: &dyn Store,
+    manifest: &Manifest,
+    alone: bool,
+) -> Result<(), DatasetError> {
+    let mut found: BTreeMap<String, u64> = store.list("")?;
+    for part in &manifest.parts {
+        for file in &part.files {
+            let reason = match found.remove(&file.name) {
+                Some(bytes) if bytes == file.bytes => continue,
+                Some(bytes) => format!("has {bytes} bytes where {} were written", file.bytes),
+                None => "is missing".to_owned(),
+            };
+            return Err(damaged(store, part.index, &file.name, &reason));
+        }
+    }
+    let mut others = found.keys().filter(|name| name.starts_with(FRAGMENTS));
+    match others.next().filter(|_| alone) {
+        None => Ok(()),
+        Some(name) => Err(DatasetError::invalid(
+            &store.shown(name),
+            "no part of the dataset has this file, and readers of the whole folder would read its rows as well; move it away",
+        )),
+    }
+}
+
+/// The error of a part's file, with the worker that wrote it.
+pub(crate) fn damaged(store: &dyn Store, index: u32, name: &str, reason: &str) -> DatasetError {
+    let record = PartRecord::read(store, index, None).ok().flatten();
+    let worker = record.map_or_else(|| "unknown".to_owned(), |r| r.worker);
+    DatasetError::invalid(
+        &store.shown(name),
+        format!(
+            "part {index} of worker {worker}: the file {reason}; remove it and write it again with `peelnet extract --resume` and the same command"
+        ),
+    )
+}
