@@ -16,7 +16,7 @@ use crate::formats::hash_file;
 use crate::manifest::Manifest;
 use crate::parts::{PartRecord, part_of_file};
 use crate::plan::{Plan, host};
-use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, store_at};
+use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, names_in, store_at};
 
 /// Prefix of the hidden folder of a writer.
 const PARTIAL: &str = ".partial-";
@@ -195,11 +195,7 @@ pub(crate) fn remove_older(folder: &Path) -> Result<(), DatasetError> {
 
 /// Names in `_peelnet/` of what writers have there, alive or not.
 fn hidden_names(folder: &Path) -> Result<Vec<String>, DatasetError> {
-    let meta = folder.join(META);
-    if !meta.is_dir() {
-        return Ok(Vec::new());
-    }
-    let mut names = names_in(&meta)?;
+    let mut names = names_in(&folder.join(META))?;
     names.retain(|n| n.starts_with(PARTIAL) || n.starts_with(PUT));
     Ok(names)
 }
@@ -239,11 +235,9 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
             }
             continue;
         }
-        let Ok(inside) = names_in(&hidden) else {
-            // Its writer came to its end between the two looks.
-            continue;
-        };
-        if inside.is_empty() && is_younger(&hidden, JUST_MADE) {
+        let inside = names_in(&hidden)?;
+        // Just made, or its writer came to its end meanwhile.
+        if inside.is_empty() && (is_younger(&hidden, JUST_MADE) || !hidden.is_dir()) {
             continue;
         }
         let is_known = |n: &String| n == LOCK || n.starts_with(FRAGMENTS) || n.starts_with(PUT);
@@ -321,14 +315,4 @@ impl Drop for MadeFolders {
             let _ = fs::remove_dir(folder);
         }
     }
-}
-
-fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
-    let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(DatasetError::io(folder, "list"))? {
-        let entry = entry.map_err(DatasetError::io(folder, "list"))?;
-        names.push(entry.file_name().to_string_lossy().into_owned());
-    }
-    names.sort();
-    Ok(names)
 }

@@ -104,24 +104,15 @@ impl Store for Folder {
 
     fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
         let folder = self.path.join(prefix);
-        let io = || DatasetError::io(&folder, "list");
-        let entries = match fs::read_dir(&folder) {
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(BTreeMap::new()),
-            other => other.map_err(io())?,
-        };
         let mut all = BTreeMap::new();
-        for entry in entries {
-            let entry = entry.map_err(io())?;
+        for name in names_in(&folder)? {
             // Links are followed: parts may lie on another disk.
-            match fs::metadata(entry.path()) {
+            match fs::metadata(folder.join(&name)) {
                 Ok(metadata) if metadata.is_dir() => {}
-                Ok(metadata) => {
-                    let name = entry.file_name().to_string_lossy().into_owned();
-                    all.insert(name, metadata.len());
-                }
+                Ok(metadata) => drop(all.insert(name, metadata.len())),
                 // Another writer's, gone between the two looks.
                 Err(e) if e.kind() == ErrorKind::NotFound => {}
-                Err(e) => return Err(io()(e)),
+                Err(e) => return Err(DatasetError::io(&folder, "list")(e)),
             }
         }
         Ok(all)
@@ -186,6 +177,20 @@ impl Store for Folder {
             _ => Ok(()),
         }
     }
+}
+
+/// Names of what lies in a folder, sorted; none where there is no such folder.
+pub(crate) fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
+    let name = |entry: std::io::Result<fs::DirEntry>| {
+        entry.map(|e| e.file_name().to_string_lossy().into_owned())
+    };
+    let names = match fs::read_dir(folder) {
+        Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(vec![]),
+        entries => entries.and_then(|entries| entries.map(name).collect()),
+    };
+    let mut names: Vec<String> = names.map_err(DatasetError::io(folder, "list"))?;
+    names.sort();
+    Ok(names)
 }
 
 /// The store that a path stands for: `scheme://…` is an object store, `file:///…` a folder. Nothing need be there.

@@ -297,6 +297,6 @@ impl Summary {
 /// Tolerance of Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err
 /// by at most one unit roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit
 /// roundoff of 1.
-pub fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
+fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
     n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (sum + 1.0)
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     ExtractOptions, PeelError,
-    extract::{Event, Inbox, peel, receive, work},
+    extract::{Event, Outbox, peel, stream, work},
 };
 use peelnet_dataset::FragmentBatch;
 use peelnet_gpu::Gpu;
@@ -45,17 +45,13 @@ pub fn batches(
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
     let (send, rows) = sync_channel(1);
     let peeling = std::thread::spawn(move || {
-        let received = std::thread::scope(|scope| {
-            let (outbox, inbox) = Inbox::new();
-            let (gpu, scenes, options, mine) = (&gpu, &scenes, &options, &mine);
-            scope.spawn(move || peel(gpu, scenes, options, mine, &outbox));
-            receive(&inbox, |event| match event {
-                Event::Rows(rows) => {
-                    let sent = send.send(Ok(rows.clone()));
-                    sent.map_err(|_| PeelError::Interrupted)
-                }
-                Event::Begin(_) | Event::End(..) => Ok(()),
-            })
+        let make = |outbox: &Outbox| peel(&gpu, &scenes, &options, &mine, outbox);
+        let received = stream(make, |event| match event {
+            Event::Rows(rows) => {
+                let sent = send.send(Ok(rows.clone()));
+                sent.map_err(|_| PeelError::Interrupted)
+            }
+            Event::Begin(_) | Event::End(..) => Ok(()),
         });
         if let Err(error) = received {
             // Nobody may ask any more.

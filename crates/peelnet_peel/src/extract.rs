@@ -19,7 +19,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         atomic::{AtomicBool, Ordering},
-        mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
+        mpsc::{Receiver, SyncSender, channel, sync_channel},
     },
     time::Instant,
 };
@@ -137,21 +137,19 @@ pub(crate) enum Message {
 /// The GPU's end of the channels.
 pub(crate) struct Outbox {
     send: SyncSender<Message>,
-    take: Receiver<RawTile>,
+    spare: Receiver<RawTile>,
 }
 
-/// The other end. Once it is dropped, the GPU's side stops at its next tile.
-#[derive(Debug)]
-pub(crate) struct Inbox {
-    receive: Receiver<Message>,
-    give_back: Sender<RawTile>,
-}
+impl Outbox {
+    /// A tile to fill, with the memory of an earlier one where there is one.
+    pub(crate) fn spare(&self) -> RawTile {
+        self.spare.try_recv().unwrap_or_default()
+    }
 
-impl Inbox {
-    pub(crate) fn new() -> (Outbox, Self) {
-        let (send, receive) = sync_channel(1);
-        let (give_back, take) = channel();
-        (Outbox { send, take }, Self { receive, give_back })
+    /// Sends a message; an error once nobody receives any more.
+    pub(crate) fn deliver(&self, message: Message) -> Result<(), PeelError> {
+        let sent = self.send.send(message);
+        sent.map_err(|_| PeelError::Interrupted)
     }
 }
 
@@ -162,45 +160,38 @@ pub(crate) enum Event<'a> {
     End(Harvest, RowCounts),
 }
 
-/// Makes rows of what the GPU's side sends, view by view, until it ends.
-pub(crate) fn receive(
-    inbox: &Inbox,
+/// Makes rows of what `make` sends from another thread, view by view. Once `each` fails, `make` stops at its next message.
+pub(crate) fn stream(
+    make: impl FnOnce(&Outbox) + Send,
     mut each: impl FnMut(Event<'_>) -> Result<(), PeelError>,
 ) -> Result<(), PeelError> {
-    let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
-    let mut current = None;
-    while let Ok(message) = inbox.receive.recv() {
-        match (message, &mut current) {
-            (Message::Begin(part), _) => {
-                current = Some((ViewConstants::from(&part), RowCounts::default()));
-                each(Event::Begin(part))?;
+    let (send, received) = sync_channel(1);
+    let (give_back, spare) = channel();
+    std::thread::scope(move |scope| {
+        scope.spawn(move || make(&Outbox { send, spare }));
+        let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
+        let mut current = None;
+        for message in received {
+            match (message, &mut current) {
+                (Message::Begin(part), _) => {
+                    current = Some((ViewConstants::from(&part), RowCounts::default()));
+                    each(Event::Begin(part))?;
+                }
+                (Message::Tile(tile), Some((view, counts))) => {
+                    let rows = |rows: &FragmentBatch| each(Event::Rows(rows));
+                    *counts += append_rows(&tile, *view, &mut batch, ROWS_AT_A_TIME, rows)?;
+                    counts.check()?;
+                    // Unless the other side has ended.
+                    let _ = give_back.send(tile);
+                }
+                (Message::End(found), Some((_, counts))) => each(Event::End(found, *counts))?,
+                (Message::Failed(error), _) => return Err(error),
+                // A view begins first.
+                (Message::Tile(_) | Message::End(_), None) => {}
             }
-            (Message::Tile(tile), Some((view, counts))) => {
-                let rows = |rows: &FragmentBatch| each(Event::Rows(rows));
-                *counts += append_rows(&tile, *view, &mut batch, ROWS_AT_A_TIME, rows)?;
-                counts.check()?;
-                // Its memory is used again, unless the other side has ended.
-                let _ = inbox.give_back.send(tile);
-            }
-            (Message::End(found), Some((_, counts))) => each(Event::End(found, *counts))?,
-            (Message::Failed(error), _) => return Err(error),
-            // A view begins first.
-            (Message::Tile(_) | Message::End(_), None) => {}
         }
-    }
-    Ok(())
-}
-
-impl Outbox {
-    /// A tile to fill, with the memory of an earlier one where there is one.
-    pub(crate) fn spare(&self) -> RawTile {
-        self.take.try_recv().unwrap_or_default()
-    }
-
-    pub(crate) fn deliver(&self, message: Message) -> Result<(), PeelError> {
-        let sent = self.send.send(message);
-        sent.map_err(|_| PeelError::Interrupted)
-    }
+        Ok(())
+    })
 }
 
 /// The number of all work items, and those of the options' shard.
@@ -275,33 +266,30 @@ pub(crate) fn write(
     };
     progress(&state);
     let (mut total, mut gpu_micros, mut tiles) = (RowCounts::default(), 0.0, 0);
-    std::thread::scope(|scope| {
-        let (outbox, inbox) = Inbox::new();
-        let missing = &missing;
-        scope.spawn(move || make(missing, &outbox));
-        let mut part = None;
-        receive(&inbox, |event| {
-            match event {
-                Event::Begin(info) => part = Some(writer.begin(info)?),
-                Event::Rows(rows) => part.iter_mut().try_for_each(|part| part.write(rows))?,
-                Event::End(found, counts) => {
-                    let mut part = part.take().into_iter();
-                    part.try_for_each(|part| part.finish(counts.lost, counts.coplanar))?;
-                    total += counts;
-                    gpu_micros += found.gpu_micros;
-                    tiles += u64::from(found.tiles);
-                    state.items_done += 1;
-                    state.rows = total.rows;
-                    state.seconds = start.elapsed().as_secs_f64();
-                    progress(&state);
-                }
+    let mut part = None;
+    let make = |outbox: &Outbox| make(&missing, outbox);
+    stream(make, |event| {
+        match event {
+            Event::Begin(info) => part = Some(writer.begin(info)?),
+            Event::Rows(rows) => part.iter_mut().try_for_each(|part| part.write(rows))?,
+            Event::End(found, counts) => {
+                let mut part = part.take().into_iter();
+                part.try_for_each(|part| part.finish(counts.lost, counts.coplanar))?;
+                total += counts;
+                gpu_micros += found.gpu_micros;
+                tiles += u64::from(found.tiles);
+                state.items_done += 1;
+                state.rows = total.rows;
+                state.seconds = start.elapsed().as_secs_f64();
+                progress(&state);
             }
-            match stop.load(Ordering::Relaxed) {
-                true => Err(PeelError::Interrupted),
-                false => Ok(()),
-            }
-        })
+        }
+        match stop.load(Ordering::Relaxed) {
+            true => Err(PeelError::Interrupted),
+            false => Ok(()),
+        }
     })?;
+    drop(part);
     Ok(ExtractReport {
         manifest: writer.finish()?,
         parts: missing.len() as u32,
