@@ -5,8 +5,9 @@ use peelnet_core::{
     methods::{mlab, over},
 };
 use peelnet_eval::{
-    Row,
-    compare::{Event, Plan, compare},
+    Partial, Row,
+    bench::{Progress, bench_watched},
+    compare::Plan,
     scaling::{self, Series},
 };
 use peelnet_render::MethodSpec;
@@ -16,23 +17,22 @@ use std::sync::atomic::AtomicBool;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-fn rows(scene: &Scene, methods: &[MethodSpec], done: &[u32]) -> (Vec<Row>, usize) {
-    let gpu = gpu();
+/// The rows of a comparison that goes on from `done`, and how many frames it draws.
+fn rows(scene: &Scene, methods: &[MethodSpec], done: &[Row]) -> (Vec<Row>, usize) {
     let plan = Plan {
         frames: 2,
         ..Plan::new([16, 12], methods)
     };
-    let (mut rows, mut drawn) = (Vec::new(), 0);
-    let mut take = |event: Event<'_>| {
-        match event {
-            Event::Drawn(_) => drawn += 1,
-            Event::LeftOut(method, why) => panic!("{method}: {why}"),
-            Event::View(of_view) => rows.extend(of_view),
-        }
-        Ok(())
+    let mut partial = Partial::new(None, serde_json::Value::Null);
+    partial.push(done.to_vec()).unwrap();
+    let mut drawn = 0;
+    let mut report = |event: Progress<'_>| match event {
+        Progress::Drawn { .. } => drawn += 1,
+        Progress::LeftOut { method, why, .. } => panic!("{method}: {why}"),
     };
-    compare(&gpu, scene, &plan, done, &NEVER, &mut take).unwrap();
-    (rows, drawn)
+    let scenes = std::slice::from_ref(scene);
+    let bench = bench_watched(&gpu(), scenes, &plan, partial, &NEVER, &mut report).unwrap();
+    (bench.rows, drawn)
 }
 
 /// A method without passes is composited on the CPU, in the order of drawing: its row has the error that follows from the walls, and neither
@@ -72,9 +72,10 @@ fn a_resumed_comparison_draws_what_is_left() {
     let (all, drawn) = rows(&scene, &methods, &[]);
     // The exact method and two others, on three views: one compared frame, one to warm up and two timed ones each.
     assert_eq!((all.len(), drawn), (9, 36));
-    let (left, drawn) = rows(&scene, &methods, &[0, 2]);
-    assert_eq!((left.len(), drawn), (3, 12));
-    for (a, b) in all.iter().filter(|r| r.view == 1).zip(&left) {
+    let done: Vec<Row> = all.iter().filter(|r| r.view != 1).cloned().collect();
+    let (resumed, drawn) = rows(&scene, &methods, &done);
+    assert_eq!((resumed.len(), drawn), (9, 12));
+    for (a, b) in all.iter().filter(|r| r.view == 1).zip(&resumed[6..]) {
         assert_eq!((&a.method, a.view), (&b.method, b.view));
         // Errors agree to the bit.
         assert_eq!(a.mse_linear.to_bits(), b.mse_linear.to_bits());
@@ -86,7 +87,7 @@ fn a_resumed_comparison_draws_what_is_left() {
         assert_eq!(row.transmittance_error.is_some(), is_moments);
         assert!(row.lost.unwrap_or_default() == 0 && row.flip.is_some());
     }
-    assert_eq!(rows(&scene, &methods, &[0, 1, 2]).1, 0);
+    assert_eq!(rows(&scene, &methods, &all).1, 0);
 }
 
 /// A method whose storage the adapter does not allow is reported where all are asked for, and ends the comparison where it was
@@ -104,24 +105,24 @@ fn what_is_too_large_is_left_out_and_told() {
             frames: 0,
             ..Plan::new([2048, height as u32], &methods)
         };
-        let (mut rows, mut left_out) = (Vec::new(), Vec::new());
-        let mut take = |event: Event<'_>| {
-            match event {
-                Event::Drawn(_) => {}
-                Event::LeftOut(method, why) => left_out.push((method.to_owned(), why)),
-                Event::View(of_view) => rows.extend(of_view.into_iter().map(|r| r.method)),
+        let mut left_out = Vec::new();
+        let mut report = |event: Progress<'_>| {
+            if let Progress::LeftOut { method, why, .. } = event {
+                left_out.push((method.to_owned(), why));
             }
-            Ok(())
         };
-        let done = compare(&gpu, &scene, &plan, &[], &NEVER, &mut take);
-        (done.is_ok(), rows, left_out)
+        let partial = Partial::new(None, serde_json::Value::Null);
+        let scenes = std::slice::from_ref(&scene);
+        let done = bench_watched(&gpu, scenes, &plan, partial, &NEVER, &mut report);
+        let rows = done.map(|bench| bench.rows.into_iter().map(|r| r.method));
+        (rows.map(Iterator::collect::<Vec<_>>), left_out)
     };
-    let (ok, rows, left_out) = run(true);
-    assert!(ok && rows == ["abuffer", "wboit-eq9"], "{rows:?}");
+    let (rows, left_out) = run(true);
+    assert_eq!(rows.unwrap(), ["abuffer", "wboit-eq9"]);
     assert_eq!(left_out.len(), 1, "{left_out:?}");
     assert_eq!(left_out[0].0, "kbuffer-64");
     assert!(left_out[0].1.contains("allows"), "{left_out:?}");
-    assert!(!run(false).0);
+    run(false).0.unwrap_err();
 }
 
 /// Bytes follow from what is allocated: per-fragment storage grows with the fragments, targets do not.
@@ -129,9 +130,14 @@ fn what_is_too_large_is_left_out_and_told() {
 #[ignore = "long: cargo xtask test --all"]
 fn memory_grows_as_it_is_allocated() {
     let methods = specs(["abuffer", "wboit-eq9", "kbuffer-4"]);
-    let measured = scaling::measure(&gpu(), &methods, &[], 1, &NEVER, &mut |_, _, _| ());
-    let (rows, left_out) = measured.unwrap();
-    assert!(left_out.is_empty(), "{left_out:?}");
+    let plan = Plan {
+        frames: 1,
+        ..Plan::new([16, 12], &methods)
+    };
+    let measured = scaling::measure(&gpu(), &plan, &NEVER, &mut |_| ());
+    let measured = measured.unwrap();
+    assert!(measured.left_out.is_empty(), "{:?}", measured.left_out);
+    let rows = measured.rows;
     let of = |method: &str, series: Series, value: u64| {
         let found = rows
             .iter()

@@ -17,10 +17,8 @@ fn write_report(folder: &Path) {
     });
     let rows = bench(&gpu, &scenes, &Plan::new([8, 8], &methods)).unwrap();
     let bench = Bench {
-        load: [None; 2],
-        settings: None,
-        trained_on: Vec::new(),
         rows,
+        ..Bench::default()
     };
     let results = Results::new(Machine::of(&gpu), "peelnet bench", bench);
     results.write(folder).unwrap();

@@ -1,31 +1,17 @@
 //! Methods on scenes: what `peelnet bench` measures, as plain functions.
 
+pub use crate::{records::Bench, stage::Progress};
+
 use crate::{
     EvalError, Partial, Row,
-    compare::{EXACT, Event, Plan, compare},
+    compare::{Plan, compare},
     load,
+    stage::{Watch, exact_method},
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_scene::Scene;
-use serde::{Deserialize, Serialize};
 use std::{collections::BTreeSet, sync::atomic::AtomicBool};
-
-/// A comparison of methods.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bench {
-    /// Mean load of the machine before and after, see [`load`].
-    #[serde(default)]
-    pub load: [Option<f64>; 2],
-    /// Hash of the settings that it was measured with, by which a run that is resumed finds that it has finished.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub settings: Option<String>,
-    /// Scenes among them that a learned method was trained on.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub trained_on: Vec<String>,
-    /// One row per method, scene and view.
-    pub rows: Vec<Row>,
-}
 
 /// The scenes that some of the models were trained on.
 pub fn trained_on<'a>(
@@ -42,31 +28,6 @@ pub fn trained_on<'a>(
         .filter(|n| all.contains(n))
         .map(str::to_owned)
         .collect()
-}
-
-/// What a watched comparison reports.
-#[derive(Debug)]
-pub enum Progress<'a> {
-    /// A frame was drawn.
-    Drawn {
-        /// Frames so far.
-        done: u64,
-        /// Frames in all, at most.
-        total: u64,
-        /// The scene's name.
-        scene: &'a str,
-        /// The method's name.
-        method: &'a str,
-    },
-    /// A method needs more than the adapter allows and is left out of a scene from here on.
-    LeftOut {
-        /// The scene's name.
-        scene: &'a str,
-        /// The method's name.
-        method: &'a str,
-        /// What it lacks.
-        why: String,
-    },
 }
 
 /// Compares methods on every view of the scenes and returns the rows.
@@ -129,32 +90,11 @@ pub fn bench_watched(
         .map(|s| plan.views_of(s).saturating_sub(partial.done(&s.name).len()))
         .sum();
     // The exact method is drawn whether it is in the plan or not.
-    let exact = usize::from(!plan.methods.iter().any(|m| m.to_string() == EXACT));
+    let exact = usize::from(!plan.methods.contains(&exact_method()));
     let total = (views * (plan.methods.len() + exact) * plan.frames_of_each()) as u64;
-    let mut done = 0;
+    let mut watch = Watch::new(total, stop, report);
     for scene in scenes {
-        let finished = partial.done(&scene.name);
-        let name = &scene.name;
-        compare(gpu, scene, plan, &finished, stop, &mut |event| {
-            match event {
-                Event::Drawn(method) => {
-                    done += 1;
-                    report(Progress::Drawn {
-                        done,
-                        total,
-                        scene: name,
-                        method,
-                    });
-                }
-                Event::LeftOut(method, why) => report(Progress::LeftOut {
-                    scene: name,
-                    method,
-                    why,
-                }),
-                Event::View(rows) => partial.push(rows)?,
-            }
-            Ok(())
-        })?;
+        compare(gpu, scene, plan, &mut partial, &mut watch)?;
     }
     Ok(Bench {
         load: [load_before, load()],
@@ -166,7 +106,6 @@ pub fn bench_watched(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     /// Rows are found by their scene's name: the second of two would pass for done.

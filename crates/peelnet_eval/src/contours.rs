@@ -9,7 +9,7 @@
 //! pair. Textures, highlights and what stands behind the transparent surfaces are not compared: where they jump inside a surface the error
 //! may jump as well, and then it counts. Compare methods on the same scene.
 
-use crate::{EvalError, metrics::ERROR_ROUNDING};
+use crate::{EvalError, metrics::ERROR_ROUNDING, stage::Stage};
 use peelnet_render::{Image, RenderError, Renderer};
 use peelnet_scene::Camera;
 
@@ -18,6 +18,9 @@ pub const THRESHOLD: f64 = 2.0;
 
 /// What a difference of two errors must exceed: the threshold and the rounding of both errors, so that exactly two steps are no contour.
 pub(crate) const LIMIT: f64 = THRESHOLD + 2.0 * ERROR_ROUNDING;
+
+/// What errors of the drawing of [`Pairs`] name in place of a method.
+pub(crate) const SURFACES: &str = "surfaces";
 
 /// The pair with the next pixel of the row.
 const RIGHT: u8 = 1;
@@ -65,6 +68,20 @@ impl Pairs {
         Ok(Self::of(&frame.image))
     }
 
+    /// The same; none where the surfaces need more memory than there is. What it takes is free again before methods draw.
+    pub(crate) fn where_they_fit(
+        stage: &Stage<'_>,
+        size: [u32; 2],
+        samples: u32,
+        camera: &Camera,
+    ) -> Result<Option<Self>, EvalError> {
+        let drawn = Self::drawn(&stage.renderer, size, samples, camera);
+        match drawn.map_err(stage.failed(SURFACES)) {
+            Err(e) if e.is_too_large() => Ok(None),
+            pairs => pairs.map(Some),
+        }
+    }
+
     /// The number of pairs.
     pub fn count(&self) -> u64 {
         self.begins.iter().map(|b| u64::from(b.count_ones())).sum()
@@ -102,7 +119,6 @@ impl Pairs {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::metrics::error_image;
     use peelnet_core::srgb;

@@ -20,10 +20,12 @@ use peelnet_core::{
     methods::slabs::{self, Between, Design},
     statistics::SumPrecision,
 };
-use peelnet_model::{Model, PixelLoss, Recipe};
-use serde::{Deserialize, Serialize};
+use peelnet_model::{Model, Recipe};
 
-pub use crate::ratios::MOMENTS;
+pub use crate::{
+    records::{DesignRow as Row, Designs, Reference, Score},
+    rows::MOMENTS,
+};
 pub use peelnet_core::methods::slabs::Kept;
 
 /// The method that keeps the nearest four fragments, which errors are compared with as well.
@@ -83,73 +85,6 @@ impl Entry {
             None => view.measure(composite),
         }
     }
-}
-
-/// All designs.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Designs {
-    pub file: String,
-    pub trained_on: Vec<String>,
-    pub judged_on: Vec<String>,
-    pub learning_rate: f64,
-    pub epochs: u32,
-    pub references: Vec<Reference>,
-    pub rows: Vec<Row>,
-}
-
-/// A method that errors are compared with.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Reference {
-    /// Its name.
-    pub method: String,
-    /// Its own errors.
-    #[serde(flatten)]
-    pub score: Score,
-}
-
-/// Errors over all views.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Score {
-    pub to_moments: Option<f64>,
-    pub to_kbuffer: Option<f64>,
-    pub worst_scene: Option<String>,
-    pub worst: Option<f64>,
-    pub contour_pairs: Option<f64>,
-    #[serde(default)]
-    pub flicker: [Option<f64>; MOTIONS.len()],
-}
-
-/// A measured design.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    pub design: String,
-    pub slabs: Vec<Kept>,
-    pub records: String,
-    pub range: String,
-    pub apart: bool,
-    pub trained_apart: bool,
-    pub bytes: u32,
-    pub inputs: Vec<String>,
-    pub topology: String,
-    pub parameters: u64,
-    pub loss: PixelLoss,
-    pub seed: u64,
-    pub examples: u64,
-    pub seconds: f64,
-    pub network: Score,
-    pub middle: Score,
 }
 
 impl Row {

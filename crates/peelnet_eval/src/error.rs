@@ -1,10 +1,5 @@
 use peelnet_render::RenderError;
 use std::path::PathBuf;
-#[cfg(not(target_arch = "wasm32"))]
-use std::{
-    path::Path,
-    sync::atomic::{AtomicBool, Ordering},
-};
 
 /// What can go wrong when methods are measured.
 #[allow(missing_docs, reason = "the message of each error names its fields")]
@@ -95,12 +90,24 @@ impl EvalError {
 #[cfg(not(target_arch = "wasm32"))]
 impl EvalError {
     /// For `map_err` on file operations.
-    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+    pub(crate) fn io(
+        path: &std::path::Path,
+        action: &'static str,
+    ) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io {
             path,
             action,
             source,
+        }
+    }
+
+    /// For `map_err` on peeling a scene.
+    pub(crate) fn peel(scene: &str) -> impl FnOnce(peelnet_peel::PeelError) -> Self + use<> {
+        let scene = scene.to_owned();
+        move |source| Self::Peel {
+            scene,
+            source: Box::new(source),
         }
     }
 
@@ -114,21 +121,23 @@ impl EvalError {
         }
     }
 
-    /// For `map_err` on peeling a scene.
-    pub(crate) fn peel(scene: &str) -> impl FnOnce(peelnet_peel::PeelError) -> Self + use<> {
-        let scene = scene.to_owned();
-        move |source| Self::Peel {
-            scene,
-            source: Box::new(source),
+    /// Why a scene could not be drawn, without the scene and the method.
+    pub(crate) fn reason(&self) -> String {
+        match self {
+            Self::Render { source, .. } => source.to_string(),
+            other => other.to_string(),
         }
     }
-}
 
-/// What a loop over frames asks before each.
-#[cfg(not(target_arch = "wasm32"))]
-pub(crate) fn check_stop(stop: &AtomicBool) -> Result<(), EvalError> {
-    if stop.load(Ordering::Relaxed) {
-        return Err(EvalError::Interrupted);
+    /// Whether it is memory that a frame lacks: another adapter, or a smaller frame, has it.
+    pub(crate) fn is_too_large(&self) -> bool {
+        let Self::Render { source, .. } = self else {
+            return false;
+        };
+        use peelnet_gpu::GpuError::{OutOfMemory, TooLarge};
+        matches!(
+            **source,
+            RenderError::Gpu(TooLarge { .. } | OutOfMemory { .. })
+        )
     }
-    Ok(())
 }

@@ -1,6 +1,9 @@
 //! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
-use crate::{Row, geometric_mean, methods_of, metrics::mark_front, ratios::Bytes};
+use crate::{
+    metrics::mark_front,
+    rows::{Bytes, Rows, mean},
+};
 use peelnet_render::{MethodSpec, Role};
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting.
@@ -53,53 +56,35 @@ impl Point {
 }
 
 /// Methods of which only errors are known, because they were composited on the CPU, each with the reason.
-pub fn untimed(rows: &[Row]) -> Vec<(&str, &'static str)> {
+pub fn untimed<'a>(rows: &Rows<'a>) -> Vec<(&'a str, &'static str)> {
     let reason = |spec: MethodSpec| spec.method().cpu_only;
     // Rows of an older version may have names that are no longer there.
     let why = |method: &str| method.parse().ok().and_then(reason);
-    let methods = methods_of(rows).into_iter();
+    let methods = rows.methods().into_iter();
     methods.filter_map(|m| Some((m, why(m)?))).collect()
 }
 
-/// The points of all rows, or of one scene's, by time; times are always geometric means. Methods without a time are left out.
-pub fn points(rows: &[Row], scene: Option<&str>, mean: Mean) -> Vec<Point> {
-    let rows: Vec<&Row> = rows
-        .iter()
-        .filter(|r| scene.is_none_or(|s| r.scene == s))
-        .collect();
-    let methods = methods_of(rows.iter().copied());
-    let of = |method: &str| -> Vec<&Row> {
-        let all = rows.iter().copied();
-        all.filter(|r| r.method == method).collect()
-    };
-    let time = |method: &str| {
-        let times: Option<Vec<f64>> = of(method).iter().map(|r| r.time_ms).collect();
-        geometric_mean(times?)
-    };
-    let base = time(BASE).unwrap_or(1.0);
-    let mut points: Vec<Point> = methods
-        .iter()
-        .filter_map(|&method| {
-            let time_ms = time(method)?;
-            let errors: Vec<f64> = of(method)
-                .iter()
-                .map(|r| r.mse_linear.max(EXACT_MSE))
-                .collect();
-            Some(Point {
-                method: method.to_owned(),
-                error: match mean {
-                    Mean::Geometric => geometric_mean(errors)?,
-                    Mean::Arithmetic => errors.iter().sum::<f64>() / errors.len() as f64,
-                },
-                time: time_ms / base,
-                time_ms,
-                bytes: Bytes::of(of(method)).unwrap_or_default(),
-                on_front: false,
-                time_at_equal_error: 1.0,
-                error_at_equal_time: 1.0,
-            })
+/// The points of rows, by time; times are always geometric means. Methods without a time are left out.
+pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
+    let base = rows.of_method(BASE).time_ms().unwrap_or(1.0);
+    let point = |method: &str| {
+        let own = rows.of_method(method);
+        let time_ms = own.time_ms()?;
+        Some(Point {
+            method: method.to_owned(),
+            error: match kind {
+                Mean::Geometric => own.error()?,
+                Mean::Arithmetic => mean(own.0.iter().map(|r| r.mse_linear.max(EXACT_MSE)))?,
+            },
+            time: time_ms / base,
+            time_ms,
+            bytes: own.bytes().unwrap_or_default(),
+            on_front: false,
+            time_at_equal_error: 1.0,
+            error_at_equal_time: 1.0,
         })
-        .collect();
+    };
+    let mut points: Vec<Point> = rows.methods().into_iter().filter_map(point).collect();
     mark_front(&mut points, |p| [p.time, p.error], |p, on| p.on_front = on);
     measure_against_front(&mut points);
     points
@@ -147,11 +132,11 @@ fn interpolated(points: impl IntoIterator<Item = [f64; 2]>, x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::row::tests::row;
+    use crate::rows::tests::row;
 
-    fn rows(of: &[(&str, f64, f64)]) -> Vec<Row> {
+    /// The points of these methods with their errors and times on two scenes.
+    fn points_of(of: &[(&str, f64, f64)], kind: Mean) -> Vec<Point> {
         let mut rows = Vec::new();
         for (k, scene) in ["a", "b"].into_iter().enumerate() {
             for &(method, mse, ms) in of {
@@ -162,53 +147,46 @@ mod tests {
                 rows.push(r);
             }
         }
-        rows
+        points(&Rows::new(&rows), kind)
     }
 
     /// On a front of slope −2 in logarithms: a point off it is so many times as slow at its error, and the square as wrong at its time.
     #[test]
     fn points_are_measured_against_the_front() {
-        let all = points(
-            &rows(&[
-                (BASE, 1e-2, 1.0),
-                ("end", 1e-6, 100.0),
-                ("middle", 1e-4, 10.0),
-                ("middle, 3 times as slow", 1e-4, 30.0),
-                ("worse than all", 1.0, 5.0),
-            ]),
-            None,
-            Mean::Geometric,
-        );
-        let of = |name: &str| all.iter().find(|p| p.method == name).unwrap();
-        let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
-        for name in [BASE, "middle", "end"] {
-            assert_eq!(of(name).time_at_equal_error, 1.0);
-            assert_eq!(of(name).error_at_equal_time, 1.0);
+        let of = [
+            (BASE, 1e-2, 1.0),
+            ("end", 1e-6, 100.0),
+            ("middle", 1e-4, 10.0),
+            ("middle, 3 times as slow", 1e-4, 30.0),
+            ("worse than all", 1.0, 5.0),
+        ];
+        let all = points_of(&of, Mean::Geometric);
+        for (name, time, error) in [
+            (BASE, 1.0, 1.0),
+            ("middle", 1.0, 1.0),
+            ("end", 1.0, 1.0),
+            ("middle, 3 times as slow", 3.0, 9.0),
+            // The front's first point has that error, and less.
+            ("worse than all", 5.0, 100.0 * 25.0),
+        ] {
+            let p = all.iter().find(|p| p.method == name).unwrap();
+            assert!((p.time_at_equal_error / time - 1.0).abs() < 1e-9, "{p:?}");
+            assert!((p.error_at_equal_time / error - 1.0).abs() < 1e-9, "{p:?}");
         }
-        let slow = of("middle, 3 times as slow");
-        assert!(close(slow.time_at_equal_error, 3.0));
-        assert!(close(slow.error_at_equal_time, 9.0));
-        // The front's first point has that error, and less.
-        let worse = of("worse than all");
-        assert!(close(worse.time_at_equal_error, 5.0));
-        assert!(close(worse.error_at_equal_time, 100.0 * 25.0));
     }
 
     /// As long as the exact method is slower, the front's error is that of the last method before it; from then on there is none.
     #[test]
     fn an_exact_method_ends_the_front() {
-        let all = points(
-            &rows(&[
-                (BASE, 1e-2, 1.0),
-                ("last", 1e-4, 10.0),
-                ("exact", 0.0, 100.0),
-                ("before", 3e-4, 99.0),
-                ("after", 3e-4, 101.0),
-                ("exact and slow", 0.0, 200.0),
-            ]),
-            None,
-            Mean::Geometric,
-        );
+        let of = [
+            (BASE, 1e-2, 1.0),
+            ("last", 1e-4, 10.0),
+            ("exact", 0.0, 100.0),
+            ("before", 3e-4, 99.0),
+            ("after", 3e-4, 101.0),
+            ("exact and slow", 0.0, 200.0),
+        ];
+        let all = points_of(&of, Mean::Geometric);
         let of = |name: &str| all.iter().find(|p| p.method == name).unwrap();
         assert!((of("before").error_at_equal_time / 3.0 - 1.0).abs() < 1e-9);
         assert_eq!(of("after").error_at_equal_time, f64::INFINITY);
@@ -218,22 +196,16 @@ mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_beats() {
-        let all = points(
-            &rows(&[
-                ("exact", 0.0, 5.0),
-                (BASE, 1.0, 1.0),
-                ("good", 1e-3, 2.0),
-                ("worse and slower", 1e-2, 3.0),
-                ("as good, slower", 1e-3, 2.5),
-            ]),
-            None,
-            Mean::Geometric,
-        );
-        let front: Vec<&str> = all
-            .iter()
-            .filter(|p| p.on_front)
-            .map(|p| p.method.as_str())
-            .collect();
+        let of = [
+            ("exact", 0.0, 5.0),
+            (BASE, 1.0, 1.0),
+            ("good", 1e-3, 2.0),
+            ("worse and slower", 1e-2, 3.0),
+            ("as good, slower", 1e-3, 2.5),
+        ];
+        let all = points_of(&of, Mean::Geometric);
+        let front = all.iter().filter(|p| p.on_front);
+        let front: Vec<&str> = front.map(|p| p.method.as_str()).collect();
         assert_eq!(front, [BASE, "good", "exact"]);
         let good = all.iter().find(|p| p.method == "good").unwrap();
         assert!((good.time - 2.0).abs() < 1e-12 && (good.error - 2e-3).abs() < 1e-12);
@@ -244,8 +216,7 @@ mod tests {
     /// Errors 1 and 4 of the two scenes: 2 by ratio, 2.5 by size.
     #[test]
     fn means_differ() {
-        let all = rows(&[("x", 1.0, 1.0)]);
-        let error = |mean| points(&all, None, mean)[0].error;
+        let error = |kind| points_of(&[("x", 1.0, 1.0)], kind)[0].error;
         assert!((error(Mean::Geometric) - 2.0).abs() < 1e-12);
         assert!((error(Mean::Arithmetic) - 2.5).abs() < 1e-12);
     }

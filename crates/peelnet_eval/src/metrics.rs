@@ -43,8 +43,6 @@ pub struct Differences {
     pub psnr: Option<f64>,
     /// 99th percentile (nearest rank) of the pixel error: the largest difference of the three channels, 0–255 scale.
     pub p99_error: f64,
-    /// The same over covered pixels; `None` if no pixel is covered.
-    pub p99_error_covered: Option<f64>,
     /// The largest pixel error, 0–255 scale.
     pub max_error: f64,
     /// Number of covered pixels.
@@ -80,43 +78,6 @@ pub fn psnr(mse255: f64) -> Option<f64> {
     (mse255 > 0.0).then(|| 10.0 * (255.0 * 255.0 / mse255).log10())
 }
 
-/// Sums over a set of pixels.
-#[derive(Default)]
-struct Sums {
-    linear: f64,
-    display: f64,
-    pixel_errors: Vec<f64>,
-}
-
-impl Sums {
-    fn add(&mut self, linear: f64, display: f64, pixel_error: f64) {
-        self.linear += linear;
-        self.display += display;
-        self.pixel_errors.push(pixel_error);
-    }
-
-    fn mean(&self, sum: f64) -> f64 {
-        if self.pixel_errors.is_empty() {
-            0.0
-        } else {
-            sum / (3.0 * self.pixel_errors.len() as f64)
-        }
-    }
-
-    /// Nearest-rank percentile, `share` in 0 … 1.
-    fn percentile(&mut self, share: f64) -> f64 {
-        let n = self.pixel_errors.len();
-        if n == 0 {
-            return 0.0;
-        }
-        let rank = ((share * n as f64).ceil() as usize).clamp(1, n) - 1;
-        *self
-            .pixel_errors
-            .select_nth_unstable_by(rank, f64::total_cmp)
-            .1
-    }
-}
-
 /// Sorts points by time, and marks those that no other one is both faster than and at least as accurate as. `of` is time and error.
 pub fn mark_front<P>(points: &mut [P], of: impl Fn(&P) -> [f64; 2], set: impl Fn(&mut P, bool)) {
     points.sort_by(|a, b| {
@@ -131,57 +92,70 @@ pub fn mark_front<P>(points: &mut [P], of: impl Fn(&P) -> [f64; 2], set: impl Fn
     }
 }
 
+/// Squares summed over a pixel's channels in linear light and as displayed, and the largest difference of a channel.
+#[derive(Clone, Copy, Default)]
+struct Errors {
+    linear: f64,
+    display: f64,
+    most: f64,
+}
+
 /// Compares an image with the exact one, both linear RGB and coverage, row by row.
 ///
 /// # Errors
 /// [`EvalError::Sizes`] if they differ in length.
 pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Differences, EvalError> {
     EvalError::sizes(exact.len(), approximate.len())?;
-    let mut all = Sums::default();
-    let mut covered = Sums::default();
+    let (mut all, mut covered) = (Vec::new(), Vec::new());
     let mut result = Differences::default();
     let mut squares_8bit = 0u64;
     for (e, a) in exact.iter().zip(approximate) {
-        let (mut linear, mut display, mut pixel_error) = (0.0, 0.0, 0.0f64);
+        let mut errors = Errors::default();
         let (mut brightest, mut darkest) = (0.0f64, 0.0f64);
         let mut finite = true;
         for k in 0..3 {
             finite &= a[k].is_finite();
             let value = if a[k].is_finite() { a[k] } else { 0.0 };
-            linear += (f64::from(value) - f64::from(e[k])).powi(2);
+            errors.linear += (f64::from(value) - f64::from(e[k])).powi(2);
             let d = 255.0 * (srgb_encode(value) - srgb_encode(e[k]));
-            display += d * d;
+            errors.display += d * d;
             squares_8bit += u64::from(encode8(value).abs_diff(encode8(e[k]))).pow(2);
-            pixel_error = pixel_error.max(d.abs());
+            errors.most = errors.most.max(d.abs());
             brightest = brightest.max(d);
             darkest = darkest.min(d);
         }
         result.non_finite_pixels += u64::from(!finite);
         // Half a level of tolerance: rounding noise in one channel must not hide a black pixel.
         result.dark_pixels += u64::from(brightest < 0.5 && darkest < -DARK);
-        all.add(linear, display, pixel_error);
+        all.push(errors);
         if e[3] > 0.0 {
-            covered.add(linear, display, pixel_error);
+            covered.push(errors);
         }
     }
-    result.mse_linear = all.mean(all.linear);
-    result.mse255 = all.mean(all.display);
+    let mean = |of: &[Errors], value: fn(&Errors) -> f64| {
+        let sum: f64 = of.iter().map(value).sum();
+        (!of.is_empty()).then(|| sum / (3.0 * of.len() as f64))
+    };
+    result.mse_linear = mean(&all, |e| e.linear).unwrap_or_default();
+    result.mse_linear_covered = mean(&covered, |e| e.linear);
+    result.mse255 = mean(&all, |e| e.display).unwrap_or_default();
+    result.mse255_covered = mean(&covered, |e| e.display);
     result.mse_8bit = squares_8bit as f64 / (3 * exact.len().max(1)) as f64;
     result.psnr = psnr(result.mse_8bit);
-    result.p99_error = all.percentile(0.99);
-    result.max_error = all.percentile(1.0);
-    result.covered_pixels = covered.pixel_errors.len() as u64;
-    if result.covered_pixels > 0 {
-        result.mse_linear_covered = Some(covered.mean(covered.linear));
-        result.mse255_covered = Some(covered.mean(covered.display));
-        result.p99_error_covered = Some(covered.percentile(0.99));
+    result.covered_pixels = covered.len() as u64;
+    if let Some(last) = all.len().checked_sub(1) {
+        // Nearest rank.
+        let rank = (0.99 * all.len() as f64).ceil() as usize - 1;
+        let by_error = |a: &Errors, b: &Errors| a.most.total_cmp(&b.most);
+        for (value, rank) in [(&mut result.p99_error, rank), (&mut result.max_error, last)] {
+            *value = all.select_nth_unstable_by(rank, by_error).1.most;
+        }
     }
     Ok(result)
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     /// The measured encoding is the shown one. 1e-6: a dozen 32-bit roundings of values up to 1.055.

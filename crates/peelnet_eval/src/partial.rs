@@ -158,9 +158,8 @@ impl Partial {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::row::tests::row;
+    use crate::rows::tests::row;
     use serde_json::json;
 
     #[test]

@@ -58,7 +58,6 @@ impl Displayed {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     fn image(color: impl Fn(u32, u32) -> [f32; 3]) -> Displayed {

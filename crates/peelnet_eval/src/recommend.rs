@@ -3,6 +3,7 @@
 use crate::{
     Row,
     front::{Mean, Point, points},
+    rows::Rows,
 };
 
 /// What must hold; `None` sets no bound.
@@ -29,14 +30,15 @@ pub struct Recommendation<'a> {
 
 /// The points of a scene among the rows; where it is not among them those over all scenes, and a warning that says so.
 pub fn judged(rows: &[Row], scene: &str) -> (Vec<Point>, Option<String>) {
-    let own = points(rows, Some(scene), Mean::Geometric);
+    let rows = Rows::new(rows);
+    let own = points(&rows.of_scene(scene), Mean::Geometric);
     if !own.is_empty() {
         return (own, None);
     }
     let warning = format!(
         "scene '{scene}' is not among the results: judged by the geometric means over all scenes of them"
     );
-    (points(rows, None, Mean::Geometric), Some(warning))
+    (points(&rows, Mean::Geometric), Some(warning))
 }
 
 impl Budget {
@@ -127,9 +129,8 @@ impl Budget {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
-    use crate::ratios::Bytes;
+    use crate::rows::Bytes;
 
     fn points() -> Vec<Point> {
         [

@@ -3,16 +3,21 @@
 //! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
 //! changes at a time.
 
-use crate::{EvalError, check_stop};
-use glam::{Mat4, Vec3};
-use peelnet_gpu::Gpu;
-use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer};
-use peelnet_scene::{Camera, Lighting, Material, Mesh, Object, Part, Scene};
-use serde::{Deserialize, Serialize};
-use std::{
-    fmt,
-    sync::{Arc, atomic::AtomicBool},
+pub use crate::records::{Exponent, Growth, LeftOut, Scaling};
+
+use crate::{
+    EvalError,
+    bench::Progress,
+    compare::{Plan, method_ms},
+    rows::mean,
+    stage::{Ready, Stage, Watch, in_turn, percentile},
 };
+use glam::Vec3;
+use peelnet_gpu::Gpu;
+use peelnet_render::MethodOptions;
+use peelnet_scene::{Camera, Material, Object, Scene};
+use serde::{Deserialize, Serialize};
+use std::{fmt, sync::atomic::AtomicBool};
 
 /// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
 const PATIENCE_MS: f64 = 3000.0;
@@ -66,161 +71,93 @@ impl Step {
 
 fn steps() -> Vec<Step> {
     const SIZE: [u32; 2] = [256, 192];
-    let fragments = (0..=8).map(|k| Step {
-        series: Series::Fragments,
-        size: SIZE,
-        layers: 1 << k,
-        cells: 1,
-    });
-    let pixels = (0..=4).map(|k| Step {
-        series: Series::Pixels,
-        size: [64 << k, 48 << k],
-        layers: 8,
-        cells: 1,
-    });
-    let triangles = (0..=8).step_by(2).map(|k| Step {
-        series: Series::Triangles,
-        size: SIZE,
-        layers: 8,
-        cells: 1 << k,
-    });
+    let step = |series, size, layers, cells| Step {
+        series,
+        size,
+        layers,
+        cells,
+    };
+    let fragments = (0..=8).map(|k| step(Series::Fragments, SIZE, 1 << k, 1));
+    let pixels = (0..=4).map(|k| step(Series::Pixels, [64 << k, 48 << k], 8, 1));
+    let triangles = (0..=8).step_by(2);
+    let triangles = triangles.map(|k| step(Series::Triangles, SIZE, 8, 1 << k));
     fragments.chain(pixels).chain(triangles).collect()
 }
 
-/// What one method took in one step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Growth {
-    /// The method's name with its parameters.
-    pub method: String,
-    /// What grows.
-    pub series: Series,
-    /// How much of it there is.
-    pub value: u64,
-    /// Median frame time, milliseconds.
-    pub time_ms: f64,
-    /// Bytes a pixel.
-    pub bytes_per_pixel: f64,
-}
-
-/// A step that a method was not measured in.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeftOut {
-    /// The method's name with its parameters.
-    pub method: String,
-    /// What grows.
-    pub series: Series,
-    /// How much of it there is.
-    pub value: u64,
-    /// Why.
-    pub why: String,
-}
-
-/// How a method's time and memory grow with a series.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Exponent {
-    /// The method's name with its parameters.
-    pub method: String,
-    /// What grows.
-    pub series: Series,
-    /// Exponent of the frame time, fitted to the upper half of the steps.
-    pub time: Option<f64>,
-    /// The same of the bytes of the whole frame.
-    pub bytes: Option<f64>,
-}
-
-/// A finished measurement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Scaling {
-    /// Fitted growth.
-    pub exponents: Vec<Exponent>,
-    /// Every step.
-    pub rows: Vec<Growth>,
-    /// Steps that methods were not measured in.
-    pub left_out: Vec<LeftOut>,
-}
-
-/// Measures all steps, so many timed frames of each after one that warms up. `report` is called for each frame with the frames so far, all frames at most, and the method.
+/// Measures the methods of a plan in all steps, so many timed frames of each after one that warms up; the steps have their own sizes.
 ///
 /// # Errors
 /// If a method cannot draw; [`EvalError::Interrupted`] once `stop` is set.
 pub fn measure(
     gpu: &Gpu,
-    methods: &[MethodSpec],
-    learned: &[LearnedWeight],
-    frames: u32,
+    plan: &Plan<'_>,
     stop: &AtomicBool,
-    report: &mut dyn FnMut(u64, u64, &str),
-) -> Result<(Vec<Growth>, Vec<LeftOut>), EvalError> {
+    report: &mut dyn FnMut(Progress<'_>),
+) -> Result<Scaling, EvalError> {
     let (mut rows, mut left_out): (Vec<Growth>, Vec<LeftOut>) = (Vec::new(), Vec::new());
-    let steps = steps();
-    let total = (steps.len() * methods.len() * (frames as usize + 1)) as u64;
-    let mut done = 0;
-    for step in steps {
+    let (steps, frames, methods) = (steps(), plan.frames.max(1), plan.methods);
+    let each = u64::from(frames) + 1;
+    let total = (steps.len() * methods.len()) as u64 * each;
+    let mut watch = Watch::new(total, stop, report);
+    for (k, step) in steps.into_iter().enumerate() {
+        let (series, value) = (step.series, step.value());
         let scene = stack(step.layers, step.cells);
-        let failed = |method: &str| EvalError::render(&scene.name, method);
-        let renderer = Renderer::new(gpu, &scene).map_err(failed("upload"))?;
+        let stage = Stage::new(gpu, &scene)?;
         let camera = &scene.views[0];
-        let mut ready = Vec::new();
+        let mut ready: Vec<(Ready, f64)> = Vec::new();
         for method in methods {
             let name = method.to_string();
-            let slow = rows
-                .iter()
-                .any(|r| r.method == name && r.series == step.series && r.time_ms > PATIENCE_MS);
-            let mut leave_out = |why: String| {
-                left_out.push(LeftOut {
-                    method: name.clone(),
-                    series: step.series,
-                    value: step.value(),
-                    why,
-                });
-            };
-            if slow {
-                done += u64::from(frames) + 1;
+            let is_slow =
+                |r: &Growth| r.method == name && r.series == series && r.time_ms > PATIENCE_MS;
+            let why = if rows.iter().any(is_slow) {
                 let seconds = PATIENCE_MS / 1e3;
-                leave_out(format!("a frame took longer than {seconds} s before"));
-                continue;
-            }
-            let weight = learned.iter().find(|l| l.recipe.method == method.name());
-            // The first frame warms up, and gives the bytes.
-            let first = renderer
-                .method(method, MethodOptions::sized(step.size).with(weight))
-                .and_then(|mut prepared| {
-                    let frame = renderer.image(&mut prepared, camera)?;
-                    Ok((prepared, frame.stats.bytes_per_pixel))
+                format!("a frame took longer than {seconds} s before")
+            } else {
+                let options = MethodOptions {
+                    size: step.size,
+                    ..plan.options(method)
+                };
+                // The first frame warms up, and gives the bytes.
+                let first = stage.ready(method, options).and_then(|mut ready| {
+                    let frame = stage.image(&mut ready, camera)?;
+                    Ok((ready, frame.stats.bytes_per_pixel))
                 });
-            done += 1;
-            report(done, total, &name);
-            match first {
-                Ok((prepared, bytes)) => ready.push((name, prepared, bytes, Vec::new())),
-                // Memory is what grows: that it ends is a result.
-                Err(e) if crate::compare::is_too_large(&e) => {
-                    done += u64::from(frames);
-                    leave_out(e.to_string());
+                watch.drawn(&scene.name, &name);
+                match first {
+                    // Memory is what grows: that it ends is a result.
+                    Err(e) if e.is_too_large() => e.reason(),
+                    first => {
+                        ready.push(first?);
+                        continue;
+                    }
                 }
-                Err(e) => return Err(failed(&name)(e)),
-            }
+            };
+            left_out.push(LeftOut {
+                method: name,
+                series,
+                value,
+                why,
+            });
         }
-        for _ in 0..frames.max(1) {
-            for (name, prepared, _, times) in &mut ready {
-                check_stop(stop)?;
-                let frame = renderer.profile(prepared, camera).map_err(failed(name))?;
-                times.push(crate::compare::method_ms(&frame));
-                done += 1;
-                report(done, total, name);
-            }
-        }
-        for (method, _, bytes_per_pixel, mut times) in ready {
-            times.sort_by(f64::total_cmp);
+        let mut all: Vec<_> = ready.iter_mut().map(|(r, _)| (&stage, r)).collect();
+        let profiles = in_turn(&mut all, camera, 0, frames, &mut watch)?;
+        for ((ready, bytes_per_pixel), profiles) in ready.into_iter().zip(&profiles) {
             rows.push(Growth {
-                method,
-                series: step.series,
-                value: step.value(),
-                time_ms: times[(times.len() - 1) / 2],
+                method: ready.name,
+                series,
+                value,
+                time_ms: percentile(profiles.iter().map(method_ms), 0.5).unwrap_or_default(),
                 bytes_per_pixel,
             });
         }
+        // Those that were left out are done, too.
+        watch.done = (k as u64 + 1) * methods.len() as u64 * each;
     }
-    Ok((rows, left_out))
+    Ok(Scaling {
+        exponents: exponents(&rows),
+        rows,
+        left_out,
+    })
 }
 
 /// Walls that fill the frame, nearest first in the list, so that sorting has something to do.
@@ -228,14 +165,9 @@ fn stack(layers: u32, cells: u32) -> Scene {
     let objects = (0..layers)
         .map(|i| {
             let t = i as f32 / layers as f32;
-            let material = Material {
-                color: [t, 1.0 - t, 0.5],
-                // The last layer of the deepest stack is still seen a little.
-                alpha: (2.0 / layers as f32).min(0.5),
-                blend: true,
-                double_sided: true,
-                ..Material::default_with(Lighting::Unlit)
-            };
+            // The last layer of the deepest stack is still seen a little.
+            let alpha = (2.0 / layers as f32).min(0.5);
+            let material = Material::unlit([t, 1.0 - t, 0.5], alpha);
             wall(1.0 + 9.0 * t, cells, material)
         })
         .collect();
@@ -258,33 +190,14 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
         let at = |k: u32| 2.0 * k as f32 / cells as f32 - 1.0;
         Vec3::new(at(x) * half.x, at(y) * half.y, -depth)
     };
-    let row = cells + 1;
-    let positions: Vec<Vec3> = (0..row * row).map(|i| vertex(i % row, i / row)).collect();
-    let triangles: Vec<[u32; 3]> = (0..cells * cells)
-        .flat_map(|i| {
-            let a = i / cells * row + i % cells;
-            [[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]
-        })
-        .collect();
-    let mesh = Mesh {
-        normals: vec![Vec3::Z; positions.len()],
-        parts: vec![Part {
-            name: "wall".to_owned(),
-            triangles: 0..triangles.len(),
-            material: material.clone(),
-        }],
-        positions,
-        colors: Vec::new(),
-        uvs: Vec::new(),
-        triangles,
+    let square = |i: u32| {
+        let (x, y) = (i % cells, i / cells);
+        let (a, b) = (vertex(x, y), vertex(x + 1, y));
+        let (c, d) = (vertex(x + 1, y + 1), vertex(x, y + 1));
+        [[a, b, c], [a, c, d]]
     };
-    Object {
-        name: format!("wall at {depth}"),
-        mesh: Arc::new(mesh),
-        world_from_object: Mat4::IDENTITY,
-        layer: None,
-        materials: vec![material],
-    }
+    let triangles: Vec<[Vec3; 3]> = (0..cells * cells).flat_map(square).collect();
+    Object::of_triangles(&format!("wall at {depth}"), &triangles, material)
 }
 
 /// Exponents of every method and series, by least squares of logarithms over the upper half of the steps: constant costs hide
@@ -292,15 +205,16 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
 pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
     let mut all: Vec<Exponent> = Vec::new();
     for row in rows {
+        let (method, series) = (&row.method, row.series);
         if all
             .iter()
-            .any(|e| e.method == row.method && e.series == row.series)
+            .any(|e| e.method == *method && e.series == series)
         {
             continue;
         }
-        let own: Vec<&Growth> = rows
-            .iter()
-            .filter(|r| r.method == row.method && r.series == row.series)
+        let own = rows.iter();
+        let own: Vec<&Growth> = own
+            .filter(|r| r.method == *method && r.series == series)
             .collect();
         let upper = &own[own.len() / 2..];
         let fit = |value: &dyn Fn(&Growth) -> f64| {
@@ -312,8 +226,8 @@ pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
             _ => 1.0,
         };
         all.push(Exponent {
-            method: row.method.clone(),
-            series: row.series,
+            method: method.clone(),
+            series,
             time: fit(&|r| r.time_ms),
             bytes: fit(&|r| r.bytes_per_pixel * pixels(r)),
         });
@@ -323,31 +237,15 @@ pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
 
 /// Slope of the line nearest to some points; `None` of fewer than two.
 fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
-    let points: Vec<(f64, f64)> = points.collect();
-    let n = points.len() as f64;
-    let (sx, sy) = points
-        .iter()
-        .fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
-    let (mx, my) = (sx / n, sy / n);
-    let xy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
-    let xx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+    let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
+    let (mx, my) = (mean(x.iter().copied())?, mean(y.iter().copied())?);
+    let xy: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
+    let xx: f64 = x.iter().map(|x| (x - mx).powi(2)).sum();
     (xx > 0.0).then(|| xy / xx)
-}
-
-impl Scaling {
-    /// With the exponents of the rows.
-    pub fn new(rows: Vec<Growth>, left_out: Vec<LeftOut>) -> Self {
-        Self {
-            exponents: exponents(&rows),
-            rows,
-            left_out,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     fn row(method: &str, series: Series, value: u64, time_ms: f64, bytes: f64) -> Growth {

@@ -2,13 +2,17 @@
 //! peeling, with its 16 models of 11,102 polygons. Its meshes and camera are not known, so absolute values differ
 //! from ours, and the ratio of its two columns is what compares.
 
-use peelnet_render::Role;
+use crate::{
+    Row,
+    rows::{Rows, geometric_mean},
+};
+use peelnet_render::{MethodSpec, Role};
 
 /// One line of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The opacity of all models.
-    pub alpha: f64,
+    /// The shipped scene that is made like it; its name ends in the opacity of all models.
+    pub scene: &'static str,
     /// Weighted blending with the thesis's weight.
     pub weighted: f64,
     /// Weighted blending with the network's weight.
@@ -16,6 +20,14 @@ pub struct Measured {
 }
 
 impl Measured {
+    const fn new(scene: &'static str, weighted: f64, deep: f64) -> Self {
+        Self {
+            scene,
+            weighted,
+            deep,
+        }
+    }
+
     /// Error of the learned weight relative to the analytic one.
     pub fn ratio(self) -> f64 {
         self.deep / self.weighted
@@ -24,34 +36,14 @@ impl Measured {
 
 /// Table 4.1.
 pub const TABLE: [Measured; 3] = [
-    Measured {
-        alpha: 0.25,
-        weighted: 15.96,
-        deep: 11.79,
-    },
-    Measured {
-        alpha: 0.5,
-        weighted: 16.35,
-        deep: 10.50,
-    },
-    Measured {
-        alpha: 0.75,
-        weighted: 13.62,
-        deep: 11.27,
-    },
+    Measured::new("sixteen-025", 15.96, 11.79),
+    Measured::new("sixteen-050", 16.35, 10.50),
+    Measured::new("sixteen-075", 13.62, 11.27),
 ];
 
 /// The thesis's line for one of the shipped scenes, by the scene's name; `None` where it measured nothing.
-///
-/// ```
-/// # use peelnet_eval::thesis;
-/// assert_eq!(thesis::line("sixteen-050").map(|m| m.weighted), Some(16.35));
-/// assert_eq!(thesis::line("sixteen-085"), None);
-/// ```
 pub fn line(scene: &str) -> Option<Measured> {
-    let alpha = scene.strip_prefix("sixteen-")?;
-    let index = ["025", "050", "075"].iter().position(|a| *a == alpha)?;
-    Some(TABLE[index])
+    TABLE.into_iter().find(|line| line.scene == scene)
 }
 
 /// Method name of weighted blending with the thesis's own weight.
@@ -59,3 +51,65 @@ pub const WEIGHTED: &str = Role::ThesisWeight.method();
 
 /// Method name of weighted blending with the thesis's network.
 pub const DEEP: &str = Role::ThesisNetwork.method();
+
+/// A mean of a method over the views of a scene.
+pub fn error(rows: &Rows<'_>, scene: &str, method: &str, value: fn(&Row) -> f64) -> Option<f64> {
+    let own = rows.of_scene(scene).of_method(method);
+    own.mean(|r| Some(value(r)))
+}
+
+/// The same as a ratio to that of another method; `None` if either is missing or the divisor 0.
+pub fn ratio(
+    rows: &Rows<'_>,
+    scene: &str,
+    [method, reference]: [&str; 2],
+    value: fn(&Row) -> f64,
+) -> Option<f64> {
+    let of = |method| error(rows, scene, method, value);
+    let (a, b) = (of(method)?, of(reference)?);
+    (b > 0.0).then(|| a / b)
+}
+
+/// The published weighted blending with the smallest geometric mean of `mse255` over all scenes.
+pub fn best_published<'a>(rows: &Rows<'a>) -> Option<&'a str> {
+    let has_weight = |m: &&str| {
+        let spec = m.parse::<MethodSpec>();
+        spec.is_ok_and(|spec| spec.promises().own_weight)
+    };
+    let errors = rows.methods().into_iter().filter(has_weight);
+    let errors = errors.filter_map(|m| {
+        let scenes = rows.scenes().into_iter();
+        let own: Option<Vec<f64>> = scenes.map(|s| error(rows, s, m, |r| r.mse255)).collect();
+        Some((m, geometric_mean(own?)?))
+    });
+    Some(errors.min_by(|a, b| a.1.total_cmp(&b.1))?.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::tests::row;
+
+    #[test]
+    fn means_over_views_and_the_best_weight() {
+        let all = [
+            row("a", 0, "wboit-papakostas", 10.0),
+            row("a", 1, "wboit-papakostas", 30.0),
+            row("a", 0, "wboit-eq9", 4.0),
+            row("a", 1, "wboit-eq9", 6.0),
+            row("a", 0, "deep-thesis", 8.0),
+            row("a", 1, "deep-thesis", 12.0),
+        ];
+        let rows = Rows::new(&all);
+        assert_eq!(best_published(&rows), Some("wboit-eq9"));
+        let errors = ["wboit-papakostas", "wboit-eq9"].map(|m| error(&rows, "a", m, |r| r.mse255));
+        assert_eq!(errors, [Some(20.0), Some(5.0)]);
+        let ratio = |to| ratio(&rows, "a", [DEEP, to], |r| r.mse255);
+        assert_eq!(ratio("wboit-eq9"), Some(2.0));
+        assert_eq!(ratio("nothing"), None);
+        let none = [row("cups", 0, "blended", 1.0)];
+        assert_eq!(best_published(&Rows::new(&none)), None);
+        assert_eq!(line("sixteen-050").map(|m| m.weighted), Some(16.35));
+        assert_eq!(line("sixteen-085"), None);
+    }
+}

@@ -1,7 +1,8 @@
-//! The error of the transmittance that a method's weights stand for, fragment by fragment.
+//! The fragments of a view's pixels, and what the methods' CPU references make of them: images of methods without passes, and the error of
+//! the transmittance that a method's weights stand for, fragment by fragment.
 //!
-//! It is computed by the methods' CPU twins in 64 bits, over the fragments of a sample of pixels. It is the method's own error,
-//! without that of its targets; only the learned methods' sums are rounded as the method rounds them.
+//! The latter is computed in 64 bits, over the fragments of a sample of pixels. It is the method's own error, without that of its targets;
+//! only the learned methods' sums are rounded as the method rounds them.
 
 use crate::EvalError;
 use peelnet_core::{
@@ -11,75 +12,91 @@ use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
 use peelnet_render::{Frame, FrameStats, Image, MethodSpec, PixelSample, methods::Pixel};
-use peelnet_scene::Scene;
+use peelnet_scene::{Camera, Scene};
 
 /// The share of pixels that is sampled.
 pub const SHARE: f64 = 0.02;
 
 /// The fragments of a view's sampled pixels.
 #[derive(Debug)]
-pub struct Stacks {
+pub(crate) struct Stacks {
     /// (linear depth, α), nearest first, pixel by pixel.
     pixels: Vec<Vec<(f32, f32)>>,
     warp: DepthWarp,
 }
 
-/// A scene made ready for peeling a sample of its views' pixels.
+/// A scene made ready for peeling.
 #[derive(Debug)]
-pub struct Sample<'a> {
+pub(crate) struct Peeled<'a> {
     scene: &'a Scene,
     harvester: Harvester,
 }
 
-impl<'a> Sample<'a> {
-    /// Uploads a scene.
-    ///
-    /// # Errors
-    /// If it cannot be drawn.
-    pub fn new(gpu: &'a Gpu, scene: &'a Scene, size: [u32; 2]) -> Result<Self, EvalError> {
-        let harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, true, None)
+impl<'a> Peeled<'a> {
+    /// Uploads a scene; `sampled` where some pixels may be left out.
+    pub fn new(
+        gpu: &Gpu,
+        scene: &'a Scene,
+        size: [u32; 2],
+        sampled: bool,
+    ) -> Result<Self, EvalError> {
+        let harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, sampled, None)
             .map_err(EvalError::peel(&scene.name))?;
         Ok(Self { scene, harvester })
     }
 
+    pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
+        self.harvester.depth_warp(camera)
+    }
+
+    /// Takes the number and the fragments, nearest first, of every pixel of a sample that has any.
+    pub fn each_pixel(
+        &mut self,
+        camera: &Camera,
+        sample: PixelSample,
+        mut take: impl FnMut(usize, Vec<Fragment>),
+    ) -> Result<(), EvalError> {
+        self.harvester.keep_triangles(true);
+        let mut tile = |tile: RawTile| {
+            for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
+                let run = run[0] as usize..run[1] as usize;
+                let fragment = |i: usize| {
+                    let [r, g, b, a] = tile.colors[i];
+                    Fragment {
+                        triangle: tile.triangles[i],
+                        ..Fragment::new(tile.depths[i], a, [r, g, b])
+                    }
+                };
+                if !run.is_empty() {
+                    take(pixel as usize, run.map(fragment).collect());
+                }
+            }
+            Ok(())
+        };
+        self.harvester
+            .harvest(camera, sample, None, RawTile::default, &mut tile)
+            .map(|_| ())
+            .map_err(EvalError::peel(&self.scene.name))
+    }
+
     /// The fragments of a view's sampled pixels.
-    ///
-    /// # Errors
-    /// If the view cannot be drawn.
-    pub fn peel(&mut self, view: usize) -> Result<Stacks, EvalError> {
-        let camera = &self.scene.views[view];
+    pub fn stacks(&mut self, view: usize) -> Result<Stacks, EvalError> {
         let sample = PixelSample {
             seed: 0,
             view: view as u32,
             threshold: sample_threshold(SHARE),
         };
         let mut pixels = Vec::new();
-        let mut take = |tile: RawTile| {
-            for run in tile.offsets.windows(2) {
-                let run = run[0] as usize..run[1] as usize;
-                if !run.is_empty() {
-                    let fragments = tile.depths[run.clone()].iter().zip(&tile.colors[run]);
-                    pixels.push(fragments.map(|(&z, color)| (z, color[3])).collect());
-                }
-            }
-            Ok(())
-        };
-        self.harvester
-            .harvest(camera, sample, None, RawTile::default, &mut take)
-            .map_err(EvalError::peel(&self.scene.name))?;
-        Ok(Stacks {
-            pixels,
-            warp: self.harvester.depth_warp(camera),
-        })
+        let camera = &self.scene.views[view];
+        self.each_pixel(camera, sample, |_, fragments| {
+            pixels.push(fragments.iter().map(|f| (f.depth, f.alpha)).collect());
+        })?;
+        let warp = self.depth_warp(camera);
+        Ok(Stacks { pixels, warp })
     }
-}
 
-impl Sample<'_> {
     /// The image of a method that is composited on the CPU, from all fragments of a view in the order of drawing. `exact` is the
     /// view's exact image: what it holds beside its fragments is `T_∞ C_0`.
-    ///
-    /// # Errors
-    /// If the view cannot be drawn.
     pub fn composite(
         &mut self,
         view: usize,
@@ -87,45 +104,25 @@ impl Sample<'_> {
         exact: &Image,
     ) -> Result<Frame, EvalError> {
         let camera = &self.scene.views[view];
-        let warp = self.harvester.depth_warp(camera);
+        let warp = self.depth_warp(camera);
         let mut image = exact.clone();
-        let mut take = |tile: RawTile| {
-            for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
-                let run = run[0] as usize..run[1] as usize;
-                let mut fragments: Vec<Fragment> = run
-                    .map(|i| Fragment {
-                        triangle: tile.triangles[i],
-                        ..Fragment::new(
-                            tile.depths[i],
-                            tile.colors[i][3],
-                            [tile.colors[i][0], tile.colors[i][1], tile.colors[i][2]],
-                        )
-                    })
-                    .collect();
-                let own = over::composite_f64(&fragments, [0.0; 3]);
-                // Triangles are drawn by their numbers.
-                fragments.sort_by_key(|f| f.triangle);
-                let position = [pixel % image.width, pixel / image.width];
-                let twin = method.twin(&Pixel {
-                    fragments: &fragments,
-                    background: [0.0; 3],
-                    warp,
-                    position,
-                    model: None,
-                });
-                let shown = &mut image.pixels[pixel as usize];
-                for (k, twin) in twin.unwrap_or_default().into_iter().enumerate() {
-                    shown[k] = (f64::from(shown[k]) - own[k] + f64::from(twin)) as f32;
-                }
+        self.each_pixel(camera, PixelSample::ALL, |pixel, mut fragments| {
+            let own = over::composite_f64(&fragments, [0.0; 3]);
+            // Triangles are drawn by their numbers.
+            fragments.sort_by_key(|f| f.triangle);
+            let width = image.width as usize;
+            let reference = method.twin(&Pixel {
+                fragments: &fragments,
+                background: [0.0; 3],
+                warp,
+                position: [pixel % width, pixel / width].map(|x| x as u32),
+                model: None,
+            });
+            let shown = &mut image.pixels[pixel];
+            for (k, x) in reference.unwrap_or_default().into_iter().enumerate() {
+                shown[k] = (f64::from(shown[k]) - own[k] + f64::from(x)) as f32;
             }
-            Ok(())
-        };
-        self.harvester.keep_triangles(true);
-        let harvested =
-            self.harvester
-                .harvest(camera, PixelSample::ALL, None, RawTile::default, &mut take);
-        self.harvester.keep_triangles(false);
-        harvested.map_err(EvalError::peel(&self.scene.name))?;
+        })?;
         Ok(Frame {
             image,
             times: Vec::new(),
@@ -154,7 +151,6 @@ impl Stacks {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     fn stacks(pixels: &[&[(f32, f32)]]) -> Stacks {

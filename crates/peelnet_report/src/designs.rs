@@ -134,7 +134,6 @@ fn significant(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, written};
     use peelnet_eval::designs::Reference;
@@ -160,18 +159,13 @@ mod tests {
             slabs: vec![slab(0.5, true, true), slab(1.0, false, false)],
             records: "1920x32".into(),
             range: "pixel".into(),
-            apart: false,
             trained_apart: true,
             bytes: 22,
-            inputs: vec!["root_absorbance".into()],
             topology: "9-12-1".into(),
             parameters: 133,
-            loss: Default::default(),
-            seed: 1,
-            examples: 10,
             seconds: 2.5,
             network: network.clone(),
-            middle: Score::default(),
+            ..Row::default()
         };
         let designs = Designs {
             file: "f.toml".into(),

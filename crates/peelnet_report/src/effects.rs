@@ -3,31 +3,17 @@
 use crate::{ReportError, Results, Table, files::write_file, page, picture::figure_of};
 use maud::{Markup, html};
 use peelnet_chart::{Line, LineChart, Scale, Svg};
-use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, picture_of};
+use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
 use std::path::Path;
 
 /// Width of the pictures, pixels.
 const PICTURE_WIDTH: u32 = 320;
 
-/// Title and note of each table.
-const EFFECTS: (&str, &str) = (
-    "What each effect costs",
-    "Time of a frame of the scene as it is, over that of the same scene without the effect. Both are drawn in turn in one run.",
-);
-const PARTS: (&str, &str) = (
-    "Shading and transparency, each alone",
-    "Times relative to the frame as it is, all drawn in turn. Shading alone: every surface is opaque, with all effects. Transparency alone: \
-     every surface is unlit, and as transparent as before.",
-);
-const LAYERS: (&str, &str) = (
-    "One layer shaded, or all",
-    "The view of layers with physically based shading of the highlighted layer alone, against shading all layers.",
-);
-const FILLS: (&str, &str) = (
-    "Triangles and the part of the frame filled",
-    "The view of layers with one layer shaded: times relative to the fewest triangles at half of the frame; then times relative to \
-     shading all layers.",
-);
+/// Title of the table of layers, which has a chart.
+const LAYERS: &str = "One layer shaded, or all";
+
+/// A table with its title and what its columns mean.
+type Section = (&'static str, &'static str, Table);
 
 impl Results<Effects> {
     /// The files that [`Self::write`] writes.
@@ -38,13 +24,13 @@ impl Results<Effects> {
         "report.html",
     ];
 
-    /// Costs of the effects.
-    pub fn effects_table(&self) -> Table {
+    /// All tables that have rows.
+    pub fn tables(&self) -> Vec<Section> {
         let bytes = |c: &Cost| match (c.bytes_with, c.bytes_without) {
             (with, without) if with == without => format!("{with:.0}"),
             (with, without) => format!("{with:.0}, without {without:.0}"),
         };
-        Table::of(
+        let costs = Table::of(
             &self.measured.costs,
             &[
                 ("scene", &|c| c.scene.clone()),
@@ -54,27 +40,20 @@ impl Results<Effects> {
                 ("time with / without", &|c| two(c.ratio)),
                 ("bytes a pixel", &bytes),
             ],
-        )
-    }
-
-    /// Shading and transparency, each alone, relative to both together.
-    pub fn parts_table(&self) -> Table {
-        Table::of(
+        );
+        let alone = |ms: f64, p: &Parts| two(ms / p.ms_both);
+        let parts = Table::of(
             &self.measured.parts,
             &[
                 ("scene", &|p| p.scene.clone()),
                 ("both, ms", &|p| two(p.ms_both)),
-                ("shading alone / both", &|p| two(p.ms_shading / p.ms_both)),
+                ("shading alone / both", &|p| alone(p.ms_shading, p)),
                 ("transparency alone / both", &|p| {
-                    two(p.ms_transparency / p.ms_both)
+                    alone(p.ms_transparency, p)
                 }),
             ],
-        )
-    }
-
-    /// Shading one layer against all.
-    pub fn layer_table(&self) -> Table {
-        Table::of(
+        );
+        let layers = Table::of(
             &self.measured.layers,
             &[
                 ("scene", &|l| l.scene.clone()),
@@ -83,11 +62,37 @@ impl Results<Effects> {
                 ("all shaded, ms", &|l| two(l.ms_all)),
                 ("one / all", &|l| two(l.ratio)),
             ],
-        )
+        );
+        let all: [Section; 4] = [
+            (
+                "What each effect costs",
+                "Time of a frame of the scene as it is, over that of the same scene without the effect. Both are drawn in turn in one run.",
+                costs,
+            ),
+            (
+                "Shading and transparency, each alone",
+                "Times relative to the frame as it is, all drawn in turn. Shading alone: every surface is opaque, with all effects. Transparency \
+                 alone: every surface is unlit, and as transparent as before.",
+                parts,
+            ),
+            (
+                LAYERS,
+                "The view of layers with physically based shading of the highlighted layer alone, against shading all layers.",
+                layers,
+            ),
+            (
+                "Triangles and the part of the frame filled",
+                "The view of layers with one layer shaded: times relative to the fewest triangles at half of the frame; then times relative to \
+                 shading all layers.",
+                self.fill_table(),
+            ),
+        ];
+        let filled = all.into_iter().filter(|(.., table)| !table.rows.is_empty());
+        filled.collect()
     }
 
     /// Triangles against the part of the frame filled: times relative to the scene's first cell.
-    pub fn fill_table(&self) -> Table {
+    fn fill_table(&self) -> Table {
         let mut headings = vec!["scene".to_owned(), "triangles".to_owned()];
         headings.extend(FILLED.map(|part| format!("{:.0} % filled", part * 100.0)));
         headings.extend(FILLED.map(|part| format!("{:.0} %, one / all", part * 100.0)));
@@ -101,18 +106,6 @@ impl Results<Effects> {
             cells
         };
         Table::new(headings, fills.chunks(FILLED.len()).map(line))
-    }
-
-    /// All tables that have rows, with title and note.
-    pub fn tables(&self) -> impl Iterator<Item = ((&'static str, &'static str), Table)> {
-        [
-            (EFFECTS, self.effects_table()),
-            (PARTS, self.parts_table()),
-            (LAYERS, self.layer_table()),
-            (FILLS, self.fill_table()),
-        ]
-        .into_iter()
-        .filter(|(_, table)| !table.rows.is_empty())
     }
 
     /// Frame time against the number of layers.
@@ -160,9 +153,10 @@ impl Results<Effects> {
     }
 
     fn markdown(&self) -> String {
-        let tables = self.tables().map(|((title, note), table)| {
-            format!("## {title}\n\n{note}\n\n{}\n", table.markdown())
-        });
+        let tables = self
+            .tables()
+            .into_iter()
+            .map(|(title, note, table)| format!("## {title}\n\n{note}\n\n{}\n", table.markdown()));
         format!(
             "{}`{}`, {}. {}\n",
             tables.collect::<String>(),
@@ -178,11 +172,11 @@ impl Results<Effects> {
         let pairs = pairs.collect::<Result<Vec<Markup>, _>>()?;
         let body = html! {
             p { (self.measured.method) " at " (self.settings()) "." }
-            @for ((title, note), table) in self.tables() {
+            @for (title, note, table) in self.tables() {
                 h2 { (title) }
                 p.note { (note) }
                 (table.html("", |_| false))
-                @if title == LAYERS.0 { (page::chart("curve", &self.layer_chart())) }
+                @if title == LAYERS { (page::chart("curve", &self.layer_chart())) }
             }
             h2 { "With and without" }
             @for pair in pairs { (pair) }
@@ -213,70 +207,52 @@ fn pair(cost: &Cost, folder: &Path) -> Result<Markup, ReportError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, written};
-    use peelnet_eval::effects::Parts;
-
-    fn layer(layers: u32, ms_one: f64, ms_all: f64) -> LayerCost {
-        LayerCost {
-            scene: "vase".into(),
-            layers,
-            ms_one,
-            ms_all,
-            ratio: ms_one / ms_all,
-        }
-    }
 
     /// Ratios are those of the times, and the table of triangles counts from its first cell.
     #[test]
     fn tables_are_ratios() {
-        let fill = |triangles, filled, ms_one, ms_all| Fill {
-            scene: "vase".into(),
-            triangles,
-            filled,
+        let layer = |layers, ms_one: f64, ms_all| LayerCost {
+            layers,
             ms_one,
             ms_all,
+            ratio: ms_one / ms_all,
+            ..LayerCost::default()
+        };
+        let fill = |filled, ms_one| Fill {
+            filled,
+            ms_one,
+            ms_all: 4.0,
+            ..Fill::default()
         };
         let effects = Effects {
             method: "wboit-eq9".into(),
             size: [4, 3],
             frames: 1,
             costs: vec![Cost {
-                scene: "vase".into(),
-                effect: "pbr".into(),
-                ms_with: 3.0,
-                ms_without: 2.0,
                 ratio: 1.5,
-                passes_with: 2,
-                passes_without: 2,
                 bytes_with: 10.0,
                 bytes_without: 8.0,
+                ..Cost::default()
             }],
             parts: vec![Parts {
-                scene: "vase".into(),
                 ms_both: 4.0,
                 ms_shading: 3.0,
                 ms_transparency: 2.0,
+                ..Parts::default()
             }],
             layers: vec![layer(3, 2.0, 4.0), layer(6, 3.0, 9.0)],
-            fills: vec![
-                fill(100, 0.5, 2.0, 4.0),
-                fill(100, 0.75, 3.0, 4.0),
-                fill(100, 1.0, 4.0, 4.0),
-            ],
+            fills: vec![fill(0.5, 2.0), fill(0.75, 3.0), fill(1.0, 4.0)],
         };
         let results = Results::new(machine(), "peelnet bench --effects", effects);
-        assert_eq!(
-            results.effects_table().rows[0][4..],
-            ["1.50", "10, without 8"]
-        );
-        assert_eq!(results.parts_table().rows[0][2..], ["0.75", "0.50"]);
-        assert_eq!(results.layer_table().rows[1][4], "0.33");
-        assert_eq!(
-            results.fill_table().rows[0][2..],
-            ["1.00", "1.50", "2.00", "0.50", "0.75", "1.00"]
-        );
+        let tables = results.tables().into_iter().map(|(.., table)| table);
+        let [effects, parts, layers, fills] = tables.collect::<Vec<_>>().try_into().unwrap();
+        assert_eq!(effects.rows[0][4..], ["1.50", "10, without 8"]);
+        assert_eq!(parts.rows[0][2..], ["0.75", "0.50"]);
+        assert_eq!(layers.rows[1][4], "0.33");
+        let filled = ["1.00", "1.50", "2.00", "0.50", "0.75", "1.00"];
+        assert_eq!(fills.rows[0][2..], filled);
         let folder = tempfile::tempdir().unwrap();
         let files = Results::<Effects>::FILES;
         let page = written(folder.path(), &results, files, Results::<Effects>::write);

@@ -14,6 +14,7 @@ use peelnet_eval::{
     each_once,
     front::EXACT_MSE,
     path::{Along, FrameRow, PathRow},
+    rows,
 };
 use std::path::Path;
 
@@ -52,9 +53,7 @@ impl Results<Along> {
         };
         let mean = |method: &str, value: fn(&PathRow) -> Option<f64>| {
             let own = rows().filter(|r| r.method == method).map(value);
-            let values: Option<Vec<f64>> = own.collect();
-            let values = values.filter(|v| !v.is_empty())?;
-            Some(values.iter().sum::<f64>() / values.len() as f64)
+            rows::mean(own.collect::<Option<Vec<f64>>>()?)
         };
         let mut methods = each_once(rows().map(|r| r.method.as_str()));
         let jod = |m: &str| mean(m, |r| r.jod).unwrap_or(f64::NEG_INFINITY);
@@ -92,11 +91,9 @@ impl Results<Along> {
         };
         let line = |method: &&str| {
             let points = (0..self.measured.frames).filter_map(|frame| {
-                let rows = self.measured.by_frame.iter();
-                let own = rows.filter(|r| r.method == *method && r.frame == frame);
-                let values: Vec<f64> = own.filter_map(value).collect();
-                let mean = values.iter().sum::<f64>() / values.len() as f64;
-                (!values.is_empty()).then_some((f64::from(frame), mean))
+                let all = self.measured.by_frame.iter();
+                let own = all.filter(|r| r.method == *method && r.frame == frame);
+                Some((f64::from(frame), rows::mean(own.filter_map(value))?))
             });
             Line::new(*method, points)
         };
@@ -214,28 +211,19 @@ impl Results<Along> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, written};
 
-    fn row(method: &str, scene: &str, jod: Option<f64>, mse_linear: f64) -> PathRow {
-        PathRow {
-            method: method.into(),
-            scene: scene.into(),
-            frames: 2,
-            mse_linear,
-            psnr: Some(30.0),
-            flip: 0.1,
-            error: 2.0,
-            change: Some(0.5),
-            change_max: Some(0.75),
-            contour_pairs: jod.map(|jod| jod / 1000.0),
-            jod,
-        }
-    }
-
     #[test]
     fn tables_charts_and_strips() {
+        let row = |method: &str, scene: &str, jod: f64, mse_linear| PathRow {
+            method: method.into(),
+            scene: scene.into(),
+            mse_linear,
+            contour_pairs: Some(jod / 1000.0),
+            jod: Some(jod),
+            ..PathRow::default()
+        };
         let frame = |method: &str, scene: &str, frame, error| FrameRow {
             method: method.into(),
             scene: scene.into(),
@@ -248,12 +236,10 @@ mod tests {
             size: [8, 6],
             samples: 4,
             frames: 2,
-            fps: 30.0,
-            display: "a monitor".into(),
             rows: vec![
-                row("wboit-eq9", "a", Some(8.0), 1e-3),
-                row("depth-peel", "a", Some(10.0), 0.0),
-                row("wboit-eq9", "<b>", Some(9.0), 1e-3),
+                row("wboit-eq9", "a", 8.0, 1e-3),
+                row("depth-peel", "a", 10.0, 0.0),
+                row("wboit-eq9", "<b>", 9.0, 1e-3),
             ],
             by_frame: vec![
                 frame("wboit-eq9", "a", 0, 2.0),
@@ -262,6 +248,7 @@ mod tests {
                 // Rounding alone.
                 frame("depth-peel", "a", 1, 1e-6),
             ],
+            ..Along::default()
         };
         let results = Results::new(machine(), "peelnet bench --path", along);
         let table = results.table();

@@ -94,10 +94,9 @@ impl Results<Scaling> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, written};
-    use peelnet_eval::scaling::Growth;
+    use peelnet_eval::scaling::{Growth, exponents};
 
     fn row(method: &str, series: Series, value: u64, time_ms: f64) -> Growth {
         Growth {
@@ -116,7 +115,11 @@ mod tests {
             row("a", Series::Fragments, 2, 2.0),
             row("b", Series::Pixels, 64, 2.0),
         ];
-        let scaling = Scaling::new(rows, Vec::new());
+        let scaling = Scaling {
+            exponents: exponents(&rows),
+            rows,
+            left_out: Vec::new(),
+        };
         let results = Results::new(machine(), "peelnet bench --scaling", scaling);
         let dir = tempfile::tempdir().unwrap();
         let text = written(

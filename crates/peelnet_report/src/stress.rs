@@ -153,7 +153,6 @@ impl Results<Stressed> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, written};
 

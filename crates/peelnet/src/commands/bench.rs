@@ -100,12 +100,13 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let (Compared { methods, .. }, learned) =
         compared(context, &gpu, named, &args.models, one_of_each)?;
     let bar = Bar::new(context.console, "scaling", 0);
-    let mut show = |done, total, method: &str| bar.set(done, total, method.to_owned());
-    let frames = args.frames;
-    let (rows, left_out) =
-        scaling::measure(&gpu, &methods, &learned, frames, context.stop, &mut show)?;
+    let plan = Plan {
+        learned: &learned,
+        frames: args.frames,
+        ..Plan::new(args.size, &methods)
+    };
+    let scaling = scaling::measure(&gpu, &plan, context.stop, &mut show(context, &bar))?;
     drop(bar);
-    let scaling = Scaling::new(rows, left_out);
     let results = Results::new(Machine::of(&gpu), command_line(), scaling);
     results.write(&args.out)?;
     context
@@ -130,16 +131,19 @@ fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failur
     };
     let gpu = context.gpu()?;
     let bar = Bar::new(context.console, "effects", 0);
-    let mut done = 0;
-    let found = effects::measure(&gpu, &scenes, &settings, &args.out, context.stop, |what| {
-        done += 1;
-        bar.set(done, 0, what.to_owned());
-    })?;
+    let found = effects::measure(
+        &gpu,
+        &scenes,
+        &settings,
+        &args.out,
+        context.stop,
+        &mut show(context, &bar),
+    )?;
     drop(bar);
     let results = Results::new(Machine::of(&gpu), command_line(), found);
     results.write(&args.out)?;
     let text = || {
-        let tables: Vec<String> = results.tables().map(|(_, table)| table.plain()).collect();
+        let tables: Vec<String> = results.tables().iter().map(|(.., t)| t.plain()).collect();
         tables.join("\n")
     };
     context.console.result(text, || json!(results))
@@ -159,23 +163,16 @@ fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let (Compared { methods, .. }, learned) =
         compared(context, &gpu, named, &args.models, one_of_each)?;
     let images = args.out.join("images");
-    let settings = path::Settings {
-        size: args.size,
+    let plan = Plan {
         samples: args.samples,
         frames: args.frames,
-        methods: &methods,
         learned: &learned,
         lenient: args.methods.is_none(),
         images: Some(&images),
+        ..Plan::new(args.size, &methods)
     };
     let bar = Bar::new(context.console, "path", 0);
-    let found = path::measure(
-        &gpu,
-        &scenes,
-        &settings,
-        context.stop,
-        &mut show(context, &bar),
-    )?;
+    let found = path::measure(&gpu, &scenes, &plan, context.stop, &mut show(context, &bar))?;
     drop(bar);
     context.warn_of_memory(&gpu);
     let results = Results::new(Machine::of(&gpu), command_line(), found);

@@ -9,6 +9,7 @@ use peelnet::Failure;
 use peelnet_eval::{
     front::{Point, untimed},
     recommend::{Budget, judged},
+    rows::Rows,
 };
 use serde_json::json;
 
@@ -45,7 +46,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         bytes: args.max_bytes,
     };
     let chosen = budget.choose(&points).map_err(Failure::failed)?;
-    let untimed = untimed(rows);
+    let untimed = untimed(&Rows::new(rows));
     let adapter = &results.machine.adapter;
     let line = |p: &Point| {
         let error = if p.is_exact() {

@@ -26,25 +26,11 @@ struct RawFile {
     design: Vec<RawDesign>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct RawTraining {
-    epochs: u32,
-    learning_rate: f64,
-}
-
-impl Default for RawTraining {
-    fn default() -> Self {
-        let Budget {
-            epochs,
-            learning_rate,
-            ..
-        } = Recipe::LARGE.budget;
-        Self {
-            epochs,
-            learning_rate,
-        }
-    }
+    epochs: Option<u32>,
+    learning_rate: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -103,19 +89,14 @@ fn failed(path: &Path, what: &str, why: &str) -> EvalError {
 pub fn parse(text: &str, path: &Path) -> Result<Vec<Entry>, EvalError> {
     let file: RawFile =
         toml::from_str(text).map_err(|e| failed(path, "not understood", &e.to_string()))?;
-    let RawTraining {
-        epochs,
-        learning_rate,
-    } = file.training;
-    if epochs == 0 || !(learning_rate.is_finite() && learning_rate > 0.0) {
+    let mut budget = Recipe::LARGE.budget;
+    budget.epochs = file.training.epochs.unwrap_or(budget.epochs);
+    budget.learning_rate = file.training.learning_rate.unwrap_or(budget.learning_rate);
+    let rate = budget.learning_rate;
+    if budget.epochs == 0 || !(rate.is_finite() && rate > 0.0) {
         let why = "epochs and learning_rate must be greater than 0";
         return Err(failed(path, "[training]", why));
     }
-    let budget = Budget {
-        epochs,
-        learning_rate,
-        ..Recipe::LARGE.budget
-    };
     let mut entries: Vec<Entry> = Vec::new();
     for (raw, number) in file.design.into_iter().zip(1..) {
         let what = format!("design {number} ({:?})", raw.name);
@@ -275,7 +256,6 @@ impl RawDesign {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     const GOOD: &str = r#"

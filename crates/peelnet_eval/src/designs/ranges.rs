@@ -167,7 +167,6 @@ pub(super) fn moved(camera: &Camera, size: [u32; 2], pixels: f32) -> Camera {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
     use peelnet_scene::Material;

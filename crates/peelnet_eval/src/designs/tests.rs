@@ -1,4 +1,3 @@
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 use super::*;
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},

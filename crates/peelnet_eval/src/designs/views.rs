@@ -5,12 +5,14 @@ use super::{
     ranges::{Quantiles, Source, moved, of_boxes, of_last},
 };
 use crate::{
-    EvalError, check_stop,
-    compare::{EXACT, is_too_large},
+    EvalError,
+    bench::check_names,
     contours::{LIMIT, Pairs},
     front::EXACT_MSE,
-    geometric_mean,
     metrics::error_image,
+    rows::{geometric_mean, mean},
+    stage::{Stage, check_stop, exact_method},
+    transmittance::Peeled,
 };
 use peelnet_core::{
     absorbance::DepthWarp,
@@ -22,10 +24,7 @@ use peelnet_core::{
 };
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
-use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
-use peelnet_render::{
-    Image, MethodOptions, MethodSpec, PixelSample, RenderError, Renderer, methods::Pixel,
-};
+use peelnet_render::{Image, MethodOptions, MethodSpec, PixelSample, methods::Pixel};
 use peelnet_scene::{Camera, Scene};
 use rayon::prelude::*;
 use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
@@ -273,17 +272,15 @@ pub fn peel(
     most: Option<usize>,
     stop: &AtomicBool,
 ) -> Result<Vec<View>, EvalError> {
-    crate::bench::check_names(scenes)?;
+    check_names(scenes)?;
     let [width, height] = size.map(|s| s as usize);
     let mut views = Vec::new();
     for scene in scenes {
-        let failed = |method| EvalError::render(&scene.name, method);
-        let mut harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, false, None)
-            .map_err(EvalError::peel(&scene.name))?;
-        let renderer = Renderer::new(gpu, scene).map_err(failed(EXACT))?;
+        let mut peeled = Peeled::new(gpu, scene, size, false)?;
+        let stage = Stage::new(gpu, scene)?;
         let mut of_camera = |camera: &Camera| -> Result<View, EvalError> {
             check_stop(stop)?;
-            let mut view = peel_one(&mut harvester, &renderer, scene, size, camera)?;
+            let mut view = peel_one(&mut peeled, &stage, size, camera)?;
             view.boxes = of_boxes(&view, scene, camera, size);
             view.quantiles = Some(Quantiles::of(&view));
             Ok(view)
@@ -306,40 +303,29 @@ pub fn peel(
 }
 
 fn peel_one(
-    harvester: &mut Harvester,
-    renderer: &Renderer,
-    scene: &Scene,
+    peeled: &mut Peeled<'_>,
+    stage: &Stage<'_>,
     size: [u32; 2],
     camera: &Camera,
 ) -> Result<View, EvalError> {
     let frame = size[0] as usize * size[1] as usize;
-    let mut view = View::new(&scene.name, harvester.depth_warp(camera), frame, []);
-    let mut take = |tile: RawTile| {
-        for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
-            let run = run[0] as usize..run[1] as usize;
-            let fragments = run.map(|i| {
-                let [r, g, b, a] = tile.colors[i];
-                Fragment::new(tile.depths[i], a, [r, g, b])
-            });
-            view.push(pixel as usize, fragments);
+    let mut view = View::new(&stage.scene.name, peeled.depth_warp(camera), frame, []);
+    peeled.each_pixel(camera, PixelSample::ALL, |pixel, fragments| {
+        // They are in order already: no method asks for the triangle.
+        let nearest_first = fragments.into_iter();
+        view.push(pixel, nearest_first.map(|f| Fragment { triangle: 0, ..f }));
+    })?;
+    if let Some(pairs) = Pairs::where_they_fit(stage, size, 1, camera)? {
+        let exact = stage.ready(&exact_method(), MethodOptions::sized(size));
+        match exact.and_then(|mut exact| stage.image(&mut exact, camera)) {
+            Err(e) if e.is_too_large() => {}
+            frame => {
+                let image = frame?.image;
+                view.shown = Some(Shown { image, pairs });
+            }
         }
-        Ok(())
-    };
-    harvester
-        .harvest(camera, PixelSample::ALL, None, RawTile::default, &mut take)
-        .map_err(EvalError::peel(&scene.name))?;
-    view.shown = match shown(renderer, size, camera) {
-        Err(e) if is_too_large(&e) => None,
-        shown => Some(shown.map_err(EvalError::render(&scene.name, EXACT))?),
-    };
+    }
     Ok(view)
-}
-
-fn shown(renderer: &Renderer, size: [u32; 2], camera: &Camera) -> Result<Shown, RenderError> {
-    let pairs = Pairs::drawn(renderer, size, 1, camera)?;
-    let mut exact = renderer.method(&EXACT.parse()?, MethodOptions::sized(size))?;
-    let image = renderer.image(&mut exact, camera)?.image;
-    Ok(Shown { image, pairs })
 }
 
 /// Errors on all views as ratios to those of `moments` and `kbuffer`. Views that `moments` draws exactly count as its least error.
@@ -362,10 +348,7 @@ pub fn score(
     }
     let worst = scenes.into_iter().map(|(scene, [a, b])| (scene, a / b));
     let worst = worst.max_by(|a, b| a.1.total_cmp(&b.1));
-    let mean = |of: &dyn Fn(&Measured) -> Option<f64>| {
-        let all: Vec<f64> = own.iter().filter_map(of).collect();
-        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
-    };
+    let mean = |of: &dyn Fn(&Measured) -> Option<f64>| mean(own.iter().filter_map(of));
     Score {
         to_moments: ratio(moments),
         to_kbuffer: ratio(kbuffer),

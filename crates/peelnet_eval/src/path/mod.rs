@@ -6,52 +6,32 @@
 //! An error that is glued to its surface changes as well, by as much as the surface moves: compare methods of like errors. Borders that the
 //! error image has inside surfaces are counted as [`contours`](crate::contours).
 //!
-//! The exact frames of a scene are kept, and the frames of one method at a time: see [`Settings::bytes`].
+//! The exact frames of a scene are kept, and the frames of one method at a time: 45 bytes a pixel.
 
 pub mod motion;
 mod strip;
 pub mod video;
 
+pub use crate::records::{Along, FrameRow, PathRow};
+
 use crate::{
     EvalError,
     bench::{Progress, check_names},
-    check_stop,
-    compare::{self, EXACT, SURFACES, image_name},
-    contours::Pairs,
+    compare::{EXACT, Plan, image_name},
+    contours::{Pairs, SURFACES},
     metrics::{Differences, differences, error_image, psnr},
     perceptual::Displayed,
+    rows::mean,
+    stage::{Ready, Stage, Watch, exact_method},
 };
 use colorvideovdp::Image as VideoFrame;
 use motion::{Moment, Motion};
 use peelnet_gpu::Gpu;
-use peelnet_render::{
-    Image, LearnedWeight, MethodOptions, MethodSpec, Prepared, RenderError, Renderer,
-};
+use peelnet_render::{Image, MethodSpec, Renderer};
 use peelnet_scene::Scene;
-use serde::{Deserialize, Serialize};
-use std::path::Path as FilePath;
 use std::sync::atomic::AtomicBool;
 use strip::Strip;
 use video::{FPS, Judge};
-
-/// What is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings<'a> {
-    /// Width and height of every frame, pixels.
-    pub size: [u32; 2],
-    /// Samples a pixel, 1 or 4, of all methods and of the exact image.
-    pub samples: u32,
-    /// Frames of the path.
-    pub frames: u32,
-    /// The methods; the exact one needs no row.
-    pub methods: &'a [MethodSpec],
-    /// Weights for the learned methods among them, found by recipe.
-    pub learned: &'a [LearnedWeight],
-    /// Whether a method that needs more than this adapter allows, or has no passes, is left out and reported.
-    pub lenient: bool,
-    /// Where strips of frames are saved as `<scene>-<method>.png`.
-    pub images: Option<&'a FilePath>,
-}
 
 /// Bytes that a path may keep.
 const MAX_PATH_BYTES: u64 = 1 << 31;
@@ -60,85 +40,22 @@ const MAX_PATH_BYTES: u64 = 1 << 31;
 /// method's frame as the metric sees it (12), and which of its neighbours show the same surfaces (1).
 const BYTES_PER_PIXEL: u64 = 45;
 
-impl Settings<'_> {
-    /// Bytes that are kept: those of all frames of two videos.
-    pub fn bytes(&self) -> u64 {
-        let [width, height] = self.size.map(u64::from);
-        let frames = u64::from(self.frames);
-        width.saturating_mul(height).saturating_mul(frames) * BYTES_PER_PIXEL
+/// # Errors
+/// All frames of two videos that do not fit.
+fn check_length(size: [u32; 2], frames: u32) -> Result<(), EvalError> {
+    let factors = [size[0], size[1], frames].map(u64::from);
+    let needed = factors
+        .into_iter()
+        .fold(BYTES_PER_PIXEL, u64::saturating_mul);
+    if needed > MAX_PATH_BYTES {
+        return Err(EvalError::LongPath {
+            frames,
+            size,
+            needed,
+            most: MAX_PATH_BYTES,
+        });
     }
-
-    fn check(&self) -> Result<(), EvalError> {
-        let needed = self.bytes();
-        if needed > MAX_PATH_BYTES {
-            return Err(EvalError::LongPath {
-                frames: self.frames,
-                size: self.size,
-                needed,
-                most: MAX_PATH_BYTES,
-            });
-        }
-        Ok(())
-    }
-}
-
-/// A method along a scene's path.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PathRow {
-    pub method: String,
-    pub scene: String,
-    pub frames: u32,
-    pub mse_linear: f64,
-    pub psnr: Option<f64>,
-    pub flip: f64,
-    pub error: f64,
-    pub change: Option<f64>,
-    pub change_max: Option<f64>,
-    #[serde(default)]
-    pub contour_pairs: Option<f64>,
-    pub jod: Option<f64>,
-}
-
-/// A method in one frame of a scene's path.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FrameRow {
-    pub method: String,
-    pub scene: String,
-    pub frame: u32,
-    pub mse_linear: f64,
-    pub psnr: Option<f64>,
-    pub flip: f64,
-    pub error: f64,
-    pub change: Option<f64>,
-    #[serde(default)]
-    pub contour_pairs: Option<f64>,
-}
-
-/// A finished measurement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Along {
-    /// Frame size in pixels.
-    pub size: [u32; 2],
-    /// Samples a pixel.
-    pub samples: u32,
-    /// Frames of the path.
-    pub frames: u32,
-    /// Frames a second that the video metric assumes.
-    pub fps: f32,
-    /// The display that it assumes.
-    pub display: String,
-    /// One row per method and scene.
-    pub rows: Vec<PathRow>,
-    /// One row per method, scene and frame.
-    pub by_frame: Vec<FrameRow>,
+    Ok(())
 }
 
 /// Mean absolute value over pixels and channels.
@@ -194,25 +111,19 @@ impl Video<'_> {
     }
 
     fn row(&self, jod: Option<f64>) -> PathRow {
-        let n = self.rows.len().max(1) as f64;
-        let mean = |value: fn(&FrameRow) -> f64| self.rows.iter().map(value).sum::<f64>() / n;
-        let some = |value: fn(&FrameRow) -> Option<f64>| {
-            let values: Vec<f64> = self.rows.iter().filter_map(value).collect();
-            let mean = values.iter().sum::<f64>() / values.len() as f64;
-            (!values.is_empty()).then_some(mean)
-        };
-        let changes = self.rows.iter().filter_map(|r| r.change);
+        let values = |value: fn(&FrameRow) -> Option<f64>| self.rows.iter().filter_map(value);
+        let all = |value| mean(values(value)).unwrap_or_default();
         PathRow {
             method: self.method.to_owned(),
             scene: self.scene.to_owned(),
             frames: self.rows.len() as u32,
-            mse_linear: mean(|r| r.mse_linear),
-            psnr: psnr(self.squares_8bit / n),
-            flip: mean(|r| r.flip),
-            error: mean(|r| r.error),
-            change: some(|r| r.change),
-            change_max: changes.reduce(f64::max),
-            contour_pairs: some(|r| r.contour_pairs),
+            mse_linear: all(|r| Some(r.mse_linear)),
+            psnr: psnr(self.squares_8bit / self.rows.len().max(1) as f64),
+            flip: all(|r| Some(r.flip)),
+            error: all(|r| Some(r.error)),
+            change: mean(values(|r| r.change)),
+            change_max: values(|r| r.change).reduce(f64::max),
+            contour_pairs: mean(values(|r| r.contour_pairs)),
             jod,
         }
     }
@@ -226,77 +137,52 @@ struct Exact {
 }
 
 /// A scene's path under measurement.
-struct Stage<'a, 's> {
-    scene: &'a Scene,
-    settings: &'a Settings<'s>,
-    renderer: Renderer,
+struct Take<'a, 'w> {
+    stage: Stage<'a>,
+    plan: &'a Plan<'a>,
     moments: Vec<Moment>,
-    stop: &'a AtomicBool,
+    watch: &'a mut Watch<'w>,
 }
 
-impl Stage<'_, '_> {
-    fn failed(&self, method: &str) -> impl FnOnce(RenderError) -> EvalError + use<> {
-        EvalError::render(&self.scene.name, method)
+impl Take<'_, '_> {
+    fn ready(&self, method: &MethodSpec) -> Result<Ready, EvalError> {
+        self.stage.ready(method, self.plan.options(method))
     }
 
-    /// Draws all frames with a method, and hands each to `take`.
+    /// Draws all frames with what is ready, and hands each to `take`.
     fn draw(
         &mut self,
-        method: &MethodSpec,
-        take: &mut dyn FnMut(usize, Image) -> Result<(), EvalError>,
-    ) -> Result<(), EvalError> {
-        let Settings {
-            size,
-            samples,
-            learned,
-            ..
-        } = *self.settings;
-        let name = method.to_string();
-        let weight = learned.iter().find(|l| l.recipe.method == method.name());
-        let options = MethodOptions::sized(size).sampled(samples).with(weight);
-        let prepared = self.renderer.method(method, options);
-        let mut prepared = prepared.map_err(self.failed(&name))?;
-        self.draw_prepared(&name, &mut prepared, take)
-    }
-
-    /// Draws all frames with what is ready under this name.
-    fn draw_prepared(
-        &mut self,
-        name: &str,
-        prepared: &mut Prepared,
+        mut ready: Ready,
         take: &mut dyn FnMut(usize, Image) -> Result<(), EvalError>,
     ) -> Result<(), EvalError> {
         for (k, moment) in self.moments.iter().enumerate() {
-            check_stop(self.stop)?;
+            self.watch.check()?;
             for (number, place) in moment.objects.iter().enumerate() {
-                let moved = self.renderer.set_transform(number, *place);
-                moved.map_err(self.failed(name))?;
+                let moved = self.stage.renderer.set_transform(number, *place);
+                moved.map_err(self.stage.failed(&ready.name))?;
             }
-            let frame = self.renderer.image(prepared, &moment.camera);
-            take(k, frame.map_err(self.failed(name))?.image)?;
+            take(k, self.stage.image(&mut ready, &moment.camera)?.image)?;
+            if ready.name != SURFACES {
+                self.watch.drawn(&self.stage.scene.name, &ready.name);
+            }
         }
         Ok(())
     }
 
     /// Draws all frames exactly, and finds which neighbours show the same surfaces. Returns them with the frames of the video.
-    fn draw_exact(
-        &mut self,
-        method: &MethodSpec,
-        tick: &mut dyn FnMut(),
-    ) -> Result<(Vec<Exact>, Vec<VideoFrame>), EvalError> {
-        let Settings { size, samples, .. } = *self.settings;
+    fn draw_exact(&mut self) -> Result<(Vec<Exact>, Vec<VideoFrame>), EvalError> {
+        let Plan { size, samples, .. } = *self.plan;
+        let surfaces = |r: &Renderer| r.surfaces(size, samples);
+        let surfaces = self.stage.prepare(SURFACES, surfaces)?;
         let mut pairs = Vec::with_capacity(self.moments.len());
-        let prepared = self.renderer.surfaces(size, samples);
-        let mut prepared = prepared.map_err(self.failed(SURFACES))?;
-        self.draw_prepared(SURFACES, &mut prepared, &mut |_, image| {
+        self.draw(surfaces, &mut |_, image| {
             pairs.push(Pairs::of(&image));
             Ok(())
         })?;
-        drop(prepared);
         let (mut exact, mut reference) = (Vec::new(), Vec::new());
         let mut strip = Strip::new(size, pairs.len());
         let mut pairs = pairs.into_iter();
-        self.draw(method, &mut |k, image| {
+        self.draw(self.ready(&exact_method())?, &mut |k, image| {
             let shown = Displayed::new(&image);
             strip.add_frame(k, &image);
             reference.extend(video::frame(&shown)?);
@@ -305,7 +191,6 @@ impl Stage<'_, '_> {
                 shown,
                 pairs,
             }));
-            tick();
             Ok(())
         })?;
         self.save(&strip, EXACT)?;
@@ -313,11 +198,12 @@ impl Stage<'_, '_> {
     }
 
     fn save(&self, strip: &Strip, method: &str) -> Result<(), EvalError> {
-        let Some(folder) = self.settings.images else {
+        let Some(folder) = self.plan.images else {
             return Ok(());
         };
-        let path = folder.join(image_name(&self.scene.name, method));
-        strip.image().save(&path).map_err(self.failed(method))
+        let path = folder.join(image_name(&self.stage.scene.name, method));
+        let saved = strip.image().save(&path);
+        saved.map_err(self.stage.failed(method))
     }
 
     /// Measures one method against the exact frames.
@@ -327,129 +213,97 @@ impl Stage<'_, '_> {
         exact: &[Exact],
         reference: &[VideoFrame],
         judge: &Judge,
-        tick: &mut dyn FnMut(),
     ) -> Result<(PathRow, Vec<FrameRow>), EvalError> {
         let name = method.to_string();
-        let scene = self.scene;
         let mut all = Video {
             method: &name,
-            scene: &scene.name,
+            scene: &self.stage.scene.name,
             rows: Vec::new(),
             squares_8bit: 0.0,
             before: None,
         };
-        let mut strip = Strip::new(self.settings.size, exact.len());
+        let mut strip = Strip::new(self.plan.size, exact.len());
         let mut video = Vec::with_capacity(reference.len());
-        self.draw(method, &mut |k, image| {
-            let Exact {
-                image: against,
-                shown: displayed,
-                pairs,
-            } = &exact[k];
+        self.draw(self.ready(method)?, &mut |k, image| {
+            let against = &exact[k];
             let shown = Displayed::new(&image);
-            let found = differences(&against.pixels, &image.pixels)?;
-            let errors = error_image(&against.pixels, &image.pixels)?;
-            let contours = pairs.share(&errors)?;
-            let (errors, change) = all.add(errors, &found, shown.flip(displayed), contours);
+            let found = differences(&against.image.pixels, &image.pixels)?;
+            let errors = error_image(&against.image.pixels, &image.pixels)?;
+            let contours = against.pairs.share(&errors)?;
+            let flip = shown.flip(&against.shown);
+            let (errors, change) = all.add(errors, &found, flip, contours);
             strip.add_errors(k, errors, change.as_deref());
             if !reference.is_empty() {
                 video.extend(video::frame(&shown)?);
             }
-            tick();
             Ok(())
         })?;
         self.save(&strip, &name)?;
-        let jod = if reference.is_empty() {
-            None
-        } else {
-            Some(judge.jod(&video, reference)?)
+        let jod = match reference {
+            [] => None,
+            reference => Some(judge.jod(&video, reference)?),
         };
         Ok((all.row(jod), all.rows))
     }
 }
 
-/// Measures all methods along the paths of all scenes.
+/// Measures all methods of a plan along the paths of all scenes, of so many frames as it has; strips of frames are saved as
+/// `<scene>-<method>.png`. With [`Plan::lenient`], a method that has no passes is left out, too.
 ///
 /// # Errors
 /// If a method cannot draw, a path is too long to be kept, or a picture cannot be written; [`EvalError::Interrupted`] once `stop` is set.
 pub fn measure(
     gpu: &Gpu,
     scenes: &[Scene],
-    settings: &Settings<'_>,
+    plan: &Plan<'_>,
     stop: &AtomicBool,
     report: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Along, EvalError> {
     check_names(scenes)?;
-    settings.check()?;
-    if let Some(folder) = settings.images {
+    check_length(plan.size, plan.frames)?;
+    if let Some(folder) = plan.images {
         std::fs::create_dir_all(folder).map_err(EvalError::io(folder, "create the folder"))?;
     }
-    let exact_method: MethodSpec = EXACT.parse().map_err(EvalError::render("all", EXACT))?;
-    let methods = settings.methods.iter().filter(|m| **m != exact_method);
+    let frames = plan.frames;
+    let methods = plan.methods.iter().filter(|m| **m != exact_method());
     let methods: Vec<&MethodSpec> = methods.collect();
-    let total = (scenes.len() * (methods.len() + 1)) as u64 * u64::from(settings.frames);
     let judge = Judge::new()?;
     let mut found = Along {
-        size: settings.size,
-        samples: settings.samples,
-        frames: settings.frames,
+        size: plan.size,
+        samples: plan.samples,
+        frames,
         fps: FPS,
         display: Judge::display(),
         rows: Vec::new(),
         by_frame: Vec::new(),
     };
-    let mut done = 0;
+    let total = (scenes.len() * (methods.len() + 1)) as u64 * u64::from(frames);
+    let mut watch = Watch::new(total, stop, report);
     for scene in scenes {
         let motion = Motion::of(scene);
-        let frames = settings.frames;
         let moments = (0..frames).map(|k| motion.at(k as f32 / frames as f32));
-        let mut stage = Stage {
-            scene,
-            settings,
-            renderer: Renderer::new(gpu, scene)
-                .map_err(EvalError::render(&scene.name, "upload"))?,
+        let mut take = Take {
+            stage: Stage::new(gpu, scene)?,
+            plan,
             moments: moments.collect(),
-            stop,
+            watch: &mut watch,
         };
-        let mut tick = |method: &str, report: &mut dyn FnMut(Progress<'_>)| {
-            done += 1;
-            report(Progress::Drawn {
-                done,
-                total,
-                scene: &scene.name,
-                method,
-            });
-        };
-        let mut one = || tick(EXACT, report);
-        let (exact, reference) = stage.draw_exact(&exact_method, &mut one)?;
+        let (exact, reference) = take.draw_exact()?;
         for method in &methods {
+            let why = match method.method().cpu_only {
+                Some(why) if plan.lenient => why.to_owned(),
+                _ => match take.measure(method, &exact, &reference, &judge) {
+                    Err(e) if plan.lenient && e.is_too_large() => e.reason(),
+                    measured => {
+                        let (row, by_frame) = measured?;
+                        found.rows.push(row);
+                        found.by_frame.extend(by_frame);
+                        continue;
+                    }
+                },
+            };
             let name = method.to_string();
-            if let (true, Some(why)) = (settings.lenient, method.method().cpu_only) {
-                let why = why.to_owned();
-                report(Progress::LeftOut {
-                    scene: &scene.name,
-                    method: &name,
-                    why,
-                });
-                continue;
-            }
-            let mut one = || tick(&name, report);
-            match stage.measure(method, &exact, &reference, &judge, &mut one) {
-                Err(EvalError::Render { source, .. })
-                    if settings.lenient && compare::is_too_large(&source) =>
-                {
-                    report(Progress::LeftOut {
-                        scene: &scene.name,
-                        method: &name,
-                        why: source.to_string(),
-                    });
-                }
-                measured => {
-                    let (row, by_frame) = measured?;
-                    found.rows.push(row);
-                    found.by_frame.extend(by_frame);
-                }
-            }
+            take.watch.left_out(&scene.name, &name, why);
         }
     }
     Ok(found)
@@ -457,7 +311,6 @@ pub fn measure(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::metrics::ERROR_ROUNDING;
     use peelnet_core::srgb;
@@ -502,17 +355,9 @@ mod tests {
     /// A path that would not fit is refused before anything is drawn.
     #[test]
     fn a_path_is_bounded() {
-        let settings = |frames| Settings {
-            size: [1024, 768],
-            samples: 1,
-            frames,
-            methods: &[],
-            learned: &[],
-            lenient: false,
-            images: None,
-        };
-        settings(60).check().unwrap();
-        let text = settings(63).check().unwrap_err().to_string();
+        let check = |frames| check_length([1024, 768], frames);
+        check(60).unwrap();
+        let text = check(63).unwrap_err().to_string();
         assert!(text.contains("63 frames of 1024x768"), "{text}");
     }
 }

@@ -84,7 +84,6 @@ fn swing(object: &Object, up: Vec3, phase: f32, t: f32) -> Mat4 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     /// The path begins with the scene as it is, the camera stays at its height and comes as near as is said, and every object moves, by no

@@ -57,7 +57,6 @@ impl Judge {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     fn video(level: impl Fn(usize) -> u8) -> Vec<Image> {

@@ -122,18 +122,13 @@ pub const CASES: &[Case] = &[
         what: "layers at depths 500, 1e4 and 1e6",
         breaks: "weights underflow, moments lose bits",
         work: Work::Frames(|| {
-            let far = |name: &str, layers: &[(f32, f32)]| stack(name, layers.to_vec());
-            Ok(vec![Trial::of_stacks(
-                [0.1, 2e6],
-                BACKGROUND,
-                2,
-                vec![
-                    far("500", &[(500.0, 0.5)]),
-                    far("1e4", &[(1e4, 0.5)]),
-                    far("1e6", &[(1e6, 0.5)]),
-                    far("all", &[(500.0, 0.3), (1e4, 0.4), (1e6, 0.5)]),
-                ],
-            )])
+            let all = vec![
+                stack("500", vec![(500.0, 0.5)]),
+                stack("1e4", vec![(1e4, 0.5)]),
+                stack("1e6", vec![(1e6, 0.5)]),
+                stack("all", vec![(500.0, 0.3), (1e4, 0.4), (1e6, 0.5)]),
+            ];
+            Ok(vec![Trial::of_stacks([0.1, 2e6], BACKGROUND, 2, all)])
         }),
     },
     Case {
@@ -201,12 +196,8 @@ pub const CASES: &[Case] = &[
         work: Work::Frames(|| {
             let at = |i: usize| 0.5 * 200f32.powf(i as f32 / 800.0);
             let one = |i: usize| stack(&format!("depth {}", at(i)), vec![(at(i), 0.5)]);
-            Ok(vec![Trial::of_stacks(
-                PLANES,
-                BACKGROUND,
-                1,
-                (0..801).map(one).collect(),
-            )])
+            let all = (0..801).map(one).collect();
+            Ok(vec![Trial::of_stacks(PLANES, BACKGROUND, 1, all)])
         }),
     },
     Case {
@@ -293,26 +284,12 @@ pub const CASES: &[Case] = &[
         work: Work::Frames(|| {
             let behind = Vec3::new(0.0, 0.0, 3.0);
             let triangle = [[behind, behind + Vec3::X, behind + Vec3::Y]];
-            let material = Material::unlit([1.0; 3], 0.5);
-            let of = |name: &str, objects: Vec<Object>| {
-                Trial::judged(Scene::generated(
-                    name,
-                    "the stress catalogue",
-                    BACKGROUND,
-                    camera(PLANES),
-                    objects,
-                ))
-            };
+            let hidden = object("behind", triangle, [1.0; 3], 0.5);
+            let none = object("none", [], [1.0; 3], 0.5);
             Ok(vec![
-                of(
-                    "behind the camera",
-                    vec![Object::of_triangles("behind", &triangle, material.clone())],
-                ),
-                of(
-                    "no triangle",
-                    vec![Object::of_triangles("none", &[], material)],
-                ),
-                of("no object", vec![]),
+                generated("behind the camera", PLANES, vec![hidden]),
+                generated("no triangle", PLANES, vec![none]),
+                generated("no object", PLANES, vec![]),
             ])
         }),
     },
@@ -359,34 +336,27 @@ pub const CASES: &[Case] = &[
             let steps = (0..5).map(|i| {
                 let t = (i as f32 - 2.0) * 0.003;
                 let v = |x: f32, y: f32, z: f32| Vec3::new(x, y, -z);
-                let quad = |a: Vec3, b: Vec3, c: Vec3, d: Vec3| [[a, b, c], [a, c, d]];
-                let upright = |z: f32| {
-                    quad(
-                        v(-2.0, -2.0, z),
-                        v(2.0, -2.0, z),
-                        v(2.0, 2.0, z),
-                        v(-2.0, 2.0, z),
-                    )
+                // From one depth on the left to another on the right.
+                let wall = |l: f32, r: f32| {
+                    quad([
+                        v(-2.0, -2.0, l),
+                        v(2.0, -2.0, r),
+                        v(2.0, 2.0, r),
+                        v(-2.0, 2.0, l),
+                    ])
                 };
                 // Leaning by a fifth of a unit, so that the line in which it meets the other one wanders over the frame.
-                let leaning = quad(
-                    v(-2.0, -2.0, 2.95 + t),
-                    v(2.0, -2.0, 3.05 + t),
-                    v(2.0, 2.0, 3.05 + t),
-                    v(-2.0, 2.0, 2.95 + t),
-                );
-                let object = |name: &str, vertices: &[[Vec3; 3]], color, alpha| {
-                    Object::of_triangles(name, vertices, Material::unlit(color, alpha))
-                };
+                let leaning = wall(2.95 + t, 3.05 + t);
                 vec![
-                    object("near", &upright(2.0), [0.9, 0.9, 0.2], 0.2),
-                    object("standing", &upright(3.0), [0.9, 0.1, 0.1], 0.6),
-                    object("leaning", &leaning, [0.1, 0.2, 0.9], 0.6),
-                    object("far", &upright(5.0), [0.2, 0.9, 0.3], 0.5),
+                    object("near", wall(2.0, 2.0), [0.9, 0.9, 0.2], 0.2),
+                    object("standing", wall(3.0, 3.0), [0.9, 0.1, 0.1], 0.6),
+                    object("leaning", leaning, [0.1, 0.2, 0.9], 0.6),
+                    object("far", wall(5.0, 5.0), [0.2, 0.9, 0.3], 0.5),
                 ]
             });
-            let mut frames: Vec<Trial> =
-                steps.map(|objects| generated("passing", objects)).collect();
+            let mut frames: Vec<Trial> = steps
+                .map(|objects| generated("passing", NARROW, objects))
+                .collect();
             frames.iter_mut().for_each(|f| f.moves = true);
             Ok(frames)
         }),
@@ -395,6 +365,9 @@ pub const CASES: &[Case] = &[
 
 /// Near and far plane of most cases.
 const PLANES: [f32; 2] = [0.01, 2e4];
+
+/// Those of scenes whose surfaces are no stacks.
+const NARROW: [f32; 2] = [0.1, 100.0];
 
 const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
 
@@ -458,15 +431,9 @@ fn stacks(of: &[(&str, &[(f32, f32)])]) -> Result<Vec<Trial>, EvalError> {
     Ok(vec![trial(all.collect())])
 }
 
-fn generated(name: &str, objects: Vec<Object>) -> Trial {
-    let maker = "the stress catalogue";
-    Trial::judged(Scene::generated(
-        name,
-        maker,
-        BACKGROUND,
-        camera([0.1, 100.0]),
-        objects,
-    ))
+fn generated(name: &str, planes: [f32; 2], objects: Vec<Object>) -> Trial {
+    let (maker, camera) = ("the stress catalogue", camera(planes));
+    Trial::judged(Scene::generated(name, maker, BACKGROUND, camera, objects))
 }
 
 fn sixteen(alpha: f32) -> Result<Trial, EvalError> {
@@ -479,25 +446,35 @@ fn sixteen(alpha: f32) -> Result<Trial, EvalError> {
     Ok(Trial::judged(scene))
 }
 
+fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+fn object<const N: usize>(
+    name: &str,
+    triangles: [[Vec3; 3]; N],
+    color: [f32; 3],
+    alpha: f32,
+) -> Object {
+    Object::of_triangles(name, &triangles, Material::unlit(color, alpha))
+}
+
 /// Five quads that stand across one another like the leaves of a book, before a sixth.
 fn crossing() -> Trial {
     let mut objects: Vec<Object> = (0..5)
         .map(|i| {
             let (sin, cos) = (0.3 + 0.6 * i as f32).sin_cos();
             let v = |s: f32, y: f32| Vec3::new(1.6 * s * cos, 1.4 * y, -3.0 + 1.6 * s * sin);
-            let (a, b, c, d) = (v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0));
+            let leaf = quad([v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0)]);
             let t = i as f32 / 5.0;
-            let material = Material::unlit([t, 1.0 - t, (3.0 * t).fract()], 0.3 + 0.12 * i as f32);
-            Object::of_triangles(&format!("leaf {i}"), &[[a, b, c], [a, c, d]], material)
+            let (color, alpha) = ([t, 1.0 - t, (3.0 * t).fract()], 0.3 + 0.12 * i as f32);
+            object(&format!("leaf {i}"), leaf, color, alpha)
         })
         .collect();
     let v = |x: f32, y: f32| Vec3::new(x, y, -6.0);
-    objects.push(Object::of_triangles(
-        "wall",
-        &[[v(-4.0, -5.0), v(5.0, -4.0), v(0.0, 5.0)]],
-        Material::unlit([0.9, 0.8, 0.1], 0.7),
-    ));
-    generated("crossing", objects)
+    let wall = [[v(-4.0, -5.0), v(5.0, -4.0), v(0.0, 5.0)]];
+    objects.push(object("wall", wall, [0.9, 0.8, 0.1], 0.7));
+    generated("crossing", NARROW, objects)
 }
 
 /// Three bars that overlap in a cycle: no order of the triangles is right.
@@ -506,21 +483,16 @@ fn cycle() -> Trial {
         let turn = glam::Quat::from_rotation_z(i as f32 * std::f32::consts::TAU / 3.0);
         // One end in front, the other behind.
         let v = |x: f32, y: f32, z: f32| turn * Vec3::new(x, y, 0.0) - Vec3::Z * z;
-        let vertices = [
+        let bar = quad([
             v(-1.6, -0.9, 2.6),
             v(1.6, -0.9, 3.4),
             v(1.6, -0.2, 3.4),
             v(-1.6, -0.2, 2.6),
-        ];
-        let [a, b, c, d] = vertices;
+        ]);
         let color = [[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9]][i];
-        Object::of_triangles(
-            &format!("bar {i}"),
-            &[[a, b, c], [a, c, d]],
-            Material::unlit(color, 0.6),
-        )
+        object(&format!("bar {i}"), bar, color, 0.6)
     };
-    generated("cycle", (0..3).map(bar).collect())
+    generated("cycle", NARROW, (0..3).map(bar).collect())
 }
 
 /// Triangles that break normals and clipping, lit.
@@ -569,7 +541,7 @@ fn grazing() -> Trial {
     mesh.normals.fill(Vec3::ZERO);
     flat.mesh = mesh.into();
     objects.push(flat);
-    let mut trial = generated("grazing", objects);
+    let mut trial = generated("grazing", NARROW, objects);
     trial.scene.lights.push(Light {
         source: Source::Point(v(1.0, 2.0, 1.0)),
         color: [1.0; 3],

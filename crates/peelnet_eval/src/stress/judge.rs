@@ -303,7 +303,6 @@ fn normal(object: &Object, triangle: [u32; 3], at: DVec3) -> Option<DVec3> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::{
         super::{CASES, Work},
         *,

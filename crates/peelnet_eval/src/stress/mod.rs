@@ -24,11 +24,16 @@ pub use properties::Finding;
 pub use subject::Subject;
 pub use trial::{Content, Kind, Stack, Trial, Truth};
 
-use crate::{EvalError, compare::EXACT, compare::image_name};
+pub use crate::records::{Outcome, StressRow as Row, Stressed};
+
+use crate::{
+    EvalError,
+    compare::{EXACT, image_name},
+    stage::{Ready, Stage, exact_method},
+};
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
-use peelnet_render::{Image, MethodSpec, Renderer, Submission};
-use peelnet_scene::Camera;
-use serde::{Deserialize, Serialize};
+use peelnet_render::{Image, MethodSpec, Submission};
+use peelnet_scene::{Camera, Scene};
 use std::{collections::BTreeMap, path::Path};
 
 /// One hard case.
@@ -67,42 +72,6 @@ impl Case {
             Work::Network(_) => method.needs_model(),
         }
     }
-}
-
-/// What became of a property.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Outcome {
-    /// It holds.
-    Pass,
-    /// It does not, as the method declares.
-    Declared,
-    /// It does not, or it does although the method declares a flaw.
-    Fail,
-}
-
-/// One property of one method in one case.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    pub method: String,
-    pub case: String,
-    pub property: Property,
-    pub result: Outcome,
-    pub value: Option<f64>,
-    pub limit: f64,
-    pub place: String,
-    pub reason: Option<String>,
-}
-
-/// All rows of a run over the hard cases.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stressed {
-    /// One row per method, case and property.
-    pub rows: Vec<Row>,
 }
 
 impl Stressed {
@@ -162,9 +131,13 @@ pub fn stress(
             Vec::new()
         }
     };
+    let has_network = |s: &Subject| s.learned.is_some() && case.judges(&s.method);
+    let with_networks = subjects.iter().any(has_network);
     for (trial, number) in trials.iter().zip(0..) {
-        let mut stage = Stage::new(gpu, trial)?;
-        let exact = stage.exact()?;
+        let scales = SCALES.iter().filter(|_| with_networks);
+        let scaled: Vec<Scene> = scales.map(|&s| trial.scene.scaled(s)).collect();
+        let mut stand = Stand::new(gpu, trial, &scaled)?;
+        let exact = exact_images(&stand.stage, trial.size, &trial.scene.views)?;
         let scene = format!("{}-{number}-{}", case.id, trial.scene.name);
         let mut frames = vec![exact[0].clone()];
         for (i, subject) in subjects.iter().enumerate() {
@@ -180,7 +153,7 @@ pub fn stress(
                     format!("{}: {}", trial.scene.name, place())
                 });
             };
-            let image = stage.draw(subject, case, &exact, &mut note)?;
+            let image = stand.draw(subject, case, &exact, &mut note)?;
             // Trials that move are a sequence.
             let moves = trial.moves && subject.promises.per_pixel;
             if let (true, Some((_, before))) = (moves, drawn.last()) {
@@ -283,54 +256,48 @@ pub type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
 
 /// The exact image of every view.
 fn exact_images(
-    renderer: &Renderer,
-    scene: &str,
+    stage: &Stage<'_>,
     size: [u32; 2],
     views: &[Camera],
 ) -> Result<Vec<Image>, EvalError> {
-    let failed = || EvalError::render(scene, EXACT);
-    // The name is in the list.
-    let method = EXACT.parse().map_err(failed())?;
-    let mut prepared = renderer
-        .method(&method, MethodOptions::sized(size))
-        .map_err(failed())?;
-    let mut draw = |camera| {
-        renderer
-            .image(&mut prepared, camera)
-            .map(|frame| frame.image)
-    };
-    views
-        .iter()
-        .map(|camera| draw(camera).map_err(failed()))
-        .collect()
+    let mut exact = stage.ready(&exact_method(), MethodOptions::sized(size))?;
+    let mut draw = |camera| Ok(stage.image(&mut exact, camera)?.image);
+    views.iter().map(&mut draw).collect()
 }
 
 /// A trial made ready to be drawn with any method.
-struct Stage<'a> {
+struct Stand<'a> {
     trial: &'a Trial,
     truth: Truth,
-    renderer: Renderer,
-    /// The scene at other scales, with the exact image; made when first asked for.
-    scaled: Vec<(Renderer, Camera, Image)>,
+    stage: Stage<'a>,
+    /// The scene at other scales, with the exact image.
+    scaled: Vec<(Stage<'a>, Image)>,
     gpu: &'a Gpu,
 }
 
-impl<'a> Stage<'a> {
-    fn new(gpu: &'a Gpu, trial: &'a Trial) -> Result<Self, EvalError> {
-        let renderer = Renderer::new(gpu, &trial.scene);
+impl<'a> Stand<'a> {
+    fn new(gpu: &'a Gpu, trial: &'a Trial, scaled: &'a [Scene]) -> Result<Self, EvalError> {
+        let scaled = scaled.iter().map(|scene| {
+            let stage = Stage::new(gpu, scene)?;
+            let mut exact = exact_images(&stage, trial.size, &scene.views[..1])?;
+            Ok((stage, exact.swap_remove(0)))
+        });
         Ok(Self {
             truth: trial.truth(),
-            renderer: renderer.map_err(EvalError::render(&trial.scene.name, EXACT))?,
-            scaled: Vec::new(),
+            stage: Stage::new(gpu, &trial.scene)?,
+            scaled: scaled.collect::<Result<_, EvalError>>()?,
             trial,
             gpu,
         })
     }
 
-    /// The exact image of every view.
-    fn exact(&self) -> Result<Vec<Image>, EvalError> {
-        let scene = &self.trial.scene;
-        exact_images(&self.renderer, &scene.name, self.trial.size, &scene.views)
+    fn ready(&self, stage: &Stage<'_>, subject: &Subject) -> Result<Ready, EvalError> {
+        stage.ready(&subject.method, self.options(subject))
+    }
+
+    fn options(&self, subject: &Subject) -> MethodOptions {
+        let learned = subject.learned.as_ref().map(|(text, _)| text);
+        MethodOptions::sized(self.trial.size).with(learned)
     }
 
     /// Draws a subject in every way that its properties ask for; gives the first view's frame.
@@ -341,70 +308,36 @@ impl<'a> Stage<'a> {
         exact: &[Image],
         note: &mut Note<'_>,
     ) -> Result<Image, EvalError> {
-        let method = subject.method.to_string();
-        let failed = || EvalError::render(&self.trial.scene.name, &method);
-        let learned = subject.learned.as_ref().map(|(text, _)| text);
         let views = &self.trial.scene.views;
-        let prepared = self.renderer.method(
-            &subject.method,
-            MethodOptions::sized(self.trial.size).with(learned),
-        );
-        let mut prepared = prepared.map_err(failed())?;
-        let drawn = self.renderer.image(&mut prepared, &views[0]);
-        let first = drawn.map_err(failed())?.image;
+        let mut ready = self.ready(&self.stage, subject)?;
+        let first = self.stage.image(&mut ready, &views[0])?.image;
         properties::judge(subject, case.id, self.trial, &self.truth, &first, note);
         let mut last = first.clone();
         for (k, camera) in views.iter().enumerate().skip(1) {
-            let next = self.renderer.image(&mut prepared, camera);
-            let next = next.map_err(failed())?.image;
-            let exact = [&exact[k - 1], &exact[k]];
+            let next = self.stage.image(&mut ready, camera)?.image;
             if subject.promises.per_pixel {
+                let exact = [&exact[k - 1], &exact[k]];
                 properties::compare_frames([&last, &next], exact, note);
             }
             last = next;
         }
         if subject.promises.order_independent && subject.promises.per_pixel {
             for order in ORDERS {
-                self.renderer.submit(order);
-                let other = self.renderer.image(&mut prepared, &views[0]);
-                let other = other.map_err(failed())?.image;
+                self.stage.renderer.submit(order);
+                let other = self.stage.image(&mut ready, &views[0])?.image;
                 properties::compare_orders(subject, &self.truth, [&first, &other], note);
             }
-            self.renderer.submit(Submission::Listed);
+            self.stage.renderer.submit(Submission::Listed);
         }
-        if let Some((text, _)) = &subject.learned {
-            self.scale()?;
-            for (renderer, camera, exact_scaled) in &self.scaled {
-                let prepared = renderer.method(
-                    &subject.method,
-                    MethodOptions::sized(self.trial.size).with(Some(text)),
-                );
-                let mut prepared = prepared.map_err(failed())?;
-                let other = renderer.image(&mut prepared, camera);
-                let other = other.map_err(failed())?.image;
-                let exact = [&exact[0], exact_scaled];
-                properties::compare_scales([&first, &other], exact, note);
+        if subject.learned.is_some() {
+            for (stage, exact_scaled) in &self.scaled {
+                let mut ready = self.ready(stage, subject)?;
+                let other = stage.image(&mut ready, &stage.scene.views[0])?.image;
+                properties::compare_scales([&first, &other], [&exact[0], exact_scaled], note);
             }
         }
         self.transmittance(subject, case, note)?;
         Ok(first)
-    }
-
-    /// Makes the scene ready at other scales.
-    fn scale(&mut self) -> Result<(), EvalError> {
-        if !self.scaled.is_empty() {
-            return Ok(());
-        }
-        for factor in SCALES {
-            let scene = self.trial.scene.scaled(factor);
-            let renderer = Renderer::new(self.gpu, &scene);
-            let renderer = renderer.map_err(EvalError::render(&scene.name, EXACT))?;
-            let camera = scene.views[0];
-            let mut exact = exact_images(&renderer, &scene.name, self.trial.size, &[camera])?;
-            // One image for the one view.
-            self.scaled.push((renderer, camera, exact.swap_remove(0)));
-        }
-        Ok(())
     }
 
     /// The transmittance that the weights stand for, as the shaders draw it: a frame of the sums that they blend, in which fragments are
@@ -421,16 +354,10 @@ impl<'a> Stage<'a> {
         else {
             return Ok(());
         };
-        let method = subject.method.to_string();
-        let failed = || EvalError::render(&scene.name, &method);
-        let renderer = Renderer::new(self.gpu, &scene).map_err(failed())?;
-        let learned = subject.learned.as_ref().map(|(text, _)| text);
-        let options = MethodOptions::sized(self.trial.size).with(learned);
-        let mut prepared = renderer
-            .method(&subject.method, options.showing_sums())
-            .map_err(failed())?;
-        let sums = renderer.image(&mut prepared, &scene.views[0]);
-        let sums = sums.map_err(failed())?.image;
+        let stage = Stage::new(self.gpu, &scene)?;
+        let options = self.options(subject).showing_sums();
+        let mut ready = stage.ready(&subject.method, options)?;
+        let sums = stage.image(&mut ready, &scene.views[0])?.image;
         for (content, sum) in self.truth.pixels.iter().zip(&sums.pixels) {
             let Content::Kind(k) = *content else {
                 continue;
@@ -451,7 +378,6 @@ impl<'a> Stage<'a> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     /// Every flaw that a method declares names cases that exist, and belongs to at least one of the methods that run.
     #[test]

@@ -316,7 +316,6 @@ fn extents(kind: &Kind) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     /// No method, however it rounds, is granted more than two steps of an 8-bit display, and what is sorted nothing.

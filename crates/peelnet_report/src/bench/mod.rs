@@ -11,11 +11,18 @@ use peelnet_chart::{Bubble, BubbleChart, Svg};
 use peelnet_eval::{
     bench::Bench,
     front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
-    methods_of,
-    ratios::{Bytes, Ratios, ratios},
-    scenes_of,
+    rows::{Bytes, MOMENTS, Rows, WEIGHTED},
 };
 use std::path::Path;
+
+/// Headings of errors over those of [`WEIGHTED`] and [`MOMENTS`], and of times over those of [`BASE`].
+const TO_WEIGHTED: &str = "/ wboit-eq9";
+const TO_MOMENTS: &str = "/ mboit4";
+const TO_BASE: &str = "time / hardware blending";
+
+/// How far a method is behind the front.
+const TIME_TO_FRONT: &str = "time / front at equal error";
+const ERROR_TO_FRONT: &str = "error / front at equal time";
 
 impl Results<Bench> {
     /// The files that [`Self::write`] writes.
@@ -38,7 +45,7 @@ impl Results<Bench> {
             ("pareto", Mean::Geometric),
             ("pareto-mean", Mean::Arithmetic),
         ] {
-            let svg = chart(&front::points(rows, None, mean));
+            let svg = chart(&front::points(&Rows::new(rows), mean));
             write_file(&folder.join(format!("{name}.svg")), svg.on_white())?;
         }
         let page = page::page(self, &folder.join("images"))?;
@@ -50,33 +57,37 @@ impl Results<Bench> {
 
     /// Every method as ratios to the reference methods.
     pub fn table(&self) -> Table {
-        let points = front::points(&self.measured.rows, None, Mean::Geometric);
-        let point = |r: &Ratios| points.iter().find(|p| p.method == r.method);
-        let worst = |r: &Ratios| {
-            let (scene, x) = r.worst.as_ref()?;
+        let rows = Rows::new(&self.measured.rows);
+        let points = front::points(&rows, Mean::Geometric);
+        let point = |method: &str| points.iter().find(|p| p.method == method);
+        let worst = |method: &str| {
+            let (scene, x) = rows.worst_scene(method)?;
             let scene = scene_in_cell(scene, &self.measured.trained_on);
             Some(format!("{x:.2} ({scene})"))
         };
         let dash = || "–".to_owned();
         Table::of(
-            &ratios(&self.measured.rows),
+            &rows.methods(),
             &[
-                ("method", &|r| r.method.clone()),
-                ("MSE (linear)", &|r| mse(r.mse_linear)),
-                ("/ wboit-eq9", &|r| number(r.to_weighted, 3)),
-                ("/ mboit4", &|r| number(r.to_moments, 3)),
-                ("worst scene / mboit4", &|r| worst(r).unwrap_or_else(dash)),
-                ("time / hardware blending", &|r| number(r.time_to_base, 3)),
-                ("time / mboit4", &|r| number(r.time_to_moments, 3)),
-                ("time / wboit-eq9", &|r| number(r.time_to_weighted, 3)),
-                ("bytes a pixel (mean, median, most)", &|r| {
-                    r.bytes_per_pixel.map_or_else(dash, |b| bytes(&b))
+                ("method", &|m| (*m).to_owned()),
+                ("MSE (linear)", &|m| mse(rows.error_of(m))),
+                (TO_WEIGHTED, &|m| number(rows.error_ratio(m, WEIGHTED), 3)),
+                (TO_MOMENTS, &|m| number(rows.error_ratio(m, MOMENTS), 3)),
+                ("worst scene / mboit4", &|m| worst(m).unwrap_or_else(dash)),
+                (TO_BASE, &|m| number(rows.time_ratio(m, BASE), 3)),
+                ("time / mboit4", &|m| number(rows.time_ratio(m, MOMENTS), 3)),
+                ("time / wboit-eq9", &|m| {
+                    number(rows.time_ratio(m, WEIGHTED), 3)
                 }),
-                ("time / front at equal error", &|r| {
-                    number(point(r).map(|p| p.time_at_equal_error), 2)
+                ("bytes a pixel (mean, median, most)", &|m| {
+                    let own = rows.of_method(m).bytes();
+                    own.map_or_else(dash, |b| bytes(&b))
                 }),
-                ("error / front at equal time", &|r| {
-                    number(point(r).map(|p| p.error_at_equal_time), 2)
+                (TIME_TO_FRONT, &|m| {
+                    number(point(m).map(|p| p.time_at_equal_error), 2)
+                }),
+                (ERROR_TO_FRONT, &|m| {
+                    number(point(m).map(|p| p.error_at_equal_time), 2)
                 }),
             ],
         )
@@ -85,10 +96,10 @@ impl Results<Bench> {
     /// Times on every scene as ratios to hardware blending, the fastest exact method first: whether it is the right answer depends on the
     /// scene more than on anything else.
     pub fn times_by_scene(&self) -> Table {
-        let rows = &self.measured.rows;
-        let scenes = scenes_of(rows);
-        let points = |scene| front::points(rows, Some(scene), Mean::Geometric);
-        let points: Vec<Vec<Point>> = scenes.iter().copied().map(points).collect();
+        let rows = Rows::new(&self.measured.rows);
+        let scenes = rows.scenes();
+        let points = |scene: &&str| front::points(&rows.of_scene(scene), Mean::Geometric);
+        let points: Vec<Vec<Point>> = scenes.iter().map(points).collect();
         // Points come by time.
         let exact = points.iter().map(|all| {
             let first = all.iter().find(|p| p.is_exact());
@@ -97,7 +108,7 @@ impl Results<Bench> {
         });
         let first = std::iter::once("the fastest exact one".to_owned());
         let mut lines: Vec<Vec<String>> = vec![first.chain(exact).collect()];
-        lines.extend(methods_of(rows).into_iter().map(|method| {
+        lines.extend(rows.methods().into_iter().map(|method| {
             let times = points.iter().map(|all| {
                 let own = all.iter().find(|p| p.method == method);
                 number(own.map(|p| p.time), 2)
@@ -107,13 +118,14 @@ impl Results<Bench> {
         let named = scenes
             .iter()
             .map(|s| scene_heading(s, &self.measured.trained_on));
-        let headings = std::iter::once("time / hardware blending".to_owned()).chain(named);
+        let headings = std::iter::once(TO_BASE.to_owned()).chain(named);
         Table::new(headings, lines)
     }
 
     /// `table.md`.
     pub fn markdown(&self) -> String {
-        let untimed = untimed(&self.measured.rows);
+        let rows = Rows::new(&self.measured.rows);
+        let untimed = untimed(&rows);
         let why = untimed
             .iter()
             .map(|(method, why)| format!(" {method} has no time: {why}."));
@@ -181,17 +193,6 @@ pub(crate) fn chart(points: &[Point]) -> Svg {
 mod tests {
     use super::*;
     use crate::testing::{machine, row};
-    use peelnet_eval::{Row, ratios::MOMENTS};
-
-    fn bench(rows: Vec<Row>, trained_on: &[&str]) -> Results<Bench> {
-        let measured = Bench {
-            load: [None, None],
-            settings: None,
-            trained_on: trained_on.iter().map(|&s| s.to_owned()).collect(),
-            rows,
-        };
-        Results::new(machine(), "peelnet bench", measured)
-    }
 
     /// The worst scene is marked like a heading where a network was trained on it, and only there.
     #[test]
@@ -201,11 +202,17 @@ mod tests {
             rows.push(row(scene, MOMENTS, 4.0));
             rows.push(row(scene, "wboit-eq9", error));
         }
-        let worst = |trained_on: &[&str]| {
-            let table = bench(rows.clone(), trained_on).table();
-            table.rows[1][4].clone()
-        };
-        assert_eq!(worst(&["cups"]), "2.00 (cups, trained on)");
-        assert_eq!(worst(&["panes"]), "2.00 (cups)");
+        for (trained_on, expected) in [
+            ("cups", "2.00 (cups, trained on)"),
+            ("panes", "2.00 (cups)"),
+        ] {
+            let measured = Bench {
+                trained_on: vec![trained_on.to_owned()],
+                rows: rows.clone(),
+                ..Bench::default()
+            };
+            let table = Results::new(machine(), "peelnet bench", measured).table();
+            assert_eq!(table.rows[1][4], expected);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The page of a bench: charts, tables that sort, pictures with difference maps.
 
-use super::{bytes, chart, mse};
+use super::{ERROR_TO_FRONT, TIME_TO_FRONT, TO_BASE, TO_MOMENTS, TO_WEIGHTED, bytes, chart, mse};
 use crate::{
     ReportError, Results, Table,
     page::{self, SORT_SCRIPT},
@@ -14,9 +14,7 @@ use peelnet_eval::{
     bench::Bench,
     compare::{EXACT, image_name},
     front::{self, Mean, Point},
-    geometric_mean,
-    ratios::{self, MOMENTS, WEIGHTED},
-    scenes_of,
+    rows::{MOMENTS, Rows, WEIGHTED, geometric_mean},
 };
 use std::path::Path;
 
@@ -26,21 +24,17 @@ const PICTURE_WIDTH: u32 = 256;
 /// Factor of the difference maps.
 const MAGNIFIED: u16 = 8;
 
-/// Headings of errors over those of [`WEIGHTED`] and [`MOMENTS`].
-const TO_WEIGHTED: &str = "/ wboit-eq9";
-const TO_MOMENTS: &str = "/ mboit4";
-
 /// The whole page. `images` is the folder with `<scene>-<method>.png`.
 pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, ReportError> {
-    let rows = &results.measured.rows;
-    let scenes = scenes_of(rows);
-    let all = front::points(rows, None, Mean::Geometric);
-    let by_size = front::points(rows, None, Mean::Arithmetic);
+    let rows = &Rows::new(&results.measured.rows);
+    let scenes = rows.scenes();
+    let all = front::points(rows, Mean::Geometric);
+    let by_size = front::points(rows, Mean::Arithmetic);
     let by_scene = scenes
         .iter()
         .map(|scene| of_scene(&results.measured, scene, images))
         .collect::<Result<Vec<Markup>, _>>()?;
-    let views = rows.iter().filter(|r| r.method == EXACT).count();
+    let views = rows.of_method(EXACT).0.len();
     let body = html! {
         p {
             "Methods and settings: " (all.len()) ". Scenes: " (scenes.len()) ". Views: " (views) ". Drawn by " (results.machine.adapter) "."
@@ -89,14 +83,9 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
 
 /// Chart, table and pictures of one scene.
 fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportError> {
-    let own: Vec<Row> = bench
-        .rows
-        .iter()
-        .filter(|r| r.scene == scene)
-        .cloned()
-        .collect();
-    let points = front::points(&own, None, Mean::Geometric);
-    let first = own.iter().find(|r| r.method == EXACT);
+    let own = Rows::new(&bench.rows).of_scene(scene);
+    let points = front::points(&own, Mean::Geometric);
+    let first = own.of_method(EXACT).0.first().copied();
     let (fragments, most) = first.map_or((None, None), |r| (r.fragments, r.max_layers));
     let is_shown = |p: &&Point| p.on_front || p.method == WEIGHTED || p.method == MOMENTS;
     let shown = points.iter().filter(is_shown);
@@ -122,28 +111,20 @@ fn mean_depth(row: &Row) -> f64 {
 }
 
 /// A line for every point, with all measures.
-pub(crate) fn points_table(rows: &[Row], points: &[Point]) -> Markup {
-    let ratios = ratios::ratios(rows);
-    let ratio = |p: &Point| ratios.iter().find(|r| r.method == p.method);
-    let own = |p: &Point| -> Vec<&Row> { rows.iter().filter(|r| r.method == p.method).collect() };
+pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
+    let ratio = |p: &Point, to| number(rows.error_ratio(&p.method, to), 3);
     let mean = |p: &Point, value: fn(&Row) -> Option<f64>, digits| {
-        let values: Option<Vec<f64>> = own(p).into_iter().map(value).collect();
-        let mean = values.map(|v| v.iter().sum::<f64>() / v.len().max(1) as f64);
-        number(mean, digits)
+        number(rows.of_method(&p.method).mean(value), digits)
     };
     let table = Table::of(
         points,
         &[
             ("method", &|p| p.method.clone()),
-            ("time / hardware blending", &|p| format!("{:.2}", p.time)),
+            (TO_BASE, &|p| format!("{:.2}", p.time)),
             ("ms", &|p| format!("{:.2}", p.time_ms)),
             ("MSE (linear)", &|p| mse((!p.is_exact()).then_some(p.error))),
-            (TO_WEIGHTED, &|p| {
-                number(ratio(p).and_then(|r| r.to_weighted), 3)
-            }),
-            (TO_MOMENTS, &|p| {
-                number(ratio(p).and_then(|r| r.to_moments), 3)
-            }),
+            (TO_WEIGHTED, &|p| ratio(p, WEIGHTED)),
+            (TO_MOMENTS, &|p| ratio(p, MOMENTS)),
             ("MSE 0–255", &|p| mean(p, |r| Some(r.mse255), 2)),
             ("covered", &|p| mean(p, |r| r.mse255_covered, 2)),
             ("PSNR dB", &|p| mean(p, |r| r.psnr, 1)),
@@ -152,57 +133,47 @@ pub(crate) fn points_table(rows: &[Row], points: &[Point]) -> Markup {
             ("99 % error", &|p| mean(p, |r| Some(r.p99_error), 1)),
             ("T error", &|p| mean(p, |r| r.transmittance_error, 4)),
             ("contour pairs", &|p| mean(p, |r| r.contour_pairs, 5)),
-            ("passes", &|p| {
-                let most = own(p).iter().map(|r| r.passes).max();
-                most.unwrap_or(0).to_string()
-            }),
+            ("passes", &|p| most_passes(rows, &p.method)),
             ("bytes a pixel", &|p| bytes(&p.bytes)),
-            ("time / front at equal error", &|p| {
-                number(Some(p.time_at_equal_error), 2)
-            }),
-            ("error / front at equal time", &|p| {
-                number(Some(p.error_at_equal_time), 2)
-            }),
+            (TIME_TO_FRONT, &|p| number(Some(p.time_at_equal_error), 2)),
+            (ERROR_TO_FRONT, &|p| number(Some(p.error_at_equal_time), 2)),
         ],
     );
     table.html("sortable", |k| points[k].on_front)
 }
 
+pub(crate) fn most_passes(rows: &Rows<'_>, method: &str) -> String {
+    let own = rows.of_method(method).0.into_iter();
+    own.map(|r| r.passes).max().unwrap_or(0).to_string()
+}
+
 /// Methods without a time, which no chart and no table of points has, and why.
-fn untimed(rows: &[Row]) -> Markup {
+fn untimed(rows: &Rows<'_>) -> Markup {
     let all = front::untimed(rows);
-    if all.is_empty() {
-        return Markup::default();
-    }
-    let ratios = ratios::ratios(rows);
-    let ratio = |method: &str| ratios.iter().find(|r| r.method == method);
+    let ratio = |method, to| number(rows.error_ratio(method, to), 3);
     let table = Table::of(
         &all,
         &[
             ("error only", &|m| m.0.to_owned()),
-            ("MSE (linear)", &|m| {
-                mse(ratio(m.0).and_then(|r| r.mse_linear))
-            }),
-            (TO_WEIGHTED, &|m| {
-                number(ratio(m.0).and_then(|r| r.to_weighted), 3)
-            }),
-            (TO_MOMENTS, &|m| {
-                number(ratio(m.0).and_then(|r| r.to_moments), 3)
-            }),
+            ("MSE (linear)", &|m| mse(rows.error_of(m.0))),
+            (TO_WEIGHTED, &|m| ratio(m.0, WEIGHTED)),
+            (TO_MOMENTS, &|m| ratio(m.0, MOMENTS)),
             ("why there is no time", &|m| m.1.to_owned()),
         ],
     );
     html! {
-        p.note { "Composited on the CPU from the scene's fragments: the error is the method's own, time and bytes are unknown." }
-        (table.html("text", |_| false))
+        @if !all.is_empty() {
+            p.note { "Composited on the CPU from the scene's fragments: the error is the method's own, time and bytes are unknown." }
+            (table.html("text", |_| false))
+        }
     }
 }
 
 /// Where every method's time goes.
-fn passes(rows: &[Row], points: &[Point]) -> Table {
+fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
     let line = |p: &Point| {
         let mut times: Vec<(&str, Vec<f64>)> = Vec::new();
-        for row in rows.iter().filter(|r| r.method == p.method) {
+        for row in rows.of_method(&p.method).0 {
             for part in row.time_by_pass.split_whitespace() {
                 let Some((name, ms)) = part.rsplit_once('=') else {
                     continue;
@@ -275,7 +246,6 @@ fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, row, written};
 
@@ -301,9 +271,8 @@ mod tests {
         }
         let bench = Bench {
             load: [Some(0.5), None],
-            settings: None,
-            trained_on: Vec::new(),
             rows,
+            ..Bench::default()
         };
         let results = Results::new(machine(), "peelnet bench \"a&b\"", bench);
         let files = Results::<Bench>::FILES;

@@ -5,19 +5,21 @@
 
 use peelnet_eval::{
     Row,
-    by_scene::{ByScene, SceneErrors},
-    geometric_mean, thesis,
+    rows::{Rows, geometric_mean},
+    thesis::{self, DEEP, best_published, ratio},
 };
 
 /// One finding after the other, each a sentence or two.
 pub fn findings(rows: &[Row]) -> Vec<String> {
-    let table = ByScene::of(rows);
+    let rows = &Rows::new(rows);
     let mut out = Vec::new();
-    let (in_table, beyond): (Vec<_>, Vec<_>) = table
-        .scenes
-        .iter()
-        .filter(|l| l.ratio(thesis::DEEP, thesis::WEIGHTED).is_some())
-        .partition(|l| thesis::line(&l.scene).is_some());
+    let both = |scene: &&str| {
+        let methods = [DEEP, thesis::WEIGHTED];
+        ratio(rows, scene, methods, |r| r.mse255).is_some()
+    };
+    let scenes = rows.scenes().into_iter().filter(both);
+    let (in_table, beyond): (Vec<&str>, Vec<&str>) =
+        scenes.partition(|scene| thesis::line(scene).is_some());
     if in_table.is_empty() && beyond.is_empty() {
         return vec![
             "The learned method or weighted blending with the thesis's weight was not drawn, so nothing can be said \
@@ -25,19 +27,17 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
                 .to_owned(),
         ];
     }
-    let ratios = |lines: &[&SceneErrors], reference: &str| -> Vec<(String, f64)> {
-        lines
-            .iter()
-            .filter_map(|l| Some((l.scene.clone(), l.ratio(thesis::DEEP, reference)?)))
+    let ratios = |scenes: &[&str], reference: &str| -> Vec<(String, f64)> {
+        let ratio = |scene| ratio(rows, scene, [DEEP, reference], |r| r.mse255);
+        let scenes = scenes.iter();
+        scenes
+            .filter_map(|&scene| Some((scene.to_owned(), ratio(scene)?)))
             .collect()
     };
     if !in_table.is_empty() {
         let r = ratios(&in_table, thesis::WEIGHTED);
-        let theirs: Vec<String> = in_table
-            .iter()
-            .filter_map(|l| thesis::line(&l.scene))
-            .map(|m| format!("{:.2}", m.ratio()))
-            .collect();
+        let theirs = in_table.iter().filter_map(|scene| thesis::line(scene));
+        let theirs: Vec<String> = theirs.map(|m| format!("{:.2}", m.ratio())).collect();
         out.push(format!(
             "On the scenes that the thesis measured, its promise {}: the learned weight has {} (learned / analytic: {}; \
              the thesis reports {}).",
@@ -56,14 +56,12 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
             list(&r),
         ));
     }
-    let all: Vec<&SceneErrors> = in_table.into_iter().chain(beyond).collect();
-    if let Some(best) = &table.best_published {
+    let all = [in_table, beyond].concat();
+    if let Some(best) = best_published(rows) {
         let r = ratios(&all, best);
         if let Some(mean) = geometric_mean(r.iter().map(|x| x.1)) {
-            let linear = geometric_mean(
-                all.iter()
-                    .filter_map(|l| l.ratio_linear(thesis::DEEP, best)),
-            );
+            let linear = |scene: &&str| ratio(rows, scene, [DEEP, best], |r| r.mse_linear);
+            let linear = geometric_mean(all.iter().filter_map(linear));
             out.push(format!(
                 "Against the best published weight on these scenes ({best}), the learned weight has {}; geometric mean \
                  of the ratios {mean:.2} on the 0–255 scale{}.",
@@ -101,21 +99,13 @@ fn list(ratios: &[(String, f64)]) -> String {
 }
 
 /// Dark and non-finite pixels of the learned method, the thesis's "black artifacts".
-fn artefacts(rows: &[Row]) -> String {
-    let of = |method: &str| {
-        rows.iter().filter(|r| r.method == method).fold(
-            (0u64, 0u64, 0u64),
-            |(dark, broken, covered), r| {
-                (
-                    dark + r.dark_pixels,
-                    broken + r.non_finite_pixels,
-                    covered + r.covered_pixels,
-                )
-            },
-        )
+fn artefacts(rows: &Rows<'_>) -> String {
+    let of = |method: &str, count: fn(&Row) -> u64| -> u64 {
+        rows.of_method(method).0.into_iter().map(count).sum()
     };
-    let (dark, broken, covered) = of(thesis::DEEP);
-    let (dark_weighted, _, _) = of(thesis::WEIGHTED);
+    let [dark, dark_weighted] = [DEEP, thesis::WEIGHTED].map(|m| of(m, |r| r.dark_pixels));
+    let broken = of(DEEP, |r| r.non_finite_pixels);
+    let covered = of(DEEP, |r| r.covered_pixels);
     format!(
         "Artefacts: {dark} of {covered} covered pixels are darker than the exact image by more than a quarter of the range \
          with the learned weight, {dark_weighted} with the thesis's analytic weight; {broken} pixels of the learned \

@@ -7,7 +7,7 @@ mod table;
 use crate::{ReportError, Results, Table, files::write_file};
 use findings::findings;
 use peelnet_chart::Svg;
-use peelnet_eval::{Machine, Row, by_scene::ByScene};
+use peelnet_eval::{Machine, Row, rows::Rows};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub struct Stage {
 }
 
 /// A network trained as the thesis does, and its comparison with all methods.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ThesisRun {
     /// The steps, in order.
     pub stages: Vec<Stage>,
@@ -59,20 +59,17 @@ impl Results<ThesisRun> {
     /// The results of these rows, with their findings, and without stages and settings.
     pub fn of_rows(machine: Machine, command: impl Into<String>, rows: Vec<Row>) -> Self {
         let run = ThesisRun {
-            stages: Vec::new(),
-            settings: Vec::new(),
             findings: findings(&rows),
-            trained_on: Vec::new(),
             rows,
-            showcase: Vec::new(),
+            ..ThesisRun::default()
         };
         Self::new(machine, command, run)
     }
 
     /// Weighted and learned weighted blending on every scene, beside the thesis's figures.
     pub fn table(&self) -> Table {
-        let errors = ByScene::of(&self.measured.rows);
-        table::like_the_thesis(&errors, &self.measured.trained_on)
+        let run = &self.measured;
+        table::like_the_thesis(&Rows::new(&run.rows), &run.trained_on)
     }
 
     /// Writes `results.json`, `table.md` and `report.html` into a folder.
@@ -88,15 +85,15 @@ impl Results<ThesisRun> {
 
     /// `table.md`: the table like the thesis's, the findings, and all methods.
     pub fn markdown(&self) -> String {
-        let errors = ByScene::of(&self.measured.rows);
+        let rows = Rows::new(&self.measured.rows);
         let findings = self.measured.findings.iter();
         let findings: String = findings.map(|f| format!("- {f}\n")).collect();
         format!(
             "# Weighted and learned weighted blending against the exact image\n\n{EXPLANATION}\n\n{}\n## Findings\n\n{findings}\n\
              ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
              Measured on {} ({}) with `{}`.\n",
-            table::like_the_thesis(&errors, &self.measured.trained_on).markdown(),
-            table::all_methods(&errors, &self.measured.trained_on).markdown(),
+            self.table().markdown(),
+            table::all_methods(&rows, &self.measured.trained_on).markdown(),
             self.machine.adapter,
             self.machine.cpu,
             self.command,

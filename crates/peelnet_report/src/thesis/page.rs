@@ -10,9 +10,10 @@ use crate::{
 use maud::{Markup, html};
 use peelnet_eval::{
     Row,
-    by_scene::ByScene,
     compare::image_name,
     front::{self, BASE, Mean},
+    rows::Rows,
+    thesis,
 };
 use std::path::Path;
 
@@ -27,9 +28,9 @@ pub(super) fn page(
     attachments: &Attachments<'_>,
 ) -> Result<String, ReportError> {
     let run = &results.measured;
-    let errors = ByScene::of(&run.rows);
+    let rows = Rows::new(&run.rows);
     let pictures = match attachments.images {
-        Some(folder) => gallery(&errors, folder)?,
+        Some(folder) => gallery(&rows, folder)?,
         None => Markup::default(),
     };
     let body = html! {
@@ -37,13 +38,13 @@ pub(super) fn page(
         h2 { "The thesis's promise" }
         ul { @for finding in &run.findings { li { (finding) } } }
         h3 { "The thesis's table" }
-        (table::like_the_thesis(&errors, &run.trained_on).html("", |_| false))
+        (results.table().html("", |_| false))
         p.note { (EXPLANATION.replace('`', "")) }
         h2 { "All methods" }
         p.note { "Mean squared error (0–255), mean over the views." }
-        (table::all_methods(&errors, &run.trained_on).html("", |_| false))
+        (table::all_methods(&rows, &run.trained_on).html("", |_| false))
         h2 { "Cost" }
-        (costs(&run.rows, &errors.methods).html("", |_| false))
+        (costs(&rows).html("", |_| false))
         p.note { "One frame per view, without warm-up: an order of magnitude, not a benchmark." }
         @if let Some(svg) = attachments.loss {
             h2 { "Loss" }
@@ -74,7 +75,8 @@ fn showcase(rows: &[Row], images: Option<&Path>) -> Result<Markup, ReportError> 
     let Some(scene) = rows.first().map(|r| r.scene.as_str()) else {
         return Ok(Markup::default());
     };
-    let points = front::points(rows, None, Mean::Arithmetic);
+    let rows = Rows::new(rows);
+    let points = front::points(&rows, Mean::Arithmetic);
     // Blending without sorting is only the unit of time.
     let shown = points.iter().filter(|p| p.method != BASE);
     let pictures = match images {
@@ -91,7 +93,7 @@ fn showcase(rows: &[Row], images: Option<&Path>) -> Result<Markup, ReportError> 
         h3 { "Error against time" }
         p.note { "The lower, the more accurate; the further left, the faster. Point at a bubble for its figures." }
         (page::chart("chart", &bench::chart(&points)))
-        (bench::page::points_table(rows, &points))
+        (bench::page::points_table(&rows, &points))
     })
 }
 
@@ -107,46 +109,34 @@ fn stages(stages: &[Stage]) -> Table {
 }
 
 /// Passes, bytes and time of every method, over all scenes.
-fn costs(rows: &[Row], methods: &[String]) -> Table {
-    let own = |method: &String| -> Vec<&Row> {
-        let all = rows.iter();
-        all.filter(|r| r.method == *method).collect()
-    };
-    let time = |method: &String| {
-        let mut times: Vec<f64> = own(method).into_iter().filter_map(|r| r.time_ms).collect();
+fn costs(rows: &Rows<'_>) -> Table {
+    let time = |method: &str| {
+        let own = rows.of_method(method).0.into_iter();
+        let mut times: Vec<f64> = own.filter_map(|r| r.time_ms).collect();
         times.sort_by(f64::total_cmp);
         times.get(times.len() / 2).copied()
     };
-    let bytes = |method: &String| {
-        let all = own(method).into_iter().filter_map(|r| r.bytes_per_pixel);
-        all.fold(0.0, f64::max)
-    };
+    let bytes = |method: &str| rows.of_method(method).bytes().unwrap_or_default();
     Table::of(
-        methods,
+        &rows.methods(),
         &[
-            ("method", &|m| m.clone()),
-            ("most passes", &|m| {
-                own(m)
-                    .iter()
-                    .map(|r| r.passes)
-                    .max()
-                    .unwrap_or(0)
-                    .to_string()
-            }),
-            ("most bytes a pixel", &|m| format!("{:.0}", bytes(m))),
+            ("method", &|m| (*m).to_owned()),
+            ("most passes", &|m| bench::page::most_passes(rows, m)),
+            ("most bytes a pixel", &|m| format!("{:.0}", bytes(m).most)),
             ("GPU ms (median frame)", &|m| number(time(m), 1)),
         ],
     )
 }
 
 /// The pictures of every scene, as large as the budget allows.
-fn gallery(errors: &ByScene, folder: &Path) -> Result<Markup, ReportError> {
+fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, ReportError> {
+    let (scenes, methods) = (rows.scenes(), rows.methods());
     let mut pictures = Vec::new();
-    for (number, scene) in errors.scenes.iter().enumerate() {
-        for method in &errors.methods {
-            let path = folder.join(image_name(&scene.scene, method));
+    for scene in &scenes {
+        for method in &methods {
+            let path = folder.join(image_name(scene, method));
             if let Some(picture) = read(&path)? {
-                pictures.push((number, method, path, picture));
+                pictures.push((scene, method, path, picture));
             }
         }
     }
@@ -160,18 +150,21 @@ fn gallery(errors: &ByScene, folder: &Path) -> Result<Markup, ReportError> {
             break;
         }
     }
-    let of_scene = |scene: usize| {
+    let of_scene = |scene: &str| {
         let all = pictures.iter().zip(&encoded);
-        all.filter(move |((number, ..), _)| *number == scene)
+        let own: Vec<_> = all.filter(|((own, ..), _)| **own == scene).collect();
+        own
     };
     Ok(html! {
         @if !pictures.is_empty() { h2 { "Pictures (view 0)" } }
-        @for (number, scene) in errors.scenes.iter().enumerate() {
-            @if of_scene(number).next().is_some() {
-                h3 { (scene.scene) }
+        @for scene in &scenes {
+            @let own = of_scene(scene);
+            @if !own.is_empty() {
+                h3 { (scene) }
                 div.gallery {
-                    @for ((_, method, ..), uri) in of_scene(number) {
-                        @let error = scene.mse255.get(*method).map_or_else(String::new, |e| format!(", MSE {e:.2}"));
+                    @for ((_, method, ..), uri) in own {
+                        @let error = thesis::error(rows, scene, method, |r| r.mse255);
+                        @let error = error.map_or_else(String::new, |e| format!(", MSE {e:.2}"));
                         (figure(uri, &format!("{method}{error}")))
                     }
                 }
@@ -182,7 +175,6 @@ fn gallery(errors: &ByScene, folder: &Path) -> Result<Markup, ReportError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use crate::testing::{machine, row, written};
     use peelnet_chart::{Line, LineChart, Scale};

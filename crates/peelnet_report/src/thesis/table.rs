@@ -5,63 +5,59 @@ use crate::{
     table::{number, scene_heading},
 };
 use peelnet_eval::{
-    by_scene::{ByScene, SceneErrors},
-    ratios, thesis,
+    rows::{self, Rows},
+    thesis::{self, DEEP, best_published},
 };
 
 /// Like the thesis's table 4.1: weighted blending and learned weighted blending on every scene.
-pub(super) fn like_the_thesis(errors: &ByScene, trained_on: &[String]) -> Table {
-    let best = errors.best_published.as_deref();
+pub(super) fn like_the_thesis(rows: &Rows<'_>, trained_on: &[String]) -> Table {
+    let best = best_published(rows);
     let best_heading = best.map_or_else(
         || "best published".to_owned(),
         |b| format!("best published: {b}"),
     );
     let best = best.unwrap_or_default();
-    let error = |s: &SceneErrors, m: &str| number(s.mse255.get(m).copied(), 2);
-    let theirs = |s: &SceneErrors| thesis::line(&s.scene);
+    let error = |s: &str, m| number(thesis::error(rows, s, m, |r| r.mse255), 2);
+    let ratio = |s: &str, to| number(thesis::ratio(rows, s, [DEEP, to], |r| r.mse255), 2);
     Table::of(
-        &errors.scenes,
+        &rows.scenes(),
         &[
-            ("scene", &|s| scene_heading(&s.scene, trained_on)),
+            ("scene", &|s| scene_heading(s, trained_on)),
             (thesis::WEIGHTED, &|s| error(s, thesis::WEIGHTED)),
-            (ratios::WEIGHTED, &|s| error(s, ratios::WEIGHTED)),
+            (rows::WEIGHTED, &|s| error(s, rows::WEIGHTED)),
             (&best_heading, &|s| error(s, best)),
-            (thesis::DEEP, &|s| error(s, thesis::DEEP)),
-            ("deep / thesis's weight", &|s| {
-                number(s.ratio(thesis::DEEP, thesis::WEIGHTED), 2)
-            }),
-            ("deep / best published", &|s| {
-                number(s.ratio(thesis::DEEP, best), 2)
-            }),
-            ("thesis: weighted → deep", &|s| match theirs(s) {
+            (DEEP, &|s| error(s, DEEP)),
+            ("deep / thesis's weight", &|s| ratio(s, thesis::WEIGHTED)),
+            ("deep / best published", &|s| ratio(s, best)),
+            ("thesis: weighted → deep", &|s| match thesis::line(s) {
                 None => "not measured".to_owned(),
                 Some(m) => format!("{:.2} → {:.2}", m.weighted, m.deep),
             }),
             ("thesis: ratio", &|s| {
-                number(theirs(s).map(thesis::Measured::ratio), 2)
+                number(thesis::line(s).map(thesis::Measured::ratio), 2)
             }),
         ],
     )
 }
 
 /// Every method (a row each) on every scene (a column each), `mse255`.
-pub(super) fn all_methods(errors: &ByScene, trained_on: &[String]) -> Table {
-    let scenes = errors.scenes.iter();
-    let scenes = scenes.map(|s| scene_heading(&s.scene, trained_on));
-    let headings = std::iter::once("method".to_owned()).chain(scenes);
-    let line = |method: &String| {
-        let cells = errors
-            .scenes
-            .iter()
-            .map(|s| match s.mse255.get(method).copied() {
-                None => "–".to_owned(),
-                Some(0.0) => "0".to_owned(),
-                Some(v) if v < 0.005 => format!("{v:.1e}"),
-                Some(v) => format!("{v:.2}"),
-            });
-        std::iter::once(method.clone()).chain(cells).collect()
+pub(super) fn all_methods(rows: &Rows<'_>, trained_on: &[String]) -> Table {
+    let scenes = rows.scenes();
+    let named = scenes.iter().map(|s| scene_heading(s, trained_on));
+    let headings = std::iter::once("method".to_owned()).chain(named);
+    let line = |method: &str| {
+        let cells =
+            scenes.iter().map(
+                |scene| match thesis::error(rows, scene, method, |r| r.mse255) {
+                    None => "–".to_owned(),
+                    Some(0.0) => "0".to_owned(),
+                    Some(v) if v < 0.005 => format!("{v:.1e}"),
+                    Some(v) => format!("{v:.2}"),
+                },
+            );
+        std::iter::once(method.to_owned()).chain(cells).collect()
     };
-    Table::new(headings, errors.methods.iter().map(line))
+    Table::new(headings, rows.methods().into_iter().map(line))
 }
 
 #[cfg(test)]
@@ -71,28 +67,14 @@ mod tests {
 
     #[test]
     fn the_thesis_stands_beside_our_figures() {
-        let table = like_the_thesis(
-            &ByScene::of(&[
-                row("sixteen-050", "wboit-papakostas", 20.0),
-                row("sixteen-050", "wboit-eq9", 5.0),
-                row("sixteen-050", "deep-thesis", 10.0),
-            ]),
-            &[],
-        );
-        assert_eq!(
-            table.rows[0],
-            [
-                "sixteen-050",
-                "20.00",
-                "5.00",
-                "5.00",
-                "10.00",
-                "0.50",
-                "2.00",
-                "16.35 → 10.50",
-                "0.64"
-            ]
-        );
+        let rows = [
+            row("sixteen-050", "wboit-papakostas", 20.0),
+            row("sixteen-050", "wboit-eq9", 5.0),
+            row("sixteen-050", "deep-thesis", 10.0),
+        ];
+        let table = like_the_thesis(&Rows::new(&rows), &[]);
+        let line = "sixteen-050 20.00 5.00 5.00 10.00 0.50 2.00 16.35 → 10.50 0.64";
+        assert_eq!(table.rows[0].join(" "), line);
         assert_eq!(table.rows[0].len(), table.headings.len());
     }
 
@@ -103,11 +85,11 @@ mod tests {
             row("cups", "blended", 1.0),
             row("cups-held", "blended", 1.0),
         ];
-        let (errors, trained) = (ByScene::of(&rows), ["cups".to_owned()]);
-        let table = like_the_thesis(&errors, &trained);
+        let (rows, trained) = (Rows::new(&rows), ["cups".to_owned()]);
+        let table = like_the_thesis(&rows, &trained);
         assert_eq!(table.rows[0][0], "cups (trained on)");
         assert_eq!(table.rows[1][0], "cups-held");
-        let headings = all_methods(&errors, &trained).headings;
+        let headings = all_methods(&rows, &trained).headings;
         assert_eq!(headings, ["method", "cups (trained on)", "cups-held"]);
     }
 }

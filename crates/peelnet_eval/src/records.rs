@@ -1,0 +1,299 @@
+//! What is written to the files of results. `docs/results-files.md` says what each field is, and its unit.
+#![allow(missing_docs, reason = "docs/results-files.md says what each field is")]
+
+use crate::{designs::MOTIONS, scaling::Series};
+use peelnet_core::methods::slabs::Kept;
+use peelnet_model::PixelLoss;
+use peelnet_render::Property;
+use serde::{Deserialize, Serialize};
+
+/// One method on one view of one scene: a row of `results.json`.
+///
+/// Errors are against the exact image of the same view, see [`crate::metrics`]. A value that was not measured is
+/// `null`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    pub method: String,
+    pub scene: String,
+    pub view: u32,
+    pub width: u32,
+    pub height: u32,
+    #[serde(default = "one")]
+    pub samples: u32,
+    pub fragments: Option<u64>,
+    pub max_layers: Option<u32>,
+    #[serde(default)]
+    pub lost: Option<u64>,
+    pub mse_linear: f64,
+    pub mse_linear_covered: Option<f64>,
+    pub mse255: f64,
+    pub mse255_covered: Option<f64>,
+    pub psnr: Option<f64>,
+    #[serde(default)]
+    pub ssim: Option<f64>,
+    #[serde(default)]
+    pub flip: Option<f64>,
+    #[serde(default)]
+    pub transmittance_error: Option<f64>,
+    #[serde(default)]
+    pub contour_pairs: Option<f64>,
+    pub p99_error: f64,
+    pub max_error: f64,
+    pub covered_pixels: u64,
+    pub dark_pixels: u64,
+    pub non_finite_pixels: u64,
+    pub time_ms: Option<f64>,
+    pub time_ms_min: Option<f64>,
+    pub time_ms_p90: Option<f64>,
+    #[serde(default)]
+    pub wall_ms: Option<f64>,
+    #[serde(default)]
+    pub time_by_pass: String,
+    pub passes: u32,
+    pub bytes_per_pixel: Option<f64>,
+    pub adapter: String,
+}
+
+/// Of rows that were measured before there were more.
+const fn one() -> u32 {
+    1
+}
+
+/// A comparison of methods.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bench {
+    /// Mean load of the machine before and after, see [`crate::load`].
+    #[serde(default)]
+    pub load: [Option<f64>; 2],
+    /// Hash of the settings that it was measured with, by which a run that is resumed finds that it has finished.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settings: Option<String>,
+    /// Scenes among them that a learned method was trained on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trained_on: Vec<String>,
+    pub rows: Vec<Row>,
+}
+
+/// A method along a scene's path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathRow {
+    pub method: String,
+    pub scene: String,
+    pub frames: u32,
+    pub mse_linear: f64,
+    pub psnr: Option<f64>,
+    pub flip: f64,
+    pub error: f64,
+    pub change: Option<f64>,
+    pub change_max: Option<f64>,
+    #[serde(default)]
+    pub contour_pairs: Option<f64>,
+    pub jod: Option<f64>,
+}
+
+/// A method in one frame of a scene's path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameRow {
+    pub method: String,
+    pub scene: String,
+    pub frame: u32,
+    pub mse_linear: f64,
+    pub psnr: Option<f64>,
+    pub flip: f64,
+    pub error: f64,
+    pub change: Option<f64>,
+    #[serde(default)]
+    pub contour_pairs: Option<f64>,
+}
+
+/// Methods along a path: a row per method and scene, and one per method, scene and frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Along {
+    pub size: [u32; 2],
+    pub samples: u32,
+    pub frames: u32,
+    pub fps: f32,
+    pub display: String,
+    pub rows: Vec<PathRow>,
+    pub by_frame: Vec<FrameRow>,
+}
+
+/// What one method took in one step of a series.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Growth {
+    pub method: String,
+    pub series: Series,
+    pub value: u64,
+    pub time_ms: f64,
+    pub bytes_per_pixel: f64,
+}
+
+/// A step that a method was not measured in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    pub method: String,
+    pub series: Series,
+    pub value: u64,
+    pub why: String,
+}
+
+/// Exponents of a method's frame time and of the bytes of the whole frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Exponent {
+    pub method: String,
+    pub series: Series,
+    pub time: Option<f64>,
+    pub bytes: Option<f64>,
+}
+
+/// How time and memory grow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scaling {
+    pub exponents: Vec<Exponent>,
+    pub rows: Vec<Growth>,
+    pub left_out: Vec<LeftOut>,
+}
+
+/// What an effect costs in a scene: the frame as it is, and without the effect.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    pub scene: String,
+    pub effect: String,
+    pub ms_with: f64,
+    pub ms_without: f64,
+    pub ratio: f64,
+    #[serde(default)]
+    pub passes_with: u32,
+    #[serde(default)]
+    pub passes_without: u32,
+    pub bytes_with: f64,
+    pub bytes_without: f64,
+}
+
+/// A scene as it is; every surface opaque, shaded with all effects ([`peelnet_scene::Scene::opaque`]); every surface transparent as before
+/// and unlit ([`peelnet_scene::Scene::unlit`]).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Parts {
+    pub scene: String,
+    pub ms_both: f64,
+    pub ms_shading: f64,
+    pub ms_transparency: f64,
+}
+
+/// The view of layers with the highlighted layer alone shaded, and with all of them shaded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LayerCost {
+    pub scene: String,
+    pub layers: u32,
+    pub ms_one: f64,
+    pub ms_all: f64,
+    pub ratio: f64,
+}
+
+/// The same at one number of triangles and one fraction of the frame filled.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fill {
+    pub scene: String,
+    pub triangles: u64,
+    pub filled: f64,
+    pub ms_one: f64,
+    pub ms_all: f64,
+}
+
+/// What effects cost.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Effects {
+    pub method: String,
+    pub size: [u32; 2],
+    pub frames: u32,
+    pub costs: Vec<Cost>,
+    /// Of scenes that are shaded and transparent; none in a measurement of an older version.
+    #[serde(default)]
+    pub parts: Vec<Parts>,
+    pub layers: Vec<LayerCost>,
+    pub fills: Vec<Fill>,
+}
+
+/// What became of a property.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// It holds.
+    Pass,
+    /// It does not, as the method declares.
+    Declared,
+    /// It does not, or it does although the method declares a flaw.
+    Fail,
+}
+
+/// One property of one method in one stress case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StressRow {
+    pub method: String,
+    pub case: String,
+    pub property: Property,
+    pub result: Outcome,
+    pub value: Option<f64>,
+    pub limit: f64,
+    pub place: String,
+    pub reason: Option<String>,
+}
+
+/// A run over the stress cases.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stressed {
+    pub rows: Vec<StressRow>,
+}
+
+/// Errors of a design over all views.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    pub to_moments: Option<f64>,
+    pub to_kbuffer: Option<f64>,
+    pub worst_scene: Option<String>,
+    pub worst: Option<f64>,
+    pub contour_pairs: Option<f64>,
+    #[serde(default)]
+    pub flicker: [Option<f64>; MOTIONS.len()],
+}
+
+/// A method that designs are compared with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    pub method: String,
+    #[serde(flatten)]
+    pub score: Score,
+}
+
+/// A measured design.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DesignRow {
+    pub design: String,
+    pub slabs: Vec<Kept>,
+    pub records: String,
+    pub range: String,
+    pub apart: bool,
+    pub trained_apart: bool,
+    pub bytes: u32,
+    pub inputs: Vec<String>,
+    pub topology: String,
+    pub parameters: u64,
+    pub loss: PixelLoss,
+    pub seed: u64,
+    pub examples: u64,
+    pub seconds: f64,
+    pub network: Score,
+    pub middle: Score,
+}
+
+/// All designs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Designs {
+    pub file: String,
+    pub trained_on: Vec<String>,
+    pub judged_on: Vec<String>,
+    pub learning_rate: f64,
+    pub epochs: u32,
+    pub references: Vec<Reference>,
+    pub rows: Vec<DesignRow>,
+}

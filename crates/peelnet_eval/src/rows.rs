@@ -1,0 +1,219 @@
+//! Rows of a bench, and what is averaged over them.
+
+use crate::{Row, front::EXACT_MSE};
+use peelnet_render::Role;
+use std::collections::BTreeMap;
+
+/// The weighted blending that errors and times are compared with.
+pub const WEIGHTED: &str = Role::WeightedBlending.method();
+/// The moment method that errors and times are compared with.
+pub const MOMENTS: &str = Role::MomentBlending.method();
+
+/// Arithmetic mean; `None` of nothing.
+pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let values: Vec<f64> = values.into_iter().collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Geometric mean; `None` of nothing or if a value is not positive.
+pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let (mut sum, mut n) = (0.0, 0);
+    for v in values {
+        if v.is_nan() || v <= 0.0 {
+            return None;
+        }
+        sum += v.ln();
+        n += 1;
+    }
+    (n > 0).then(|| (sum / f64::from(n)).exp())
+}
+
+/// Each name once, in the order of the first.
+pub fn each_once<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut found = Vec::new();
+    for name in names {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
+}
+
+/// Bytes a pixel over several views: those of methods that store fragments differ from view to view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bytes {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Median; of an even number the lower one.
+    pub median: f64,
+    /// The largest.
+    pub most: f64,
+}
+
+impl Bytes {
+    /// Whether every view takes the same.
+    pub fn is_one(&self) -> bool {
+        self.mean == self.most
+    }
+}
+
+/// Some rows. Their means are `None` where a row lacks the value, and of no row.
+#[derive(Clone, Debug)]
+pub struct Rows<'a>(pub Vec<&'a Row>);
+
+impl<'a> Rows<'a> {
+    /// All of them.
+    pub fn new(rows: &'a [Row]) -> Self {
+        Self(rows.iter().collect())
+    }
+
+    fn filter(&self, keep: impl Fn(&Row) -> bool) -> Self {
+        Self(self.0.iter().copied().filter(|r| keep(r)).collect())
+    }
+
+    /// Those of one method.
+    pub fn of_method(&self, method: &str) -> Self {
+        self.filter(|r| r.method == method)
+    }
+
+    /// Those of one scene.
+    pub fn of_scene(&self, scene: &str) -> Self {
+        self.filter(|r| r.scene == scene)
+    }
+
+    /// The names of the methods, each once, in the order of the rows.
+    pub fn methods(&self) -> Vec<&'a str> {
+        each_once(self.0.iter().map(|r| r.method.as_str()))
+    }
+
+    /// The names of the scenes, each once, in the order of the rows.
+    pub fn scenes(&self) -> Vec<&'a str> {
+        each_once(self.0.iter().map(|r| r.scene.as_str()))
+    }
+
+    fn values(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<Vec<f64>> {
+        self.0.iter().map(|r| value(r)).collect()
+    }
+
+    /// Arithmetic mean.
+    pub fn mean(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+        mean(self.values(value)?)
+    }
+
+    /// Geometric mean of the median frame times.
+    pub fn time_ms(&self) -> Option<f64> {
+        geometric_mean(self.values(|r| r.time_ms)?)
+    }
+
+    /// Geometric mean of `mse_linear`, each at least [`EXACT_MSE`].
+    pub fn error(&self) -> Option<f64> {
+        geometric_mean(self.0.iter().map(|r| r.mse_linear.max(EXACT_MSE)))
+    }
+
+    /// The error of a method; `None` of an exact one.
+    pub fn error_of(&self, method: &str) -> Option<f64> {
+        let own = self.of_method(method);
+        let exact = own.0.iter().all(|r| r.mse_linear <= EXACT_MSE);
+        own.error().filter(|_| !exact)
+    }
+
+    /// The error of a method as a ratio to that of another; `None` of an exact one.
+    pub fn error_ratio(&self, method: &str, reference: &str) -> Option<f64> {
+        Some(self.error_of(method)? / self.of_method(reference).error()?)
+    }
+
+    /// The time of a method as a ratio to that of another.
+    pub fn time_ratio(&self, method: &str, reference: &str) -> Option<f64> {
+        Some(self.of_method(method).time_ms()? / self.of_method(reference).time_ms()?)
+    }
+
+    /// The scene with the largest ratio of a method's mean error to [`MOMENTS`]'s, and that ratio.
+    pub fn worst_scene(&self, method: &str) -> Option<(&'a str, f64)> {
+        let by_scene = |method: &str| {
+            let mut sums: BTreeMap<&str, f64> = BTreeMap::new();
+            for row in self.of_method(method).0 {
+                *sums.entry(&row.scene).or_default() += row.mse_linear;
+            }
+            sums
+        };
+        let reference = by_scene(MOMENTS);
+        let ratios = by_scene(method).into_iter().filter_map(|(scene, sum)| {
+            let base = *reference.get(scene)?;
+            (base > 0.0).then_some((scene, sum / base))
+        });
+        ratios.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Bytes a pixel over the rows that know them; `None` where none does.
+    pub fn bytes(&self) -> Option<Bytes> {
+        let known = self.0.iter().filter_map(|r| r.bytes_per_pixel);
+        let mut all: Vec<f64> = known.collect();
+        all.sort_by(f64::total_cmp);
+        Some(Bytes {
+            mean: mean(all.iter().copied())?,
+            median: all[(all.len() - 1) / 2],
+            most: all[all.len() - 1],
+        })
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::front::BASE;
+
+    /// A row with little but an error.
+    pub(crate) fn row(scene: &str, view: u32, method: &str, mse255: f64) -> Row {
+        Row {
+            method: method.to_owned(),
+            scene: scene.to_owned(),
+            view,
+            mse_linear: mse255 / 65025.0,
+            mse255,
+            bytes_per_pixel: Some(10.0),
+            ..Row::default()
+        }
+    }
+
+    #[test]
+    fn geometric_means() {
+        assert!((geometric_mean([1.0, 4.0]).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(geometric_mean([]), None);
+        assert_eq!(geometric_mean([1.0, 0.0]), None);
+    }
+
+    #[test]
+    fn bytes_over_views_have_a_mean_a_median_and_a_largest() {
+        let rows = [5.0, 1.0, 3.0, 7.0].map(|bytes| Row {
+            bytes_per_pixel: Some(bytes),
+            ..row("a", 0, "x", 0.0)
+        });
+        let bytes = Rows::new(&rows).bytes().unwrap();
+        assert_eq!((bytes.mean, bytes.median, bytes.most), (4.0, 3.0, 7.0));
+        assert!(!bytes.is_one());
+        assert_eq!(Rows::new(&[]).bytes(), None);
+    }
+
+    /// Two scenes with ratios 1/4 and 1 to the moments: geometric mean ½, worst 1.
+    #[test]
+    fn means_are_geometric_and_the_worst_scene_is_named() {
+        let mut rows = Vec::new();
+        for (scene, mine) in [("a", 1.0), ("b", 4.0)] {
+            for (method, mse, ms) in [(WEIGHTED, 16.0, 1.0), (MOMENTS, 4.0, 2.0), ("x", mine, 3.0)]
+            {
+                let mut r = row(scene, 0, method, 65025.0 * mse);
+                r.time_ms = Some(ms);
+                rows.push(r);
+            }
+        }
+        let all = Rows::new(&rows);
+        assert!(all.of_method("x").bytes().is_some_and(|b| b.is_one()));
+        let close = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
+        assert!(close(all.error_ratio("x", MOMENTS), 0.5));
+        assert!(close(all.error_ratio("x", WEIGHTED), 0.125));
+        assert_eq!(all.worst_scene("x"), Some(("b", 1.0)));
+        assert!(close(all.time_ratio("x", MOMENTS), 1.5));
+        assert!(close(all.time_ratio("x", WEIGHTED), 3.0));
+        assert_eq!(all.time_ratio("x", BASE), None);
+    }
+}
