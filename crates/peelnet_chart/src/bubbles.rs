@@ -1,6 +1,6 @@
 //! Bubble charts on logarithmic axes, with the Pareto front drawn through them.
 
-use crate::{Area, DrawError, SIZE, Svg, name, width};
+use crate::{Area, Builder, DrawError, SIZE, Svg, name, width};
 use maud::{Markup, html};
 use plotters::prelude::*;
 
@@ -47,7 +47,7 @@ pub struct BubbleChart<'a> {
 impl BubbleChart<'_> {
     /// Draws it.
     pub fn svg(&self) -> Svg {
-        Svg::new(self.draw())
+        Svg::new(|builder| self.draw(builder))
     }
 
     fn range(&self, value: fn(&Bubble) -> f64) -> (f64, f64) {
@@ -56,52 +56,41 @@ impl BubbleChart<'_> {
         low.zip(high).unwrap_or((1.0, 10.0))
     }
 
-    fn draw(&self) -> Result<(String, Markup), DrawError> {
+    fn draw(&self, builder: &mut Builder<'_, '_>) -> Result<Markup, DrawError> {
         let (left, right) = self.range(|b| b.x);
         let (low, high) = self.range(|b| b.y);
         let (floor, floor_name) = self.floor;
-        let mut text = String::new();
-        let mut placed: Vec<(&Bubble, i32, i32)> = Vec::new();
-        {
-            let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-            let mut chart = ChartBuilder::on(&area)
-                .margin(16)
-                .x_label_area_size(48)
-                .y_label_area_size(84)
-                .build_cartesian_2d(
-                    (left / 1.3..right * 1.8).log_scale(),
-                    (low / 3.0..high * 3.0).log_scale(),
-                )?;
-            chart
-                .configure_mesh()
-                .x_desc(self.x)
-                .y_desc(self.y)
-                .x_label_formatter(&|x| {
-                    let digits = format!("{x:.3}");
-                    digits
-                        .trim_end_matches('0')
-                        .trim_end_matches('.')
-                        .to_owned()
-                })
-                .y_label_formatter(&|y| {
-                    if *y <= floor * 1.01 {
-                        floor_name.to_owned()
-                    } else {
-                        format!("{y:.0e}")
-                    }
-                })
-                .label_style(("sans-serif", 14))
-                .light_line_style(TRANSPARENT)
-                .draw()?;
-            let front = RGBColor(213, 94, 0).stroke_width(2);
-            chart.draw_series(LineSeries::new(self.stairs(), front))?;
-            for bubble in self.bubbles {
-                let (x, y) = chart.backend_coord(&(bubble.x, bubble.y));
-                placed.push((bubble, x, y));
-            }
-            area.present()?;
-        }
-        Ok((text, overlay(placed)))
+        let x = (left / 1.3..right * 1.8).log_scale();
+        let y = (low / 3.0..high * 3.0).log_scale();
+        let mut chart = builder.build_cartesian_2d(x, y)?;
+        chart
+            .configure_mesh()
+            .x_desc(self.x)
+            .y_desc(self.y)
+            .x_label_formatter(&|x| {
+                let digits = format!("{x:.3}");
+                digits
+                    .trim_end_matches('0')
+                    .trim_end_matches('.')
+                    .to_owned()
+            })
+            .y_label_formatter(&|y| {
+                if *y <= floor * 1.01 {
+                    floor_name.to_owned()
+                } else {
+                    format!("{y:.0e}")
+                }
+            })
+            .label_style(("sans-serif", 14))
+            .light_line_style(TRANSPARENT)
+            .draw()?;
+        let front = RGBColor(213, 94, 0).stroke_width(2);
+        chart.draw_series(LineSeries::new(self.stairs(), front))?;
+        let placed = self.bubbles.iter().map(|bubble| {
+            let (x, y) = chart.backend_coord(&(bubble.x, bubble.y));
+            (bubble, x, y)
+        });
+        Ok(overlay(placed.collect()))
     }
 
     /// The front: everything to the left of a bubble on it is above it, so it is a staircase.

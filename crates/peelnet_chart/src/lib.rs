@@ -17,6 +17,7 @@ pub use bubbles::{Bubble, BubbleChart};
 pub use lines::{Line, LineChart, Scale};
 
 use maud::{Markup, html};
+use plotters::prelude::*;
 
 /// Width and height of every chart, pixels.
 const SIZE: (u32, u32) = (960, 600);
@@ -30,14 +31,29 @@ const MARK: &str = "<metadata>peelnet</metadata>";
 /// What can go wrong inside plotters.
 type DrawError = Box<dyn std::error::Error>;
 
+type Builder<'a, 's> = ChartBuilder<'a, 'a, SVGBackend<'s>>;
+
 /// A picture as SVG text, without XML prolog and with a transparent background.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Svg(String);
 
 impl Svg {
-    /// What plotters drew, with elements of our own at its end.
-    fn new(drawn: Result<(String, Markup), DrawError>) -> Self {
-        let (mut text, overlay) =
+    /// What plotters draw, with the elements of our own that `draw` returns at its end.
+    fn new(draw: impl FnOnce(&mut Builder<'_, '_>) -> Result<Markup, DrawError>) -> Self {
+        let mut text = String::new();
+        let drawn = {
+            let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+            let mut builder = ChartBuilder::on(&area);
+            builder
+                .margin(16)
+                .x_label_area_size(48)
+                .y_label_area_size(84);
+            draw(&mut builder).and_then(|overlay| {
+                area.present()?;
+                Ok(overlay)
+            })
+        };
+        let overlay =
             drawn.unwrap_or_else(|e| unreachable!("drawing into a string cannot fail: {e}"));
         let end = text.rfind("</svg>").unwrap_or(text.len());
         text.insert_str(end, &overlay.0);

@@ -1,6 +1,6 @@
 //! Line charts: a line for each name, the name at its end.
 
-use crate::{Area, DrawError, NAME_HEIGHT, SIZE, Svg, name};
+use crate::{Area, Builder, DrawError, NAME_HEIGHT, Svg, name};
 use maud::{Markup, html};
 use plotters::{
     coord::{
@@ -54,7 +54,7 @@ pub struct LineChart<'a> {
 impl LineChart<'_> {
     /// Draws it.
     pub fn svg(&self) -> Svg {
-        Svg::new(self.draw())
+        Svg::new(|builder| self.draw(builder))
     }
 
     /// The points of a line that the axes can show.
@@ -71,35 +71,23 @@ impl LineChart<'_> {
         Some((low, values().reduce(f64::max)?))
     }
 
-    fn draw(&self) -> Result<(String, Markup), DrawError> {
+    fn draw(&self, builder: &mut Builder<'_, '_>) -> Result<Markup, DrawError> {
         let (left, right) = self.range(|p| p.0).unwrap_or((1.0, 10.0));
         let (low, high) = self.range(|p| p.1).unwrap_or((1.0, 10.0));
         let y = (low / 1.5..high.max(2.0 * low) * 1.5).log_scale();
-        let mut text = String::new();
-        let names = {
-            let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-            let mut builder = ChartBuilder::on(&area);
-            builder
-                .margin(16)
-                .x_label_area_size(48)
-                .y_label_area_size(84);
-            // Both leave room for the names.
-            let names = match self.x_scale {
-                Scale::Linear => {
-                    let right = if right > left { right } else { left + 1.0 };
-                    let x = left..right + 0.2 * (right - left);
-                    self.series(builder.build_cartesian_2d(x, y)?)?
-                }
-                Scale::Logarithmic => {
-                    let right = right.max(2.0 * left);
-                    let x = (left..right * (right / left).powf(0.3)).log_scale();
-                    self.series(builder.build_cartesian_2d(x, y)?)?
-                }
-            };
-            area.present()?;
-            names
-        };
-        Ok((text, names))
+        // Both leave room for the names.
+        match self.x_scale {
+            Scale::Linear => {
+                let right = if right > left { right } else { left + 1.0 };
+                let x = left..right + 0.2 * (right - left);
+                self.series(builder.build_cartesian_2d(x, y)?)
+            }
+            Scale::Logarithmic => {
+                let right = right.max(2.0 * left);
+                let x = (left..right * (right / left).powf(0.3)).log_scale();
+                self.series(builder.build_cartesian_2d(x, y)?)
+            }
+        }
     }
 
     /// Draws axes and lines; returns the names.

@@ -5,21 +5,18 @@ use std::path::PathBuf;
 #[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum EvalError {
-    /// The file system refused.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
         path: PathBuf,
         action: &'static str,
         source: std::io::Error,
     },
-    /// Drawing failed.
     #[error("scene '{scene}', method '{method}': {source}")]
     Render {
         scene: String,
         method: String,
         source: Box<RenderError>,
     },
-    /// Peeling failed.
     #[cfg(not(target_arch = "wasm32"))]
     #[error("scene '{scene}': {source}")]
     Peel {
@@ -29,7 +26,6 @@ pub enum EvalError {
     /// A scene of the suite could not be loaded.
     #[error(transparent)]
     Scene(#[from] peelnet_scene::SceneError),
-    /// An exported function could not be run.
     #[error("the network of {method}: {source}")]
     Network {
         method: String,
@@ -40,7 +36,6 @@ pub enum EvalError {
         "an image of {approximate} pixels was compared with one of {exact} pixels; draw both with the same size"
     )]
     Sizes { exact: usize, approximate: usize },
-    /// A path whose frames would take too much memory.
     #[error(
         "a path of {frames} frames of {}x{} pixels keeps {needed} bytes, more than {most}; make --size smaller or --frames fewer",
         size[0], size[1]
@@ -51,11 +46,9 @@ pub enum EvalError {
         needed: u64,
         most: u64,
     },
-    /// The video metric refused what it was given.
     #[cfg(not(target_arch = "wasm32"))]
     #[error("the video metric: {0}")]
     Video(#[from] colorvideovdp::Error),
-    /// An interrupted run cannot be resumed.
     #[error("{}: cannot resume: {why}", path.display())]
     Resume { path: PathBuf, why: String },
     /// Rows and pictures could not be assigned to their scene.
@@ -65,7 +58,6 @@ pub enum EvalError {
         first: PathBuf,
         second: PathBuf,
     },
-    /// A file of designs that cannot be used.
     #[error("{}: {what}: {why}", path.display())]
     Designs {
         path: PathBuf,

@@ -22,20 +22,15 @@ pub struct Row {
     pub samples: u32,
     pub fragments: Option<u64>,
     pub max_layers: Option<u32>,
-    #[serde(default)]
     pub lost: Option<u64>,
     pub mse_linear: f64,
     pub mse_linear_covered: Option<f64>,
     pub mse255: f64,
     pub mse255_covered: Option<f64>,
     pub psnr: Option<f64>,
-    #[serde(default)]
     pub ssim: Option<f64>,
-    #[serde(default)]
     pub flip: Option<f64>,
-    #[serde(default)]
     pub transmittance_error: Option<f64>,
-    #[serde(default)]
     pub contour_pairs: Option<f64>,
     pub p99_error: f64,
     pub max_error: f64,
@@ -45,7 +40,6 @@ pub struct Row {
     pub time_ms: Option<f64>,
     pub time_ms_min: Option<f64>,
     pub time_ms_p90: Option<f64>,
-    #[serde(default)]
     pub wall_ms: Option<f64>,
     #[serde(default)]
     pub time_by_pass: String,
@@ -86,7 +80,6 @@ pub struct PathRow {
     pub error: f64,
     pub change: Option<f64>,
     pub change_max: Option<f64>,
-    #[serde(default)]
     pub contour_pairs: Option<f64>,
     pub jod: Option<f64>,
 }
@@ -102,7 +95,6 @@ pub struct FrameRow {
     pub flip: f64,
     pub error: f64,
     pub change: Option<f64>,
-    #[serde(default)]
     pub contour_pairs: Option<f64>,
 }
 

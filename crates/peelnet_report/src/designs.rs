@@ -1,13 +1,18 @@
 //! The files of `peelnet bench --designs`: what designs of slabs are worth.
 
-use crate::{ReportError, Results, Table, files::write_file};
+use crate::{Measurement, ReportError, Results, Table};
 use peelnet_eval::designs::{Designs, Kept, Row, Score};
 use std::path::Path;
 
-impl Results<Designs> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &["designs.json", "designs.md"];
+impl Measurement for Designs {
+    const FILES: &[&str] = &["designs.json", "designs.md"];
 
+    fn text(results: &Results<Self>, _: &str, _: &Path) -> Result<Option<String>, ReportError> {
+        Ok(Some(results.markdown()))
+    }
+}
+
+impl Results<Designs> {
     /// A row for each design, in the order of their file, and one for each reference.
     pub fn table(&self) -> Table {
         let measured = &self.measured;
@@ -48,12 +53,7 @@ impl Results<Designs> {
         )
     }
 
-    /// Writes `designs.json` and `designs.md`.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        self.write_json(&folder.join("designs.json"))?;
+    fn markdown(&self) -> String {
         let Designs {
             file,
             trained_on,
@@ -62,7 +62,7 @@ impl Results<Designs> {
             epochs,
             ..
         } = &self.measured;
-        let text = format!(
+        format!(
             "{}\nDesigns of {file}. *Kept* of each slab: M mean depth, N nearest, F farthest fragment. *Sums*: `one`, or known colours `apart`.\n\
              Trained on {}; {epochs} epochs, learning rate {learning_rate}. Judged on {}. One training each: small differences are chance.\n\
              Statistics are rounded as 16-bit targets round them, colours are not. {}\n",
@@ -70,8 +70,7 @@ impl Results<Designs> {
             trained_on.join(", "),
             judged_on.join(", "),
             self.credit(),
-        );
-        write_file(&folder.join("designs.md"), text)
+        )
     }
 }
 
@@ -181,12 +180,7 @@ mod tests {
         };
         let results = Results::new(machine(), "peelnet bench s --designs d", designs);
         let dir = tempfile::tempdir().unwrap();
-        let text = written(
-            dir.path(),
-            &results,
-            Results::<Designs>::FILES,
-            Results::<Designs>::write,
-        );
+        let text = written(dir.path(), &results);
         let line = "| medium | 0.5 1 | MNF N | 1920x32 | pixel | one, trained apart | image | 22 | 9-12-1 | 133 | 2.5 | 0.0100 | 0.500 (s) | 0.250 | 0.30 | 0.10 | – | – | – | – | – |";
         assert!(text.contains(line), "{text}");
     }

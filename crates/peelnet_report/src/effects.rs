@@ -1,6 +1,6 @@
 //! The files of `peelnet bench --effects`: what effects cost, what they look like, and what shading one layer saves.
 
-use crate::{ReportError, Results, Table, files::write_file, page, picture::figure_of};
+use crate::{Measurement, ReportError, Results, Table, page, picture::figure_of};
 use maud::{Markup, html};
 use peelnet_chart::{Line, LineChart, Scale, Svg};
 use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
@@ -15,15 +15,29 @@ const LAYERS: &str = "One layer shaded, or all";
 /// A table with its title and what its columns mean.
 type Section = (&'static str, &'static str, Table);
 
-impl Results<Effects> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &[
+impl Measurement for Effects {
+    const FILES: &[&str] = &[
         "effects.json",
         "effects.md",
         "effects-layers.svg",
         "report.html",
     ];
 
+    fn text(
+        results: &Results<Self>,
+        file: &str,
+        folder: &Path,
+    ) -> Result<Option<String>, ReportError> {
+        Ok(match file {
+            "effects.md" => Some(results.markdown()),
+            "effects-layers.svg" if results.measured.layers.is_empty() => None,
+            "effects-layers.svg" => Some(results.layer_chart().on_white()),
+            _ => Some(results.page(folder)?),
+        })
+    }
+}
+
+impl Results<Effects> {
     /// All tables that have rows.
     pub fn tables(&self) -> Vec<Section> {
         let bytes = |c: &Cost| match (c.bytes_with, c.bytes_without) {
@@ -125,21 +139,6 @@ impl Results<Effects> {
             x_scale: Scale::Logarithmic,
         }
         .svg()
-    }
-
-    /// Writes `effects.json`, `effects.md`, `effects-layers.svg` and `report.html` into a folder; pictures are taken from `images/` in
-    /// it.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or a picture not be read.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        self.write_json(&folder.join("effects.json"))?;
-        write_file(&folder.join("effects.md"), self.markdown())?;
-        if !self.measured.layers.is_empty() {
-            let svg = self.layer_chart().on_white();
-            write_file(&folder.join("effects-layers.svg"), svg)?;
-        }
-        write_file(&folder.join("report.html"), self.page(folder)?)
     }
 
     /// Method, size and frames.
@@ -254,8 +253,7 @@ mod tests {
         let filled = ["1.00", "1.50", "2.00", "0.50", "0.75", "1.00"];
         assert_eq!(fills.rows[0][2..], filled);
         let folder = tempfile::tempdir().unwrap();
-        let files = Results::<Effects>::FILES;
-        let page = written(folder.path(), &results, files, Results::<Effects>::write);
+        let page = written(folder.path(), &results);
         assert!(page.contains("0.33") && page.contains("one layer shaded"));
     }
 }

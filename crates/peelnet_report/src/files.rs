@@ -66,18 +66,19 @@ pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), ReportErro
     })
 }
 
-/// Writes a value as indented JSON.
-pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), ReportError> {
+/// A value as indented JSON.
+pub(crate) fn json(value: &impl Serialize) -> String {
     let json = serde_json::to_string_pretty(value)
         .expect("results have string keys only, and floats serialise always");
-    write_file(path, printable_json(&format!("{json}\n")).as_ref())
+    printable_json(&format!("{json}\n")).into_owned()
 }
 
-/// Writes rows of flat fields as CSV with a header.
-pub(crate) fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<(), ReportError> {
+/// Rows of flat fields as CSV with a header.
+pub(crate) fn csv(rows: &[impl Serialize]) -> String {
     let mut table = csv::Writer::from_writer(Vec::new());
     for row in rows {
         table.serialize(row).expect("a row has flat fields");
     }
-    write_file(path, table.into_inner().expect("memory can be written"))
+    let bytes = table.into_inner().expect("memory can be written");
+    String::from_utf8(bytes).expect("fields are text")
 }

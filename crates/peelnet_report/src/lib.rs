@@ -4,8 +4,8 @@
 //! measured rows ─► Results { machine, command, measured } ─► JSON, CSV, Markdown, SVG and a page
 //! ```
 //!
-//! [`Results`] is the one envelope of every kind of measurement. Each kind has a module with its tables, its charts and
-//! `Results<Kind>::write`, which writes a folder of files. Pages are one HTML file each, which needs neither network nor any other
+//! [`Results`] is the one envelope of every kind of measurement. Each kind is a [`Measurement`] with its tables and charts,
+//! which [`Results::write`] writes as a folder of files. Pages are one HTML file each, which needs neither network nor any other
 //! file. They are built with maud, which escapes all text; charts come from `peelnet_chart`, which escapes as well.
 
 mod bench;
@@ -26,6 +26,6 @@ mod thesis;
 
 pub use error::ReportError;
 pub use files::{kind_of, write_file};
-pub use results::Results;
+pub use results::{Measurement, Results};
 pub use table::Table;
-pub use thesis::{Attachments, Stage, ThesisRun, findings::findings};
+pub use thesis::{Stage, ThesisRun, findings::findings};

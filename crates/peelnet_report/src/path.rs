@@ -1,8 +1,8 @@
 //! The files of `peelnet bench --path`: errors along a path, their change from frame to frame, and how visible the difference is.
 
 use crate::{
-    ReportError, Results, Table,
-    files::{write_csv, write_file},
+    Measurement, ReportError, Results, Table,
+    files::csv,
     page::{self, SORT_SCRIPT},
     picture::figure_of,
     table::number,
@@ -28,9 +28,8 @@ const NOTE: &str = "JOD: just-objectionable differences by ColorVideoVDP, 10 for
     pixels with the same transparent surfaces whose errors differ by more than 2 of 255; the mean of all frames that have such pixels. PSNR of 8-bit sRGB, ꟻLIP and MSE \
     in linear light are means over the frames.";
 
-impl Results<Along> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &[
+impl Measurement for Along {
+    const FILES: &[&str] = &[
         "path.json",
         "path.csv",
         "path-frames.csv",
@@ -40,6 +39,29 @@ impl Results<Along> {
         "report.html",
     ];
 
+    fn text(
+        results: &Results<Self>,
+        file: &str,
+        folder: &Path,
+    ) -> Result<Option<String>, ReportError> {
+        let [error, change] = results.charts();
+        Ok(Some(match file {
+            "path.csv" => csv(&results.measured.rows),
+            "path-frames.csv" => csv(&results.measured.by_frame),
+            "path.md" => format!(
+                "{}\n{NOTE}\n\n{}. {}\n",
+                results.table().markdown(),
+                results.settings(),
+                results.credit()
+            ),
+            "path-error.svg" => error.on_white(),
+            "path-change.svg" => change.on_white(),
+            _ => results.page(folder)?,
+        }))
+    }
+}
+
+impl Results<Along> {
     /// A line for each method, means over the scenes, the best JOD first.
     pub fn table(&self) -> Table {
         self.table_of(None)
@@ -118,28 +140,6 @@ impl Results<Along> {
                 |r| r.change,
             ),
         ]
-    }
-
-    /// Writes `path.json`, both tables as CSV, `path.md`, two charts and `report.html` into a folder; strips of frames are taken from
-    /// `images/` in it.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or a picture not be read.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        self.write_json(&folder.join("path.json"))?;
-        write_csv(&folder.join("path.csv"), &self.measured.rows)?;
-        write_csv(&folder.join("path-frames.csv"), &self.measured.by_frame)?;
-        let text = format!(
-            "{}\n{NOTE}\n\n{}. {}\n",
-            self.table().markdown(),
-            self.settings(),
-            self.credit()
-        );
-        write_file(&folder.join("path.md"), text)?;
-        let [error, change] = self.charts();
-        write_file(&folder.join("path-error.svg"), error.on_white())?;
-        write_file(&folder.join("path-change.svg"), change.on_white())?;
-        write_file(&folder.join("report.html"), self.page(folder)?)
     }
 
     /// Size, frames and display.
@@ -264,8 +264,7 @@ mod tests {
             let path = images.join(image_name("a", method));
             image::RgbImage::new(8, 8).save(path).unwrap();
         }
-        let files = Results::<Along>::FILES;
-        let page = written(folder.path(), &results, files, Results::<Along>::write);
+        let page = written(folder.path(), &results);
         assert_eq!(page.matches("data:image/png").count(), 2);
         assert!(page.contains("4 samples a pixel") && page.contains("&lt;b&gt;"));
         assert!(!page.contains("<b>"));

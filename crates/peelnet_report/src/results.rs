@@ -1,4 +1,7 @@
-use crate::{ReportError, files::write_json};
+use crate::{
+    ReportError,
+    files::{json, write_file},
+};
 use peelnet_eval::Machine;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::Path;
@@ -40,10 +43,43 @@ impl<T> Results<T> {
     }
 }
 
-impl<T: Serialize> Results<T> {
-    /// Writes it as JSON.
-    pub(crate) fn write_json(&self, path: &Path) -> Result<(), ReportError> {
-        write_json(path, self)
+/// A measurement that is written as a folder of files.
+pub trait Measurement: Serialize {
+    /// The files. The JSON among them is the [`Results`].
+    const FILES: &'static [&'static str];
+
+    /// The text of any other of the files; none where it is left out. Pictures are taken from `images/` in the folder.
+    ///
+    /// # Errors
+    /// If a picture cannot be read.
+    fn text(
+        results: &Results<Self>,
+        file: &str,
+        folder: &Path,
+    ) -> Result<Option<String>, ReportError>
+    where
+        Self: Sized;
+}
+
+impl<T: Measurement> Results<T> {
+    /// The files that [`Self::write`] writes.
+    pub const FILES: &'static [&'static str] = T::FILES;
+
+    /// Writes [`Self::FILES`] into a folder; pages show the pictures in `images/` in it.
+    ///
+    /// # Errors
+    /// If a file cannot be written, or a picture not be read.
+    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+        for file in Self::FILES {
+            let text = match file.ends_with(".json") {
+                true => Some(json(self)),
+                false => T::text(self, file, folder)?,
+            };
+            if let Some(text) = text {
+                write_file(&folder.join(file), text)?;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -1,20 +1,15 @@
 //! The files of `peelnet bench --scaling`: how time and memory grow.
 
-use crate::{
-    ReportError, Results, Table,
-    files::{write_csv, write_file},
-    table::number,
-};
-use peelnet_chart::{Line, LineChart, Scale, Svg};
+use crate::{Measurement, ReportError, Results, Table, files::csv, table::number};
+use peelnet_chart::{Line, LineChart, Scale};
 use peelnet_eval::{
     each_once,
     scaling::{Exponent, Scaling, Series},
 };
 use std::path::Path;
 
-impl Results<Scaling> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &[
+impl Measurement for Scaling {
+    const FILES: &[&str] = &[
         "scaling.json",
         "scaling.csv",
         "scaling.md",
@@ -23,6 +18,18 @@ impl Results<Scaling> {
         "scaling-triangles.svg",
     ];
 
+    fn text(results: &Results<Self>, file: &str, _: &Path) -> Result<Option<String>, ReportError> {
+        Ok(Some(match file {
+            "scaling.csv" => csv(&results.measured.rows),
+            "scaling.md" => results.markdown(),
+            "scaling-fragments.svg" => results.chart(Series::Fragments, "fragments per pixel"),
+            "scaling-pixels.svg" => results.chart(Series::Pixels, "pixels"),
+            _ => results.chart(Series::Triangles, "triangles"),
+        }))
+    }
+}
+
+impl Results<Scaling> {
     /// The exponents.
     pub fn table(&self) -> Table {
         let exponents = &self.measured.exponents;
@@ -44,32 +51,20 @@ impl Results<Scaling> {
         Table::new(headings, methods.into_iter().map(line))
     }
 
-    /// Writes `scaling.json`, `scaling.csv`, `scaling.md` and a chart of each series, `scaling-<series>.svg`.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        self.write_json(&folder.join("scaling.json"))?;
-        write_csv(&folder.join("scaling.csv"), &self.measured.rows)?;
+    fn markdown(&self) -> String {
         let left_out = self.measured.left_out.iter();
         let left_out: String = left_out
             .map(|l| format!("- {} at {} {}: {}\n", l.method, l.value, l.series, l.why))
             .collect();
-        let text = format!(
+        format!(
             "{}\nExponents fitted to the upper half of the steps. {}\n\nNot measured:\n\n{left_out}",
             self.table().markdown(),
             self.credit(),
-        );
-        write_file(&folder.join("scaling.md"), text)?;
-        for series in Series::ALL {
-            let file = folder.join(format!("scaling-{series}.svg"));
-            write_file(&file, self.chart(series).on_white())?;
-        }
-        Ok(())
+        )
     }
 
     /// Frame time of every method against a series.
-    fn chart(&self, series: Series) -> Svg {
+    fn chart(&self, series: Series, x: &str) -> String {
         let mut lines: Vec<Line> = Vec::new();
         for row in self.measured.rows.iter().filter(|r| r.series == series) {
             let point = (row.value as f64, row.time_ms);
@@ -80,15 +75,12 @@ impl Results<Scaling> {
         }
         LineChart {
             lines: &lines,
-            x: match series {
-                Series::Fragments => "fragments per pixel",
-                Series::Pixels => "pixels",
-                Series::Triangles => "triangles",
-            },
+            x,
             y: "frame time, ms",
             x_scale: Scale::Logarithmic,
         }
         .svg()
+        .on_white()
     }
 }
 
@@ -122,12 +114,7 @@ mod tests {
         };
         let results = Results::new(machine(), "peelnet bench --scaling", scaling);
         let dir = tempfile::tempdir().unwrap();
-        let text = written(
-            dir.path(),
-            &results,
-            Results::<Scaling>::FILES,
-            Results::<Scaling>::write,
-        );
+        let text = written(dir.path(), &results);
         assert!(text.contains("| b |") && text.contains("–"), "{text}");
     }
 }

@@ -1,10 +1,6 @@
 //! The files of `peelnet stress`: what holds, what is known not to, and what fails.
 
-use crate::{
-    ReportError, Results, Table,
-    files::{write_csv, write_file},
-    page,
-};
+use crate::{Measurement, ReportError, Results, Table, files::csv, page};
 use maud::html;
 use peelnet_eval::{
     each_once,
@@ -12,10 +8,19 @@ use peelnet_eval::{
 };
 use std::{collections::BTreeMap, path::Path};
 
-impl Results<Stressed> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &["stress.json", "stress.csv", "stress.md", "stress.html"];
+impl Measurement for Stressed {
+    const FILES: &[&str] = &["stress.json", "stress.csv", "stress.md", "stress.html"];
 
+    fn text(results: &Results<Self>, file: &str, _: &Path) -> Result<Option<String>, ReportError> {
+        Ok(Some(match file {
+            "stress.csv" => csv(&results.measured.rows),
+            "stress.md" => results.markdown(),
+            _ => results.page(),
+        }))
+    }
+}
+
+impl Results<Stressed> {
     /// A row for each method: passes, declared flaws (`d` and their number) and failures (`F`) in each case.
     pub fn matrix(&self) -> Table {
         let rows = &self.measured.rows;
@@ -101,8 +106,7 @@ impl Results<Stressed> {
         all.into_iter().filter(|(_, table)| !table.rows.is_empty())
     }
 
-    /// `stress.md`.
-    pub fn markdown(&self) -> String {
+    fn markdown(&self) -> String {
         let matrix = [("Methods and cases", self.matrix())].into_iter();
         let matrix = matrix.filter(|(_, table)| !table.rows.is_empty());
         let sections = matrix.chain(self.exceptions());
@@ -114,17 +118,6 @@ impl Results<Stressed> {
             self.measured.summary(),
             self.credit(),
         )
-    }
-
-    /// Writes `stress.json`, `stress.csv`, `stress.md` and `stress.html` into a folder.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        self.write_json(&folder.join("stress.json"))?;
-        write_csv(&folder.join("stress.csv"), &self.measured.rows)?;
-        write_file(&folder.join("stress.md"), self.markdown())?;
-        write_file(&folder.join("stress.html"), self.page())
     }
 
     fn page(&self) -> String {
@@ -184,8 +177,7 @@ mod tests {
             [["hull", "a, b", "deep", "rounds", "2.0"]]
         );
         let dir = tempfile::tempdir().unwrap();
-        let files = Results::<Stressed>::FILES;
-        let page = written(dir.path(), &results, files, Results::<Stressed>::write);
+        let page = written(dir.path(), &results);
         assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));
         assert!(page.contains("1 property holds, 2 declared flaws, 1 failure"));
     }

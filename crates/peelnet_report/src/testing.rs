@@ -1,7 +1,9 @@
 //! A machine and rows for tests.
 
-use crate::{ReportError, Results};
+use crate::{Measurement, Results};
 use peelnet_eval::{Machine, Row, metrics};
+use serde::de::DeserializeOwned;
+use serde_json::json;
 use std::path::Path;
 
 pub(crate) fn machine() -> Machine {
@@ -43,18 +45,16 @@ pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
 
 /// Writes results into a folder, which then holds these files and maybe folders, reads them again, and returns the page, or where there is
 /// none the table.
-pub(crate) fn written<T: PartialEq + std::fmt::Debug + serde::de::DeserializeOwned>(
+pub(crate) fn written<T: Measurement + DeserializeOwned>(
     folder: &Path,
     results: &Results<T>,
-    files: &[&str],
-    write: impl Fn(&Results<T>, &Path) -> Result<(), ReportError>,
 ) -> String {
-    write(results, folder).expect("writes");
-    let json = files.iter().find(|name| name.ends_with(".json"));
-    let read = Results::read(&folder.join(json.expect("results")));
-    assert_eq!(&read.expect("reads"), results);
-    let page = files.iter().find(|name| name.ends_with(".html"));
-    let page = page.or_else(|| files.iter().find(|name| name.ends_with(".md")));
+    results.write(folder).expect("writes");
+    let find = |ending: &str| T::FILES.iter().find(|name| name.ends_with(ending));
+    let json = folder.join(find(".json").expect("results"));
+    let read = Results::<T>::read(&json).expect("reads");
+    assert_eq!(json!(read), json!(results));
+    let page = find(".html").or_else(|| find(".md"));
     let page = folder.join(page.expect("a page or a table"));
     let text = std::fs::read_to_string(page).expect("reads");
     for entry in std::fs::read_dir(folder).expect("lists") {
@@ -63,7 +63,7 @@ pub(crate) fn written<T: PartialEq + std::fmt::Debug + serde::de::DeserializeOwn
             continue;
         }
         let name = path.file_name().and_then(|n| n.to_str()).expect("a name");
-        assert!(files.contains(&name), "{name}");
+        assert!(T::FILES.contains(&name), "{name}");
         let kind = crate::kind_of(name);
         let standing = kind.standing(&path).expect("stands");
         assert_eq!(standing, peelnet_files::Standing::Replaced, "{name}");

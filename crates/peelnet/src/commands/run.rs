@@ -16,7 +16,7 @@ use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::ExtractOptions;
 use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, Role};
-use peelnet_report::{Attachments, Results, Stage, ThesisRun, write_file};
+use peelnet_report::{Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
 use peelnet_train::{Config, CurveFormat, Outcome, RunOptions, curve_chart};
 use serde_json::json;
@@ -114,14 +114,9 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     results.measured.trained_on = trained_on(&scenes, [&outcome.model]);
     results.measured.stages = run.stages;
     results.measured.showcase = showcase;
-    results.write(
-        &args.out,
-        &Attachments {
-            images: Some(&images),
-            loss: Some(&loss),
-            dataset_summary: Some(&summary),
-        },
-    )?;
+    results.measured.loss = Some(loss);
+    results.measured.dataset_summary = Some(summary);
+    results.write(&args.out)?;
     let report = shown(&args.out.join("report.html"));
     context.console.message(format!("the report is {report}"));
     context.console.result(|| text(&results), || json!(results))

@@ -189,19 +189,10 @@ mod tests {
     /// A box from 2 to 4 before the camera is crossed there, and nothing beside it.
     #[test]
     fn boxes_are_crossed_where_they_are() {
-        let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-        let triangles = [
-            [
-                corner(-0.5, -0.5, -2.0),
-                corner(0.5, -0.5, -2.0),
-                corner(0.0, 0.5, -2.0),
-            ],
-            [
-                corner(-0.5, -0.5, -4.0),
-                corner(0.5, -0.5, -4.0),
-                corner(0.0, 0.5, -4.0),
-            ],
-        ];
+        let triangles = [-2.0, -4.0].map(|z| {
+            let corners = [(-0.5, -0.5), (0.5, -0.5), (0.0, 0.5)];
+            corners.map(|(x, y)| Vec3::new(x, y, z))
+        });
         let material = Material::unlit([1.0; 3], 0.5);
         let object = peelnet_scene::Object::of_triangles("box", &triangles, material);
         let scene = Scene::generated("s", "a test", [0.0; 3], camera(), vec![object]);
@@ -218,12 +209,8 @@ mod tests {
     fn the_last_frame_is_spread() {
         let warp = DepthWarp::new(1.0, 8.0);
         let before = View::new("s", warp, 64, [(0, one(3.0)), (8 + 1, one(5.0))]);
-        let view = View::new(
-            "s",
-            warp,
-            64,
-            [(2, one(3.0)), (3, one(3.0)), (4, one(3.0)), (16, one(2.0))],
-        );
+        let lists = [2, 3, 4, 16].map(|place| (place, one(3.0)));
+        let view = View::new("s", warp, 64, lists);
         let of = |depths: &[f64]| Range::of(depths.iter().map(|&z| warp.apply(z)));
         let found = of_last(&view, &before, 8, 8);
         assert_eq!(

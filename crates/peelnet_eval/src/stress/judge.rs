@@ -8,7 +8,7 @@ use peelnet_core::{
     scanline::{self, Hit},
     shading,
 };
-use peelnet_scene::{Camera, Light, Lighting, Material, Mesh, Object, Scene, Source};
+use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source};
 use std::collections::BTreeMap;
 
 /// How far a vertex may be snapped, in pixels: WebGPU's adapters have a sub-pixel grid of at least 4 bits, and take the nearest of its
@@ -85,7 +85,7 @@ pub(super) fn truth(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Truth {
     for (i, &outlined) in outlines.iter().enumerate() {
         let at = [i % width, i / width];
         let hits = |frame: usize| frames[frame].pixels[i].as_slice();
-        let surfaces = |frame: usize| hits(frame).iter().map(|h| view.objects[h.id as usize]);
+        let surfaces = |frame: usize| hits(frame).iter().map(|h| view.triangles[h.id as usize].0);
         let is_edge = outlined || (1..frames.len()).any(|k| !surfaces(k).eq(surfaces(0)));
         let kind = || {
             let mut kind = view.kind(hits(0), at, offsets[0])?;
@@ -172,8 +172,7 @@ fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 struct View<'a> {
     scene: &'a Scene,
     /// Of every triangle its object's number, and its own in the object's mesh.
-    objects: Vec<usize>,
-    triangles: Vec<usize>,
+    triangles: Vec<(usize, usize)>,
     lights: Vec<shading::Light>,
     lit: bool,
     eye: DVec3,
@@ -185,12 +184,10 @@ impl<'a> View<'a> {
     fn new(scene: &'a Scene, camera: &Camera, size: [u32; 2]) -> Self {
         let numbered = scene.objects.iter().enumerate();
         let all = numbered.flat_map(|(i, o)| (0..o.mesh.triangles.len()).map(move |t| (i, t)));
-        let (objects, triangles) = all.unzip();
         let materials = || scene.objects.iter().flat_map(|o| &o.materials);
         Self {
             scene,
-            objects,
-            triangles,
+            triangles: all.collect(),
             lights: scene.lights.iter().map(light).collect(),
             lit: materials().any(|m| m.lighting != Lighting::Unlit),
             eye: camera.position.as_dvec3(),
@@ -203,10 +200,7 @@ impl<'a> View<'a> {
     fn kind(&self, hits: &[Hit], at: [usize; 2], offset: [f64; 2]) -> Option<Kind> {
         let (mut fragments, mut background) = (Vec::new(), self.scene.background);
         for hit in hits {
-            let (object, triangle) = (
-                self.objects[hit.id as usize],
-                self.triangles[hit.id as usize],
-            );
+            let (object, triangle) = self.triangles[hit.id as usize];
             let object = &self.scene.objects[object];
             let material = material(object, triangle)?;
             let color = self.shade(hit, object, triangle, material, at, offset)?;
@@ -234,8 +228,8 @@ impl<'a> View<'a> {
         offset: [f64; 2],
     ) -> Option<[f32; 3]> {
         let maps = &material.maps;
-        let mapped =
-            maps.color.is_some() || maps.normal.is_some() || !object.mesh.colors.is_empty();
+        let mapped = maps.color.is_some() || maps.normal.is_some();
+        let mapped = mapped || !object.mesh.colors.is_empty();
         if mapped || material.is_emissive() || material.is_transmissive() {
             return None;
         }
@@ -273,12 +267,10 @@ impl<'a> View<'a> {
 
 /// The material of an object's triangle.
 fn material(object: &Object, triangle: usize) -> Option<&Material> {
-    let part = |mesh: &Mesh| {
-        mesh.parts
-            .iter()
-            .position(|p| p.triangles.contains(&triangle))
-    };
-    object.materials.get(part(&object.mesh)?)
+    let mut parts = object.mesh.parts.iter();
+    object
+        .materials
+        .get(parts.position(|p| p.triangles.contains(&triangle))?)
 }
 
 /// The interpolated unit normal at a point of a triangle, world space; `None` where it vanishes.
@@ -319,24 +311,15 @@ mod tests {
             for trial in make().unwrap() {
                 let truth = trial.truth();
                 let count =
-                    |of: fn(&Content) -> bool| truth.pixels.iter().filter(|c| of(c)).count();
+                    |is: fn(&Content) -> bool| truth.pixels.iter().filter(|c| is(c)).count();
                 let kinds = count(|c| matches!(c, Content::Kind(_)));
                 let unjudged = count(|c| *c == Content::Unjudged);
-                println!(
-                    "{} {}: {kinds} judged, {unjudged} not",
-                    case.id, trial.scene.name
-                );
-                let least = if case.id == "grazing" {
-                    unjudged / 4
-                } else {
-                    unjudged
+                let least = match case.id {
+                    "grazing" => unjudged / 4,
+                    _ => unjudged,
                 };
-                assert!(
-                    kinds >= least,
-                    "{}: {kinds} of {}",
-                    case.id,
-                    kinds + unjudged
-                );
+                let all = kinds + unjudged;
+                assert!(kinds >= least, "{}: {kinds} of {all}", case.id);
             }
         }
     }

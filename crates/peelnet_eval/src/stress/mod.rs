@@ -17,12 +17,8 @@ mod subject;
 mod trial;
 
 pub use catalogue::CASES;
-pub use network::Network;
-use peelnet_files::counted;
-pub use peelnet_render::{Flaw, MethodOptions, Property};
-pub use properties::Finding;
+pub use peelnet_render::Property;
 pub use subject::Subject;
-pub use trial::{Content, Kind, Stack, Trial, Truth};
 
 pub use crate::records::{Outcome, StressRow as Row, Stressed};
 
@@ -31,10 +27,14 @@ use crate::{
     compare::{EXACT, image_name},
     stage::{Ready, Stage, exact_method},
 };
+use network::Network;
+use peelnet_files::counted;
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
-use peelnet_render::{Image, MethodSpec, Submission};
+use peelnet_render::{Flaw, Image, MethodOptions, MethodSpec, Submission};
 use peelnet_scene::{Camera, Scene};
+use properties::Finding;
 use std::{collections::BTreeMap, path::Path};
+use trial::{Content, Trial, Truth};
 
 /// One hard case.
 #[derive(Clone, Copy, Debug)]
@@ -45,13 +45,12 @@ pub struct Case {
     pub what: &'static str,
     /// What is known to break there.
     pub breaks: &'static str,
-    /// What is done.
-    pub work: Work,
+    work: Work,
 }
 
 /// What a case consists of.
 #[derive(Clone, Copy, Debug)]
-pub enum Work {
+enum Work {
     /// Scenes are drawn.
     Frames(fn() -> Result<Vec<Trial>, EvalError>),
     /// Scenes are drawn, by exact methods that take a fixed number of passes.
@@ -61,7 +60,7 @@ pub enum Work {
 }
 
 /// Evaluates a network and returns what it finds.
-pub type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
+type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
 
 impl Case {
     /// Whether a method takes part.
@@ -252,7 +251,7 @@ fn rows(
 }
 
 /// The text of a property's value, its limit and its place.
-pub type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
+type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
 
 /// The exact image of every view.
 fn exact_images(

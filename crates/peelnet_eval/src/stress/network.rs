@@ -29,16 +29,10 @@ pub(super) fn in_half_floats(
     let model = network.model;
     let mut random = Random::new(5, &[]);
     for _ in 0..RANDOM {
-        let inputs = &model.meta.inputs;
-        let raw: Vec<f32> = inputs
-            .iter()
-            .map(|i| random.between(i.min, i.max))
-            .collect();
-        let normalised: Vec<f32> = inputs
-            .iter()
-            .zip(&raw)
-            .map(|(i, &x)| i.normalise(x))
-            .collect();
+        let inputs = || model.meta.inputs.iter();
+        let raw: Vec<f32> = inputs().map(|i| random.between(i.min, i.max)).collect();
+        let normalised = inputs().zip(&raw).map(|(i, &x)| i.normalise(x));
+        let normalised: Vec<f32> = normalised.collect();
         let wide: Vec<f64> = normalised.iter().map(|&x| f64::from(x)).collect();
         let limit = EXPORT_F16 * model.mlp.magnitude(&wide).max(1.0);
         let exact = model.mlp.forward_f64(&wide);
@@ -46,12 +40,8 @@ pub(super) fn in_half_floats(
         for (half, exact) in model.mlp.forward_half(&normalised).iter().zip(exact) {
             let finite = half.is_finite();
             note(Property::Finite, f64::from(u8::from(!finite)), 0.0, &place);
-            note(
-                Property::Half,
-                (f64::from(*half) - exact).abs(),
-                limit,
-                &place,
-            );
+            let error = (f64::from(*half) - exact).abs();
+            note(Property::Half, error, limit, &place);
         }
     }
     Ok(())

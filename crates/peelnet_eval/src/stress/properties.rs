@@ -24,26 +24,17 @@ impl Finding {
         self.value <= self.limit
     }
 
-    fn excess(&self) -> f64 {
-        if self.value <= 0.0 {
-            0.0
-        } else {
-            self.value / self.limit
-        }
-    }
-
     /// Keeps the worse of two.
     pub(super) fn worsen(&mut self, value: f64, limit: f64, place: impl FnOnce() -> String) {
         // A NaN is beyond any limit.
         let value = if value.is_nan() { f64::INFINITY } else { value };
-        let mut other = Self {
-            value,
-            limit,
-            place: String::new(),
-        };
-        if self.place.is_empty() || other.excess() > self.excess() {
-            other.place = place();
-            *self = other;
+        let excess = |value: f64, limit| if value <= 0.0 { 0.0 } else { value / limit };
+        if self.place.is_empty() || excess(value, limit) > excess(self.value, self.limit) {
+            *self = Self {
+                value,
+                limit,
+                place: place(),
+            };
         }
     }
 }
@@ -185,11 +176,10 @@ fn judge_pixel(
         let limit = STEP * shown + kind.uncertainty;
         note((Property::Hull, outside, limit));
     }
-    let darkest = kind
-        .fragments
-        .iter()
-        .map(|f| luminance(&f.color.map(f64::from)));
-    let darkest = darkest.fold(luminance(&kind.background.map(f64::from)), f64::min);
+    let colors = kind.fragments.iter().map(|f| f.color);
+    let luminances = colors.chain([kind.background]);
+    let luminances = luminances.map(|c| luminance(&c.map(f64::from)));
+    let darkest = luminances.fold(f64::INFINITY, f64::min);
     let limit = STEP * darkest.max(1.0) + kind.uncertainty;
     note((Property::Dark, darkest - luminance(&p64), limit));
     if case == "alpha-near-one" {
@@ -202,69 +192,59 @@ fn judge_pixel(
 pub(super) fn compare_orders(
     subject: &Subject,
     truth: &Truth,
-    [one, other]: [&Image; 2],
+    images: [&Image; 2],
     note: &mut Note<'_>,
 ) {
-    for (i, (a, b)) in one.pixels.iter().zip(&other.pixels).enumerate() {
-        let content = truth.pixels[i];
-        let shown = a[..3]
-            .iter()
-            .chain(&b[..3])
-            .fold(0.0f32, |m, c| m.max(c.abs()));
+    for (i, &content) in truth.pixels.iter().enumerate() {
+        let [a, b] = images.map(|image| image.pixels[i]);
+        let colors = a[..3].iter().chain(&b[..3]);
+        let shown = colors.fold(0.0f32, |m, c| m.max(c.abs()));
         let [color, coverage] = match content {
-            Content::Kind(k) => subject.order_limits(&truth.kinds[k as usize], f64::from(shown)),
+            Content::Kind(k) => subject.order_limits(&truth.kinds[k as usize], shown.into()),
             Content::Unjudged if !subject.promises.sorted => [ORDER; 2],
             Content::Nothing | Content::Unjudged => [0.0; 2],
         };
         let place = || format!("{}, pixel {i}", truth.name(content));
-        let change = (0..3).fold(0.0, |d, c| nan_max(d, f64::from((a[c] - b[c]).abs())));
+        // Differences are those of 32-bit numbers.
+        let difference = |c: usize| f64::from((a[c] - b[c]).abs());
+        let change = (0..3).fold(0.0, |d, c| nan_max(d, difference(c)));
         note(Property::Order, change, color, &place);
-        let change = f64::from((a[3] - b[3]).abs());
-        note(Property::Order, change, coverage, &place);
+        note(Property::Order, difference(3), coverage, &place);
     }
 }
 
 /// What another scale changed, where the exact image is the same in both.
-pub(super) fn compare_scales([one, other]: [&Image; 2], exact: [&Image; 2], note: &mut Note<'_>) {
-    for i in 0..one.pixels.len() {
-        let change = |of: [&Image; 2]| {
-            (0..3).fold(0.0, |d, c| {
-                let [a, b] = of.map(|image| display(image.pixels[i][c]));
-                nan_max(d, (a - b).abs())
-            })
-        };
+pub(super) fn compare_scales(images: [&Image; 2], exact: [&Image; 2], note: &mut Note<'_>) {
+    for i in 0..images[0].pixels.len() {
         // At a silhouette a scaled triangle may miss a pixel's centre.
-        if change(exact) <= 0.1 {
-            note(Property::Scale, change([one, other]), 1.0, &|| {
-                format!("pixel {i}")
-            });
+        if change(exact, i, display) <= 0.1 {
+            let steps = change(images, i, display);
+            note(Property::Scale, steps, 1.0, &|| format!("pixel {i}"));
         }
     }
 }
 
 /// How much more a frame's pixels jump than the exact image's, on average over those that hold the same surfaces before and
 /// after: their exact coverage shows it. Popping is a jump of many pixels at once, where the exact image changes along a line only.
-pub(super) fn compare_frames(
-    [before, after]: [&Image; 2],
-    exact: [&Image; 2],
-    note: &mut Note<'_>,
-) {
+pub(super) fn compare_frames(frames: [&Image; 2], exact: [&Image; 2], note: &mut Note<'_>) {
     let (mut excess, mut pixels) = (0.0, 0);
-    for i in 0..before.pixels.len() {
-        let jump = |of: [&Image; 2]| {
-            (0..3).fold(0.0, |d, c| {
-                let [a, b] = of.map(|image| f64::from(image.pixels[i][c]));
-                nan_max(d, (a - b).abs())
-            })
-        };
+    for i in 0..frames[0].pixels.len() {
         let [was, is] = exact.map(|image| image.pixels[i][3]);
         if was > 0.0 && (was - is).abs() < 1e-6 {
-            excess += jump([before, after]) - jump(exact);
+            excess += change(frames, i, f64::from) - change(exact, i, f64::from);
             pixels += 1;
         }
     }
     let mean = excess / f64::from(pixels.max(1));
     note(Property::Steady, mean, STEP, &|| format!("{pixels} pixels"));
+}
+
+/// The largest change of a channel of a pixel.
+fn change(images: [&Image; 2], pixel: usize, value: fn(f32) -> f64) -> f64 {
+    (0..3).fold(0.0, |d, c| {
+        let [a, b] = images.map(|image| value(image.pixels[pixel][c]));
+        nan_max(d, (a - b).abs())
+    })
 }
 
 /// The larger one, and NaN where either is.
@@ -317,33 +297,23 @@ fn extents(kind: &Kind) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use peelnet_core::fragment::Fragment;
 
     /// No method, however it rounds, is granted more than two steps of an 8-bit display, and what is sorted nothing.
     #[test]
     fn limits_of_the_order_end_at_two_steps() {
         let subject = |method: &str| Subject::new(method.parse().unwrap(), None);
-        let kind = Kind::new(
-            "256 lamps".into(),
-            (0..256)
-                .map(|_| peelnet_core::fragment::Fragment::new(2.0, 0.5, [400.0; 3]))
-                .collect(),
-            [0.5; 3],
-        );
-        let limits = |method: &str| subject(method).order_limits(&kind, 400.0);
+        let kind = |n: usize, radiance: f32| {
+            let layers = vec![Fragment::new(2.0, 0.5, [radiance; 3]); n];
+            Kind::new(String::new(), layers, [0.5; 3])
+        };
+        let limits = |method: &str| subject(method).order_limits(&kind(256, 400.0), 400.0);
         assert_eq!(limits("wboit-eq7:targets=f16")[0], ORDER);
         assert_eq!(limits("abuffer"), [0.0; 2]);
-        let one = Kind::new(
-            "one".into(),
-            vec![peelnet_core::fragment::Fragment::new(2.0, 0.5, [1.0; 3])],
-            [0.5; 3],
-        );
         // Four roundings of what is shown and four of the statistics, and four of a transmittance of one half that moves 1 and 1 of light.
-        let full = subject("wboit-eq7:targets=f32").order_limits(&one, 1.0);
-        let u = peelnet_core::tolerance::UNIT_ROUNDOFF;
-        assert!(
-            (full[0] - (4.0 + 4.0 + 4.0 * 0.5 * 2.0) * u).abs() < 1e-12,
-            "{full:?}"
-        );
+        let full = subject("wboit-eq7:targets=f32").order_limits(&kind(1, 1.0), 1.0)[0];
+        let expected = (4.0 + 4.0 + 4.0 * 0.5 * 2.0) * peelnet_core::tolerance::UNIT_ROUNDOFF;
+        assert!((full - expected).abs() < 1e-12, "{full}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::{catalogue::camera, judge};
 
 use glam::Vec3;
 use peelnet_core::{
+    absorbance::absorbance,
     fragment::{Fragment, sort_front_to_back},
     guards::EMISSIVE_ALPHA,
     methods::over,
@@ -13,7 +14,6 @@ use peelnet_scene::{Material, Object, Scene};
 /// Layers that cover some pixels of the frame whole.
 #[derive(Clone, Debug)]
 pub struct Stack {
-    /// Name, for messages.
     pub name: String,
     /// Its layers, in the order in which they are drawn.
     pub layers: Vec<Fragment>,
@@ -22,7 +22,6 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// Without an opaque surface.
     pub fn new(name: &str, layers: Vec<Fragment>) -> Self {
         Self {
             name: name.to_owned(),
@@ -37,7 +36,6 @@ impl Stack {
 pub struct Trial {
     /// What is drawn; every view of it, where it moves.
     pub scene: Scene,
-    /// Width and height in pixels.
     pub size: [u32; 2],
     /// Whether it is a sequence of frames (its views, or the trials of its case), which is judged by how much they differ.
     pub moves: bool,
@@ -59,9 +57,7 @@ pub enum Content {
 /// The fragments of every pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
-    /// Row by row.
     pub pixels: Vec<Content>,
-    /// Pixels that hold the same.
     pub kinds: Vec<Kind>,
 }
 
@@ -79,13 +75,11 @@ impl Truth {
 /// What a pixel holds, and what follows from it.
 #[derive(Clone, Debug)]
 pub struct Kind {
-    /// Name, for messages.
     pub name: String,
     /// Its transparent fragments before anything opaque, nearest first.
     pub fragments: Vec<Fragment>,
     /// `C_0`.
     pub background: [f32; 3],
-    /// Composited in 64 bits.
     pub exact: [f64; 3],
     /// `T_∞`.
     pub transmittance: f64,
@@ -108,19 +102,17 @@ impl Kind {
         let brightest = own.fold(0.0f64, |m, (&c, c0)| {
             m.max(c - transmittance * f64::from(c0))
         });
+        let covered = transmittance < 1.0;
         Self {
             exact,
             transmittance,
-            mean: if transmittance < 1.0 {
+            mean: if covered {
                 brightest / (1.0 - transmittance)
             } else {
                 0.0
             },
             uncertainty: 0.0,
-            absorbance: fragments
-                .iter()
-                .map(|f| peelnet_core::absorbance::absorbance(f.alpha))
-                .sum(),
+            absorbance: fragments.iter().map(|f| absorbance(f.alpha)).sum(),
             name,
             fragments,
             background,
@@ -213,15 +205,10 @@ impl Trial {
             for layer in &stack.layers {
                 let material = material(layer);
                 let name = format!("{} at {}", stack.name, layer.depth);
-                fragments.push(Fragment {
-                    triangle: 2 * objects.len() as u32,
-                    ..*layer
-                });
-                objects.push(Object::of_triangles(
-                    &name,
-                    &vertices(layer.depth),
-                    material,
-                ));
+                let triangle = 2 * objects.len() as u32;
+                fragments.push(Fragment { triangle, ..*layer });
+                let vertices = vertices(layer.depth);
+                objects.push(Object::of_triangles(&name, &vertices, material));
             }
             let mut behind = background;
             if let Some((depth, color)) = stack.opaque {

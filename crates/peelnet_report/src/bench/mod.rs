@@ -3,8 +3,8 @@
 pub(crate) mod page;
 
 use crate::{
-    ReportError, Results, Table,
-    files::{write_csv, write_file},
+    Measurement, ReportError, Results, Table,
+    files::csv,
     table::{number, scene_heading, scene_in_cell},
 };
 use peelnet_chart::{Bubble, BubbleChart, Svg};
@@ -24,9 +24,8 @@ const TO_BASE: &str = "time / hardware blending";
 const TIME_TO_FRONT: &str = "time / front at equal error";
 const ERROR_TO_FRONT: &str = "error / front at equal time";
 
-impl Results<Bench> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &[
+impl Measurement for Bench {
+    const FILES: &[&str] = &[
         "pareto.svg",
         "pareto-mean.svg",
         "report.html",
@@ -35,26 +34,24 @@ impl Results<Bench> {
         "table.md",
     ];
 
-    /// Writes all files of a bench into a folder; pictures are taken from `images/` in it.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or a picture not be read.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        let rows = &self.measured.rows;
-        for (name, mean) in [
-            ("pareto", Mean::Geometric),
-            ("pareto-mean", Mean::Arithmetic),
-        ] {
-            let svg = chart(&front::points(&Rows::new(rows), mean));
-            write_file(&folder.join(format!("{name}.svg")), svg.on_white())?;
-        }
-        let page = page::page(self, &folder.join("images"))?;
-        write_file(&folder.join("report.html"), page)?;
-        self.write_json(&folder.join("results.json"))?;
-        write_csv(&folder.join("results.csv"), rows)?;
-        write_file(&folder.join("table.md"), self.markdown())
+    fn text(
+        results: &Results<Self>,
+        file: &str,
+        folder: &Path,
+    ) -> Result<Option<String>, ReportError> {
+        let rows = &results.measured.rows;
+        let chart = |mean| chart(&front::points(&Rows::new(rows), mean)).on_white();
+        Ok(Some(match file {
+            "pareto.svg" => chart(Mean::Geometric),
+            "pareto-mean.svg" => chart(Mean::Arithmetic),
+            "report.html" => page::page(results, &folder.join("images"))?,
+            "results.csv" => csv(rows),
+            _ => results.markdown(),
+        }))
     }
+}
 
+impl Results<Bench> {
     /// Every method as ratios to the reference methods.
     pub fn table(&self) -> Table {
         let rows = Rows::new(&self.measured.rows);
@@ -122,8 +119,7 @@ impl Results<Bench> {
         Table::new(headings, lines)
     }
 
-    /// `table.md`.
-    pub fn markdown(&self) -> String {
+    fn markdown(&self) -> String {
         let rows = Rows::new(&self.measured.rows);
         let untimed = untimed(&rows);
         let why = untimed

@@ -275,8 +275,7 @@ mod tests {
             ..Bench::default()
         };
         let results = Results::new(machine(), "peelnet bench \"a&b\"", bench);
-        let files = Results::<Bench>::FILES;
-        let page = written(dir.path(), &results, files, Results::<Bench>::write);
+        let page = written(dir.path(), &results);
         // All scenes in two means and one scene, three bubbles each; the difference of two pictures beside each.
         assert_eq!(page.matches("<circle class=\"point\"").count(), 9);
         assert_eq!(page.matches("data:image/png").count(), 5);

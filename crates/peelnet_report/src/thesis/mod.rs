@@ -4,7 +4,7 @@ pub(crate) mod findings;
 mod page;
 mod table;
 
-use crate::{ReportError, Results, Table, files::write_file};
+use crate::{Measurement, ReportError, Results, Table};
 use findings::findings;
 use peelnet_chart::Svg;
 use peelnet_eval::{Machine, Row, rows::Rows};
@@ -39,23 +39,30 @@ pub struct ThesisRun {
     /// Rows of one more scene, with shipped networks beside the trained one and timed frames.
     #[serde(default)]
     pub showcase: Vec<Row>,
+    /// The loss curve, for the page alone.
+    #[serde(skip)]
+    pub loss: Option<Svg>,
+    /// The dataset's summary as plain text, for the page alone.
+    #[serde(skip)]
+    pub dataset_summary: Option<String>,
 }
 
-/// What the page shows beside the results.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Attachments<'a> {
-    /// The folder with `<scene>-<method>.png`.
-    pub images: Option<&'a Path>,
-    /// The loss curve.
-    pub loss: Option<&'a Svg>,
-    /// The dataset's summary as plain text.
-    pub dataset_summary: Option<&'a str>,
+impl Measurement for ThesisRun {
+    const FILES: &[&str] = &["results.json", "table.md", "report.html"];
+
+    fn text(
+        results: &Results<Self>,
+        file: &str,
+        folder: &Path,
+    ) -> Result<Option<String>, ReportError> {
+        Ok(Some(match file {
+            "table.md" => results.markdown(),
+            _ => page::page(results, &folder.join("images"))?,
+        }))
+    }
 }
 
 impl Results<ThesisRun> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &[&str] = &["results.json", "table.md", "report.html"];
-
     /// The results of these rows, with their findings, and without stages and settings.
     pub fn of_rows(machine: Machine, command: impl Into<String>, rows: Vec<Row>) -> Self {
         let run = ThesisRun {
@@ -72,19 +79,8 @@ impl Results<ThesisRun> {
         table::like_the_thesis(&Rows::new(&run.rows), &run.trained_on)
     }
 
-    /// Writes `results.json`, `table.md` and `report.html` into a folder.
-    ///
-    /// # Errors
-    /// If a file cannot be written or a picture cannot be read.
-    pub fn write(&self, folder: &Path, attachments: &Attachments<'_>) -> Result<(), ReportError> {
-        self.write_json(&folder.join("results.json"))?;
-        write_file(&folder.join("table.md"), self.markdown())?;
-        let page = page::page(self, attachments)?;
-        write_file(&folder.join("report.html"), page)
-    }
-
     /// `table.md`: the table like the thesis's, the findings, and all methods.
-    pub fn markdown(&self) -> String {
+    fn markdown(&self) -> String {
         let rows = Rows::new(&self.measured.rows);
         let findings = self.measured.findings.iter();
         let findings: String = findings.map(|f| format!("- {f}\n")).collect();

@@ -1,6 +1,6 @@
 //! The page of a run.
 
-use super::{Attachments, EXPLANATION, Stage, ThesisRun, table};
+use super::{EXPLANATION, Stage, ThesisRun, table};
 use crate::{
     ReportError, Results, Table, bench, page,
     page::SORT_SCRIPT,
@@ -22,19 +22,13 @@ const PICTURE_BUDGET: usize = 9_000_000;
 /// Widths that are tried for the pictures, pixels.
 const WIDTHS: [u32; 5] = [512, 384, 256, 192, 128];
 
-/// The whole page.
-pub(super) fn page(
-    results: &Results<ThesisRun>,
-    attachments: &Attachments<'_>,
-) -> Result<String, ReportError> {
+/// The whole page. `images` is the folder with `<scene>-<method>.png`.
+pub(super) fn page(results: &Results<ThesisRun>, images: &Path) -> Result<String, ReportError> {
     let run = &results.measured;
     let rows = Rows::new(&run.rows);
-    let pictures = match attachments.images {
-        Some(folder) => gallery(&rows, folder)?,
-        None => Markup::default(),
-    };
+    let pictures = gallery(&rows, images)?;
     let body = html! {
-        (showcase(&run.showcase, attachments.images)?)
+        (showcase(&run.showcase, images)?)
         h2 { "The thesis's promise" }
         ul { @for finding in &run.findings { li { (finding) } } }
         h3 { "The thesis's table" }
@@ -46,12 +40,12 @@ pub(super) fn page(
         h2 { "Cost" }
         (costs(&rows).html("", |_| false))
         p.note { "One frame per view, without warm-up: an order of magnitude, not a benchmark." }
-        @if let Some(svg) = attachments.loss {
+        @if let Some(svg) = &run.loss {
             h2 { "Loss" }
             (page::chart("curve", svg))
         }
         (pictures)
-        @if let Some(text) = attachments.dataset_summary {
+        @if let Some(text) = &run.dataset_summary {
             h2 { "Dataset" }
             pre { (text) }
         }
@@ -71,7 +65,7 @@ pub(super) fn page(
 }
 
 /// One scene with networks that were trained on none of its kind: pictures with their errors, and error against time. Nothing without rows.
-fn showcase(rows: &[Row], images: Option<&Path>) -> Result<Markup, ReportError> {
+fn showcase(rows: &[Row], images: &Path) -> Result<Markup, ReportError> {
     let Some(scene) = rows.first().map(|r| r.scene.as_str()) else {
         return Ok(Markup::default());
     };
@@ -79,10 +73,7 @@ fn showcase(rows: &[Row], images: Option<&Path>) -> Result<Markup, ReportError> 
     let points = front::points(&rows, Mean::Arithmetic);
     // Blending without sorting is only the unit of time.
     let shown = points.iter().filter(|p| p.method != BASE);
-    let pictures = match images {
-        Some(folder) => bench::page::gallery(scene, shown, folder, WIDTHS[1])?,
-        None => Markup::default(),
-    };
+    let pictures = bench::page::gallery(scene, shown, images, WIDTHS[1])?;
     Ok(html! {
         h2 { (scene) ", a scene that no network was trained on" }
         p.note {
@@ -202,15 +193,9 @@ mod tests {
             x_scale: Scale::Linear,
         }
         .svg();
-        let attachments = Attachments {
-            images: Some(&images),
-            loss: Some(&loss),
-            dataset_summary: Some("rows <5>"),
-        };
-        let files = Results::<ThesisRun>::FILES;
-        let page = written(dir.path(), &results, files, |r, to| {
-            r.write(to, &attachments)
-        });
+        results.measured.loss = Some(loss);
+        results.measured.dataset_summary = Some("rows <5>".to_owned());
+        let page = written(dir.path(), &results);
         assert!(page.contains("data:image/png;base64,iVBOR"));
         assert_eq!(page.matches("<circle class=\"point\"").count(), 1);
         assert!(page.contains("a &lt;fast&gt; one") && page.contains("a&amp;b"));
