@@ -3,7 +3,7 @@
 use peelnet_dataset::{Dataset, Format, SplitBy, Summary};
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::synthetic::{SyntheticOptions, synthetic};
-use peelnet_train::{Config, PixelLoss, RunOptions, TrainingData, train};
+use peelnet_train::{ALPHA, Config, LEFT, PixelLoss, REST, RunOptions, SUM, TrainingData, train};
 use std::{path::Path, sync::atomic::AtomicBool};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -54,15 +54,17 @@ fn with_the_true_shares_nothing_is_scaled() {
         let pixels = data.pixels.as_ref().unwrap();
         assert!(pixels.first.len() > 1000, "{recipe}");
         let mut shared = 0;
-        for (i, (&first, fixed)) in pixels.first.iter().zip(&pixels.fixed).enumerate() {
-            let end = pixels.first.get(i + 1).map_or(data.rows(), |&e| e as usize);
+        let rows = data.rows() as usize;
+        for (i, &first) in pixels.first.iter().enumerate() {
+            let end = pixels.first.get(i + 1).map_or(rows, |&e| e as usize);
             let seen: f32 = data.targets[0][first as usize..end].iter().sum();
-            let scale = f64::from(fixed.left) / f64::from(fixed.sum + seen).max(1e-3);
+            let [left, sum] = [LEFT, SUM].map(|column| pixels.fixed[column][i]);
+            let scale = f64::from(left) / f64::from(sum + seen).max(1e-3);
             shared += usize::from((scale - 1.0).abs() > 1e-3);
             // Contributions cannot exceed what lies between the ends.
             for row in first as usize..end {
-                let (y, k) = (data.targets[0][row], pixels.alpha[row]);
-                assert!(pixels.rest[row] >= 0.0 && (0.0..=1.0).contains(&k) && y <= 1.0);
+                let (y, k) = (data.targets[0][row], pixels.rows[ALPHA][row]);
+                assert!(pixels.rows[REST][row] >= 0.0 && (0.0..=1.0).contains(&k) && y <= 1.0);
             }
         }
         assert!(shared * 5 < pixels.first.len(), "{recipe}: {shared}");

@@ -5,9 +5,8 @@ use peelnet_dataset::{Dataset, is_remote};
 use peelnet_files::{Destination, Outputs, Unfinished, destination, shown};
 use peelnet_model::Model;
 use peelnet_train::{
-    CHECKPOINT_FILES, Config, CurveFormat, DataSplit, End, EpochReport, Outcome, OutputLock,
-    RunOptions, Source, StreamedData, TrainingData, UsedRows, checkpoint_folder, held_out_errors,
-    train,
+    CHECKPOINT_FILES, Config, CurveFormat, End, EpochReport, Outcome, OutputLock, RunOptions,
+    TrainingData, checkpoint_folder, held_out_errors, train,
 };
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -18,24 +17,9 @@ pub enum Step<'a> {
     /// Rows that were written to the scratch file of a streamed training, and of how many.
     Read(u64, u64),
     /// The examples are there.
-    Ready(Examples<'a>),
+    Ready(&'a TrainingData),
     /// An epoch ended.
     Epoch(&'a EpochReport),
-}
-
-/// What a training learns from.
-#[derive(Debug)]
-pub struct Examples<'a> {
-    /// How many there are.
-    pub rows: u64,
-    /// Where they are from.
-    pub source: &'a str,
-    /// How rows were set aside.
-    pub split: Option<&'a DataSplit>,
-    /// How many rows of the datasets are used.
-    pub used: Option<UsedRows>,
-    /// Bytes of the scratch file and where it lies, where the examples are streamed.
-    pub scratch: Option<(u64, PathBuf)>,
 }
 
 /// Trains on datasets; the model file has the errors on held-out scenes in it where the datasets hold such.
@@ -54,34 +38,16 @@ pub fn fit(
         lock: Some(&lock),
         ..options.clone()
     };
-    let (held, streamed);
-    let (source, examples): (Source<'_>, Examples<'_>) = if config.buffer_rows.is_some() {
+    let data = if config.buffer_rows.is_some() {
         let folder = checkpoint_folder(&options.out);
-        streamed =
-            StreamedData::from_datasets(config, datasets, &folder, options.stop, |n, of| {
-                on(Step::Read(n, of));
-            })?;
-        let examples = Examples {
-            rows: streamed.rows(),
-            source: &streamed.source,
-            split: streamed.split.as_ref(),
-            used: None,
-            scratch: Some((streamed.scratch_bytes(), folder)),
-        };
-        ((&streamed).into(), examples)
+        TrainingData::streamed(config, datasets, &folder, options.stop, |n, of| {
+            on(Step::Read(n, of));
+        })?
     } else {
-        held = TrainingData::from_datasets(config, datasets)?;
-        let examples = Examples {
-            rows: held.rows() as u64,
-            source: &held.source,
-            split: held.split.as_ref(),
-            used: held.used,
-            scratch: None,
-        };
-        ((&held).into(), examples)
+        TrainingData::from_datasets(config, datasets)?
     };
-    on(Step::Ready(examples));
-    let mut outcome = train(config, source, options, |e| on(Step::Epoch(e)))?;
+    on(Step::Ready(&data));
+    let mut outcome = train(config, &data, options, |e| on(Step::Epoch(e)))?;
     if outcome.end != End::Interrupted {
         let held_out = held_out_errors(&outcome.model, datasets)?;
         if !held_out.is_empty() {

@@ -12,17 +12,8 @@ const ROWS: usize = 65_536;
 fn rows() -> TrainingData {
     let column =
         |a: f32, b: f32| -> Vec<f32> { (0..ROWS).map(|i| a + b * (i as f32 * a).sin()).collect() };
-    TrainingData {
-        source: "synthetic".to_owned(),
-        inputs: vec![column(7.0, 5.0), column(3.3, 2.0), column(12.1, 11.0)],
-        targets: vec![column(0.5, 0.5)],
-        weights: None,
-        pixels: None,
-        subsets: None,
-        used: None,
-        split: None,
-        dataset: None,
-    }
+    let inputs = vec![column(7.0, 5.0), column(3.3, 2.0), column(12.1, 11.0)];
+    TrainingData::new("synthetic", inputs, vec![column(0.5, 0.5)])
 }
 
 fn epochs(c: &mut Criterion) {

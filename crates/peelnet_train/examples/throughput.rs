@@ -31,17 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut columns: Vec<Vec<f32>> = values.chunks_exact(rows).map(<[f32]>::to_vec).collect();
     let target = columns.pop().unwrap_or_default();
-    let data = TrainingData {
-        source: file.clone(),
-        inputs: columns,
-        targets: vec![target],
-        weights: None,
-        pixels: None,
-        subsets: None,
-        used: None,
-        split: None,
-        dataset: None,
-    };
+    let data = TrainingData::new(file, columns, vec![target]);
     let config = Config {
         batch: batch.parse()?,
         epochs: epochs.parse()?,

@@ -3,13 +3,14 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use burn::tensor::{Device, Tensor, TensorData};
 use peelnet_files::Kind;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 
 use crate::config::{Config, MAX_EPOCHS, Schedule};
-use crate::error::TrainError;
-use crate::files;
+use crate::error::{TrainError, beside, io};
+use crate::optimizer::Adam;
 use crate::report::EpochReport;
 
 /// 2: the order of rows and the split come from another generator.
@@ -31,23 +32,15 @@ pub const FILES: [(&str, Kind); 3] = [
 
 /// `out/net.safetensors` → `out/net.safetensors.checkpoint`.
 pub fn folder(out: &Path) -> PathBuf {
-    files::beside(out, "checkpoint")
-}
-
-/// The file of a folder that holds the state.
-pub(crate) fn state_file(folder: &Path) -> PathBuf {
-    folder.join("state.safetensors")
+    beside(out, "checkpoint")
 }
 
 /// A run between two epochs.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct State {
-    pub(crate) parameters: Vec<f32>,
-    pub(crate) first: Vec<f32>,
-    pub(crate) second: Vec<f32>,
-    pub(crate) steps: u64,
+#[derive(Clone)]
+pub(crate) struct Progress {
+    pub(crate) adam: Adam,
     /// Epoch and parameters with the lowest loss so far.
-    pub(crate) best: Option<(u32, Vec<f32>)>,
+    pub(crate) best: Option<(u32, Tensor<1>)>,
     pub(crate) history: Vec<EpochReport>,
 }
 
@@ -69,89 +62,82 @@ const fn most_bytes(parameters: usize) -> u64 {
     16 * parameters as u64 + 8 * HISTORY as u64 * MAX_EPOCHS as u64 + (1 << 20)
 }
 
-impl State {
+/// What to do about a checkpoint that cannot be read.
+const DAMAGED: &str = "delete the checkpoint folder, or start without it";
+
+fn damaged(e: impl std::fmt::Display) -> String {
+    format!("is not a whole checkpoint ({e}); {DAMAGED}")
+}
+
+impl Progress {
+    pub(crate) fn new(parameters: Vec<f32>, device: &Device) -> Self {
+        Self {
+            adam: Adam::new(upload(parameters, device)),
+            best: None,
+            history: Vec::new(),
+        }
+    }
+
+    /// Writes the state's file of a run with this configuration and these rows.
     pub(crate) fn save(
         &self,
         folder: &Path,
         config: &Config,
         data: &str,
     ) -> Result<(), TrainError> {
-        let path = state_file(folder);
+        let path = folder.join(FILES[0].0);
         let header = Header {
             version: VERSION,
             config: config.clone(),
             data: data.to_owned(),
-            steps: self.steps,
+            steps: self.adam.steps,
             epochs: self.history.len(),
             best_epoch: self.best.as_ref().map(|(epoch, _)| *epoch),
         };
-        let f32_bytes =
-            |values: &[f32]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
-        let history: Vec<u8> = self
-            .history
-            .iter()
-            .flat_map(|row| {
-                [
-                    row.train_loss,
-                    row.held_out_loss.unwrap_or(f64::NAN),
-                    row.seconds,
-                    row.rows_per_s,
-                ]
-            })
-            .flat_map(f64::to_le_bytes)
-            .collect();
+        let Adam {
+            parameters,
+            first,
+            second,
+            ..
+        } = &self.adam;
         let mut tensors = vec![
-            (
-                "parameters",
-                Dtype::F32,
-                vec![self.parameters.len()],
-                f32_bytes(&self.parameters),
-            ),
-            (
-                "first_moment",
-                Dtype::F32,
-                vec![self.first.len()],
-                f32_bytes(&self.first),
-            ),
-            (
-                "second_moment",
-                Dtype::F32,
-                vec![self.second.len()],
-                f32_bytes(&self.second),
-            ),
+            ("parameters", parameters),
+            ("first_moment", first),
+            ("second_moment", second),
         ];
+        tensors.extend(self.best.iter().map(|(_, best)| ("best_parameters", best)));
+        let mut tensors: Vec<_> = tensors
+            .into_iter()
+            .map(|(name, tensor)| {
+                let values = download(tensor);
+                let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+                (name, Dtype::F32, vec![values.len()], bytes)
+            })
+            .collect();
         // A tensor without elements is legal, but a reader may dislike it: the history of no epoch is left out.
         if !self.history.is_empty() {
-            tensors.push((
-                "history",
-                Dtype::F64,
-                vec![self.history.len(), HISTORY],
-                history,
-            ));
+            let numbers = self.history.iter().flat_map(|row| {
+                let held_out = row.held_out_loss.unwrap_or(f64::NAN);
+                [row.train_loss, held_out, row.seconds, row.rows_per_s]
+            });
+            let shape = vec![self.history.len(), HISTORY];
+            let bytes = numbers.flat_map(f64::to_le_bytes).collect();
+            tensors.push(("history", Dtype::F64, shape, bytes));
         }
-        if let Some((_, best)) = &self.best {
-            tensors.push((
-                "best_parameters",
-                Dtype::F32,
-                vec![best.len()],
-                f32_bytes(best),
-            ));
-        }
-        let problem = |e: &dyn std::fmt::Display| TrainError::Checkpoint {
+        let bytes = || -> Result<_, Box<dyn std::error::Error>> {
+            let views = tensors.iter().map(|(name, dtype, shape, bytes)| {
+                TensorView::new(*dtype, shape.clone(), bytes).map(|view| (*name, view))
+            });
+            let views = views.collect::<Result<Vec<_>, _>>()?;
+            let header = serde_json::to_string(&header)?;
+            let metadata = HashMap::from([(KEY.to_owned(), header)]);
+            Ok(safetensors::serialize(views, Some(metadata))?)
+        };
+        let bytes = bytes().map_err(|e| TrainError::Checkpoint {
             path: path.clone(),
             problem: format!("cannot be written: {e}"),
-        };
-        let views = tensors
-            .iter()
-            .map(|(name, dtype, shape, bytes)| {
-                TensorView::new(*dtype, shape.clone(), bytes).map(|view| (*name, view))
-            })
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(|e| problem(&e))?;
-        let header = serde_json::to_string(&header).map_err(|e| problem(&e))?;
-        let bytes = safetensors::serialize(views, Some(HashMap::from([(KEY.to_owned(), header)])))
-            .map_err(|e| problem(&e))?;
-        files::write(&path, &bytes)
+        })?;
+        peelnet_files::write_whole(&path, &bytes).map_err(io(&path))
     }
 
     /// Loads the state of a run with this configuration and these rows.
@@ -162,41 +148,39 @@ impl State {
         config: &Config,
         data: &str,
         parameters: usize,
+        device: &Device,
     ) -> Result<Self, TrainError> {
-        let path = state_file(folder);
-        let bytes = match peelnet_files::read(&path, most_bytes(parameters)) {
-            Ok(bytes) => bytes,
+        let path = folder.join(FILES[0].0);
+        let read = match peelnet_files::read(&path, most_bytes(parameters)) {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                let problem = "there is no such file, so there is nothing to resume".to_owned();
-                return Err(TrainError::Checkpoint { path, problem });
+                Err("there is no such file, so there is nothing to resume".to_owned())
             }
-            Err(error) => return Err(TrainError::Io { path, error }),
+            read => Self::parse(&read.map_err(io(&path))?, config, data, parameters, device),
         };
-        Self::parse(&bytes, config, data, parameters)
-            .map_err(|problem| TrainError::Checkpoint { path, problem })
+        read.map_err(|problem| TrainError::Checkpoint { path, problem })
     }
 
-    fn parse(bytes: &[u8], config: &Config, data: &str, parameters: usize) -> Result<Self, String> {
-        const DAMAGED: &str = "delete the checkpoint folder, or start without it";
-        let damaged =
-            |e: &dyn std::fmt::Display| format!("is not a whole checkpoint ({e}); {DAMAGED}");
-        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|e| damaged(&e))?;
-        let header = metadata
-            .metadata()
-            .as_ref()
-            .and_then(|m| m.get(KEY))
-            .ok_or_else(|| damaged(&"no training state in it"))?;
+    fn parse(
+        bytes: &[u8],
+        config: &Config,
+        data: &str,
+        parameters: usize,
+        device: &Device,
+    ) -> Result<Self, String> {
+        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(damaged)?;
+        let header = metadata.metadata().as_ref().and_then(|m| m.get(KEY));
+        let header = header.ok_or_else(|| damaged("no training state in it"))?;
         // The version first: a later version's header may have other fields.
         let version = serde_json::from_str::<serde_json::Value>(header)
             .ok()
             .and_then(|v| v.get("version").and_then(serde_json::Value::as_u64));
-        if version != Some(u64::from(VERSION)) {
+        if version != Some(VERSION.into()) {
             return Err(format!(
                 "has version {}, this program reads {VERSION}; {DAMAGED}",
                 version.map_or("none".to_owned(), |v| v.to_string())
             ));
         }
-        let header: Header = serde_json::from_str(header).map_err(|e| damaged(&e))?;
+        let header: Header = serde_json::from_str(header).map_err(damaged)?;
         if let Some(setting) = difference(&header.config, config) {
             return Err(format!(
                 "was made with another `{setting}`; repeat that setting, or start without the checkpoint"
@@ -208,62 +192,54 @@ impl State {
                     .to_owned(),
             );
         }
-        let tensors = SafeTensors::deserialize(bytes).map_err(|e| damaged(&e))?;
-        let floats = |name: &str| -> Result<Vec<f32>, String> {
-            let tensor = tensors.tensor(name).map_err(|e| damaged(&e))?;
-            if tensor.dtype() != Dtype::F32 || tensor.shape() != [parameters] {
-                return Err(damaged(&format!("`{name}` has shape {:?}", tensor.shape())));
+        let tensors = SafeTensors::deserialize(bytes).map_err(damaged)?;
+        let tensor = |name: &str, dtype: Dtype, shape: &[usize]| {
+            let tensor = tensors.tensor(name).map_err(damaged)?;
+            if tensor.dtype() != dtype || tensor.shape() != shape {
+                return Err(damaged(format!("`{name}` has shape {:?}", tensor.shape())));
             }
-            Ok(tensor
-                .data()
-                .chunks_exact(4)
-                .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-                .collect())
+            Ok(tensor.data())
+        };
+        let floats = |name: &str| -> Result<Tensor<1>, String> {
+            let (words, _) = tensor(name, Dtype::F32, &[parameters])?.as_chunks();
+            let values = words.iter().map(|&word| f32::from_le_bytes(word));
+            Ok(upload(values.collect(), device))
         };
         let mut history = Vec::new();
         if header.epochs > 0 {
-            let tensor = tensors.tensor("history").map_err(|e| damaged(&e))?;
-            if tensor.dtype() != Dtype::F64 || tensor.shape() != [header.epochs, HISTORY] {
-                return Err(damaged(&format!(
-                    "`history` has shape {:?}",
-                    tensor.shape()
-                )));
-            }
-            let values: Vec<f64> = tensor
-                .data()
-                .as_chunks::<8>()
-                .0
-                .iter()
-                .map(|b| f64::from_le_bytes(*b))
-                .collect();
+            let data = tensor("history", Dtype::F64, &[header.epochs, HISTORY])?;
+            let words = data.as_chunks().0.iter();
+            let values: Vec<f64> = words.map(|&word| f64::from_le_bytes(word)).collect();
             let mut lowest = f64::INFINITY;
-            for (i, row) in values.chunks_exact(HISTORY).enumerate() {
-                let held_out_loss = (!row[1].is_nan()).then_some(row[1]);
-                let score = held_out_loss.unwrap_or(row[0]);
-                history.push(EpochReport {
-                    epoch: i as u32 + 1,
+            for (epoch, row) in (1..).zip(values.chunks_exact(HISTORY)) {
+                let mut report = EpochReport {
+                    epoch,
                     epochs: config.epochs,
                     train_loss: row[0],
-                    held_out_loss,
+                    held_out_loss: (!row[1].is_nan()).then_some(row[1]),
                     seconds: row[2],
                     rows_per_s: row[3],
-                    best: score < lowest,
-                });
-                lowest = lowest.min(score);
+                    best: false,
+                };
+                report.best = report.score() < lowest;
+                lowest = lowest.min(report.score());
+                history.push(report);
             }
         }
         let best = match header.best_epoch {
             Some(epoch) if (1..=history.len()).contains(&(epoch as usize)) => {
                 Some((epoch, floats("best_parameters")?))
             }
-            Some(epoch) => return Err(damaged(&format!("best epoch {epoch} was not run"))),
+            Some(epoch) => return Err(damaged(format!("best epoch {epoch} was not run"))),
             None => None,
         };
         Ok(Self {
-            parameters: floats("parameters")?,
-            first: floats("first_moment")?,
-            second: floats("second_moment")?,
-            steps: header.steps,
+            adam: Adam {
+                parameters: floats("parameters")?,
+                first: floats("first_moment")?,
+                second: floats("second_moment")?,
+                steps: header.steps,
+            },
             best,
             history,
         })
@@ -284,10 +260,19 @@ fn difference(saved: &Config, asked: &Config) -> Option<String> {
         serde_json::to_value(&saved).ok()?,
         serde_json::to_value(asked).ok()?,
     );
-    let name = a
-        .as_object()?
-        .iter()
-        .find(|(key, value)| b.get(key.as_str()) != Some(value))
-        .map_or("config", |(key, _)| key.as_str());
-    Some(name.to_owned())
+    let mut settings = a.as_object()?.iter();
+    let differs = settings.find(|(key, value)| b.get(key.as_str()) != Some(value));
+    Some(differs.map_or("config", |(key, _)| key).to_owned())
+}
+
+pub(crate) fn upload(values: Vec<f32>, device: &Device) -> Tensor<1> {
+    let n = values.len();
+    Tensor::from_data(TensorData::new(values, [n]), device)
+}
+
+pub(crate) fn download(tensor: &Tensor<1>) -> Vec<f32> {
+    tensor
+        .to_data()
+        .try_into_vec()
+        .expect("parameters and losses are 32-bit floats")
 }

@@ -6,6 +6,7 @@ use peelnet_model::{PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
 
 use crate::error::TrainError;
+use crate::network::Shape;
 
 /// Everything that decides the weights, except the data. Saved in the model file and beside the checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,7 +46,7 @@ pub struct Config {
     pub validation: f64,
     /// What stays together when examples are set aside for these two. Rows in memory, which have no scenes, are always split by
     /// pixel.
-    #[serde(default, skip_serializing_if = "is_by_pixel")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub split: SplitBy,
     /// Stop after this many epochs without a lower held-out error, and keep the best epoch's weights.
     pub patience: Option<u32>,
@@ -122,24 +123,15 @@ const fn is_default_max_rows(rows: &u64) -> bool {
     *rows == DEFAULT_MAX_ROWS
 }
 
-/// Left out of saved configurations: earlier versions knew nothing else.
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde passes a reference"
-)]
-fn is_by_pixel(split: &SplitBy) -> bool {
-    *split == SplitBy::Pixel
-}
-
-/// Left out of saved configurations: those of versions without a choice of loss read the same.
-fn is_default(loss: &PixelLoss) -> bool {
-    *loss == PixelLoss::default()
+/// Left out of saved configurations: those of versions without the setting read the same.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// Passes of one run: the loss of each is kept.
 pub(crate) const MAX_EPOCHS: u32 = 1_000_000;
 /// Examples of a step.
-const MAX_BATCH: usize = 1 << 24;
+const MAX_BATCH: u64 = 1 << 24;
 /// Numbers of the gradients of all chunks of a batch.
 const MAX_GRADIENTS: u64 = 1 << 28;
 /// Indices of rows have 31 bits.
@@ -148,17 +140,6 @@ const MAX_ROWS: u64 = i32::MAX as u64;
 const MAX_PARAMETERS: u64 = 1 << 22;
 
 impl Config {
-    /// Weights and biases of the network; widths are checked.
-    fn parameters(&self) -> u64 {
-        let inputs = self.recipe.inputs.about().len();
-        let widths = std::iter::once(inputs).chain(self.hidden.iter().copied());
-        let after = self.hidden.iter().copied();
-        widths
-            .zip(after.chain([self.recipe.output.count()]))
-            .map(|(from, to)| (from as u64 + 1) * to as u64)
-            .sum()
-    }
-
     /// The settings that a recipe declares, and the defaults of Adam.
     pub fn for_recipe(recipe: Recipe) -> Self {
         let (network, budget) = (recipe.network, recipe.budget);
@@ -198,95 +179,84 @@ impl Config {
                 hint,
             })
         };
-        if !(1..=MAX_EPOCHS).contains(&self.epochs) {
-            return bad("epochs", self.epochs.to_string(), "give 1 to 1,000,000");
-        }
-        if !(1..=MAX_BATCH).contains(&self.batch) {
-            return bad("batch", self.batch.to_string(), "give 1 to 16,777,216");
-        }
-        if self.chunk == 0 {
-            return bad("chunk", "0".into(), "give at least 1");
+        let (epochs, batch) = (self.epochs.into(), self.batch as u64);
+        let rows = [self.max_rows, self.buffer_rows.unwrap_or(1)];
+        let patience = self.patience.unwrap_or(1).into();
+        for (setting, value, most, hint) in [
+            ("epochs", epochs, MAX_EPOCHS.into(), "give 1 to 1,000,000"),
+            ("batch", batch, MAX_BATCH, "give 1 to 16,777,216"),
+            ("chunk", self.chunk as u64, u64::MAX, "give at least 1"),
+            ("max_rows", rows[0], MAX_ROWS, "give 1 to 2147483647"),
+            ("buffer_rows", rows[1], MAX_ROWS, "give 1 to 2147483647"),
+            (
+                "patience",
+                patience,
+                u64::MAX,
+                "give at least 1, or leave it out",
+            ),
+        ] {
+            if !(1..=most).contains(&value) {
+                return bad(setting, value.to_string(), hint);
+            }
         }
         if let Some(width) = self.hidden.iter().find(|&&w| w == 0 || w > 4096) {
             return bad("hidden", width.to_string(), "give widths from 1 to 4096");
         }
-        if self.parameters() > MAX_PARAMETERS {
-            return bad(
-                "hidden",
-                format!("{:?}", self.hidden),
-                "give widths with at most 4,194,304 weights in all",
-            );
+        let parameters = Shape::new(self).parameters() as u64;
+        if parameters > MAX_PARAMETERS {
+            let hint = "give widths with at most 4,194,304 weights in all";
+            return bad("hidden", format!("{:?}", self.hidden), hint);
         }
-        let chunks = self.batch.div_ceil(self.chunk) as u64;
-        if chunks * self.parameters() > MAX_GRADIENTS {
-            return bad(
-                "batch",
-                self.batch.to_string(),
-                "give less for this network: every chunk of a batch has a gradient, 1 GiB in all at most",
-            );
+        if batch.div_ceil(self.chunk as u64) * parameters > MAX_GRADIENTS {
+            let hint = "give less for this network: every chunk of a batch has a gradient, 1 GiB in all at most";
+            return bad("batch", batch.to_string(), hint);
         }
-        if !(1..=MAX_ROWS).contains(&self.max_rows) {
-            return bad(
-                "max_rows",
-                self.max_rows.to_string(),
-                "give 1 to 2147483647",
-            );
-        }
-        if let Some(rows) = self.buffer_rows
-            && !(1..=MAX_ROWS).contains(&rows)
-        {
-            return bad("buffer_rows", rows.to_string(), "give 1 to 2147483647");
-        }
-        if !(self.learning_rate.is_finite() && self.learning_rate > 0.0) {
-            return bad(
+        let is_positive = |x: f64| x.is_finite() && x > 0.0;
+        let is_fraction = |x: f64| (0.0..1.0).contains(&x);
+        let both = is_fraction(self.held_out + self.validation);
+        let warmup = match self.schedule {
+            Schedule::OneCycle { warmup } => warmup,
+            Schedule::Constant => 0.5,
+        };
+        let positive = "give a positive number";
+        let below_1 = "give a number from 0 to below 1";
+        let shares = "give a share from 0 to below 1, both together below 1";
+        for (setting, value, is_good, hint) in [
+            (
                 "learning_rate",
-                self.learning_rate.to_string(),
-                "give a positive number",
-            );
-        }
-        for (setting, value) in [("beta1", self.beta1), ("beta2", self.beta2)] {
-            if !(0.0..1.0).contains(&value) {
-                return bad(
-                    setting,
-                    value.to_string(),
-                    "give a number from 0 to below 1",
-                );
+                self.learning_rate,
+                is_positive(self.learning_rate),
+                positive,
+            ),
+            ("beta1", self.beta1, is_fraction(self.beta1), below_1),
+            ("beta2", self.beta2, is_fraction(self.beta2), below_1),
+            ("epsilon", self.epsilon, is_positive(self.epsilon), positive),
+            (
+                "held_out",
+                self.held_out,
+                is_fraction(self.held_out) && both,
+                shares,
+            ),
+            (
+                "validation",
+                self.validation,
+                is_fraction(self.validation) && both,
+                shares,
+            ),
+            (
+                "schedule.warmup",
+                warmup,
+                warmup > 0.0 && warmup < 1.0,
+                "give a share between 0 and 1",
+            ),
+        ] {
+            if !is_good {
+                return bad(setting, value.to_string(), hint);
             }
-        }
-        if !(self.epsilon.is_finite() && self.epsilon > 0.0) {
-            return bad(
-                "epsilon",
-                self.epsilon.to_string(),
-                "give a positive number",
-            );
-        }
-        for (setting, share) in [("held_out", self.held_out), ("validation", self.validation)] {
-            if !(0.0..1.0).contains(&share) || self.held_out + self.validation >= 1.0 {
-                return bad(
-                    setting,
-                    share.to_string(),
-                    "give a share from 0 to below 1, both together below 1",
-                );
-            }
-        }
-        if self.patience == Some(0) {
-            return bad("patience", "0".into(), "give at least 1, or leave it out");
         }
         if self.recipe.loss.is_none() && self.loss != PixelLoss::default() {
-            return bad(
-                "loss",
-                self.loss.name().into(),
-                "leave it out: this recipe does not learn from whole pixels",
-            );
-        }
-        if let Schedule::OneCycle { warmup } = self.schedule
-            && !(warmup > 0.0 && warmup < 1.0)
-        {
-            return bad(
-                "schedule.warmup",
-                warmup.to_string(),
-                "give a share between 0 and 1",
-            );
+            let hint = "leave it out: this recipe does not learn from whole pixels";
+            return bad("loss", self.loss.name().into(), hint);
         }
         Ok(())
     }

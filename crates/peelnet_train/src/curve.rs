@@ -6,8 +6,7 @@ use peelnet_chart::{Line, LineChart, Scale, Svg};
 
 use peelnet_files::Kind;
 
-use crate::error::TrainError;
-use crate::files;
+use crate::error::{TrainError, io};
 use crate::report::EpochReport;
 
 /// The columns of a curve as a table.
@@ -59,32 +58,23 @@ impl CurveFormat {
 /// # Errors
 /// An unknown ending, or the file cannot be written.
 pub fn write_curve(path: &Path, history: &[EpochReport]) -> Result<(), TrainError> {
-    let bytes = match CurveFormat::of(path)? {
-        CurveFormat::Csv => csv(history).map_err(|error| TrainError::Io {
-            path: path.to_owned(),
-            error: std::io::Error::other(error),
-        })?,
-        CurveFormat::Svg => curve_chart(history).on_white().into_bytes(),
+    let text = match CurveFormat::of(path)? {
+        CurveFormat::Csv => csv(history),
+        CurveFormat::Svg => curve_chart(history).on_white(),
     };
-    files::write(path, &bytes)
+    peelnet_files::write_whole(path, text.as_bytes()).map_err(io(path))
 }
 
-type Failure = Box<dyn std::error::Error + Send + Sync>;
-
-fn csv(history: &[EpochReport]) -> Result<Vec<u8>, Failure> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(HEADINGS)?;
+fn csv(history: &[EpochReport]) -> String {
+    let mut table = HEADINGS.join(",") + "\n";
     for row in history {
-        table.write_record([
-            row.epoch.to_string(),
-            row.train_loss.to_string(),
-            row.held_out_loss
-                .map_or(String::new(), |loss| loss.to_string()),
-            format!("{:.4}", row.seconds),
-            format!("{:.0}", row.rows_per_s),
-        ])?;
+        let held_out = row.held_out_loss.map_or(String::new(), |l| l.to_string());
+        table += &format!(
+            "{},{},{held_out},{:.4},{:.0}\n",
+            row.epoch, row.train_loss, row.seconds, row.rows_per_s
+        );
     }
-    Ok(table.into_inner()?)
+    table
 }
 
 /// Both losses over the epochs, on a logarithmic axis.

@@ -1,6 +1,6 @@
 //! What can go wrong in training.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why training did not start or did not finish.
 #[derive(Debug, thiserror::Error)]
@@ -105,10 +105,32 @@ pub enum TrainError {
 }
 
 impl TrainError {
-    pub(crate) fn no_rows(data: &str) -> Self {
+    pub(crate) fn columns(data: &str, problem: String) -> Self {
         Self::Columns {
             data: data.to_owned(),
-            problem: "no rows to train on: extract views with transparent objects in them, of scenes that are not held out".to_owned(),
+            problem,
         }
     }
+
+    pub(crate) fn no_rows(data: &str) -> Self {
+        let problem = "no rows to train on: extract views with transparent objects in them, of scenes that are not held out";
+        Self::columns(data, problem.to_owned())
+    }
+}
+
+/// An error of the file system, with the file's name.
+pub(crate) fn io(path: &Path) -> impl Fn(std::io::Error) -> TrainError + use<> {
+    let path = path.to_owned();
+    move |error| TrainError::Io {
+        path: path.clone(),
+        error,
+    }
+}
+
+/// `<out>.<ending>`. The ending is appended: `exp-0.5` and `exp-0.7` must not share a name.
+pub(crate) fn beside(out: &Path, ending: &str) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push(".");
+    name.push(ending);
+    name.into()
 }

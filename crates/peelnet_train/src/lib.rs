@@ -1,17 +1,17 @@
 //! Trains peelnet's networks with burn.
 //!
 //! ```text
-//! columns ─► split ─► normalise ─► Task (tensors, loss) ─┐
-//!                                                        ├─► loop ─► checkpoint, loss curve, model file
-//! Config, seed ─► Shape ─► one flat tensor of weights ───┘
+//! datasets ─► loader, examples ─► table, in memory or in a scratch file ─► sampler ─► windows of tensors ─► loss ─┐
+//!                                                                                                                ├─► loop
+//! Config, seed ─► Shape ─► one flat tensor of weights ─► optimizer ──────────────────────────────────────────────┘
+//!                                                                        loop ─► checkpoint, loss curve, model file
 //! ```
 //!
-//! [`train`] takes the examples of datasets ([`Source`]) and a [`Config`] that holds every hyper-parameter and
+//! [`train`] takes the examples of datasets ([`TrainingData`]) and a [`Config`] that holds every hyper-parameter and
 //! the seed. It sets the held-out rows aside, computes each input's mean and deviation over the training rows, and
-//! runs epochs: the rows are permuted (an order drawn from the seed and the epoch's number), batches are slices
-//! of the permuted tensors, and a batch's gradient goes to Adam. What a recipe wants to be trained *on* is a [`Task`]:
-//! it owns the tensors and turns a range of examples into a loss. The loop, the gradient, checkpoints and curves know
-//! nothing about recipes, so a recipe with batches of whole pixels and a loss of its own is one more file.
+//! runs epochs: the examples are permuted (an order drawn from the seed and the epoch's number), batches are slices
+//! of the permuted tensors, and a batch's gradient goes to Adam. What a recipe is trained *on* is its rows or pixels in the table; what it
+//! minimises is in `loss`. The loop, the gradient, checkpoints and curves know nothing about recipes.
 //!
 //! # What makes it fast
 //!
@@ -30,7 +30,7 @@
 //!
 //! # Memory
 //!
-//! Examples are in memory ([`TrainingData`]) or streamed ([`StreamedData`]).
+//! Examples are in memory ([`TrainingData::from_datasets`]) or streamed ([`TrainingData::streamed`]).
 //!
 //! *In memory.* Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
 //! epoch. Of a dataset with more than [`Config::max_rows`] rows, whole pixels are drawn from the seed, the same share of every view, and
@@ -68,44 +68,32 @@
 //! a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole. As long as a run
 //! lasts, `out/net.safetensors.lock` is locked, so that a second run cannot write to the same files; see [`OutputLock`].
 
-mod adam;
 mod checkpoint;
 mod config;
 mod curve;
-mod data;
-mod device;
 mod error;
-mod feed;
-mod files;
-mod fragment_mse;
-mod gather;
+mod examples;
+mod loader;
 mod lock;
+mod loss;
 mod network;
 mod normalise;
-mod pixel_share;
-mod pixels;
+mod optimizer;
 mod report;
-mod sample;
+mod sampler;
 mod scratch;
-mod split;
-mod streamed;
-mod streams;
-mod task;
-mod team;
+mod table;
 mod train;
-mod training_data;
 
 pub use checkpoint::{FILES as CHECKPOINT_FILES, folder as checkpoint_folder};
 pub use config::{Config, DEFAULT_BUFFER_ROWS, DEFAULT_MAX_ROWS, Schedule};
 pub use curve::{CurveFormat, curve_chart, write_curve};
-pub use data::held_out_errors;
-pub use device::Compute;
 pub use error::TrainError;
+pub use loader::held_out_errors;
 pub use lock::OutputLock;
-pub use network::{Network, Shape};
 pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};
-pub use streamed::{Source, StreamedData};
-pub use task::{Part, Task};
+pub use table::{
+    ALPHA, COLOR, DataSplit, EXACT, KNOWN, LEFT, PixelColumns, REST, SUM, TrainingData, UsedRows,
+};
 pub use train::{RunOptions, train};
-pub use training_data::{DataSplit, PixelColumns, PixelFixed, TrainingData, UsedRows};

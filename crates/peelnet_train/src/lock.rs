@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use peelnet_files::Unfinished;
 
-use crate::error::TrainError;
-use crate::files::beside;
+use crate::error::{TrainError, beside, io as io_error};
 
 /// Held by a training as long as it may write to its model file: a second one with the same file is refused.
 ///
@@ -27,20 +26,17 @@ impl OutputLock {
     /// [`TrainError::Busy`] where another training holds it, or a folder that cannot be written.
     pub fn take(out: &Path) -> Result<Self, TrainError> {
         let path = beside(out, "lock");
-        let failed = |error| TrainError::Io {
-            path: path.clone(),
-            error,
-        };
-        std::fs::create_dir_all(peelnet_files::folder_of(&path)).map_err(failed)?;
+        let failed = io_error(&path);
+        std::fs::create_dir_all(peelnet_files::folder_of(&path)).map_err(&failed)?;
         loop {
             let file = OpenOptions::new()
                 .write(true)
                 .create(true)
                 .truncate(false)
                 .open(&path)
-                .map_err(failed)?;
+                .map_err(&failed)?;
             // Ours are empty, and would be removed.
-            if file.metadata().map_err(failed)?.len() > 0 {
+            if file.metadata().map_err(&failed)?.len() > 0 {
                 return Err(failed(io::Error::new(
                     io::ErrorKind::AlreadyExists,
                     "a file that is not peelnet's has the name of the lock; choose another name for the model",
@@ -56,7 +52,7 @@ impl OutputLock {
                 Err(TryLockError::Error(error)) => return Err(failed(error)),
             }
             // Between opening and locking, its owner can have removed the file: then the name is free for others.
-            if is_at(&file, &path).map_err(failed)? {
+            if is_at(&file, &path).map_err(&failed)? {
                 return Ok(Self {
                     _unfinished: Unfinished::new(&path),
                     path,

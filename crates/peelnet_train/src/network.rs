@@ -4,25 +4,40 @@ use burn::tensor::activation::{relu, sigmoid};
 use burn::tensor::{Gradients, Tensor};
 use peelnet_core::mlp::{Activation, Layer, Mlp, ShapeError};
 
-use crate::streams::Stream;
+use crate::config::Config;
+use crate::sampler::Stream;
 
 /// Widths and activations.
 ///
 /// The parameters of all layers lie in one row: for each layer its weights, row-major `[outputs][inputs]`, then its
 /// biases. That is the order of the model file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub(crate) struct Shape {
     /// Inputs, hidden layers, outputs.
-    pub widths: Vec<usize>,
+    pub(crate) widths: Vec<usize>,
     /// After each hidden layer.
-    pub hidden: Activation,
+    pub(crate) hidden: Activation,
     /// After the last layer.
-    pub output: Activation,
+    pub(crate) output: Activation,
 }
 
 impl Shape {
+    pub(crate) fn new(config: &Config) -> Self {
+        let recipe = config.recipe;
+        let inputs = recipe.inputs.about().len();
+        let hidden = config.hidden.iter().copied();
+        Self {
+            widths: std::iter::once(inputs)
+                .chain(hidden)
+                .chain([recipe.output.count()])
+                .collect(),
+            hidden: config.hidden_activation,
+            output: config.output_activation,
+        }
+    }
+
     /// Number of weights and biases.
-    pub fn parameters(&self) -> usize {
+    pub(crate) fn parameters(&self) -> usize {
         self.layers()
             .map(|(inputs, outputs)| (inputs + 1) * outputs)
             .sum()
@@ -66,7 +81,7 @@ impl Shape {
 }
 
 /// A network on a device.
-pub struct Network {
+pub(crate) struct Network {
     weights: Vec<Tensor<2>>,
     biases: Vec<Tensor<2>>,
     hidden: Activation,
@@ -75,7 +90,7 @@ pub struct Network {
 
 impl Network {
     /// Views of `parameters` (`[Shape::parameters]`) for evaluation.
-    pub fn new(shape: &Shape, parameters: &Tensor<1>) -> Self {
+    pub(crate) fn new(shape: &Shape, parameters: &Tensor<1>) -> Self {
         Self::build(shape, parameters, |tensor| tensor)
     }
 
@@ -106,7 +121,7 @@ impl Network {
     }
 
     /// Evaluates normalised inputs `[inputs, rows]` to `[outputs, rows]`.
-    pub fn forward(&self, inputs: Tensor<2>) -> Tensor<2> {
+    pub(crate) fn forward(&self, inputs: Tensor<2>) -> Tensor<2> {
         let last = self.weights.len() - 1;
         let mut x = inputs;
         for (i, (weights, bias)) in self.weights.iter().zip(&self.biases).enumerate() {

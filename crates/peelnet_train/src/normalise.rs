@@ -72,7 +72,7 @@ impl Moments {
 impl Normalisation {
     /// From the values at `rows`.
     pub(crate) fn over(values: &[f32], rows: &[u32]) -> Self {
-        Self::of(Moments::over(values, rows))
+        Self::of(&Moments::over(values, rows))
     }
 
     /// From the moments of the values.
@@ -81,8 +81,8 @@ impl Normalisation {
     /// not a normal number. Rounding the mean to 32 bits does no harm even where neighbouring values differ in the last
     /// bit: it errs by no more than one deviation. A constant column trains as zero, and the model has zero weights for it: the network never saw it vary, so it must not react when
     /// it does. Its scale is 1, because a model file wants an invertible one.
-    pub(crate) fn of(moments: Moments) -> Self {
-        let Moments { min, max, .. } = moments;
+    pub(crate) fn of(moments: &Moments) -> Self {
+        let Moments { min, max, .. } = *moments;
         let deviation = (moments.squares / moments.count.max(1) as f64).sqrt();
         let scale = (1.0 / deviation) as f32;
         let constant = min == max || !scale.is_normal();
@@ -160,7 +160,7 @@ mod tests {
     /// relative error is at most n ε, and that of the mean n ε times the mean magnitude of the values.
     #[test]
     fn merged_blocks_have_the_moments_of_all_values() {
-        let mut random = crate::streams::Stream::Weights.of(5);
+        let mut random = crate::sampler::Stream::Weights.of(5);
         for (n, offset) in [(1u32, 0.0), (7, 3.0), (5000, 1e4), (20_000, -40.0)] {
             let values: Vec<f32> = (0..n).map(|_| offset + 8.0 * random.unit()).collect();
             let rows: Vec<u32> = (0..n).collect();

@@ -25,6 +25,11 @@ pub struct EpochReport {
 }
 
 impl EpochReport {
+    /// What epochs are compared by.
+    pub(crate) fn score(&self) -> f64 {
+        self.held_out_loss.unwrap_or(self.train_loss)
+    }
+
     /// What a progress bar says of the epoch.
     pub fn progress(&self) -> String {
         let held_out = self

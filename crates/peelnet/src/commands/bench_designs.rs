@@ -4,7 +4,7 @@ use super::{Context, command_line, json_path};
 use crate::cli::BenchArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
-use peelnet_dataset::{Dataset, SplitBy};
+use peelnet_dataset::{Dataset, SplitBy, Subset};
 use peelnet_eval::{
     Machine,
     designs::{
@@ -60,7 +60,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         if outcome.end == End::Interrupted {
             return Err(Failure::failed(crate::interrupt::MESSAGE));
         }
-        let examples = data.training_examples() as u64;
+        let examples = data.examples(Subset::Train);
         // Two designs' examples are never in memory at once.
         drop(data);
         let measured = |model| -> Result<Score, Failure> {

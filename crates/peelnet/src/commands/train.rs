@@ -4,10 +4,12 @@ use super::{Context, json_path};
 use crate::cli::TrainArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
-use peelnet::fit::{self, Examples, ModelPlace, Step};
+use peelnet::fit::{self, ModelPlace, Step};
 use peelnet_dataset::Dataset;
 use peelnet_files::{counted, printable, shown, thousands};
-use peelnet_train::{Config, DataSplit, End, Outcome, RunOptions, UsedRows};
+use peelnet_train::{
+    Config, DataSplit, End, Outcome, RunOptions, TrainingData, UsedRows, checkpoint_folder,
+};
 use serde_json::json;
 use std::path::Path;
 
@@ -94,9 +96,9 @@ pub(super) fn fit(
         .map(|_| Bar::new(console, "read", datasets.iter().map(Dataset::rows).sum()));
     let outcome = fit::fit(config, datasets, options, &mut |step| match step {
         Step::Read(rows, of) => bar.iter().for_each(|bar| bar.set(rows, of, String::new())),
-        Step::Ready(examples) => {
+        Step::Ready(data) => {
             bar = None;
-            say(context, config, &examples);
+            say(context, config, data, &options.out);
             bar = Some(Bar::new(console, "train", config.epochs.into()));
         }
         Step::Epoch(e) => {
@@ -126,28 +128,26 @@ pub(super) fn fit(
 }
 
 /// What is learnt from, and what the losses of rows that are set aside say.
-fn say(context: &Context<'_>, config: &Config, examples: &Examples<'_>) {
+fn say(context: &Context<'_>, config: &Config, data: &TrainingData, out: &Path) {
     let console = context.console;
-    if let Some((bytes, folder)) = &examples.scratch {
+    if let Some(bytes) = data.scratch_bytes() {
         console.message(format!(
             "streaming: at most {} in memory at once, {:.1} MiB of scratch space in {}",
             counted(config.buffer_rows.unwrap_or(0), "row"),
-            *bytes as f64 / f64::from(1 << 20),
-            shown(folder)
+            bytes as f64 / f64::from(1 << 20),
+            shown(&checkpoint_folder(out))
         ));
     }
-    warn_of_rows(context, examples.used, config);
+    warn_of_rows(context, data.used, config);
     if config.held_out + config.validation > 0.0 {
-        examples
-            .split
-            .iter()
-            .for_each(|split| console.message(split_text(split)));
+        let split = data.split.iter();
+        split.for_each(|split| console.message(split_text(split)));
     }
     console.message(format!(
         "training recipe {} on {} of {}, {}",
         config.recipe,
-        counted(examples.rows, "row"),
-        examples.source,
+        counted(data.rows(), "row"),
+        data.source,
         counted(config.epochs.into(), "epoch")
     ));
 }

@@ -7,31 +7,27 @@ use burn::tensor::Tensor;
 
 use crate::config::Config;
 
-/// First and second moments and the number of steps taken.
+/// Parameters, first and second moments, and the number of steps taken. Cloning it copies references to tensors, not their values.
 #[derive(Clone)]
 pub(crate) struct Adam {
+    pub(crate) parameters: Tensor<1>,
     pub(crate) first: Tensor<1>,
     pub(crate) second: Tensor<1>,
     pub(crate) steps: u64,
 }
 
 impl Adam {
-    pub(crate) fn new(parameters: &Tensor<1>) -> Self {
+    pub(crate) fn new(parameters: Tensor<1>) -> Self {
         Self {
             first: parameters.zeros_like(),
             second: parameters.zeros_like(),
+            parameters,
             steps: 0,
         }
     }
 
-    /// One step with the given rate; returns the new state and the new parameters.
-    pub(crate) fn step(
-        self,
-        config: &Config,
-        rate: f64,
-        parameters: Tensor<1>,
-        gradient: Tensor<1>,
-    ) -> (Self, Tensor<1>) {
+    /// One step with the given rate.
+    pub(crate) fn step(&self, config: &Config, rate: f64, gradient: Tensor<1>) -> Self {
         let Config {
             beta1,
             beta2,
@@ -43,18 +39,15 @@ impl Adam {
         let exponent = i32::try_from(steps).unwrap_or(i32::MAX);
         let correction1 = 1.0 - beta1.powi(exponent);
         let correction2 = 1.0 - beta2.powi(exponent);
-        let first = self.first * beta1 + gradient.clone() * (1.0 - beta1);
-        let second = self.second * beta2 + gradient.clone() * gradient * (1.0 - beta2);
+        let first = self.first.clone() * beta1 + gradient.clone() * (1.0 - beta1);
+        let second = self.second.clone() * beta2 + gradient.clone() * gradient * (1.0 - beta2);
         let root = second.clone().sqrt() * (1.0 / correction2.sqrt()) + epsilon;
-        let parameters = parameters - first.clone() * (rate / correction1) / root;
-        (
-            Self {
-                first,
-                second,
-                steps,
-            },
-            parameters,
-        )
+        Self {
+            parameters: self.parameters.clone() - first.clone() * (rate / correction1) / root,
+            first,
+            second,
+            steps,
+        }
     }
 }
 
@@ -70,20 +63,15 @@ mod tests {
     #[test]
     fn steps_follow_the_written_out_algorithm() {
         let config = Config::for_recipe(Recipe::THESIS);
-        let device = Device::flex();
-        let mut parameters =
-            Tensor::<1>::from_data(TensorData::new(vec![0.5f32, -0.25], [2]), &device);
-        let mut adam = Adam::new(&parameters);
+        let tensor = |values: [f32; 2]| {
+            Tensor::<1>::from_data(TensorData::new(values.to_vec(), [2]), &Device::flex())
+        };
+        let mut adam = Adam::new(tensor([0.5, -0.25]));
         let (mut p, mut m, mut v) = ([0.5f64, -0.25], [0.0; 2], [0.0; 2]);
         let rate = 1e-2;
         for t in 1..=100 {
             let gradient = [(t as f32 * 0.7).sin(), 1e-3 * (t as f32 * 0.3).cos()];
-            (adam, parameters) = adam.step(
-                &config,
-                rate,
-                parameters,
-                Tensor::from_data(TensorData::new(gradient.to_vec(), [2]), &device),
-            );
+            adam = adam.step(&config, rate, tensor(gradient));
             for i in 0..2 {
                 let g = f64::from(gradient[i]);
                 m[i] = config.beta1 * m[i] + (1.0 - config.beta1) * g;
@@ -94,7 +82,7 @@ mod tests {
             }
         }
         assert_eq!(adam.steps, 100);
-        let found: Vec<f32> = parameters.into_data().try_into_vec().unwrap();
+        let found: Vec<f32> = adam.parameters.into_data().try_into_vec().unwrap();
         for i in 0..2 {
             assert!(
                 (f64::from(found[i]) - p[i]).abs() < 6e-5,

@@ -1,17 +1,12 @@
 //! From a dataset on disk to columns, and a model's error on its held-out scenes.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
-
-mod common;
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
-use common::{scene, write_views};
 use peelnet_dataset::{Dataset, FragmentBatch, SceneEntry, SplitBy, Subset};
 use peelnet_model::Recipe;
-use peelnet_train::{
-    Config, DataSplit, RunOptions, TrainError, TrainingData, held_out_errors, train,
-};
+use peelnet_train::{Config, DataSplit, TrainError, TrainingData, held_out_errors};
+
+use super::{run, scene, write_views};
 
 const SIDE: u32 = 30;
 
@@ -25,10 +20,9 @@ fn stacks(index: u32, layers: u32) -> FragmentBatch {
     let mut batch = FragmentBatch::default();
     for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
         for layer in 0..layers {
+            let depth = 1.0 + layer as f32 + x as f32 / 64.0;
             batch.one_minus_alpha.push(0.5);
-            batch
-                .linear_depth
-                .push(1.0 + layer as f32 + x as f32 / 64.0);
+            batch.linear_depth.push(depth);
             batch.alpha_sum.push(0.5 * layers as f32);
             batch.fragment_count.push(layers);
             batch.transmittance.push(0.5f32.powi(layer as i32));
@@ -66,7 +60,7 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let datasets = [a, b];
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
     let rows = 2 * 3 * (SIDE * SIDE) as usize;
-    assert_eq!(data.rows(), rows);
+    assert_eq!(data.rows(), rows as u64);
     assert_eq!(data.inputs[0][..3], [1.0, 2.0, 3.0]);
     assert!(
         data.inputs[1].iter().all(|&sum| sum == 1.5) && data.inputs[2].iter().all(|&n| n == 3.0)
@@ -94,11 +88,8 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let deviation = (1.0 / 3.0 * 2.0 / 3.0 / 900.0f64).sqrt();
     assert!((share - 1.0 / 3.0).abs() < 5.0 * deviation, "{share}");
 
-    let stop = AtomicBool::new(false);
     let out = folder.path().join("net.safetensors");
-    let model = train(&config, &data, &RunOptions::new(&out, &stop), |_| {})
-        .unwrap()
-        .model;
+    let model = run(&config, &data, &out).unwrap().model;
     let errors = held_out_errors(&model, &datasets).unwrap();
     assert_eq!(errors.keys().collect::<Vec<_>>(), ["panes"]);
     let batch = view(1);
@@ -118,9 +109,7 @@ fn a_dataset_of_held_out_scenes_only_is_refused() {
     let datasets = [write(&folder.path().join("a"), vec![scene("panes", true)])];
     let config = Config::for_recipe(Recipe::THESIS);
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
-    let stop = AtomicBool::new(false);
-    let options = RunOptions::new(folder.path().join("net.safetensors"), &stop);
-    let error = train(&config, &data, &options, |_| {}).unwrap_err();
+    let error = run(&config, &data, &folder.path().join("net")).unwrap_err();
     let TrainError::Columns { data, problem } = &error else {
         panic!("{error}");
     };
@@ -128,51 +117,6 @@ fn a_dataset_of_held_out_scenes_only_is_refused() {
         data.ends_with('a') && problem.contains("held out"),
         "{error}"
     );
-}
-
-/// Rows in memory are the examples of the dataset that holds them, for every kind of input; a view may come in several batches.
-#[test]
-fn batches_in_memory_train_as_their_dataset() {
-    let folder = tempfile::tempdir().unwrap();
-    let view = |index| stacks(index, 6);
-    let scenes = vec![scene("one", false), scene("two", false)];
-    let dataset = write_views(&folder.path().join("rows"), SIDE, scenes, view);
-    let mut halves = [FragmentBatch::default(), FragmentBatch::default()];
-    let first = view(0);
-    let half = first.len() / 2 / 6 * 6;
-    halves[0].extend_from(&first, 0..half);
-    halves[1].extend_from(&first, half..first.len());
-    let [early, late] = halves;
-    let batches = [early, late, view(1)];
-    for recipe in [
-        Recipe::THESIS,
-        Recipe::MEDIUM,
-        Recipe::ANCHORED_MEDIUM,
-        Recipe::NMT,
-        Recipe::DFAOIT,
-    ] {
-        let config = Config {
-            split: SplitBy::Pixel,
-            ..Config::for_recipe(recipe)
-        };
-        let stored = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
-        let held = TrainingData::from_batches(&config, "rows", &batches).unwrap();
-        assert!(stored.rows() > 0, "{recipe}");
-        assert_eq!(held.source, "rows");
-        assert_eq!(stored.inputs, held.inputs, "{recipe}");
-        assert_eq!(stored.targets, held.targets, "{recipe}");
-        assert_eq!(stored.weights, held.weights, "{recipe}");
-        assert_eq!(stored.subsets, held.subsets, "{recipe}");
-        assert_eq!(
-            format!("{:?}", stored.pixels),
-            format!("{:?}", held.pixels),
-            "{recipe}"
-        );
-    }
-    let mut broken = view(0);
-    broken.linear_depth.pop();
-    let config = Config::for_recipe(Recipe::MEDIUM);
-    assert!(TrainingData::from_batches(&config, "rows", &[broken]).is_err());
 }
 
 /// Of more rows than may be held, whole pixels are drawn: of every view its share, and the same ones for the same seed.
@@ -209,7 +153,8 @@ fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
             "{used:?}"
         );
         assert_eq!(used.used % 6, 0, "whole pixels");
-        let share = part.examples() as f64 / whole.examples() as f64;
+        let [some, all] = [&part, &whole].map(|data| data.subsets.as_ref().unwrap().len());
+        let share = some as f64 / all as f64;
         assert!(
             (share - used.used as f64 / of as f64).abs() < 1e-9,
             "{recipe}: {share}"
@@ -275,31 +220,6 @@ fn whole_scenes_are_set_aside() {
     let config = Config::for_recipe(Recipe::THESIS);
     let data = TrainingData::from_datasets(&config, &[one]).unwrap();
     assert_eq!(data.split, Some(DataSplit::Pixels { scenes: 1 }));
-}
-
-/// Validation by whole datasets: every row of one trains, every row of the other is chosen by, whatever the shares of the recipe.
-#[test]
-fn whole_datasets_validate() {
-    let folder = tempfile::tempdir().unwrap();
-    let make = |name: &str, scenes| {
-        write_views(&folder.path().join(name), SIDE, scenes, |k| stacks(k, 24))
-    };
-    let training = [make("a", vec![scene("one", false), scene("held", true)])];
-    let validation = [make("b", vec![scene("two", false)])];
-    for recipe in Recipe::ALL {
-        let config = Config::for_recipe(recipe);
-        let data = TrainingData::validated(&config, &training, &validation).unwrap();
-        let subsets = data.subsets.as_ref().unwrap();
-        let half = subsets.len() / 2;
-        assert!(
-            half > 0 && subsets[..half].iter().all(|s| *s == Subset::Train),
-            "{recipe}"
-        );
-        assert!(
-            subsets[half..].iter().all(|s| *s == Subset::Validation),
-            "{recipe}"
-        );
-    }
 }
 
 /// Values that are allowed but were changed after the dataset was written neither train nor judge.

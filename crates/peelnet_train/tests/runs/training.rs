@@ -1,8 +1,5 @@
 //! Whole runs: what they learn, that they repeat, resume, stop and refuse.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
 
-use std::num::NonZeroUsize;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -13,19 +10,11 @@ use peelnet_train::{
     train,
 };
 
+use super::{NEVER, assert_repeats, assert_resumes, resuming, run};
+
 /// Rows like those of a scene with one α for all: T falls with depth and with the sum of alphas.
 fn rows(n: usize) -> TrainingData {
-    let mut data = TrainingData {
-        source: "synthetic".to_owned(),
-        inputs: vec![Vec::new(); 3],
-        targets: vec![Vec::new()],
-        weights: None,
-        pixels: None,
-        subsets: None,
-        used: None,
-        split: None,
-        dataset: None,
-    };
+    let mut data = TrainingData::new("synthetic", vec![Vec::new(); 3], vec![Vec::new()]);
     for i in 0..n {
         // Low-discrepancy points, so that no generator is needed.
         let point = |step: f64| (i as f64 * step).fract();
@@ -50,19 +39,6 @@ fn config() -> Config {
     }
 }
 
-fn run(
-    config: &Config,
-    data: &TrainingData,
-    out: &Path,
-) -> Result<peelnet_train::Outcome, TrainError> {
-    train(
-        config,
-        data,
-        &RunOptions::new(out, &AtomicBool::new(false)),
-        |_| {},
-    )
-}
-
 #[test]
 fn a_network_learns_and_its_file_answers_in_raw_units() {
     let folder = tempfile::tempdir().unwrap();
@@ -73,13 +49,11 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
         learning_rate: 3e-3,
         ..config()
     };
-    let stop = AtomicBool::new(false);
     let options = RunOptions {
-        loss_curve: vec![
-            folder.path().join("loss.csv"),
-            folder.path().join("loss.svg"),
-        ],
-        ..RunOptions::new(&out, &stop)
+        loss_curve: ["loss.csv", "loss.svg"]
+            .map(|name| folder.path().join(name))
+            .into(),
+        ..RunOptions::new(&out, &NEVER)
     };
     let mut seen = 0;
     let outcome = train(&config, &data, &options, |report| {
@@ -108,13 +82,13 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
         serde_json::from_value::<Config>(model.meta.config.clone()).unwrap(),
         config
     );
-    let error = (0..data.rows())
+    let error = (0..6000)
         .map(|i| {
             let raw = [data.inputs[0][i], data.inputs[1][i], data.inputs[2][i]];
             (model.forward_raw(&raw)[0] - data.targets[0][i]).abs()
         })
         .sum::<f32>()
-        / data.rows() as f32;
+        / 6000.0;
     assert!(error < 0.07, "{error}");
 
     let table = std::fs::read_to_string(folder.path().join("loss.csv")).unwrap();
@@ -130,90 +104,21 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
 }
 
 #[test]
-fn the_seed_decides_the_bytes_and_the_number_of_threads_does_not() {
-    let folder = tempfile::tempdir().unwrap();
-    let data = rows(5000);
+fn runs_repeat_and_resume() {
+    let with = |change: fn(&mut Config)| {
+        let mut config = config();
+        change(&mut config);
+        config
+    };
     // Batches of 13 chunks, the last of them short.
-    let config = Config {
-        batch: 1600,
-        chunk: 128,
-        ..config()
-    };
-    let stop = AtomicBool::new(false);
-    let bytes = |threads: usize, config: &Config| {
-        let out = folder.path().join("net.safetensors");
-        let options = RunOptions {
-            threads: NonZeroUsize::new(threads),
-            ..RunOptions::new(&out, &stop)
-        };
-        train(config, &data, &options, |_| {}).unwrap();
-        std::fs::read(out).unwrap()
-    };
-    let one = bytes(1, &config);
-    for threads in [1, 2, 3, 7] {
-        assert!(one == bytes(threads, &config), "{threads} threads");
-    }
-    assert!(one != bytes(1, &Config { seed: 2, ..config }));
-}
-
-#[test]
-fn a_run_interrupted_after_an_epoch_resumes_to_the_same_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let data = rows(3000);
-    for (name, config) in [
-        ("plain", config()),
-        (
-            "cycle",
-            Config {
-                schedule: Schedule::OneCycle { warmup: 0.3 },
-                ..config()
-            },
-        ),
-        (
-            "patient",
-            Config {
-                patience: Some(4),
-                ..config()
-            },
-        ),
+    let chunks = with(|c| (c.batch, c.chunk) = (1600, 128));
+    assert_repeats(&chunks, &|_| rows(5000));
+    for config in [
+        config(),
+        with(|c| c.schedule = Schedule::OneCycle { warmup: 0.3 }),
+        with(|c| c.patience = Some(4)),
     ] {
-        let whole = folder.path().join(name).with_extension("whole");
-        let parts = folder.path().join(name).with_extension("parts");
-        std::fs::create_dir(&whole).unwrap();
-        let expected = run(&config, &data, &whole.join("net.safetensors")).unwrap();
-
-        let out = parts.join("net.safetensors");
-        let stop = AtomicBool::new(false);
-        let mut options = RunOptions::new(&out, &stop);
-        let first = train(&config, &data, &options, |report| {
-            stop.store(report.epoch == 3, Ordering::Relaxed);
-        })
-        .unwrap();
-        assert_eq!((first.end, first.history.len()), (End::Interrupted, 3));
-        assert!(!out.exists(), "an interrupted run leaves no finished model");
-        assert!(Model::load(first.checkpoint.join("last.safetensors")).is_ok());
-
-        stop.store(false, Ordering::Relaxed);
-        options.resume = true;
-        let second = train(&config, &data, &options, |_| {}).unwrap();
-        assert_eq!((second.end, second.resumed_from), (End::Finished, Some(3)));
-        assert_eq!(
-            std::fs::read(whole.join("net.safetensors")).unwrap(),
-            std::fs::read(&out).unwrap(),
-            "{name}"
-        );
-        let losses = |outcome: &peelnet_train::Outcome| -> Vec<_> {
-            outcome
-                .history
-                .iter()
-                .map(|r| (r.train_loss, r.held_out_loss, r.best))
-                .collect()
-        };
-        assert_eq!(losses(&expected), losses(&second));
-
-        // A finished run that is resumed has nothing to do and says the same.
-        let third = train(&config, &data, &options, |_| panic!("no epoch is left")).unwrap();
-        assert_eq!((third.resumed_from, third.model), (Some(6), second.model));
+        assert_resumes(&config, &|| rows(3000));
     }
 }
 
@@ -264,12 +169,7 @@ fn epochs_can_be_added_to_a_finished_run() {
     run(&long, &data, &straight).unwrap();
     let out = folder.path().join("extended.safetensors");
     run(&short, &data, &out).unwrap();
-    let stop = AtomicBool::new(false);
-    let options = RunOptions {
-        resume: true,
-        ..RunOptions::new(&out, &stop)
-    };
-    train(&long, &data, &options, |_| {}).unwrap();
+    train(&long, &data, &resuming(&out), |_| {}).unwrap();
     assert_eq!(
         std::fs::read(straight).unwrap(),
         std::fs::read(out).unwrap()
@@ -282,39 +182,19 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
     let out = folder.path().join("net.safetensors");
     let data = rows(300);
     run(&config(), &data, &out).unwrap();
-    let stop = AtomicBool::new(false);
-    let options = RunOptions {
-        resume: true,
-        ..RunOptions::new(&out, &stop)
+    let refuse = |change: fn(&mut Config, &mut TrainingData), word: &str| {
+        let (mut config, mut data) = (config(), data.clone());
+        change(&mut config, &mut data);
+        let error = train(&config, &data, &resuming(&out), |_| {}).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("state.safetensors") && text.contains(word),
+            "{text}"
+        );
     };
-    let message = |config: &Config, data: &TrainingData| {
-        train(config, data, &options, |_| {})
-            .unwrap_err()
-            .to_string()
-    };
-    let text = message(
-        &Config {
-            seed: 2,
-            ..config()
-        },
-        &data,
-    );
-    assert!(
-        text.contains("state.safetensors") && text.contains("`seed`"),
-        "{text}"
-    );
-    let text = message(
-        &Config {
-            hidden: vec![4],
-            ..config()
-        },
-        &data,
-    );
-    assert!(text.contains("`hidden`"), "{text}");
-    let mut other = data.clone();
-    other.targets[0][7] += 0.25;
-    let text = message(&config(), &other);
-    assert!(text.contains("other rows"), "{text}");
+    refuse(|config, _| config.seed = 2, "`seed`");
+    refuse(|config, _| config.hidden = vec![4], "`hidden`");
+    refuse(|_, data| data.targets[0][7] += 0.25, "other rows");
 
     let state = checkpoint_folder(&out).join("state.safetensors");
     let bytes = std::fs::read(&state).unwrap();
@@ -325,11 +205,7 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
         b"not a checkpoint",
     ] {
         std::fs::write(&state, damaged).unwrap();
-        let text = message(&config(), &data);
-        assert!(
-            text.contains("state.safetensors") && text.contains("delete the checkpoint folder"),
-            "{text}"
-        );
+        refuse(|_, _| {}, "delete the checkpoint folder");
     }
     // Training afresh replaces it.
     run(&config(), &data, &out).unwrap();
@@ -338,11 +214,7 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
 #[test]
 fn resuming_without_a_checkpoint_is_an_error_that_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let stop = AtomicBool::new(false);
-    let options = RunOptions {
-        resume: true,
-        ..RunOptions::new(folder.path().join("net.safetensors"), &stop)
-    };
+    let options = resuming(&folder.path().join("net.safetensors"));
     let refused = train(&config(), &rows(200), &options, |_| {
         panic!("no epoch may run")
     });
@@ -382,26 +254,13 @@ fn divergence_is_an_error_that_keeps_the_last_good_weights() {
     assert!(!out.exists());
 
     // With held-out rows the first epoch is found out already, and there is nothing to keep.
-    let error = run(
-        &Config {
-            held_out: 0.5,
-            ..config
-        },
-        &rows(100),
-        &out,
-    )
-    .unwrap_err();
-    assert!(
-        matches!(
-            error,
-            TrainError::Diverged {
-                epoch: 1,
-                kept: None,
-                ..
-            }
-        ),
-        "{error}"
-    );
+    let config = Config {
+        held_out: 0.5,
+        ..config
+    };
+    let error = run(&config, &rows(100), &out).unwrap_err();
+    assert!(error.to_string().contains("in epoch 1:"), "{error}");
+    assert!(matches!(error, TrainError::Diverged { kept: None, .. }));
 }
 
 #[test]
@@ -531,18 +390,9 @@ fn models_with_dots_in_their_names_have_checkpoints_of_their_own() {
         std::fs::read(outcome.checkpoint.join("last.safetensors")).unwrap()
     });
     assert_eq!(models[0], models[1]);
-    assert!(
-        folder
-            .path()
-            .join("exp-0.5.checkpoint/state.safetensors")
-            .is_file()
-    );
-    assert!(
-        folder
-            .path()
-            .join("exp-0.7.checkpoint/state.safetensors")
-            .is_file()
-    );
+    for name in ["exp-0.5.checkpoint", "exp-0.7.checkpoint"] {
+        assert!(folder.path().join(name).join("state.safetensors").is_file());
+    }
     // Locks are gone.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
 }
@@ -551,13 +401,17 @@ fn models_with_dots_in_their_names_have_checkpoints_of_their_own() {
 fn two_trainings_of_one_output_exclude_one_another() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("net.safetensors");
-    let stop = AtomicBool::new(false);
     let mut refused = 0;
-    train(&config(), &rows(200), &RunOptions::new(&out, &stop), |_| {
-        let e = run(&config(), &rows(200), &out).unwrap_err();
-        assert!(matches!(&e, TrainError::Busy { .. }), "{e}");
-        refused += 1;
-    })
+    train(
+        &config(),
+        &rows(200),
+        &RunOptions::new(&out, &NEVER),
+        |_| {
+            let e = run(&config(), &rows(200), &out).unwrap_err();
+            assert!(matches!(&e, TrainError::Busy { .. }), "{e}");
+            refused += 1;
+        },
+    )
     .unwrap();
     assert_eq!(refused, config().epochs);
     run(&config(), &rows(200), &out).unwrap();
@@ -565,7 +419,7 @@ fn two_trainings_of_one_output_exclude_one_another() {
     let lock = OutputLock::take(&out).unwrap();
     let options = RunOptions {
         lock: Some(&lock),
-        ..RunOptions::new(&out, &stop)
+        ..RunOptions::new(&out, &NEVER)
     };
     train(&config(), &rows(200), &options, |_| {}).unwrap();
 }
@@ -575,7 +429,6 @@ fn places_that_cannot_be_written_are_refused_before_training() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     std::fs::write(&file, "").unwrap();
-    let stop = AtomicBool::new(false);
     let refuse = |options: RunOptions<'_>, word: &str| {
         let text = train(&config(), &rows(20), &options, |_| {
             panic!("no epoch may run")
@@ -585,16 +438,16 @@ fn places_that_cannot_be_written_are_refused_before_training() {
         assert!(text.contains(word), "{text}");
     };
     refuse(
-        RunOptions::new(file.join("net.safetensors"), &stop),
+        RunOptions::new(file.join("net.safetensors"), &NEVER),
         "file/net.safetensors.lock",
     );
     refuse(
-        RunOptions::new(folder.path(), &stop),
+        RunOptions::new(folder.path(), &NEVER),
         &folder.path().display().to_string(),
     );
     let curve = RunOptions {
         loss_curve: vec![folder.path().join("loss.png")],
-        ..RunOptions::new(folder.path().join("net.safetensors"), &stop)
+        ..RunOptions::new(folder.path().join("net.safetensors"), &NEVER)
     };
     refuse(curve, "loss.png");
 }

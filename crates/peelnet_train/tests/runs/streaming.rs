@@ -1,20 +1,14 @@
 //! Training from a scratch file: the same examples as in memory, the same bytes for the same seed, and as good a network.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should panic")]
 
-mod common;
-
-use std::num::NonZeroUsize;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use common::{scene, write_views};
 use peelnet_core::random::Random;
 use peelnet_dataset::{Dataset, FragmentBatch, SplitBy, Subset};
 use peelnet_model::Recipe;
-use peelnet_train::{
-    Config, DataSplit, End, Outcome, Part, RunOptions, Source, StreamedData, TrainError,
-    TrainingData, checkpoint_folder, train,
-};
+use peelnet_train::{Config, DataSplit, Outcome, TrainError, TrainingData, train};
+
+use super::{NEVER, assert_repeats, assert_resumes, resuming, run, scene, write_views};
 
 const SIDE: u32 = 40;
 
@@ -71,100 +65,28 @@ fn config(recipe: Recipe) -> Config {
     }
 }
 
-fn streamed(config: &Config, dataset: &Dataset, folder: &Path) -> StreamedData {
-    let stop = AtomicBool::new(false);
+fn streamed(config: &Config, dataset: &Dataset, folder: &Path) -> TrainingData {
     let datasets = std::slice::from_ref(dataset);
-    StreamedData::from_datasets(config, datasets, folder, &stop, |_, _| {}).unwrap()
-}
-
-fn run<'a>(config: &Config, data: impl Into<Source<'a>>, out: &Path) -> Outcome {
-    let stop = AtomicBool::new(false);
-    train(config, data, &RunOptions::new(out, &stop), |_| {}).unwrap()
+    TrainingData::streamed(config, datasets, folder, &NEVER, |_, _| {}).unwrap()
 }
 
 /// Recipes of every kind of examples: rows, weighed rows, pixels.
 const RECIPES: [Recipe; 4] = [Recipe::THESIS, Recipe::NMT, Recipe::DFAOIT, Recipe::MEDIUM];
 
 #[test]
-fn the_seed_decides_the_bytes_and_the_number_of_threads_does_not() {
-    let folder = tempfile::tempdir().unwrap();
-    let dataset = write(&folder.path().join("rows"), 4);
-    for recipe in RECIPES {
-        let bytes = |threads: usize, config: &Config| {
-            // Everything anew, the pass over the dataset as well.
-            let data = streamed(config, &dataset, folder.path());
-            let out = folder.path().join("net.safetensors");
-            let stop = AtomicBool::new(false);
-            let options = RunOptions {
-                threads: NonZeroUsize::new(threads),
-                ..RunOptions::new(&out, &stop)
-            };
-            train(config, &data, &options, |_| {}).unwrap();
-            std::fs::read(out).unwrap()
-        };
-        let config = config(recipe);
-        let one = bytes(1, &config);
-        for threads in [1, 2, 5] {
-            assert!(
-                one == bytes(threads, &config),
-                "{recipe}, {threads} threads"
-            );
-        }
-        assert!(one != bytes(1, &Config { seed: 2, ..config }), "{recipe}");
-    }
-}
-
-#[test]
-fn a_run_interrupted_and_resumed_has_the_same_bytes() {
+fn streamed_runs_repeat_and_resume() {
     let folder = tempfile::tempdir().unwrap();
     let dataset = write(&folder.path().join("rows"), 4);
     for recipe in RECIPES {
         let config = config(recipe);
-        let whole = folder.path().join(format!("{recipe}-whole.safetensors"));
-        let expected = run(&config, &streamed(&config, &dataset, folder.path()), &whole);
-        let out = folder.path().join(format!("{recipe}.safetensors"));
-        let stop = AtomicBool::new(false);
-        let mut options = RunOptions::new(&out, &stop);
-        let data = streamed(&config, &dataset, &checkpoint_folder(&out));
-        let first = train(&config, &data, &options, |report| {
-            stop.store(report.epoch == 2, Ordering::Relaxed);
-        })
-        .unwrap();
-        assert_eq!((first.end, first.history.len()), (End::Interrupted, 2));
-        // A process that was killed has no scratch file any more.
-        drop(data);
-        stop.store(false, Ordering::Relaxed);
-        options.resume = true;
-        let data = streamed(&config, &dataset, &checkpoint_folder(&out));
-        let second = train(&config, &data, &options, |_| {}).unwrap();
-        assert_eq!((second.end, second.resumed_from), (End::Finished, Some(2)));
-        assert_eq!(second.model, expected.model, "{recipe}");
-        assert!(
-            std::fs::read(&whole).unwrap() == std::fs::read(&out).unwrap(),
-            "{recipe}"
-        );
-        // Another buffer has another order, and a training in memory is another one.
-        for buffer_rows in [Some(3001), None] {
-            let other = Config {
-                buffer_rows,
-                ..config.clone()
-            };
-            let error = train(&other, &data, &options, |_| {}).unwrap_err();
-            assert!(error.to_string().contains("`buffer_rows`"), "{error}");
-        }
+        assert_repeats(&config, &|config| streamed(config, &dataset, folder.path()));
+        assert_resumes(&config, &|| streamed(&config, &dataset, folder.path()));
     }
-    let names = std::fs::read_dir(folder.path()).unwrap();
-    let left: Vec<_> = names.map(|n| n.unwrap().file_name()).collect();
-    assert!(
-        left.iter()
-            .all(|n| n.to_string_lossy().contains("safetensors") || n == "rows"),
-        "scratch files have no name: {left:?}"
-    );
 }
 
-/// The checkpoint belongs to the dataset: another one's hash is refused.
+/// The checkpoint belongs to the dataset and the buffer: another hash and another order are refused, and so is a training in memory.
 #[test]
-fn a_checkpoint_of_another_dataset_is_refused() {
+fn a_checkpoint_of_another_dataset_or_buffer_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let config = config(Recipe::THESIS);
     let out = folder.path().join("net.safetensors");
@@ -172,14 +94,18 @@ fn a_checkpoint_of_another_dataset_is_refused() {
         let dataset = write(&folder.path().join(name), views);
         streamed(&config, &dataset, folder.path())
     };
-    run(&config, &of("a", 2), &out);
-    let stop = AtomicBool::new(false);
-    let options = RunOptions {
-        resume: true,
-        ..RunOptions::new(&out, &stop)
-    };
-    let error = train(&config, &of("b", 3), &options, |_| {}).unwrap_err();
+    let data = of("a", 2);
+    run(&config, &data, &out).unwrap();
+    let error = train(&config, &of("b", 3), &resuming(&out), |_| {}).unwrap_err();
     assert!(error.to_string().contains("other rows"), "{error}");
+    for buffer_rows in [Some(3001), None] {
+        let other = Config {
+            buffer_rows,
+            ..config.clone()
+        };
+        let error = train(&other, &data, &resuming(&out), |_| {}).unwrap_err();
+        assert!(error.to_string().contains("`buffer_rows`"), "{error}");
+    }
 }
 
 #[test]
@@ -190,7 +116,7 @@ fn the_pass_can_be_stopped_and_too_few_pixels_are_refused() {
     let good = config(Recipe::MEDIUM);
     let begin = |config: &Config, stop| {
         let stop = AtomicBool::new(stop);
-        StreamedData::from_datasets(config, datasets, folder.path(), &stop, |_, _| {})
+        TrainingData::streamed(config, datasets, folder.path(), &stop, |_, _| {})
     };
     assert!(matches!(begin(&good, true), Err(TrainError::Stopped)));
     let few = Config {
@@ -204,7 +130,7 @@ fn the_pass_can_be_stopped_and_too_few_pixels_are_refused() {
     );
     let data = begin(&good, false).unwrap();
     assert_eq!(data.split, Some(DataSplit::Pixels { scenes: 2 }));
-    assert!(data.scratch_bytes() > 0);
+    assert!(data.scratch_bytes() > Some(0));
 }
 
 /// As many examples and rows of each part as in memory, and the same normalisation in the model file. The offsets and scales are
@@ -219,20 +145,14 @@ fn examples_and_normalisation_are_those_of_memory() {
         config.epochs = 1;
         let stream = streamed(&config, &dataset, folder.path());
         let held = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
-        assert_eq!(stream.rows(), held.rows() as u64, "{recipe}");
-        for (part, subset) in [
-            (Part::Train, Subset::Train),
-            (Part::Validation, Subset::Validation),
-            (Part::Test, Subset::Test),
-        ] {
-            let subsets = held.subsets.iter().flatten();
-            let count = subsets.filter(|s| **s == subset).count();
-            assert_eq!(stream.examples(part), count as u64, "{recipe}");
+        assert_eq!(stream.rows(), held.rows(), "{recipe}");
+        for subset in [Subset::Train, Subset::Validation, Subset::Test] {
+            assert_eq!(stream.examples(subset), held.examples(subset), "{recipe}");
         }
         let out = folder.path().join("net.safetensors");
-        let a = run(&config, &stream, &out).model.meta;
+        let a = run(&config, &stream, &out).unwrap().model.meta;
         config.buffer_rows = None;
-        let b = run(&config, &held, &out).model.meta;
+        let b = run(&config, &held, &out).unwrap().model.meta;
         assert_eq!(a.dataset, b.dataset);
         for (a, b) in a.inputs.iter().zip(&b.inputs) {
             assert_eq!((a.min, a.max), (b.min, b.max), "{recipe}, {}", a.name);
@@ -268,11 +188,11 @@ fn a_streamed_training_is_as_good_as_one_in_memory() {
             let out = folder.path().join("net.safetensors");
             let stream = streamed(&config, &dataset, folder.path());
             let of = |outcome: Outcome| outcome.history.last().unwrap().held_out_loss.unwrap();
-            losses[0].push(of(run(&config, &stream, &out)));
+            losses[0].push(of(run(&config, &stream, &out).unwrap()));
             config.buffer_rows = None;
             let held =
                 TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
-            losses[1].push(of(run(&config, &held, &out)));
+            losses[1].push(of(run(&config, &held, &out).unwrap()));
         }
         let n = SEEDS as f64;
         let mean = |l: &Vec<f64>| l.iter().sum::<f64>() / n;

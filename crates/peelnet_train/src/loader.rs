@@ -1,0 +1,258 @@
+//! From datasets to examples, in memory or in a scratch file.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use peelnet_dataset::{Dataset, Part, Split, SplitBy, Subset};
+use peelnet_model::{DatasetRef, Model};
+
+use crate::config::Config;
+use crate::error::TrainError;
+use crate::examples::{View, gather, pixels_of};
+use crate::sampler::Sample;
+use crate::scratch::Scratch;
+use crate::table::{DataSplit, TrainingData, UsedRows};
+
+impl TrainingData {
+    /// The rows of all scenes that are not held out, dataset after dataset.
+    ///
+    /// Of these, the shares [`Config::held_out`] and [`Config::validation`] are set aside: whole scenes where [`Config::split`] says so
+    /// and there are enough of them, else whole pixels, whose fragments have their sum and count in common and say almost everything
+    /// about one another. Each world of a synthetic dataset counts as a scene. [`TrainingData::split`] says what was done.
+    ///
+    /// # Errors
+    /// A dataset that cannot be read.
+    pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
+        let plan = Plan::new(config, datasets)?;
+        let mut sample = Sample::new(config.seed, config.max_rows, plan.dataset.rows);
+        let mut data = Self::of_recipe(config.recipe);
+        let mut ends = vec![0; plan.views.len()];
+        let factors = gather(
+            config.recipe,
+            &mut data,
+            plan.views,
+            &mut sample,
+            |view, _, data| {
+                ends[view] = data.examples_held();
+                Ok(())
+            },
+        )?;
+        if let Some(weights) = &mut data.weights {
+            let mut first = 0;
+            for (view, end) in ends.into_iter().enumerate() {
+                factors.apply(view, &mut weights[first..end]);
+                first = end;
+            }
+        }
+        data.used = Some(UsedRows {
+            used: sample.kept()?,
+            of: plan.dataset.rows,
+        });
+        // A split that leaves a subset without examples is dropped: a handful of pixels may all fall on one side. Then the trainer draws
+        // examples.
+        if lacking(&data, config).is_some() {
+            data.subsets = None;
+        }
+        // Scenes whose share of the rows holds no example of a subset are not set aside.
+        data.split = Some(plan.split)
+            .filter(|split| data.subsets.is_some() || matches!(split, DataSplit::Pixels { .. }));
+        (data.source, data.dataset) = (plan.source, Some(plan.dataset));
+        Ok(data)
+    }
+
+    /// The same examples in a file without a name in `folder`, which is made if it is not there; [`Config::buffer_rows`] rows are in memory at
+    /// once. The file takes [`TrainingData::scratch_bytes`] and is gone when the process ends. All rows are used, whatever
+    /// [`Config::max_rows`] says.
+    ///
+    /// `stop` ends the reading from anywhere. `on_rows` gets the rows that were read and those of the datasets.
+    ///
+    /// # Errors
+    /// A dataset that cannot be read, a file that cannot be written, no examples for a subset, or [`TrainError::Stopped`].
+    pub fn streamed(
+        config: &Config,
+        datasets: &[Dataset],
+        folder: &Path,
+        stop: &AtomicBool,
+        mut on_rows: impl FnMut(u64, u64),
+    ) -> Result<Self, TrainError> {
+        let plan = Plan::new(config, datasets)?;
+        let mut data = Self::of_recipe(config.recipe);
+        let mut scratch = Scratch::create(folder, data.inputs.len())?;
+        let mut read = 0;
+        scratch.weights = gather(
+            config.recipe,
+            &mut data,
+            plan.views,
+            &mut Sample::all(),
+            |view, rows, data| {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(TrainError::Stopped);
+                }
+                data.check_values(config.recipe, &plan.source, scratch.rows)?;
+                scratch.write(view, data)?;
+                data.clear();
+                read += rows as u64;
+                on_rows(read, plan.dataset.rows);
+                Ok(())
+            },
+        )?;
+        if scratch.rows == 0 {
+            return Err(TrainError::no_rows(&plan.source));
+        }
+        data.scratch = Some(Arc::new(scratch));
+        if let Some(name) = lacking(&data, config) {
+            let problem = format!(
+                "no example is left for {name}: so few rows are trained on in memory, without streaming"
+            );
+            return Err(TrainError::columns(&plan.source, problem));
+        }
+        data.split = Some(plan.split);
+        (data.source, data.dataset) = (plan.source, Some(plan.dataset));
+        Ok(data)
+    }
+}
+
+/// What examples should be left for and are not.
+fn lacking(data: &TrainingData, config: &Config) -> Option<&'static str> {
+    let shares = [
+        (Subset::Train, 1.0, "training"),
+        (Subset::Validation, config.validation, "validation"),
+        (Subset::Test, config.held_out, "testing"),
+    ];
+    let mut shares = shares.into_iter();
+    let lacks = shares.find(|&(subset, share, _)| share > 0.0 && data.examples(subset) == 0);
+    lacks.map(|(.., name)| name)
+}
+
+/// The views that are trained on, and what is known of them before they are read.
+struct Plan<'a> {
+    /// Those that have rows.
+    views: Vec<View<'a>>,
+    /// The paths, for messages.
+    source: String,
+    dataset: DatasetRef,
+    split: DataSplit,
+}
+
+impl<'a> Plan<'a> {
+    fn new(config: &Config, datasets: &'a [Dataset]) -> Result<Self, TrainError> {
+        let by_pixel = Split::new(config.seed, config.validation, config.held_out)?;
+        let parts: Vec<(&Dataset, &Part)> = datasets.iter().flat_map(trained_on).collect();
+        let mut rows: BTreeMap<String, u64> = BTreeMap::new();
+        for (dataset, part) in parts.iter().filter(|(_, part)| part.rows > 0) {
+            *rows.entry(split_name(dataset, part)).or_default() += part.rows;
+        }
+        let named = rows.iter().map(|(name, rows)| (name.as_str(), *rows));
+        let subsets = (config.split == SplitBy::Scene)
+            .then(|| by_pixel.scenes(&named.collect()))
+            .flatten();
+        let names = |wanted: Subset| {
+            let subsets = subsets.iter().flatten().filter(|(_, s)| **s == wanted);
+            subsets.map(|(name, _)| (*name).to_owned()).collect()
+        };
+        let (validation, test): (Vec<_>, Vec<_>) = (names(Subset::Validation), names(Subset::Test));
+        let scenes = parts.iter().map(|(d, p)| scene_name(d, p).to_owned());
+        let scenes: BTreeSet<String> = scenes.collect();
+        let (set_aside, scenes) = scenes
+            .into_iter()
+            .partition(|name| validation.contains(name) || test.contains(name));
+        let split_of = |dataset, part| match &subsets {
+            None => by_pixel,
+            Some(subsets) => {
+                let subset = subsets.get(split_name(dataset, part).as_str());
+                Split::whole(subset.copied().unwrap_or(Subset::Train))
+            }
+        };
+        let views = parts.iter().filter(|(_, part)| part.rows > 0);
+        let views = views.map(|&(dataset, part)| View {
+            dataset,
+            part,
+            split: split_of(dataset, part),
+        });
+        let hashes: Vec<&str> = datasets.iter().map(Dataset::hash).collect();
+        let paths = datasets.iter().map(|d| d.path().display().to_string());
+        Ok(Self {
+            views: views.collect(),
+            source: paths.collect::<Vec<_>>().join(", "),
+            dataset: DatasetRef {
+                hash: hashes.join("+"),
+                rows: parts
+                    .iter()
+                    .map(|(_, p)| p.rows)
+                    .fold(0, u64::saturating_add),
+                set_aside,
+                scenes,
+            },
+            split: match subsets {
+                Some(_) => DataSplit::Scenes { validation, test },
+                None => DataSplit::Pixels { scenes: rows.len() },
+            },
+        })
+    }
+}
+
+/// The parts of scenes that are not held out.
+fn trained_on(dataset: &Dataset) -> impl Iterator<Item = (&Dataset, &Part)> {
+    let parts = dataset.manifest().parts.iter();
+    let parts = parts.filter(|part| !dataset.is_held_out(part));
+    parts.map(move |part| (dataset, part))
+}
+
+fn scene_name<'a>(dataset: &'a Dataset, part: &Part) -> &'a str {
+    &dataset.manifest().scenes[part.scene as usize].name
+}
+
+/// The name that a part's rows are split by: its scene, or of a synthetic dataset its world.
+fn split_name(dataset: &Dataset, part: &Part) -> String {
+    let name = scene_name(dataset, part);
+    if dataset.manifest().peel == SYNTHETIC {
+        format!("{name} {}", part.index)
+    } else {
+        name.to_owned()
+    }
+}
+
+/// How a dataset's manifest says that its lists were made up.
+const SYNTHETIC: &str = "synthetic";
+
+/// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records. Empty for a
+/// network that predicts no transmittance.
+///
+/// [`Metadata::held_out`]: peelnet_model::Metadata::held_out
+///
+/// # Errors
+/// A dataset that cannot be read.
+pub fn held_out_errors(
+    model: &Model,
+    datasets: &[Dataset],
+) -> Result<BTreeMap<String, f64>, TrainError> {
+    let mut sums: BTreeMap<String, (f64, u64)> = BTreeMap::new();
+    for dataset in datasets {
+        let parts = dataset.manifest().parts.iter();
+        for part in parts.filter(|part| dataset.is_held_out(part)) {
+            let name = scene_name(dataset, part).to_owned();
+            let sum = sums.entry(name).or_default();
+            let view = View {
+                dataset,
+                part,
+                split: Split::whole(Subset::HeldOut),
+            };
+            let warp = view.warp()?;
+            for batch in view.batches() {
+                pixels_of(&batch?, |pixel| {
+                    let precision = model.meta.recipe.sums;
+                    let weights = model.transmittances(pixel.points, &warp, precision);
+                    for (w, &t) in weights.iter().zip(pixel.transmittance) {
+                        sum.0 += (w - f64::from(t)).abs();
+                        sum.1 += 1;
+                    }
+                });
+            }
+        }
+    }
+    let sums = sums.into_iter().filter(|(_, (_, rows))| *rows > 0);
+    let means = sums.map(|(scene, (sum, rows))| (scene, sum / rows as f64));
+    Ok(means.collect())
+}

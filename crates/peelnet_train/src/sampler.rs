@@ -1,0 +1,464 @@
+//! Which examples are used, what for, and in which order.
+//!
+//! A run sees its examples in windows: what is on the device at once. Of examples in memory there is one window, all of a subset, in the order
+//! of the epoch. Streamed examples have windows of about [`Config::buffer_rows`] rows:
+//!
+//! - The blocks of the scratch file are permuted, from the seed and the epoch's number. A window takes the next ones, and its examples
+//!   are permuted, from the seed, the epoch's number and the window's.
+//! - All windows of an epoch hold about the same number of rows, so that none is mixed from a few blocks only.
+//! - A training window holds a multiple of the batch. What is left over goes into the next window, so that a batch is smaller at the
+//!   end of an epoch only, as in memory.
+//!
+//! Nothing depends on the number of threads, and every example is in one window of an epoch.
+
+use burn::tensor::Device;
+use peelnet_core::random::Random;
+use peelnet_dataset::Subset;
+
+use crate::config::{Config, DEFAULT_BUFFER_ROWS};
+use crate::error::TrainError;
+use crate::loss::Window;
+use crate::normalise::Normalisation;
+use crate::scratch::{SUBSETS, Scratch, decode, encode};
+use crate::table::TrainingData;
+
+/// What a stream of random numbers is for: streams of one seed must not overlap.
+#[derive(Clone, Copy)]
+pub(crate) enum Stream {
+    Weights,
+    Split,
+    /// The order of examples in an epoch.
+    Order(u32),
+    /// Whether a pixel is used: its view, and its place in it.
+    Sample(u64, u64),
+    /// The order of blocks in an epoch of streamed examples.
+    Blocks(u32),
+    /// The order of examples in a window of an epoch.
+    Window(u32, u64),
+}
+
+impl Stream {
+    /// The stream of a seed.
+    pub(crate) fn of(self, seed: u64) -> Random {
+        match self {
+            Self::Weights => Random::new(seed, &[1, 0]),
+            Self::Split => Random::new(seed, &[2, 0]),
+            Self::Order(epoch) => Random::new(seed, &[3, epoch.into()]),
+            Self::Sample(view, place) => Random::new(seed, &[4, view, place]),
+            Self::Blocks(epoch) => Random::new(seed, &[5, epoch.into()]),
+            Self::Window(epoch, window) => Random::new(seed, &[6, epoch.into(), window]),
+        }
+    }
+
+    fn permuted<T: Copy>(self, seed: u64, items: &[T]) -> Vec<T> {
+        let order = self.of(seed).permutation(items.len() as u32);
+        order.into_iter().map(|i| items[i as usize]).collect()
+    }
+}
+
+/// Fraction of the limit that the draw aims at, so that chance hardly ever reaches the limit itself.
+const AIM: f64 = 0.99;
+
+/// Draws whole pixels where datasets have more rows than a training may hold in memory: the same fraction of every view, from the seed. The
+/// draw of a pixel depends on nothing but the seed, the view and the pixel's place. At most `most` rows of `total` are kept.
+pub(crate) struct Sample {
+    seed: u64,
+    most: u64,
+    total: u64,
+    fraction: f64,
+    /// Number of the view, rows of the views up to and with it.
+    view: u64,
+    seen: u64,
+    /// Rows kept so far.
+    kept: u64,
+}
+
+impl Sample {
+    /// Of so many rows in all views.
+    pub(crate) fn new(seed: u64, most: u64, total: u64) -> Self {
+        let is_part = total > most;
+        Self {
+            seed,
+            most,
+            total,
+            fraction: if is_part {
+                AIM * most as f64 / total as f64
+            } else {
+                1.0
+            },
+            view: 0,
+            seen: 0,
+            kept: 0,
+        }
+    }
+
+    /// Every pixel.
+    pub(crate) fn all() -> Self {
+        Self::new(0, u64::MAX, 0)
+    }
+
+    /// The next view begins, of so many rows.
+    pub(crate) fn begin(&mut self, rows: u64) {
+        self.view += 1;
+        self.seen = self.seen.saturating_add(rows);
+    }
+
+    /// Whether a pixel of the view is kept.
+    pub(crate) fn keep(&mut self, [x, y]: [u32; 2], rows: usize) -> bool {
+        if self.fraction < 1.0 {
+            let place = u64::from(x) << 32 | u64::from(y);
+            if f64::from(Stream::Sample(self.view, place).of(self.seed).unit()) >= self.fraction {
+                return false;
+            }
+            // The views so far may hold their share of the limit, rounded down, so the last ones have theirs.
+            let room = u128::from(self.most) * u128::from(self.seen) / u128::from(self.total);
+            if u128::from(self.kept) + rows as u128 > room {
+                return false;
+            }
+        }
+        self.kept += rows as u64;
+        true
+    }
+
+    /// Rows that were kept.
+    ///
+    /// # Errors
+    /// None was, though there are some.
+    pub(crate) fn kept(&self) -> Result<u64, TrainError> {
+        if self.kept == 0 && self.total > 0 {
+            return Err(TrainError::Config {
+                setting: "max_rows",
+                value: self.most.to_string(),
+                hint: "give more: not one whole pixel fits",
+            });
+        }
+        Ok(self.kept)
+    }
+}
+
+/// Indices of the examples in memory, ascending, by subset. Where the data have no split, `⌊n · held_out⌋` are drawn for testing; at least one is
+/// left for training.
+fn by_subset(data: &TrainingData, config: &Config) -> [Vec<u32>; 3] {
+    let drawn = || {
+        let n = data.examples_held();
+        let held_out = ((n as f64 * config.held_out) as usize).min(n.saturating_sub(1));
+        let order = Stream::Split.of(config.seed).permutation(n as u32);
+        let mut subsets = vec![Subset::Train; n];
+        for &example in &order[..held_out] {
+            subsets[example as usize] = Subset::Test;
+        }
+        subsets
+    };
+    let subsets = data.subsets.clone().unwrap_or_else(drawn);
+    SUBSETS.map(|wanted| {
+        let examples = (0u32..).zip(&subsets).filter(|(_, s)| **s == wanted);
+        examples.map(|(example, _)| example).collect()
+    })
+}
+
+/// The examples of a run.
+pub(crate) struct Feed<'a> {
+    config: &'a Config,
+    data: &'a TrainingData,
+    device: &'a Device,
+    pub(crate) normalisation: Vec<Normalisation>,
+    /// Those in memory.
+    examples: [Vec<u32>; 3],
+    /// Of subsets in memory whose order never changes.
+    loaded: [Option<Window>; 3],
+}
+
+impl<'a> Feed<'a> {
+    pub(crate) fn new(config: &'a Config, data: &'a TrainingData, device: &'a Device) -> Self {
+        let examples = by_subset(data, config);
+        Self {
+            config,
+            data,
+            device,
+            normalisation: data.normalisation(&examples[Subset::Train as usize]),
+            examples,
+            loaded: [const { None }; 3],
+        }
+    }
+
+    /// Number of examples of a subset.
+    pub(crate) fn examples(&self, subset: Subset) -> u64 {
+        match &self.data.scratch {
+            Some(scratch) => scratch.examples(subset),
+            None => self.examples[subset as usize].len() as u64,
+        }
+    }
+
+    /// Calls `each` with the windows of a pass over a subset, in the order of an epoch or in any.
+    pub(crate) fn pass(
+        &mut self,
+        subset: Subset,
+        epoch: Option<u32>,
+        mut each: impl FnMut(&Window) -> Result<(), TrainError>,
+    ) -> Result<(), TrainError> {
+        let window = |data: &TrainingData, order: &[u32]| {
+            Window::new(data, order, &self.normalisation, self.device)
+        };
+        if let Some(scratch) = &self.data.scratch {
+            let pass = (subset, epoch);
+            return windows(scratch, self.config, pass, |data, order| {
+                each(&window(data, order))
+            });
+        }
+        let examples = &self.examples[subset as usize];
+        match epoch {
+            _ if examples.is_empty() => Ok(()),
+            Some(epoch) => {
+                let order = Stream::Order(epoch).permuted(self.config.seed, examples);
+                each(&window(self.data, &order))
+            }
+            None => {
+                let loaded = &mut self.loaded[subset as usize];
+                each(loaded.get_or_insert_with(|| window(self.data, examples)))
+            }
+        }
+    }
+}
+
+/// Calls `each` with the rows and the order of the examples of each window of a pass over a subset of streamed examples.
+fn windows(
+    scratch: &Scratch,
+    config: &Config,
+    (subset, epoch): (Subset, Option<u32>),
+    mut each: impl FnMut(&TrainingData, &[u32]) -> Result<(), TrainError>,
+) -> Result<(), TrainError> {
+    let most = config.buffer_rows.unwrap_or(DEFAULT_BUFFER_ROWS).max(1);
+    let stored = &scratch.blocks[subset as usize];
+    let blocks = match epoch {
+        Some(epoch) => Stream::Blocks(epoch).permuted(config.seed, stored),
+        None => stored.clone(),
+    };
+    let total: u64 = blocks.iter().map(|block| u64::from(block.rows)).sum();
+    let windows = total.div_ceil(most).max(1);
+    // Whole batches to learn from; for judging, something.
+    let is_training = subset == Subset::Train;
+    let least = if is_training { config.batch } else { 1 };
+    let mut buffer = TrainingData::of_recipe(config.recipe);
+    let mut bytes = Vec::new();
+    // Examples that did not fill a batch: their words and their number.
+    let (mut left, mut left_examples) = (Vec::new(), 0);
+    let (mut next, mut read) = (0, 0);
+    for number in 1.. {
+        buffer.clear();
+        decode(&left, left_examples, &mut buffer);
+        let end = (u128::from(total) * number / u128::from(windows)) as u64;
+        let first = next;
+        let (mut rows, mut examples) = (buffer.rows_held(), buffer.examples_held());
+        while let Some(block) = blocks.get(next)
+            && (read < end || examples < least)
+        {
+            next += 1;
+            read += u64::from(block.rows);
+            rows += block.rows as usize;
+            examples += block.examples as usize;
+        }
+        if examples == 0 {
+            break;
+        }
+        // At once: a column that grows while it is filled is in memory twice.
+        buffer.reserve(examples, rows);
+        for &block in &blocks[first..next] {
+            scratch.read(block, &mut bytes, &mut buffer)?;
+        }
+        let mut order: Vec<u32> = (0..examples as u32).collect();
+        if let Some(epoch) = epoch {
+            order = Stream::Window(epoch, number as u64).permuted(config.seed, &order);
+        }
+        left.clear();
+        left_examples = 0;
+        if is_training && next < blocks.len() {
+            let rest = order.split_off(order.len() / config.batch * config.batch);
+            encode(&buffer, &rest, &mut left);
+            left_examples = rest.len();
+        }
+        each(&buffer, &order)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+    use std::collections::BTreeSet;
+
+    use peelnet_model::Recipe;
+
+    use super::*;
+    use crate::examples::ViewWeights;
+    use crate::scratch::BLOCK_ROWS;
+
+    /// Frozen, because released weights can only be made again if this never changes.
+    #[test]
+    fn the_stream_never_changes() {
+        let order = |epoch| Stream::Order(epoch).of(42).permutation(8);
+        assert_eq!(order(3), [1, 2, 7, 4, 6, 3, 0, 5]);
+        assert_ne!(order(1), order(2));
+    }
+
+    #[test]
+    fn a_third_is_held_out_and_no_row_is_lost() {
+        let mut config = Config::for_recipe(Recipe::THESIS);
+        let of = |n: usize| TrainingData::new("test", Vec::new(), vec![vec![0.0; n]]);
+        let [train, validation, test] = by_subset(&of(3000), &config);
+        let counts = [train.len(), validation.len(), test.len()];
+        assert_eq!(counts, [2000, 0, 1000]);
+        assert!(train.is_sorted() && test.is_sorted());
+        let all: BTreeSet<u32> = train.into_iter().chain(test).collect();
+        assert!(all.into_iter().eq(0..3000));
+        config.held_out = 0.9;
+        assert_eq!(by_subset(&of(1), &config), [vec![0], vec![], vec![]]);
+        let mut given = of(4);
+        let [train, validation, test] = SUBSETS;
+        given.subsets = Some(vec![train, test, validation, train]);
+        assert_eq!(by_subset(&given, &config), [vec![0, 3], vec![2], vec![1]]);
+    }
+
+    /// 40 views of very different sizes: each gives its share, and all together not more than the limit.
+    #[test]
+    fn every_view_gives_its_share_and_all_together_keep_the_limit() {
+        let pixels = |view: u32| 500 * (1 + view % 7);
+        let rows = |x: u32| 1 + (x % 12) as usize;
+        let of_view = |view| (0..pixels(view)).map(rows).sum::<usize>() as u64;
+        let total: u64 = (0..40).map(of_view).sum();
+        for most in [100, 5_000, 100_000, total - 1, total, total + 1] {
+            let mut sample = Sample::new(3, most, total);
+            let mut kept = 0;
+            for view in 0..40 {
+                let before = kept;
+                sample.begin(of_view(view));
+                let pixels = (0..pixels(view)).filter(|&x| sample.keep([x, view], rows(x)));
+                kept += pixels.map(rows).sum::<usize>() as u64;
+                let share = (kept - before) as f64 / of_view(view) as f64;
+                let expected = (most as f64 / total as f64).min(1.0);
+                // Six standard deviations of pixels of up to twelve rows, and the aim below the limit.
+                let spread = 6.0 * (12.0 * expected / of_view(view) as f64).sqrt();
+                assert!(
+                    (share - expected).abs() <= spread + 0.02 * expected,
+                    "{most}, {view}: {share}"
+                );
+            }
+            assert!(kept <= most, "{kept} of {most}");
+            assert!(
+                kept as f64 >= 0.8 * most.min(total) as f64,
+                "{kept} of {most}"
+            );
+            assert_eq!(sample.kept().ok(), Some(kept));
+        }
+        assert!(Sample::new(3, 1, 9).kept().is_err());
+    }
+
+    /// Pixels of 1 to 12 rows with their number in every column, a third of them for testing.
+    fn view(recipe: Recipe, first: u32, pixels: u32, random: &mut Random) -> TrainingData {
+        let mut data = TrainingData::of_recipe(recipe);
+        for id in first..first + pixels {
+            let first_row = data.rows_held() as u32;
+            let mut rows = 1;
+            if let Some(pixels) = &mut data.pixels {
+                rows = 1 + id as usize % 12;
+                pixels.first.push(first_row);
+                pixels.fixed.iter_mut().for_each(|c| c.push(id as f32));
+            }
+            for column in data.row_columns_mut() {
+                column.resize(first_row as usize + rows, id as f32);
+            }
+            let is_test = random.unit() < 0.33;
+            data.end_example(id as f32, SUBSETS[if is_test { 2 } else { 0 }]);
+        }
+        data
+    }
+
+    /// The number of an example of a window, where all that belongs to it is there.
+    fn id(data: &TrainingData, example: u32) -> u32 {
+        let rows = data.rows_of(example);
+        let value = data.inputs[0][rows.start as usize];
+        let id = value as u32;
+        if data.pixels.is_some() {
+            assert_eq!(rows.len() as u32, 1 + id % 12, "whole pixels");
+        }
+        for column in data.row_columns() {
+            let values = &column[rows.start as usize..rows.end as usize];
+            assert!(values.iter().all(|&v| v == value));
+        }
+        let fixed = data.pixels.iter().flat_map(|pixels| &pixels.fixed);
+        fixed.for_each(|column| assert_eq!(column[example as usize], value));
+        // The weights of every view are multiplied by its number and one.
+        let weights = data.weights.iter();
+        let factor = (1 + id / 100_000) as f32;
+        weights.for_each(|weights| assert_eq!(weights[example as usize], value * factor));
+        id
+    }
+
+    /// Whatever the buffer and the batch, an epoch has every example of its part once, batches are whole but for the last, a buffer
+    /// holds no more than was asked, a block, a batch and what was left over, and epochs have different orders.
+    #[test]
+    fn every_example_is_in_one_window_of_an_epoch() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut random = Random::new(3, &[1]);
+        for recipe in [Recipe::THESIS, Recipe::NMT, Recipe::MEDIUM] {
+            let mut scratch = Scratch::create(folder.path(), 0).unwrap();
+            scratch.weights = ViewWeights {
+                overall: 6.0,
+                views: vec![6.0, 3.0, 2.0],
+            };
+            let mut expected: [Vec<u32>; 3] = Default::default();
+            for number in 0..3 {
+                let first = number * 100_000;
+                let data = view(recipe, first, 1 + number * 7000, &mut random);
+                for (id, subset) in (first..).zip(data.subsets.iter().flatten()) {
+                    expected[*subset as usize].push(id);
+                }
+                scratch.write(number as usize, &data).unwrap();
+            }
+            for (most, batch) in [(1, 1), (900, 64), (5000, 7), (30_000, 1000), (1 << 20, 96)] {
+                let config = Config {
+                    seed: 5,
+                    batch,
+                    buffer_rows: Some(most),
+                    ..Config::for_recipe(recipe)
+                };
+                // All examples in order, and those of the first window.
+                let pass = |subset, epoch| {
+                    let (mut all, mut first, mut is_whole) = (Vec::new(), BTreeSet::new(), true);
+                    let number = &mut 0;
+                    windows(&scratch, &config, (subset, epoch), |buffer, order| {
+                        assert!(is_whole, "only the last window has a part of a batch");
+                        is_whole = subset != Subset::Train || order.len().is_multiple_of(batch);
+                        let room = most as usize + 2 * BLOCK_ROWS + 24 * batch;
+                        assert!(buffer.rows_held() <= room);
+                        all.extend(order.iter().map(|&e| id(buffer, e)));
+                        if *number == 0 {
+                            first.extend(all.iter().copied());
+                        }
+                        *number += 1;
+                        Ok(())
+                    })
+                    .unwrap();
+                    (all, first)
+                };
+                let (test, _) = pass(Subset::Test, None);
+                assert_eq!(test, expected[2], "in the order of the views");
+                let [first, second] = [1, 2].map(|epoch| pass(Subset::Train, Some(epoch)));
+                assert_ne!(first.0, second.0);
+                let has_several = first.1.len() < first.0.len();
+                assert!(
+                    !has_several || first.1 != second.1,
+                    "the order of the blocks"
+                );
+                assert_eq!(pass(Subset::Train, Some(1)), first);
+                for (mut all, _) in [first, second] {
+                    assert_ne!(all, expected[0]);
+                    all.sort_unstable();
+                    assert!(
+                        all == expected[0],
+                        "{recipe}, {most} rows, batches of {batch}"
+                    );
+                }
+            }
+        }
+    }
+}
