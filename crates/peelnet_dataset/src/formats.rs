@@ -6,7 +6,7 @@ mod parquet;
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, Read as _, Write};
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
@@ -17,7 +17,6 @@ use sha2::{Digest, Sha256};
 
 use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
-use crate::manifest::FileEntry;
 use crate::store::Fetched;
 
 /// Rows of a full row group of Parquet.
@@ -72,17 +71,44 @@ impl Format {
         self.files_of(&Column::ALL).len()
     }
 
-    /// Starts a part of which the files' names begin with `stem`.
+    /// The names of a part's files, which begin with `stem`.
+    pub(crate) fn file_names(self, stem: &str) -> Vec<String> {
+        match self {
+            Self::Csv | Self::Parquet => vec![format!("{stem}.{self}")],
+            Self::Npy => Column::ALL.map(|c| format!("{stem}.{c}.{self}")).to_vec(),
+        }
+    }
+
+    /// Rows of each row group of a part.
+    pub(crate) fn row_groups(self, rows: u64) -> Vec<u64> {
+        match self {
+            Self::Csv | Self::Npy => vec![rows],
+            Self::Parquet => {
+                let starts = (0..rows).step_by(ROW_GROUP_ROWS);
+                let groups = starts.map(|start| (rows - start).min(ROW_GROUP_ROWS as u64));
+                groups.collect()
+            }
+        }
+    }
+
+    /// Starts a part in these files, which do not exist.
     pub(crate) fn sink(
         self,
-        folder: &Path,
-        stem: &str,
+        files: Vec<PathBuf>,
         threads: usize,
     ) -> Result<Box<dyn PartSink>, DatasetError> {
+        let create = |path: PathBuf| match File::create_new(&path) {
+            Ok(file) => Ok((path, file)),
+            Err(e) => Err(DatasetError::io(&path, "create")(e)),
+        };
+        let mut files = files
+            .into_iter()
+            .map(create)
+            .collect::<Result<Vec<_>, _>>()?;
         Ok(match self {
-            Self::Csv => Box::new(csv::CsvSink::create(folder, stem, threads)?),
-            Self::Parquet => Box::new(parquet::ParquetSink::create(folder, stem, threads)?),
-            Self::Npy => Box::new(npy::NpySink::create(folder, stem, threads)?),
+            Self::Csv => Box::new(csv::CsvSink::new(files.remove(0), threads)?),
+            Self::Parquet => Box::new(parquet::ParquetSink::new(files.remove(0), threads)?),
+            Self::Npy => Box::new(npy::NpySink::new(files)?),
         })
     }
 
@@ -124,8 +150,8 @@ pub(crate) trait PartSink: Send {
     /// Appends rows, which are valid and of equal length.
     fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError>;
 
-    /// Ends the files: rows of each row group, and the files in order.
-    fn finish(self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError>;
+    /// Ends the files, which have so many rows.
+    fn finish(self: Box<Self>, rows: u64) -> Result<(), DatasetError>;
 }
 
 /// Reads one part's rows.
@@ -177,51 +203,6 @@ pub(crate) fn in_parallel<T: Send, R: Send>(
     });
     done.sort_unstable_by_key(|(k, _)| *k);
     done.into_iter().map(|(_, result)| result).collect()
-}
-
-/// Writes to a file and hashes the bytes on the way. Give it large slices: it does not buffer.
-struct HashedFile {
-    path: PathBuf,
-    file: File,
-    hasher: Sha256,
-    bytes: u64,
-}
-
-impl HashedFile {
-    fn create(path: PathBuf) -> Result<Self, DatasetError> {
-        Ok(Self {
-            file: File::create_new(&path).map_err(DatasetError::io(&path, "create"))?,
-            path,
-            hasher: Sha256::new(),
-            bytes: 0,
-        })
-    }
-
-    fn finish(self) -> FileEntry {
-        FileEntry {
-            name: file_name(&self.path),
-            bytes: self.bytes,
-            sha256: hex(&self.hasher.finalize()),
-        }
-    }
-}
-
-fn file_name(path: &Path) -> String {
-    let name = path.file_name().unwrap_or_default();
-    name.to_string_lossy().into_owned()
-}
-
-impl Write for HashedFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let n = self.file.write(bytes)?;
-        self.hasher.update(&bytes[..n]);
-        self.bytes += n as u64;
-        Ok(n)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
 }
 
 /// Hexadecimal sha256 of some bytes.

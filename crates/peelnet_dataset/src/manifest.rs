@@ -180,40 +180,31 @@ impl Manifest {
 
     /// What the types cannot say.
     pub(crate) fn check(&self) -> Result<(), String> {
-        if self.columns != columns() {
-            let names: Vec<_> = self.columns.iter().map(|c| c.name.as_str()).collect();
-            return Err(format!(
-                "the columns are {names:?}, expected {:?} in this order",
-                Column::ALL.map(Column::name)
-            ));
-        }
-        if self.work_items > MAX_WORK_ITEMS {
-            return Err(format!(
-                "{} work items, and at most {MAX_WORK_ITEMS} are read",
-                self.work_items
-            ));
-        }
-        if self.parts.len() != self.work_items as usize {
-            return Err(format!(
-                "{} work items, but {} parts",
-                self.work_items,
-                self.parts.len()
-            ));
-        }
-        let mut rows = 0u64;
+        let names: Vec<_> = self.columns.iter().map(|c| c.name.as_str()).collect();
+        ensure(self.columns == columns(), || {
+            let expected = Column::ALL.map(Column::name);
+            format!("the columns are {names:?}, expected {expected:?} in this order")
+        })?;
+        let (items, parts) = (self.work_items, self.parts.len());
+        ensure(items <= MAX_WORK_ITEMS, || {
+            format!("{items} work items, and at most {MAX_WORK_ITEMS} are read")
+        })?;
+        ensure(parts == items as usize, || {
+            format!("{items} work items, but {parts} parts")
+        })?;
         let mut names = BTreeSet::new();
         for (k, part) in self.parts.iter().enumerate() {
             let checked = self.check_part(k, part, &mut names);
             checked.map_err(|reason| format!("parts[{k}]: {reason}"))?;
-            rows = rows.saturating_add(part.rows);
         }
-        if rows != self.rows {
-            return Err(format!("`rows` is {} but the parts hold {rows}", self.rows));
-        }
-        if self.hash != hash_of_parts(&self.parts) {
-            return Err("`hash` does not fit the files' hashes".to_owned());
-        }
-        Ok(())
+        let rows = self.parts.iter().map(|p| p.rows);
+        let rows = rows.fold(0, u64::saturating_add);
+        ensure(rows == self.rows, || {
+            format!("`rows` is {} but the parts hold {rows}", self.rows)
+        })?;
+        ensure(self.hash == hash_of_parts(&self.parts), || {
+            "`hash` does not fit the files' hashes".to_owned()
+        })
     }
 
     fn check_part<'a>(
@@ -222,49 +213,38 @@ impl Manifest {
         part: &'a Part,
         names: &mut BTreeSet<&'a str>,
     ) -> Result<(), String> {
-        if part.index as usize != k {
-            return Err(format!("index {} where {k} is expected", part.index));
-        }
-        if part.scene as usize >= self.scenes.len() {
-            return Err(format!("scene {} is not listed", part.scene));
-        }
-        let expected = self.format.files_of_a_part();
-        if part.files.len() != expected {
-            return Err(format!(
-                "{} files, a part in format {} has {expected}",
-                part.files.len(),
-                self.format
-            ));
-        }
+        let (index, scene, rows) = (part.index, part.scene, part.rows);
+        ensure(index as usize == k, || {
+            format!("index {index} where {k} is expected")
+        })?;
+        ensure((scene as usize) < self.scenes.len(), || {
+            format!("scene {scene} is not listed")
+        })?;
+        let (format, found) = (self.format, part.files.len());
+        let expected = format.files_of_a_part();
+        ensure(found == expected, || {
+            format!("{found} files, a part in format {format} has {expected}")
+        })?;
         for file in &part.files {
+            let (name, bytes) = (file.name.as_str(), file.bytes);
             // Names come from outside: they must not lead out of the folder on any system.
             let leads_out = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
-            if !file.name.starts_with(FRAGMENTS) || file.name.contains(leads_out) {
-                return Err(format!(
-                    "{:?} is not a plain file name that begins with {FRAGMENTS}",
-                    file.name
-                ));
-            }
-            if !names.insert(file.name.as_str()) {
-                return Err(format!("{:?} is listed twice", file.name));
-            }
+            ensure(
+                name.starts_with(FRAGMENTS) && !name.contains(leads_out),
+                || format!("{name:?} is not a plain file name that begins with {FRAGMENTS}"),
+            )?;
+            ensure(names.insert(name), || format!("{name:?} is listed twice"))?;
             // Of Parquet's compressed rows, only the file itself can say it.
-            if file.bytes < self.format.least_row_bytes().saturating_mul(part.rows) {
-                return Err(format!(
-                    "{} rows cannot be in {} bytes of {:?}",
-                    part.rows, file.bytes, file.name
-                ));
-            }
+            ensure(
+                bytes >= format.least_row_bytes().saturating_mul(rows),
+                || format!("{rows} rows cannot be in {bytes} bytes of {name:?}"),
+            )?;
         }
         let mut groups = part.row_groups.iter();
         let grouped = groups.try_fold(0u64, |a, &g| a.checked_add(g));
-        if grouped != Some(part.rows) {
-            return Err(format!(
-                "the row groups do not add up to {} rows",
-                part.rows
-            ));
-        }
-        Ok(())
+        ensure(grouped == Some(rows), || {
+            format!("the row groups do not add up to {rows} rows")
+        })
     }
 
     /// Whether every work item of the whole dataset has a part here.
@@ -321,6 +301,10 @@ pub(crate) fn read_json<T: DeserializeOwned>(
 pub(crate) fn to_json(value: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(value);
     text.expect("string keys and finite numbers only") + "\n"
+}
+
+fn ensure(holds: bool, reason: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(reason()) }
 }
 
 /// The columns of every dataset.

@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
 use crate::folder::{self, MadeFolders, Partial};
-use crate::formats::PartSink;
-use crate::manifest::{Manifest, Part};
+use crate::formats::{PartSink, hash_file, in_parallel};
+use crate::manifest::{FileEntry, Manifest, Part};
 use crate::parts::{self, PartRecord};
 use crate::plan::{Header, Plan};
 use crate::store::{FRAGMENTS, Folder, META, PLAN, Store, store_at};
@@ -134,14 +134,15 @@ impl DatasetWriter {
             return usage(" was written before");
         }
         let stem = part.stem(&scene.name);
+        let names = header.format.file_names(&stem);
+        let files = names.iter().map(|name| self.scratch.path.join(name));
         // A second part of the same work item fails here, because its files exist.
-        let sink = header
-            .format
-            .sink(&self.scratch.path, &stem, self.threads)?;
+        let sink = header.format.sink(files.collect(), self.threads)?;
         Ok(PartWriter {
             name: PathBuf::from(&stem),
             dataset: self,
             part,
+            names,
             sink,
             last_pixel: None,
         })
@@ -263,6 +264,8 @@ pub struct PartWriter<'a> {
     dataset: &'a DatasetWriter,
     part: Part,
     name: PathBuf,
+    /// Of the files.
+    names: Vec<String>,
     sink: Box<dyn PartSink>,
     last_pixel: Option<[u32; 2]>,
 }
@@ -294,19 +297,29 @@ impl PartWriter<'_> {
     /// # Errors
     /// If the disk refuses, or another writer finished the part with other bytes.
     pub fn finish(self, lost_fragments: u64, coplanar_ties: u64) -> Result<(), DatasetError> {
-        let (row_groups, files) = self.sink.finish()?;
+        self.sink.finish(self.part.rows)?;
+        let dataset = self.dataset;
+        let hashed = in_parallel(dataset.threads, self.names, |name| {
+            let path = dataset.scratch.path.join(&name);
+            let (bytes, sha256) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
+            Ok(FileEntry {
+                name,
+                bytes,
+                sha256,
+            })
+        });
         let part = Part {
             lost_fragments,
             coplanar_ties,
-            row_groups,
-            files,
+            row_groups: dataset.header.format.row_groups(self.part.rows),
+            files: hashed.into_iter().collect::<Result<_, DatasetError>>()?,
             ..self.part
         };
-        if !self.dataset.replaces {
-            let _moving = self.dataset.moving();
-            self.dataset.commit(&part)?;
+        if !dataset.replaces {
+            let _moving = dataset.moving();
+            dataset.commit(&part)?;
         }
-        self.dataset.parts().push(part);
+        dataset.parts().push(part);
         Ok(())
     }
 }

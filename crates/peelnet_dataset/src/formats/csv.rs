@@ -5,10 +5,9 @@ use std::io::{Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::{HashedFile, PartSink, PartSource, check_names, in_parallel};
+use super::{PartSink, PartSource, check_names, in_parallel};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-use crate::manifest::FileEntry;
 use crate::store::Fetched;
 
 /// Rows that are formatted into one buffer before it is written: about 2 MB of text.
@@ -16,17 +15,17 @@ const ROWS_A_BUFFER: usize = 1 << 14;
 
 /// Writes a part as CSV.
 pub(super) struct CsvSink {
-    file: HashedFile,
-    rows: u64,
+    path: PathBuf,
+    file: File,
     threads: usize,
 }
 
 impl CsvSink {
-    pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
+    pub(super) fn new((path, file): (PathBuf, File), threads: usize) -> Result<Self, DatasetError> {
         let header = Column::ALL.map(Column::name).join(",") + "\n";
         let mut sink = Self {
-            file: HashedFile::create(folder.join(format!("{stem}.csv")))?,
-            rows: 0,
+            path,
+            file,
             threads,
         };
         sink.append(header.as_bytes())?;
@@ -35,7 +34,7 @@ impl CsvSink {
 
     fn append(&mut self, text: &[u8]) -> Result<(), DatasetError> {
         let written = self.file.write_all(text);
-        written.map_err(DatasetError::io(&self.file.path, "write"))
+        written.map_err(DatasetError::io(&self.path, "write"))
     }
 }
 
@@ -49,12 +48,11 @@ impl PartSink for CsvSink {
             });
             texts.iter().try_for_each(|text| self.append(text))?;
         }
-        self.rows += rows.len() as u64;
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
-        Ok((vec![self.rows], vec![self.file.finish()]))
+    fn finish(self: Box<Self>, _: u64) -> Result<(), DatasetError> {
+        Ok(())
     }
 }
 

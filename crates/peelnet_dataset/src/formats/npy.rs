@@ -6,12 +6,11 @@
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read as _, Seek as _, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::{PartSink, PartSource, file_name, hash_file, in_parallel};
+use super::{PartSink, PartSource};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-use crate::manifest::FileEntry;
 use crate::store::Fetched;
 
 /// Bytes that are gathered before they are written, or read at once.
@@ -37,81 +36,43 @@ fn header(kind: ColumnKind, rows: u64) -> Vec<u8> {
     header
 }
 
-/// Writes a part as NPY arrays.
-pub(super) struct NpySink {
-    rows: u64,
-    threads: usize,
-    columns: Vec<ColumnFile>,
-}
-
-struct ColumnFile {
-    column: Column,
-    path: PathBuf,
-    file: BufWriter<File>,
-}
+/// Writes a part as NPY arrays, one for each column.
+pub(super) struct NpySink(Vec<(Column, PathBuf, BufWriter<File>)>);
 
 impl NpySink {
-    pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
-        let create = |column: Column| {
-            let path = folder.join(format!("{stem}.{column}.npy"));
-            let file = File::create_new(&path).map_err(DatasetError::io(&path, "create"))?;
+    pub(super) fn new(files: Vec<(PathBuf, File)>) -> Result<Self, DatasetError> {
+        let columns = Column::ALL.into_iter().zip(files);
+        let columns = columns.map(|(column, (path, file))| {
             let mut file = BufWriter::with_capacity(BUFFER, file);
             file.write_all(&header(column.kind(), 0))
                 .map_err(DatasetError::io(&path, "write"))?;
-            Ok(ColumnFile { column, path, file })
-        };
-        let columns = Column::ALL.into_iter().map(create);
-        Ok(Self {
-            rows: 0,
-            threads,
-            columns: columns.collect::<Result<_, DatasetError>>()?,
-        })
-    }
-}
-
-impl ColumnFile {
-    fn append(&mut self, values: ColumnSlice<'_>) -> std::io::Result<()> {
-        let file = &mut self.file;
-        match values {
-            ColumnSlice::F32(v) => v.iter().try_for_each(|x| file.write_all(&x.to_le_bytes())),
-            ColumnSlice::U32(v) => v.iter().try_for_each(|x| file.write_all(&x.to_le_bytes())),
-        }
-    }
-
-    fn finish(&mut self, rows: u64) -> Result<FileEntry, DatasetError> {
-        let file = &mut self.file;
-        let write = file.rewind();
-        write
-            .and_then(|()| file.write_all(&header(self.column.kind(), rows)))
-            .and_then(|()| file.flush())
-            .map_err(DatasetError::io(&self.path, "write"))?;
-        // The header comes first in the hash but last in time, so the file is read once more, mostly from memory.
-        let (bytes, sha256) =
-            hash_file(&self.path).map_err(DatasetError::io(&self.path, "read"))?;
-        Ok(FileEntry {
-            name: file_name(&self.path),
-            bytes,
-            sha256,
-        })
+            Ok((column, path, file))
+        });
+        columns.collect::<Result<_, _>>().map(Self)
     }
 }
 
 impl PartSink for NpySink {
     fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
-        for file in &mut self.columns {
-            file.append(rows.column(file.column))
-                .map_err(DatasetError::io(&file.path, "write"))?;
+        for (column, path, file) in &mut self.0 {
+            let written = match rows.column(*column) {
+                ColumnSlice::F32(v) => v.iter().try_for_each(|x| file.write_all(&x.to_le_bytes())),
+                ColumnSlice::U32(v) => v.iter().try_for_each(|x| file.write_all(&x.to_le_bytes())),
+            };
+            written.map_err(DatasetError::io(path, "write"))?;
         }
-        self.rows += rows.len() as u64;
         Ok(())
     }
 
-    /// Hashing takes the time, on as many threads as there may be.
-    fn finish(mut self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
-        let rows = self.rows;
-        let files = in_parallel(self.threads, &mut self.columns, |file| file.finish(rows));
-        let files = files.into_iter().collect::<Result<_, _>>()?;
-        Ok((vec![rows], files))
+    fn finish(self: Box<Self>, rows: u64) -> Result<(), DatasetError> {
+        for (column, path, mut file) in self.0 {
+            let write = file.rewind();
+            write
+                .and_then(|()| file.write_all(&header(column.kind(), rows)))
+                .and_then(|()| file.flush())
+                .map_err(DatasetError::io(&path, "write"))?;
+        }
+        Ok(())
     }
 }
 

@@ -26,10 +26,9 @@ use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
-use super::{HashedFile, PartSink, PartSource, ROW_GROUP_ROWS, check_names, in_parallel};
+use super::{PartSink, PartSource, ROW_GROUP_ROWS, check_names, in_parallel};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-use crate::manifest::FileEntry;
 use crate::store::Fetched;
 
 /// Rows of a page: 512 KiB of values, small enough for the caches.
@@ -78,24 +77,19 @@ fn properties() -> WriterPropertiesPtr {
 /// Writes a part as Parquet.
 pub(super) struct ParquetSink {
     path: PathBuf,
-    writer: SerializedFileWriter<HashedFile>,
+    writer: SerializedFileWriter<File>,
     /// Rows that do not fill a row group yet.
     pending: FragmentBatch,
-    row_groups: Vec<u64>,
     threads: usize,
 }
 
 impl ParquetSink {
-    pub(super) fn create(folder: &Path, stem: &str, threads: usize) -> Result<Self, DatasetError> {
-        let path = folder.join(format!("{stem}.parquet"));
-        let file = HashedFile::create(path.clone())?;
-        let writer = SerializedFileWriter::new(file, schema(), properties())
-            .map_err(|e| write_error(&path, e))?;
+    pub(super) fn new((path, file): (PathBuf, File), threads: usize) -> Result<Self, DatasetError> {
+        let writer = SerializedFileWriter::new(file, schema(), properties());
         Ok(Self {
+            writer: writer.map_err(|e| write_error(&path, e))?,
             path,
-            writer,
             pending: FragmentBatch::default(),
-            row_groups: Vec::new(),
             threads,
         })
     }
@@ -118,7 +112,6 @@ impl ParquetSink {
             group.close().map(|_| ())
         };
         append().map_err(|e| write_error(&self.path, e))?;
-        self.row_groups.push(rows.len() as u64);
         rows.clear();
         self.pending = rows;
         Ok(())
@@ -180,14 +173,13 @@ impl PartSink for ParquetSink {
         Ok(())
     }
 
-    fn finish(mut self: Box<Self>) -> Result<(Vec<u64>, Vec<FileEntry>), DatasetError> {
+    fn finish(mut self: Box<Self>, _: u64) -> Result<(), DatasetError> {
         if !self.pending.is_empty() {
             self.row_group()?;
         }
         // Writes the footer and empties the buffers.
         let file = self.writer.into_inner();
-        let file = file.map_err(|e| write_error(&self.path, e))?;
-        Ok((self.row_groups, vec![file.finish()]))
+        file.map(drop).map_err(|e| write_error(&self.path, e))
     }
 }
 

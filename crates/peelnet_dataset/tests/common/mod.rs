@@ -158,6 +158,10 @@ pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
+pub fn opening_fails(folder: &Path, words: &[&str]) {
+    has(&Dataset::open(folder).unwrap_err().to_string(), words);
+}
+
 pub fn has(message: &str, words: &[&str]) {
     for word in words {
         assert!(message.contains(word), "{word:?} is not in: {message}");
