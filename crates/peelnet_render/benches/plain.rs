@@ -3,7 +3,6 @@
 //!
 //! `cargo bench -p peelnet_render --bench plain`; frames in turn, the median of their ratios is what counts.
 
-use bytemuck::{Pod, Zeroable};
 use peelnet_gpu::{
     AdapterRequest, Gpu,
     bind::{Bind, Bound},
@@ -28,10 +27,11 @@ struct Sums { @location(0) color: vec4f, @location(1) alpha: f32 }
 @group(0) @binding(0) var<uniform> camera: Camera;
 @group(0) @binding(1) var<storage, read> colors: array<vec4f>;
 
+// A position and its material.
 @vertex
-fn vertex_main(@location(0) position: vec3f, @location(1) material: u32) -> Surface {
-    let clip = camera.clip_from_world * vec4f(position, 1.0);
-    return Surface(clip, clip.w, material);
+fn vertex_main(@location(0) vertex: vec4f) -> Surface {
+    let clip = camera.clip_from_world * vec4f(vertex.xyz, 1.0);
+    return Surface(clip, clip.w, u32(vertex.w));
 }
 
 @fragment
@@ -65,13 +65,6 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
 }
 ";
 
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Vertex {
-    position: [f32; 3],
-    material: u32,
-}
-
 /// The path written for just that.
 struct Plain<'g> {
     gpu: &'g Gpu,
@@ -91,7 +84,7 @@ fn target(format: wgpu::TextureFormat, blend: wgpu::BlendState) -> Option<wgpu::
     Some(wgpu::ColorTargetState {
         format,
         blend: Some(blend),
-        write_mask: wgpu::ColorWrites::ALL,
+        ..format.into()
     })
 }
 
@@ -119,10 +112,8 @@ impl<'g> Plain<'g> {
                 for i in triangles.as_flattened() {
                     let position = object.mesh.positions[*i as usize];
                     let position = object.world_from_object.transform_point3(position);
-                    vertices.push(Vertex {
-                        position: position.to_array(),
-                        material: colors.len() as u32,
-                    });
+                    let material = colors.len() as f32;
+                    vertices.push(position.extend(material).to_array());
                 }
                 colors.push([r, g, b, material.alpha]);
             }
@@ -146,9 +137,9 @@ impl<'g> Plain<'g> {
                 entry_point: Some("vertex_main"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Vertex>() as u64,
+                    array_stride: 16,
                     step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32],
+                    attributes: &wgpu::vertex_attr_array![0 => Float32x4],
                 })],
             },
             primitive: wgpu::PrimitiveState::default(),

@@ -103,9 +103,6 @@ impl Image {
     }
 
     /// The bytes of a file of a format.
-    ///
-    /// # Errors
-    /// If the encoder fails.
     pub fn encoded(&self, format: ImageFormat) -> Result<Vec<u8>, RenderError> {
         let failed = |e: &dyn std::fmt::Display| failed(Path::new("in memory"), e);
         let flat = || -> Vec<f32> { self.pixels.iter().flatten().copied().collect() };

@@ -33,7 +33,6 @@ const FRAMES_IN_FLIGHT: usize = 3;
 #[derive(Debug)]
 pub struct Prepared {
     spec: MethodSpec,
-    shows: Shows,
     options: MethodOptions,
     pub(crate) ready: Option<Ready>,
     /// The target of profiles.
@@ -178,9 +177,24 @@ impl Renderer {
         spec: &MethodSpec,
         mut options: MethodOptions,
     ) -> Result<Prepared, RenderError> {
+        if !matches!(options.samples, 1 | 4) {
+            return Err(RenderError::Samples(options.samples));
+        }
         let shipped = || LearnedWeight::shipped(spec);
         options.learned = options.learned.or_else(shipped);
-        self.prepare(spec.clone(), Shows::Colors, options)
+        let mut method = Prepared {
+            spec: spec.clone(),
+            options,
+            ready: None,
+            canvas: None,
+            pending: VecDeque::new(),
+            status: FrameStatus::Unknown,
+            stats: FrameStats::default(),
+        };
+        let size = method.size();
+        self.ready(&mut method, size, Output::Image, None)?;
+        self.gpu.check()?;
+        Ok(method)
     }
 
     /// Makes the view of layers ready, of a scene that [`Scene::layer_view`] made.
@@ -199,34 +213,10 @@ impl Renderer {
         self.exact(Shows::Surfaces, MethodOptions::sized(size).sampled(samples))
     }
 
-    /// What shows sorted fragments: drawn as by the exact method, the first of all.
+    /// By the exact method, the first of all.
     fn exact(&self, shows: Shows, options: MethodOptions) -> Result<Prepared, RenderError> {
-        self.prepare(MethodSpec::representative(&METHODS[0]), shows, options)
-    }
-
-    fn prepare(
-        &self,
-        spec: MethodSpec,
-        shows: Shows,
-        options: MethodOptions,
-    ) -> Result<Prepared, RenderError> {
-        if !matches!(options.samples, 1 | 4) {
-            return Err(RenderError::Samples(options.samples));
-        }
-        let mut method = Prepared {
-            spec,
-            shows,
-            options,
-            ready: None,
-            canvas: None,
-            pending: VecDeque::new(),
-            status: FrameStatus::Unknown,
-            stats: FrameStats::default(),
-        };
-        let size = method.size();
-        self.ready(&mut method, size, Output::Image, None)?;
-        self.gpu.check()?;
-        Ok(method)
+        let exact = MethodSpec::representative(&METHODS[0]);
+        self.method(&exact, MethodOptions { shows, ..options })
     }
 
     /// The method's targets and pipelines for a frame, made anew where anything that they depend on changed.
@@ -269,8 +259,7 @@ impl Renderer {
             frame: &frame,
             spec: &method.spec,
             learned: method.options.learned.as_ref(),
-            shows: method.shows,
-            sums: method.options.sums,
+            shows: method.options.shows,
         })?;
         Ok(Ready {
             generation: scene.generation(),
@@ -301,9 +290,6 @@ impl Renderer {
 
     /// The same as [`Self::draw`], measuring every pass: [`Timer::finish`] records the copy of the times, which are there once the commands
     /// are done.
-    ///
-    /// # Errors
-    /// See [`Self::draw`].
     pub fn draw_timed(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,5 +1,6 @@
 //! What a method is made ready with, what it draws onto, and what becomes of the frame.
 
+use crate::methods::views::Shows;
 use peelnet_gpu::wgpu;
 use peelnet_model::Recipe;
 #[cfg(doc)]
@@ -24,9 +25,8 @@ pub struct MethodOptions {
     /// Samples a pixel of [`crate::Renderer::image`]s and [`crate::Renderer::profile`]s: 1, or 4 where WebGPU's multisampling has them. The
     /// method composites every sample by itself, and the pixel is their mean in linear light.
     pub samples: u32,
-    /// Whether images hold the sums of weighted, premultiplied colour and opacity that a method blends, instead of the colour that it
-    /// makes of them. Of methods that blend weighted sums with a fixed number of passes; others draw as usual.
-    pub sums: bool,
+    /// What images hold.
+    pub shows: Shows,
 }
 
 impl Default for MethodOptions {
@@ -42,7 +42,7 @@ impl MethodOptions {
             size,
             learned: None,
             samples: 1,
-            sums: false,
+            shows: Shows::Colors,
         }
     }
 
@@ -56,7 +56,7 @@ impl MethodOptions {
     /// For images of the sums that a method blends, to look at its weights.
     #[must_use]
     pub const fn showing_sums(mut self) -> Self {
-        self.sums = true;
+        self.shows = Shows::Sums;
         self
     }
 

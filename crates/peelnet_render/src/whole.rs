@@ -125,9 +125,6 @@ impl Renderer {
     }
 
     /// The same as [`Self::image_async`], waiting for the device. Not in a browser.
-    ///
-    /// # Errors
-    /// See [`Self::image_async`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn image(&self, method: &mut Prepared, camera: &Camera) -> Result<Frame, RenderError> {
         self.gpu().block_on(self.image_async(method, camera))
@@ -161,9 +158,6 @@ impl Renderer {
     }
 
     /// The same as [`Self::profile_async`], waiting for the device. Not in a browser.
-    ///
-    /// # Errors
-    /// See [`Self::profile_async`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn profile(&self, method: &mut Prepared, camera: &Camera) -> Result<Profile, RenderError> {
         self.gpu().block_on(self.profile_async(method, camera))

@@ -120,18 +120,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shells_take_names_as_they_are() {
-        for (name, word) in [
-            ("a/b-1.glb", "a/b-1.glb"),
-            ("my mesh.glb", "'my mesh.glb'"),
-            ("it's", r"'it'\''s'"),
-            ("$(rm)", "'$(rm)'"),
-        ] {
-            assert_eq!(quoted(name), word);
-        }
-    }
-
-    #[test]
     fn cameras_are_checked() {
         assert_eq!(camera_numbers("1,2, 3,1,2,4").unwrap().len(), 6);
         for bad in [

@@ -212,9 +212,7 @@ impl App {
 
     /// Looks through one of the scene's cameras.
     pub fn show_view(&mut self, number: usize) {
-        let Some(stage) = &self.stage else {
-            return;
-        };
+        let Some(stage) = &self.stage else { return };
         match stage.scene.views.get(number) {
             Some(camera) => (self.camera, self.view) = (*camera, Some(number)),
             None => self.messages.error(format!(

@@ -203,16 +203,13 @@ impl Slot {
         };
         let (_, prepared) = self.prepared.insert(prepared);
         let target = Target::cleared(&target);
-        self.status = if self.timing.is_none() {
-            let mut timer = Timer::new(&stage.gpu);
-            let drawn =
-                renderer.draw_timed(encoder, prepared, &view.camera, &target, Some(&mut timer));
+        let mut timer = self.timing.is_none().then(|| Timer::new(&stage.gpu));
+        let drawn = renderer.draw_timed(encoder, prepared, &view.camera, &target, timer.as_mut());
+        if let Some(timer) = timer {
             let times = timer.finish(&stage.gpu, encoder);
             self.timing = Some(Task::new(times.read()));
-            drawn?
-        } else {
-            renderer.draw(encoder, prepared, &view.camera, &target)?
-        };
+        }
+        self.status = drawn?;
         self.frames += 1;
         Ok(())
     }

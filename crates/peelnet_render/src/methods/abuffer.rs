@@ -241,13 +241,10 @@ impl Compositor for ABuffer {
             return Ok(Fit::Whole);
         }
         let limit = self.sbuffer.limit();
-        let room = if found.total <= limit {
-            cx.room(found.total).min(limit)
-        } else {
-            found.total
-        };
+        // A quarter more where views move, as far as one tile holds it.
+        let reserve = if cx.exact { 0 } else { found.total / 4 };
         let needed = FragmentCount {
-            total: room,
+            total: (found.total + reserve).min(limit).max(found.total),
             most: found.most,
         };
         let offsets = words.get(3).map(Vec::as_slice);

@@ -83,17 +83,6 @@ pub(crate) struct Learning<'a> {
     pub exact: bool,
 }
 
-impl Learning<'_> {
-    /// Room for what was needed, with a quarter more where views move.
-    pub const fn room(&self, needed: u64) -> u64 {
-        if self.exact {
-            needed
-        } else {
-            needed + needed / 4
-        }
-    }
-}
-
 /// A method made ready for one scene and frame size.
 pub(crate) trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     /// Records the passes that composite the transparent fragments: over `C_0` into the frame's image, or onto the caller's target.
@@ -132,7 +121,6 @@ pub(crate) struct Build<'a> {
     pub frame: &'a FrameTargets,
     pub spec: &'a MethodSpec,
     pub learned: Option<&'a LearnedWeight>,
+    /// What the image holds.
     pub shows: Shows,
-    /// Whether the image holds the blended sums, not the colour.
-    pub sums: bool,
 }

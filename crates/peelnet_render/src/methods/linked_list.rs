@@ -165,7 +165,6 @@ impl Compositor for LinkedList {
             spec: &self.spec,
             learned: None,
             shows: Shows::Colors,
-            sums: false,
         };
         if too_long > 0 {
             let (_, _, layout) = stored::layout(&self.spec);

@@ -6,6 +6,7 @@
 use super::{
     compositor::{Build, Compositor, DrawContext, FrameStats},
     parameter::Precision,
+    views::Shows,
 };
 use crate::error::RenderError;
 use peelnet_core::guards::HALF_MAX;
@@ -42,19 +43,8 @@ pub(crate) enum Blend {
 }
 
 impl Blend {
-    /// What a target is cleared to.
-    pub fn start(self) -> [f64; 4] {
-        let least = -f64::from(HALF_MAX);
-        match self {
-            Self::Add | Self::MaxBytes => [0.0; 4],
-            Self::Max => [least; 4],
-            Self::Over | Self::Under | Self::AddTransmit => [0.0, 0.0, 0.0, 1.0],
-            Self::Transmit => [1.0; 4],
-            Self::MaxAdd => [least, least, least, 0.0],
-        }
-    }
-
-    fn state(self) -> wgpu::BlendState {
+    /// What a target is cleared to, and how colour and alpha blend.
+    fn table(self) -> ([f64; 4], [wgpu::BlendComponent; 2]) {
         use wgpu::{BlendFactor as F, BlendOperation as O};
         let component = |src_factor, dst_factor, operation| wgpu::BlendComponent {
             src_factor,
@@ -67,16 +57,22 @@ impl Blend {
         let transmit_alpha = component(F::Zero, F::OneMinusSrcAlpha, O::Add);
         let over = component(F::One, F::OneMinusSrcAlpha, O::Add);
         let under = component(F::DstAlpha, F::One, O::Add);
-        let (color, alpha) = match self {
-            Self::Add => (add, add),
-            Self::Over => (over, transmit_alpha),
-            Self::Under => (under, transmit_alpha),
-            Self::Transmit => (transmit, transmit),
-            Self::AddTransmit => (add, transmit_alpha),
-            Self::MaxAdd => (max, add),
-            Self::Max | Self::MaxBytes => (max, max),
-        };
-        wgpu::BlendState { color, alpha }
+        let (clear, least) = ([0.0, 0.0, 0.0, 1.0], -f64::from(HALF_MAX));
+        match self {
+            Self::Add => ([0.0; 4], [add, add]),
+            Self::Transmit => ([1.0; 4], [transmit, transmit]),
+            Self::AddTransmit => (clear, [add, transmit_alpha]),
+            Self::Over => (clear, [over, transmit_alpha]),
+            Self::Under => (clear, [under, transmit_alpha]),
+            Self::MaxAdd => ([least, least, least, 0.0], [max, add]),
+            Self::Max => ([least; 4], [max, max]),
+            Self::MaxBytes => ([0.0; 4], [max, max]),
+        }
+    }
+
+    /// What a target is cleared to.
+    pub fn start(self) -> [f64; 4] {
+        self.table().0
     }
 }
 
@@ -138,10 +134,10 @@ impl Target {
     }
 
     pub fn state(&self) -> wgpu::ColorTargetState {
+        let (_, [color, alpha]) = self.blend.table();
         wgpu::ColorTargetState {
-            format: self.format(),
-            blend: Some(self.blend.state()),
-            write_mask: wgpu::ColorWrites::ALL,
+            blend: Some(wgpu::BlendState { color, alpha }),
+            ..self.format().into()
         }
     }
 }
@@ -368,7 +364,7 @@ impl<'b> Plan<'b> {
     /// Makes the plan ready.
     pub fn build(mut self) -> Result<Box<dyn Compositor>, RenderError> {
         let b = self.b;
-        if b.sums {
+        if b.shows == Shows::Sums {
             self.show_sums();
         }
         let passes = self.passes.iter().map(|pass| self.build_pass(pass));

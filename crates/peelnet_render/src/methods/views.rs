@@ -37,11 +37,16 @@ pub struct LayerView {
 }
 
 /// What pixels show.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Shows {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
     /// The method's colours.
     Colors,
+    /// The sums of weighted, premultiplied colour and opacity that a method blends, instead of the colour that it makes of them. Of
+    /// methods that blend weighted sums with a fixed number of passes; others draw as usual.
+    Sums,
+    /// Layers, of the exact method.
     Layers(LayerView),
+    /// Surfaces, of the exact method.
     Surfaces,
 }
 
@@ -61,7 +66,7 @@ impl Shows {
     pub(super) fn composite(self, tinted: bool) -> Composite {
         let mut parameters = String::new();
         let (name, stored, features) = match self {
-            Self::Colors => {
+            Self::Colors | Self::Sums => {
                 let tinted = tinted.then_some("tinted");
                 ("abuffer", tinted, Vec::from_iter(tinted))
             }

@@ -8,9 +8,7 @@ use egui::{Align2, Color32, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2}
 const LEAST_MSE: f64 = 1e-4;
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
-    let Some(key) = app.key() else {
-        return;
-    };
+    let Some(key) = app.key() else { return };
     ui.horizontal(|ui| {
         let about = "Error and GPU time of every method and setting, on this view";
         if app.front.job.is_busy() {

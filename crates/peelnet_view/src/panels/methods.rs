@@ -116,7 +116,7 @@ fn number(ui: &mut Ui, salt: &str, numbered: Numbered, now: u32, label: egui::Id
         return drag(ui, now, all, 1.0, label);
     }
     let powers = (0..32).map(|k| 1u32 << k).filter(|n| all.contains(n));
-    let powers = powers.map(|n| (n.to_string(), n));
+    let powers = powers.map(|n| (n.to_string(), n)).collect();
     chosen(ui, (salt, "number"), &now.to_string(), powers, label)
 }
 
@@ -172,39 +172,34 @@ fn control(
             row.inner
         }
         Values::Words(words) => {
-            let words = words.iter().map(|word| (*word, Some(word.to_string())));
+            let words = words.iter().map(|word| word.to_string());
+            let words = words.map(|word| (word.clone(), Some(word))).collect();
             chosen(ui, salt, parameter.word(spec), words, label)
         }
         Values::Precision => {
             let now = parameter.word(spec);
             let now = if now.is_empty() { "its own" } else { now };
-            let words = Precision::WORDS.map(|word| (word, Some(word.to_string())));
-            let all = std::iter::once(("its own", None)).chain(words);
-            chosen(ui, salt, now, all, label)
+            let words = Precision::WORDS.map(|word| (word.to_owned(), Some(word.to_owned())));
+            let all = std::iter::once(("its own".to_owned(), None)).chain(words);
+            chosen(ui, salt, now, all.collect(), label)
         }
     }
 }
 
 /// A list of words; the value of the one that was chosen.
-fn chosen<W: AsRef<str>, T>(
+fn chosen<T>(
     ui: &mut Ui,
     salt: (&str, &str),
     now: &str,
-    words: impl Iterator<Item = (W, T)>,
+    mut words: Vec<(String, T)>,
     label: egui::Id,
 ) -> Option<T> {
-    let mut change = None;
-    let list = ComboBox::from_id_salt(salt).selected_text(now);
-    let list = list.show_ui(ui, |ui| {
-        for (word, value) in words {
-            let word = word.as_ref();
-            if ui.selectable_label(word == now, word).clicked() && word != now {
-                change = Some(value);
-            }
-        }
-    });
-    list.response.labelled_by(label);
-    change
+    let before = words.iter().position(|(word, _)| word == now)?;
+    let mut place = before;
+    let list = ComboBox::from_id_salt(salt);
+    let list = list.show_index(ui, &mut place, words.len(), |k| words[k].0.as_str());
+    list.labelled_by(label);
+    (place != before).then(|| words.swap_remove(place).1)
 }
 
 /// Which network draws.

@@ -16,6 +16,7 @@ use egui::{CentralPanel, Panel, ScrollArea, Ui};
 const NARROW: f32 = 760.0;
 
 /// Which panels are open, what is typed into them, and what moves.
+#[derive(Default)]
 pub(crate) struct State {
     /// The picture alone.
     pub bare: bool,
@@ -41,20 +42,14 @@ pub(crate) struct State {
 }
 
 impl State {
-    pub const fn new(bare: bool) -> Self {
+    pub fn new(bare: bool) -> Self {
         Self {
             bare,
             left: true,
             right: true,
             measures: true,
-            help: false,
-            plays: false,
-            turns: false,
-            path: String::new(),
-            model: String::new(),
-            object: 0,
-            listed: false,
             frames: 48,
+            ..Self::default()
         }
     }
 }

@@ -10,9 +10,7 @@ const FLIP: &str = "Mean difference as people see it (Andersson et al. 2020), 0 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
     ui.checkbox(&mut app.panels.measures, "Measure when the view rests")
         .on_hover_text("Against the exact image, of the whole picture, as peelnet bench does");
-    let Some(key) = app.key() else {
-        return;
-    };
+    let Some(key) = app.key() else { return };
     match app.judge.of(&key) {
         Some(Ok(numbers)) => table(ui, "numbers", errors(numbers, app.size)),
         Some(Err(e)) => error(ui, e),
@@ -26,13 +24,11 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// A name, its value and what it is.
-type Row = (String, String, &'static str);
-
-fn table(ui: &mut Ui, name: &str, rows: Vec<Row>) {
+/// Rows of a name, its value and what it is.
+fn table<N: Into<String>>(ui: &mut Ui, name: &str, rows: Vec<(N, String, &str)>) {
     Grid::new(name).striped(true).show(ui, |ui| {
         for (name, value, about) in rows {
-            let label = ui.label(name);
+            let label = ui.label(name.into());
             if !about.is_empty() {
                 label.on_hover_text(about);
             }
@@ -42,7 +38,7 @@ fn table(ui: &mut Ui, name: &str, rows: Vec<Row>) {
     });
 }
 
-fn errors(numbers: &Numbers, size: [u32; 2]) -> Vec<Row> {
+fn errors(numbers: &Numbers, size: [u32; 2]) -> Vec<(&'static str, String, &'static str)> {
     let of = &numbers.differences;
     let psnr = of.psnr.map_or("exact".into(), |p| format!("{p:.1} dB"));
     let flip = numbers.flip.map_or("not in a page".into(), digits);
@@ -70,9 +66,7 @@ fn errors(numbers: &Numbers, size: [u32; 2]) -> Vec<Row> {
         let value = most.to_string();
         rows.push(("layers, most", value, "Fragments of the fullest pixel"));
     }
-    let named = rows.into_iter();
-    let named = named.map(|(name, value, about)| (name.to_owned(), value, about));
-    named.collect()
+    rows
 }
 
 pub(super) fn passes(app: &mut App, ui: &mut Ui) {
@@ -94,7 +88,8 @@ pub(super) fn passes(app: &mut App, ui: &mut Ui) {
         } else {
             String::new()
         };
-        rows.push((format!("{name}{times}"), format!("{:.3} ms", micros / 1e3)));
+        let ms = format!("{:.3} ms", micros / 1e3);
+        rows.push((format!("{name}{times}"), ms, ""));
     }
     let gpu = slot.gpu_ms().map(|ms| format!("{ms:.3} ms"));
     let stats = slot.stats();
@@ -111,7 +106,6 @@ pub(super) fn passes(app: &mut App, ui: &mut Ui) {
         ),
         ("picture", format!("{w} × {h}")),
     ];
-    rows.extend(frame.map(|(name, value)| (name.to_owned(), value)));
-    let rows = rows.into_iter().map(|(name, value)| (name, value, ""));
-    table(ui, "passes", rows.collect());
+    rows.extend(frame.map(|(name, value)| (name.to_owned(), value, "")));
+    table(ui, "passes", rows);
 }

@@ -11,9 +11,7 @@ const SCENE: &str =
 const FRAMES: &str = "Numbered PNG files in a new folder";
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
-    let Some(command) = app.command() else {
-        return;
-    };
+    let Some(command) = app.command() else { return };
     ui.horizontal_wrapped(|ui| {
         if ui.button("Copy command").clicked() {
             ui.ctx().copy_text(command.clone());

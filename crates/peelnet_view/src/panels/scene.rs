@@ -38,9 +38,7 @@ pub(super) fn camera(app: &mut App, ui: &mut Ui) {
 }
 
 pub(super) fn layers(app: &mut App, ui: &mut Ui) {
-    let Some(stage) = &app.stage else {
-        return;
-    };
+    let Some(stage) = &app.stage else { return };
     let layers = stage.scene.layers();
     if layers.is_empty() {
         ui.weak("No object of this scene has a layer (layer = N in the scene file, 0 outermost).");
@@ -87,9 +85,7 @@ fn set(app: &mut App, shown: Shown) {
 
 /// Everything that a renderer does only where the scene needs it, with why, and a switch.
 fn effects(app: &mut App, ui: &mut Ui) {
-    let Some(stage) = &app.stage else {
-        return;
-    };
+    let Some(stage) = &app.stage else { return };
     let census = Census::of(&stage.scene);
     let mut shown = stage.shown.clone();
     for effect in Effect::ALL {
@@ -112,9 +108,7 @@ fn effects(app: &mut App, ui: &mut Ui) {
 
 pub(super) fn objects(app: &mut App, ui: &mut Ui) {
     ui.collapsing("Effects of this scene", |ui| effects(app, ui));
-    let Some(stage) = &app.stage else {
-        return;
-    };
+    let Some(stage) = &app.stage else { return };
     let all = &stage.scene.objects;
     let number = app.panels.object.min(all.len().saturating_sub(1));
     let Some(object) = all.get(number).cloned() else {
@@ -123,12 +117,8 @@ pub(super) fn objects(app: &mut App, ui: &mut Ui) {
     let loaded = stage.loaded.objects.get(number).cloned();
     let name = |k: usize| format!("{k} {}", printable(&all[k].name));
     app.panels.object = number;
-    let list = ComboBox::from_label("Object").selected_text(name(number));
-    list.show_ui(ui, |ui| {
-        for k in 0..all.len() {
-            ui.selectable_value(&mut app.panels.object, k, name(k));
-        }
-    });
+    let list = ComboBox::from_label("Object");
+    list.show_index(ui, &mut app.panels.object, all.len(), name);
     if let Some(moved) = transform(ui, object.world_from_object) {
         app.edit(|stage| stage.set_transform(number, moved));
     }
@@ -241,9 +231,7 @@ fn material_of(ui: &mut Ui, before: &Material, original: Option<&Material>) -> O
 }
 
 pub(super) fn lights(app: &mut App, ui: &mut Ui) {
-    let Some(stage) = &app.stage else {
-        return;
-    };
+    let Some(stage) = &app.stage else { return };
     let all = stage.all;
     let mut lights = stage.scene.lights.clone();
     let mut gone = None;
@@ -295,9 +283,7 @@ pub(super) fn lights(app: &mut App, ui: &mut Ui) {
 }
 
 pub(super) fn timeline(app: &mut App, ui: &mut Ui) {
-    let Some(stage) = &app.stage else {
-        return;
-    };
+    let Some(stage) = &app.stage else { return };
     let Some((from, to)) = stage.times() else {
         return;
     };

@@ -304,9 +304,7 @@ impl Page {
         let lost = self.lost.get() + 1;
         self.lost.set(lost);
         self.runner.destroy();
-        let Some(kept) = kept else {
-            return;
-        };
+        let Some(kept) = kept else { return };
         if lost > MOST_LOST {
             say(
                 "The browser took the page's graphics device away again and again. Reload the page to try again.",
