@@ -13,13 +13,13 @@ use crate::{
 use peelnet_gpu::{Gpu, record::PassTime};
 use peelnet_model::Model;
 use peelnet_render::{
-    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Profile, Role, milliseconds, of_method,
+    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Profile, milliseconds, of_method, role,
 };
 use peelnet_scene::Scene;
 use std::path::Path;
 
 /// The method that judges all others.
-pub const EXACT: &str = Role::Reference.method();
+pub const EXACT: &str = role::REFERENCE;
 
 /// What is drawn.
 #[derive(Clone, Debug)]

@@ -4,10 +4,10 @@ use crate::{
     metrics::mark_front,
     rows::{Bytes, Rows, mean},
 };
-use peelnet_render::{MethodSpec, Role};
+use peelnet_render::{MethodSpec, role};
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting.
-pub const BASE: &str = Role::HardwareBlending.method();
+pub const BASE: &str = role::HARDWARE_BLENDING;
 
 /// Errors below count as this: a mean squared error of (1e-5)², the agreement that exact methods are held to, in linear
 /// light. It keeps geometric means and logarithmic axes finite.

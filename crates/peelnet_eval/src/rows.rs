@@ -1,13 +1,13 @@
 //! Rows of a bench, and what is averaged over them.
 
 use crate::{Row, front::EXACT_MSE};
-use peelnet_render::Role;
+use peelnet_render::role;
 use std::collections::BTreeMap;
 
 /// The weighted blending that errors and times are compared with.
-pub const WEIGHTED: &str = Role::WeightedBlending.method();
+pub const WEIGHTED: &str = role::WEIGHTED_BLENDING;
 /// The moment method that errors and times are compared with.
-pub const MOMENTS: &str = Role::MomentBlending.method();
+pub const MOMENTS: &str = role::MOMENT_BLENDING;
 
 /// Arithmetic mean; `None` of nothing.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {

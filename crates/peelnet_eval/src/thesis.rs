@@ -6,7 +6,7 @@ use crate::{
     Row,
     rows::{Rows, geometric_mean},
 };
-use peelnet_render::{MethodSpec, Role};
+use peelnet_render::{MethodSpec, role};
 
 /// One line of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,10 +47,10 @@ pub fn line(scene: &str) -> Option<Measured> {
 }
 
 /// Method name of weighted blending with the thesis's own weight.
-pub const WEIGHTED: &str = Role::ThesisWeight.method();
+pub const WEIGHTED: &str = role::THESIS_WEIGHT;
 
 /// Method name of weighted blending with the thesis's network.
-pub const DEEP: &str = Role::ThesisNetwork.method();
+pub const DEEP: &str = role::THESIS_NETWORK;
 
 /// A mean of a method over the views of a scene.
 pub fn error(rows: &Rows<'_>, scene: &str, method: &str, value: fn(&Row) -> f64) -> Option<f64> {

@@ -39,7 +39,7 @@ pub use flaw::{Flaw, Property};
 pub use frame::{Frame, Profile, milliseconds, of_method};
 pub use image::{Image, ImageFormat};
 pub use methods::{
-    FrameStats, METHODS, Method, MethodSpec, Role,
+    FrameStats, METHODS, Method, MethodSpec, role,
     views::{LayerFormula, LayerView},
 };
 pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};

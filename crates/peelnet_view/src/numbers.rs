@@ -10,11 +10,11 @@ use peelnet_eval::{
     metrics::{self, Differences},
 };
 use peelnet_gpu::wgpu;
-use peelnet_render::{FrameStats, Image, MethodOptions, Renderer, Role};
+use peelnet_render::{FrameStats, Image, MethodOptions, Renderer, role};
 use std::{rc::Rc, sync::Arc};
 
 /// The method that others are judged by.
-pub(crate) const EXACT: &str = Role::Reference.method();
+pub(crate) const EXACT: &str = role::REFERENCE;
 
 /// What an error was measured of.
 #[derive(Clone, PartialEq)]

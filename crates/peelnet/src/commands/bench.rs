@@ -16,14 +16,14 @@ use peelnet_eval::{
 };
 use peelnet_files::{Outputs, error_line, shown};
 use peelnet_gpu::Gpu;
-use peelnet_render::{LearnedWeight, MethodSpec, Role};
+use peelnet_render::{LearnedWeight, MethodSpec, role};
 use peelnet_report::Results;
 use peelnet_scene::{Scene, suite};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Effects are measured with it where no method is named: one pass, nothing that could hide what an effect costs.
-pub(super) const EFFECTS_METHOD: &str = Role::WeightedBlending.method();
+pub(super) const EFFECTS_METHOD: &str = role::WEIGHTED_BLENDING;
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if !args.designs.is_empty() {

@@ -15,7 +15,7 @@ use peelnet_files::{Outputs, counted, shown};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::ExtractOptions;
-use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, Role};
+use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, role};
 use peelnet_report::{Results, Stage, ThesisRun, write_file};
 use peelnet_scene::{Scene, suite};
 use peelnet_train::{Config, CurveFormat, Outcome, RunOptions, curve_chart};
@@ -32,9 +32,9 @@ const SHOWN: [&str; 8] = [
     front::BASE,
     EXACT,
     "painter-triangle",
-    Role::WeightedBlending.method(),
-    Role::MomentBlending.method(),
-    Role::ThesisNetwork.method(),
+    role::WEIGHTED_BLENDING,
+    role::MOMENT_BLENDING,
+    role::THESIS_NETWORK,
     "deep-medium",
     "deep-large",
 ];

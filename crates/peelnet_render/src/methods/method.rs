@@ -159,35 +159,20 @@ impl Promises {
     };
 }
 
-/// What reports use a method as: each role belongs to one method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+/// What reports use methods as: the texts of their specifications.
+pub mod role {
     /// The exact image that all others are compared with.
-    Reference,
+    pub const REFERENCE: &str = "abuffer";
     /// The cheapest that hardware does, which times are ratios to.
-    HardwareBlending,
+    pub const HARDWARE_BLENDING: &str = "painter-object:sort=off";
     /// The weighted blending that errors are ratios to.
-    WeightedBlending,
+    pub const WEIGHTED_BLENDING: &str = "wboit-eq9";
     /// The moment-based method that errors and times are ratios to.
-    MomentBlending,
+    pub const MOMENT_BLENDING: &str = "mboit4";
     /// Weighted blending as in the thesis of Papakostas (Ioannina 2022).
-    ThesisWeight,
+    pub const THESIS_WEIGHT: &str = "wboit-papakostas";
     /// The thesis's network.
-    ThesisNetwork,
-}
-
-impl Role {
-    /// The method that has it, with its parameters: the text of a [`MethodSpec`].
-    pub const fn method(self) -> &'static str {
-        match self {
-            Self::Reference => "abuffer",
-            Self::HardwareBlending => "painter-object:sort=off",
-            Self::WeightedBlending => "wboit-eq9",
-            Self::MomentBlending => "mboit4",
-            Self::ThesisWeight => "wboit-papakostas",
-            Self::ThesisNetwork => "deep-thesis",
-        }
-    }
+    pub const THESIS_NETWORK: &str = "deep-thesis";
 }
 
 impl Numbered {

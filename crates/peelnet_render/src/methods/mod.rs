@@ -35,7 +35,7 @@ mod weighted_average;
 mod weighted_sum;
 
 pub use compositor::FrameStats;
-pub use method::{Estimate, Method, Numbered, Pixel, Promises, Role, Twin};
+pub use method::{Estimate, Method, Numbered, Pixel, Promises, Twin, role};
 pub use parameter::{Parameter, Precision, SCALE, Values};
 pub use spec::MethodSpec;
 
