@@ -93,10 +93,10 @@ impl Model {
     /// Writes the model file, whole or not at all. Another file than a model is replaced only with `force`, an object at `s3://…` never.
     #[pyo3(signature = (path, *, force=false))]
     fn save(&self, path: PathBuf, force: bool) -> PyResult<()> {
+        let mut outputs = Outputs::new(("force=True", force), NO_INPUTS);
         if !is_remote(&path) {
-            Outputs::new(("force=True", force), NO_INPUTS)
-                .file("path", &path, peelnet::model::KIND)
-                .map_err(raised)?;
+            let kind = peelnet::model::KIND;
+            outputs.file("path", &path, kind).map_err(raised)?;
         }
         peelnet::save_model(&self.0, path).map_err(raised)
     }

@@ -1,8 +1,8 @@
 //! Training as the command line and Python do it: datasets into a model at a path or an address, with the errors on held-out scenes.
 
 use crate::{Failure, check_model_place, save_model};
-use peelnet_dataset::{Dataset, is_remote};
-use peelnet_files::{Destination, Outputs, Unfinished, destination, shown};
+use peelnet_dataset::Dataset;
+use peelnet_files::{Outputs, STDOUT, Unfinished, is_remote, shown};
 use peelnet_model::Model;
 use peelnet_train::{
     CHECKPOINT_FILES, Config, CurveFormat, End, EpochReport, Outcome, OutputLock, RunOptions,
@@ -58,7 +58,7 @@ pub fn fit(
     Ok(outcome)
 }
 
-/// Where a trained model goes. Beside a file lies the training's state; a stream, an address or nothing at all get the model at the end, and
+/// Where a trained model goes. Beside a file lies the training's state; stdout, an address or nothing at all get the model at the end, and
 /// until then it is in a temporary folder.
 #[derive(Debug)]
 pub struct ModelPlace {
@@ -85,7 +85,7 @@ impl ModelPlace {
                 check_model_place(path)?;
             } else {
                 outputs.file(out_label, path, peelnet_model::KIND)?;
-                is_file = matches!(destination(path), Ok(Destination::File(_)));
+                is_file = path != Path::new(STDOUT);
             }
             if is_file {
                 outputs.folder(out_label, &checkpoint_folder(path), CHECKPOINT_FILES)?;

@@ -142,9 +142,19 @@ const REFUSED: &str = "
     2 | stress --out - | name a folder
     2 | run two.toml --out - | name a folder";
 
-/// A folder in which nobody may write, not even root.
+/// Links, devices, and a folder in which nobody may write, not even root.
 #[cfg(target_os = "linux")]
-const NOT_WRITABLE: &str = "
+const ON_LINUX: &str = "
+    1 | render two.toml --out link.png | link.png & is a link
+    2 | render two.toml --out /dev/null | the ending says the format
+    1 | export m.safetensors --out link.wgsl | link.wgsl & is a link
+    1 | export m.safetensors --out /dev/null --force | /dev/null & no regular file
+    1 | train sound --out link | --out link & is a link
+    1 | train sound --out /dev/stdout | /dev/stdout & is a link
+    1 | train sound --out m --loss-curve link.csv | link.csv & is a link
+    1 | bench two.toml --out linked | results.json & is a link
+    1 | stress --out linked | stress.json & is a link
+    1 | run two.toml --out linked | results.json & is a link
     1 | extract two.toml --out /proc/o --size 32x24 | /proc/o
     1 | train sound --out /proc/o/m.safetensors --epochs 1 | /proc/o
     1 | export m.safetensors --out /proc/o.wgsl | /proc/o
@@ -153,7 +163,7 @@ const NOT_WRITABLE: &str = "
     1 | stress --methods blended --cases empty --out /proc/o | /proc/o
     1 | run two.toml --out /proc/o | /proc/o";
 #[cfg(not(target_os = "linux"))]
-const NOT_WRITABLE: &str = "";
+const ON_LINUX: &str = "";
 
 /// Files that are sound, broken in one place each, and a user's own.
 fn folder() -> Folder {
@@ -225,6 +235,20 @@ mesh = '{name}.obj'
         folder.write(scene, format!("{SCENE}color_map = \"{texture}\"\n"));
     }
     std::fs::hard_link(folder.at("two.toml"), folder.at("hard.png")).unwrap();
+    #[cfg(unix)]
+    {
+        std::fs::create_dir(folder.at("linked")).unwrap();
+        for link in [
+            "link.png",
+            "link.wgsl",
+            "link",
+            "link.csv",
+            "linked/results.json",
+            "linked/stress.json",
+        ] {
+            std::os::unix::fs::symlink("own.png", folder.at(link)).unwrap();
+        }
+    }
     folder
 }
 
@@ -263,7 +287,7 @@ fn what_is_refused_says_why_and_changes_nothing() {
     let before = folder.everything();
     let lines = |text: &'static str| text.lines().map(str::trim).filter(|line| !line.is_empty());
     let wrong = lines(WRONG_USAGE).map(|line| ("2", line, ""));
-    let refused = lines(REFUSED).chain(lines(NOT_WRITABLE)).map(|row| {
+    let refused = lines(REFUSED).chain(lines(ON_LINUX)).map(|row| {
         let mut fields = row.splitn(3, " | ");
         let mut field = || fields.next().unwrap();
         (field(), field(), field())

@@ -1,5 +1,4 @@
-//! Outputs never destroy: links and devices are written through, what is replaced is said, and a signal leaves whole files or none. What is
-//! refused is in `command_line.rs`.
+//! Outputs never destroy: what is replaced is said, and a signal leaves whole files or none. What is refused is in `command_line.rs`.
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 mod common;
@@ -7,26 +6,6 @@ mod common;
 use common::{Folder, SCENE};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-#[cfg(unix)]
-#[test]
-fn links_and_devices_are_written_through() {
-    let folder = Folder::new(&[("two.toml", SCENE)]);
-    std::os::unix::fs::symlink("far.png", folder.at("link.png")).unwrap();
-    std::os::unix::fs::symlink("/dev/full", folder.at("full.png")).unwrap();
-    let render = "render two.toml --size 8x8 --out";
-    folder.says(&format!("{render} link.png"), 0);
-    assert!(image::open(folder.at("far.png")).is_ok());
-    folder.says(&format!("{render} /dev/null"), 0);
-    assert!(!Path::new("/dev/null").is_file());
-    for full in ["/dev/full", "full.png"] {
-        let text = folder.says(&format!("{render} {full}"), 1);
-        assert!(text.contains(full), "{text}");
-    }
-    for link in ["link.png", "full.png"] {
-        assert!(folder.at(link).is_symlink(), "{link}");
-    }
-}
 
 /// The file alone goes to stdout, the result to stderr; no file is called `-`.
 #[test]

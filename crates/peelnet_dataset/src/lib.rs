@@ -73,9 +73,10 @@ pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
 pub use parts::{seal, unsealed_parts};
+pub use peelnet_files::is_remote;
 pub use plan::{Header, Shard, worker_name};
 pub use reader::{Batches, Dataset};
 pub use split::{Split, SplitBy, Subset};
-pub use store::{create_object, is_remote, read_object};
+pub use store::{create_object, read_object};
 pub use summary::Summary;
 pub use writer::{DatasetWriter, PartWriter};

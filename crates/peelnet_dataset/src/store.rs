@@ -16,6 +16,8 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use peelnet_files::is_remote;
+
 use crate::error::DatasetError;
 use crate::folder::PUT;
 use crate::formats::hash_file;
@@ -222,16 +224,7 @@ pub(crate) fn open_store(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
     Ok(store)
 }
 
-/// Whether a path is the address of an object store, `scheme://…`, and no folder.
-pub fn is_remote(path: &Path) -> bool {
-    let address = path.to_str().and_then(|text| text.split_once("://"));
-    address.is_some_and(|(scheme, _)| {
-        let mut letters = scheme.bytes();
-        scheme.len() > 1 && letters.all(|b| b.is_ascii_alphanumeric() || b == b'+')
-    })
-}
-
-/// The bytes of one object, of at most `most`; `None` where it does not exist. The path is an address, see [`is_remote`].
+/// The bytes of one object, of at most `most`; `None` where it does not exist. The path is an address, see [`peelnet_files::is_remote`].
 ///
 /// # Errors
 /// An address that is none, a server that cannot be asked, or an object that is too large.
@@ -240,7 +233,7 @@ pub fn read_object(path: &Path, most: u64) -> Result<Option<Vec<u8>>, DatasetErr
     store.get(&name, most)
 }
 
-/// Creates one object, whole or not at all; false where the name is taken, by whatever bytes. The path is an address, see [`is_remote`].
+/// Creates one object, whole or not at all; false where the name is taken, by whatever bytes. The path is an address, see [`peelnet_files::is_remote`].
 ///
 /// # Errors
 /// An address that is none, or a server that cannot be asked or refuses.

@@ -1,15 +1,14 @@
 //! A verified text and its description as files.
 
 use crate::{ExportError, Language, Options, Verification, json::json, text, verify::verify};
-use peelnet_files::{Destination, destination};
+use peelnet_files::STDOUT;
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use std::path::{Path, PathBuf};
 
 /// The description beside an exported text: its name with `json` instead of the last extension, `.es.glsl` being one. `None` of a text that
-/// goes to a stream.
+/// goes to stdout.
 pub fn description_path(text: &Path) -> Option<PathBuf> {
-    let is_file = matches!(destination(text), Ok(Destination::File(_)));
     let name = text.to_string_lossy();
     let stem = name
         .strip_suffix(".es.glsl")
@@ -18,7 +17,7 @@ pub fn description_path(text: &Path) -> Option<PathBuf> {
         || text.with_extension("json"),
         |s| format!("{s}.json").into(),
     );
-    is_file.then_some(path)
+    (text != Path::new(STDOUT)).then_some(path)
 }
 
 /// Exports a model, verifies the text on the GPU, and only then writes it, whole, and its description beside it.

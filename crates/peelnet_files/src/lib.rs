@@ -8,8 +8,8 @@ mod text;
 
 pub use input::{check_size, open, read, read_head};
 pub use output::{
-    Destination, Kind, Moving, Outputs, Refused, STDOUT, Standing, Unfinished, check_is_folder,
-    destination, folder_of, remove_unfinished, write_whole,
+    Kind, Moving, Output, Outputs, Refused, STDOUT, Standing, Unfinished, check_is_folder,
+    folder_of, is_remote, remove_unfinished, write_whole,
 };
 pub use text::{
     MAX_SHOWN, counted, error_line, hex, one_line, printable, printable_json, printable_lines,

@@ -1,77 +1,267 @@
-//! Files that are written: whole or not at all, through links, onto devices, and never over what is not peelnet's.
+//! Files that are written: whole or not at all, and never over what is not peelnet's. The one place with this rule.
+//!
+//! A path is resolved first, and must lead to a regular file or to a free name ([`Output::reserve`]). A command checks its outputs before it
+//! begins ([`Outputs`]): an input is not replaced, nor a file of another kind, unless the user forces it. What was allowed then still holds
+//! just before the rename, or nothing is replaced ([`Output::commit`]).
 
 use crate::{read_head, shown};
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     error::Error,
-    fmt, fs,
+    fmt,
+    fs::{self, Metadata},
     io::{self, Write as _},
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf, absolute},
     sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard},
+    time::SystemTime,
 };
 
 /// The path that means stdout.
 pub const STDOUT: &str = "-";
 
-/// Symbolic links that are followed one after another.
-const MAX_LINKS: usize = 40;
-
 /// Bytes at the beginning of a file by which its kind is known.
 const HEAD: u64 = 1 << 16;
 
-/// Where bytes for a path go.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Destination {
-    /// A regular file that exists or not: the path itself, or what a symbolic link points to.
-    File(PathBuf),
-    /// Stdout: `-`, `/dev/stdout` and the like.
-    Stdout,
-    /// Stderr: `/dev/stderr` and the like.
-    Stderr,
-    /// A device, a pipe or a socket, which is written but never replaced.
-    Stream(PathBuf),
+/// Whether a path is an address, `scheme://…`, such as one of an object store.
+pub fn is_remote(path: &Path) -> bool {
+    let address = path.to_str().and_then(|text| text.split_once("://"));
+    address.is_some_and(|(scheme, _)| {
+        let mut letters = scheme.bytes();
+        scheme.len() > 1 && letters.all(|b| b.is_ascii_alphanumeric() || b == b'+')
+    })
 }
 
-/// Finds where bytes for a path go. Links are followed, so that they stay what they are.
+/// The path on this machine that an address `file:///…` means; a path that is no address means itself.
+fn local(path: &Path) -> io::Result<&Path> {
+    if !is_remote(path) {
+        return Ok(path);
+    }
+    let address = path.to_str();
+    address
+        .and_then(|address| address.strip_prefix("file://"))
+        .filter(|path| path.starts_with('/'))
+        .map(Path::new)
+        .ok_or_else(|| invalid("is no file of this machine; name one"))
+}
+
+fn invalid(why: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, why)
+}
+
+/// Where an absolute path of a file leads. Its last part stays, so that a link is seen as one.
+fn resolve(path: &Path) -> io::Result<PathBuf> {
+    match path.file_name() {
+        Some(name) => Ok(resolve_folder(folder_of(path))?.join(name)),
+        None => resolve_folder(path),
+    }
+}
+
+/// Where an absolute path of a folder leads: `..` and links are resolved.
+fn resolve_folder(path: &Path) -> io::Result<PathBuf> {
+    let mut resolved = PathBuf::new();
+    for part in path.components() {
+        match part {
+            // No link is left in what precedes it.
+            Component::ParentDir => {
+                resolved.pop();
+            }
+            Component::Normal(name) => {
+                resolved.push(name);
+                match resolved.canonicalize() {
+                    Ok(real) => resolved = real,
+                    Err(_) if resolved.is_symlink() => {
+                        return Err(invalid("a link among its folders leads nowhere"));
+                    }
+                    // Folders that do not exist are created.
+                    Err(_) => {}
+                }
+            }
+            root => resolved.push(root),
+        }
+    }
+    Ok(resolved)
+}
+
+/// A regular file as it was found: equal as long as it is the same file with the same contents.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Existing {
+    id: Option<(u64, u64)>,
+    bytes: u64,
+    modified: Option<SystemTime>,
+}
+
+/// What stands at a resolved path.
+fn find(file: &Path) -> io::Result<Option<Existing>> {
+    let metadata = match fs::symlink_metadata(file) {
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+        other => other?,
+    };
+    if metadata.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if metadata.is_symlink() {
+        return Err(invalid("is a link; name the file that it leads to"));
+    }
+    if !metadata.is_file() {
+        return Err(invalid("is no regular file; name one, or - for stdout"));
+    }
+    Ok(Some(Existing {
+        id: file_id(&metadata),
+        bytes: metadata.len(),
+        modified: metadata.modified().ok(),
+    }))
+}
+
+/// Device and number of a file.
+#[cfg(unix)]
+fn file_id(metadata: &Metadata) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt as _;
+    Some((metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn file_id(_: &Metadata) -> Option<(u64, u64)> {
+    None
+}
+
+/// A file that is going to be written, and what may be replaced there.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Absolute, and otherwise as the user gave it.
+    path: PathBuf,
+    /// Where it leads; nothing for stdout.
+    file: Option<PathBuf>,
+    existing: Option<Existing>,
+}
+
+impl Output {
+    /// Finds where a path leads and what stands there. A file that a command's [`Outputs`] allowed to replace is the one that they saw.
+    ///
+    /// # Errors
+    /// A folder, a link, a device, a pipe, an address of another machine, or a path that cannot be looked at.
+    pub fn reserve(path: &Path) -> io::Result<Self> {
+        let output = Self::look(path)?;
+        Ok(output.allowed().unwrap_or(output))
+    }
+
+    fn look(path: &Path) -> io::Result<Self> {
+        if path == Path::new(STDOUT) {
+            return Ok(Self {
+                path: path.to_owned(),
+                file: None,
+                existing: None,
+            });
+        }
+        let path = absolute(local(path)?)?;
+        let file = resolve(&path)?;
+        Ok(Self {
+            existing: find(&file)?,
+            file: Some(file),
+            path,
+        })
+    }
+
+    /// The same as a command's [`Outputs`] saw it; in a folder whose files they saw, the others are new.
+    fn allowed(&self) -> Option<Self> {
+        let allowed = lock(&ALLOWED);
+        let of_folder = || {
+            let folder = allowed.get(folder_of(&self.path))?;
+            Some(Self {
+                path: self.path.clone(),
+                file: Some(folder.file.as_ref()?.join(self.path.file_name()?)),
+                existing: None,
+            })
+        };
+        allowed.get(&self.path).cloned().or_else(of_folder)
+    }
+
+    /// Writes a temporary file beside the output, then renames it. A missing folder is created; a file that is replaced keeps its
+    /// permissions.
+    ///
+    /// # Errors
+    /// If the folder or the file cannot be written, or if another file stands there than when it was reserved; then nothing is left behind.
+    pub fn commit(&self, bytes: &[u8]) -> io::Result<()> {
+        let Some(file) = &self.file else {
+            return to_stdout(bytes);
+        };
+        let folder = folder_of(file);
+        fs::create_dir_all(folder)?;
+        let mut builder = tempfile::Builder::new();
+        // Temporary files are private by default; a result has the permissions of any new file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let (mut unnamed, _unfinished) = {
+            // A process that ends between the two would leave the file behind.
+            let _moving = Moving::begin();
+            let unnamed = builder
+                .prefix(".peelnet-")
+                .tempfile_in(folder)
+                .map_err(plain)?;
+            let unfinished = Unfinished::new(unnamed.path());
+            (unnamed, unfinished)
+        };
+        // The error of a temporary file has its name.
+        unnamed.as_file_mut().write_all(bytes)?;
+        if self.existing.is_some()
+            && let Ok(replaced) = fs::metadata(file)
+        {
+            unnamed.as_file().set_permissions(replaced.permissions())?;
+        }
+        // A power failure must not leave a name without contents.
+        unnamed.as_file().sync_all()?;
+        let _moving = Moving::begin();
+        let now = Self::look(&self.path)?;
+        let is_allowed = now.existing.is_none() || now.existing == self.existing;
+        if !is_allowed || now.file != self.file {
+            return Err(changed());
+        }
+        match now.existing {
+            Some(_) => unnamed.persist(file).map_err(|e| e.error)?,
+            None => match unnamed.persist_noclobber(file) {
+                Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => return Err(changed()),
+                // File systems that cannot do this in one step.
+                Err(e) => e.file.persist(file).map_err(|e| e.error)?,
+                Ok(file) => file,
+            },
+        };
+        // Some file systems cannot; the file is whole anyway.
+        let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
+        if self.allowed().is_some() {
+            lock(&ALLOWED).insert(self.path.clone(), Self::look(&self.path)?);
+        }
+        Ok(())
+    }
+}
+
+fn changed() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::AlreadyExists,
+        "another file came there, or the file changed, while this command worked; nothing is replaced",
+    )
+}
+
+/// A reader that closes its pipe has read enough.
+fn to_stdout(bytes: &[u8]) -> io::Result<()> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
+}
+
+/// Writes a file whole: [`Output::reserve`] and [`Output::commit`].
 ///
 /// # Errors
-/// A folder, a circle of links, or a path that cannot be looked at.
-pub fn destination(path: &Path) -> io::Result<Destination> {
-    if path == Path::new(STDOUT) {
-        return Ok(Destination::Stdout);
-    }
-    let mut path = path.to_owned();
-    for _ in 0..MAX_LINKS {
-        // Opening these anew would lose the place where an earlier writer stopped.
-        match path.to_str() {
-            Some("/dev/stdout" | "/dev/fd/1" | "/proc/self/fd/1") => {
-                return Ok(Destination::Stdout);
-            }
-            Some("/dev/stderr" | "/dev/fd/2" | "/proc/self/fd/2") => {
-                return Ok(Destination::Stderr);
-            }
-            _ => {}
-        }
-        let metadata = match fs::symlink_metadata(&path) {
-            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Destination::File(path)),
-            other => other?,
-        };
-        if metadata.is_dir() {
-            return Err(io::ErrorKind::IsADirectory.into());
-        }
-        if metadata.is_file() {
-            return Ok(Destination::File(path));
-        }
-        if !metadata.is_symlink() || path.starts_with("/proc") {
-            // A link of /proc is a file that is open, whatever its text says.
-            return Ok(Destination::Stream(path));
-        }
-        let target = fs::read_link(&path)?;
-        // An absolute target replaces the folder.
-        path = folder_of(&path).join(target);
-    }
-    let why = "symbolic links go round in a circle";
-    Err(io::Error::new(io::ErrorKind::InvalidInput, why))
+/// As these two.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    Output::reserve(path)?.commit(bytes)
+}
+
+/// What the [`Outputs`] of this process found where their files go, by path.
+static ALLOWED: Mutex<BTreeMap<PathBuf, Output>> = Mutex::new(BTreeMap::new());
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The folder that a file lies in.
@@ -84,10 +274,8 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// Whether files can be created in a folder, or in the nearest of those above it that exists: creates one and removes it.
 fn check_folder(folder: &Path) -> io::Result<()> {
-    let there = |a: &&Path| a.as_os_str().is_empty() || a.exists();
-    let nearest = folder.ancestors().find(there);
-    let nearest = nearest.filter(|a| !a.as_os_str().is_empty());
-    tempfile::tempfile_in(nearest.unwrap_or(Path::new(".")))
+    let nearest = folder.ancestors().find(|folder| folder.exists());
+    tempfile::tempfile_in(nearest.unwrap_or(folder))
         .map(drop)
         .map_err(plain)
 }
@@ -108,10 +296,10 @@ pub struct Kind {
     pub is: fn(head: &[u8]) -> bool,
 }
 
-/// What lies where a file is to be written.
+/// The existing file at an output's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// Nothing, an empty file, stdout, a device or a pipe.
+    /// None, an empty one, or stdout.
     Free,
     /// A file of the kind, which is replaced.
     Replaced,
@@ -123,18 +311,21 @@ impl Kind {
     /// What lies at a path.
     ///
     /// # Errors
-    /// A folder, or a file that cannot be read.
+    /// As [`Output::reserve`], or a file that cannot be read.
     pub fn standing(&self, path: &Path) -> io::Result<Standing> {
-        let Destination::File(path) = destination(path)? else {
+        self.standing_of(&Output::look(path)?)
+    }
+
+    fn standing_of(&self, output: &Output) -> io::Result<Standing> {
+        let (Some(file), Some(_)) = (&output.file, &output.existing) else {
             return Ok(Standing::Free);
         };
-        match read_head(&path, HEAD) {
-            Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(Standing::Free),
-            Err(e) => Err(e),
-            Ok(head) if head.is_empty() => Ok(Standing::Free),
-            Ok(head) if (self.is)(&head) => Ok(Standing::Replaced),
-            Ok(_) => Ok(Standing::Foreign),
-        }
+        let head = read_head(file, HEAD)?;
+        Ok(match (self.is)(&head) {
+            _ if head.is_empty() => Standing::Free,
+            true => Standing::Replaced,
+            false => Standing::Foreign,
+        })
     }
 }
 
@@ -186,8 +377,8 @@ pub struct Outputs {
     force: (&'static str, bool),
     /// Files and folders that the command reads.
     inputs: Vec<PathBuf>,
-    /// Files that it writes, as far as they are named.
-    taken: Vec<PathBuf>,
+    /// Files that it writes, as far as they are named, and folders.
+    taken: Vec<Output>,
     /// What lies where it writes.
     replaced: Vec<(PathBuf, &'static str)>,
 }
@@ -203,7 +394,7 @@ impl Outputs {
             force,
             // A shipped scene is no file.
             inputs: inputs
-                .filter_map(|path| path.as_ref().canonicalize().ok())
+                .filter_map(|path| local(path.as_ref()).ok()?.canonicalize().ok())
                 .collect(),
             taken: Vec::new(),
             replaced: Vec::new(),
@@ -222,24 +413,20 @@ impl Outputs {
 
     fn check(&mut self, path: &Path, kind: Kind) -> Result<(), Refused> {
         let (force, is_forced) = self.force;
-        let file = match destination(path)? {
-            Destination::File(file) => {
-                check_folder(folder_of(&file))?;
-                absolute(&file)
-            }
-            Destination::Stdout => PathBuf::from(STDOUT),
-            Destination::Stderr | Destination::Stream(_) => return Ok(()),
-        };
-        if self.taken.contains(&file) {
+        let output = Output::look(path)?;
+        if let Some(file) = &output.file {
+            check_folder(folder_of(file))?;
+        }
+        if self.taken.iter().any(|taken| taken.file == output.file) {
             let why = "another output of this command has the same name; choose another";
             return Err(Refused::wrong(why));
         }
-        if self.is_input(&file) && !is_forced {
+        if self.is_input(&output) && !is_forced {
             return Err(Refused::wrong(format!(
                 "this command reads that file; choose another name, or replace it with {force}"
             )));
         }
-        match kind.standing(path)? {
+        match kind.standing_of(&output)? {
             Standing::Free => {}
             Standing::Foreign if !is_forced => {
                 let text = format!(
@@ -254,7 +441,7 @@ impl Outputs {
             Standing::Foreign => self.replaced.push((path.to_owned(), "another file")),
             Standing::Replaced => self.replaced.push((path.to_owned(), kind.name)),
         }
-        self.taken.push(file);
+        self.take(output);
         Ok(())
     }
 
@@ -294,14 +481,29 @@ impl Outputs {
                 .is_some_and(|e| e.eq_ignore_ascii_case(ending))
         });
         names.sort();
-        names
-            .iter()
-            .try_for_each(|path| self.file(setting, path, kind))
+        for path in &names {
+            self.file(setting, path, kind)?;
+        }
+        let found = || {
+            let path = absolute(local(folder)?)?;
+            Ok(Output {
+                file: Some(resolve_folder(&path)?),
+                path,
+                existing: None,
+            })
+        };
+        self.take(found().map_err(|e: io::Error| Refused::from(e).about(setting, folder))?);
+        Ok(())
+    }
+
+    fn take(&mut self, output: Output) {
+        lock(&ALLOWED).insert(output.path.clone(), output.clone());
+        self.taken.push(output);
     }
 
     /// Whether a file goes to stdout, so that nothing else may.
     pub fn is_stdout_taken(&self) -> bool {
-        self.taken.iter().any(|file| file == Path::new(STDOUT))
+        self.taken.iter().any(|output| output.file.is_none())
     }
 
     /// What will be replaced, for a message before work begins that reads these files, too.
@@ -309,19 +511,17 @@ impl Outputs {
     /// # Errors
     /// An output that is read, such as a texture: which files these are is known only once a scene is loaded.
     pub fn begin<'a>(
-        mut self,
+        &mut self,
         read: impl IntoIterator<Item = &'a PathBuf>,
     ) -> Result<Option<String>, Refused> {
-        self.inputs = read
-            .into_iter()
-            .filter_map(|f| f.canonicalize().ok())
-            .collect();
+        let read = read.into_iter().filter_map(|f| f.canonicalize().ok());
+        self.inputs.extend(read);
         let (force, is_forced) = self.force;
-        let input = self.taken.iter().find(|file| self.is_input(file));
-        if let Some(file) = input.filter(|_| !is_forced) {
+        let input = self.taken.iter().find(|output| self.is_input(output));
+        if let Some(output) = input.filter(|_| !is_forced) {
             return Err(Refused::wrong(format!(
                 "--out: would replace {}, which a scene of this command reads; choose another name, or replace it with {force}",
-                shown(file)
+                shown(&output.path)
             )));
         }
         let Some((first, what)) = self.replaced.first() else {
@@ -335,10 +535,20 @@ impl Outputs {
         Ok(Some(format!("replacing {} ({what}){more}", shown(first))))
     }
 
-    fn is_input(&self, file: &Path) -> bool {
-        self.inputs
-            .iter()
-            .any(|input| file.starts_with(input) || is_same(file, input))
+    fn is_input(&self, output: &Output) -> bool {
+        let is_read = |file: &PathBuf| {
+            let mut inputs = self.inputs.iter();
+            inputs.any(|input| file.starts_with(input) || is_same(file, input))
+        };
+        output.file.as_ref().is_some_and(is_read)
+    }
+}
+
+/// The outputs are written: what is there now is no concern of this command any more.
+impl Drop for Outputs {
+    fn drop(&mut self) {
+        let is_ours = |path: &Path| self.taken.iter().any(|taken| taken.path == path);
+        lock(&ALLOWED).retain(|path, _| !is_ours(path) && !is_ours(folder_of(path)));
     }
 }
 
@@ -361,88 +571,16 @@ pub fn check_is_folder(setting: &str, folder: &Path) -> Result<(), Refused> {
     refused.map_err(|refused| refused.about(setting, folder))
 }
 
-/// The path with its links resolved, as far as it exists.
-fn absolute(path: &Path) -> PathBuf {
-    let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
-    let resolved = path.canonicalize().ok().or_else(in_folder);
-    resolved
-        .or_else(|| std::path::absolute(path).ok())
-        .unwrap_or_else(|| path.to_owned())
-}
-
 /// Whether two paths are the same file, also by hard links.
-#[cfg(unix)]
 fn is_same(a: &Path, b: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt as _;
-    let id = |p: &Path| fs::metadata(p).map(|m| (m.dev(), m.ino()));
-    matches!((id(a), id(b)), (Ok(a), Ok(b)) if a == b)
-}
-
-#[cfg(not(unix))]
-fn is_same(a: &Path, b: &Path) -> bool {
-    a == b
-}
-
-/// Writes a file under a temporary name in its own folder, then renames it. A missing folder is created; a regular file of that
-/// name is replaced and keeps its permissions. A symbolic link stays one, and what it points to is written; `-` is stdout; a device or a
-/// pipe is written as it is.
-///
-/// # Errors
-/// If the folder or the file cannot be written; then nothing is left behind.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    match destination(path)? {
-        Destination::Stdout => to_stream(io::stdout().lock(), bytes),
-        Destination::Stderr => to_stream(io::stderr().lock(), bytes),
-        Destination::Stream(path) => {
-            to_stream(fs::OpenOptions::new().write(true).open(path)?, bytes)
-        }
-        Destination::File(path) => replace(&path, bytes),
-    }
-}
-
-/// A reader that closes its pipe has read enough.
-fn to_stream(mut stream: impl io::Write, bytes: &[u8]) -> io::Result<()> {
-    match stream.write_all(bytes).and_then(|()| stream.flush()) {
-        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        other => other,
-    }
-}
-
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = folder_of(path);
-    fs::create_dir_all(folder)?;
-    let mut builder = tempfile::Builder::new();
-    // Temporary files are private by default; a result has the permissions of any new file.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let (mut file, _unfinished) = {
-        // A process that ends between the two would leave the file behind.
-        let _moving = Moving::begin();
-        let file = builder
-            .prefix(".peelnet-")
-            .tempfile_in(folder)
-            .map_err(plain)?;
-        let unfinished = Unfinished::new(file.path());
-        (file, unfinished)
-    };
-    if let Ok(replaced) = fs::metadata(path) {
-        file.as_file().set_permissions(replaced.permissions())?;
-    }
-    // The error of a temporary file has its name.
-    file.as_file_mut().write_all(bytes)?;
-    let _moving = Moving::begin();
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    let id = |path: &Path| file_id(&fs::metadata(path).ok()?);
+    a == b || id(a).is_some_and(|found| id(b) == Some(found))
 }
 
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// Held for reading while finished files move into place, for writing by a process that ends.
 static MOVING: RwLock<()> = RwLock::new(());
-
-fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// A temporary file or folder that [`remove_unfinished`] removes as long as this lives.
 #[derive(Debug)]
@@ -451,14 +589,14 @@ pub struct Unfinished(PathBuf);
 impl Unfinished {
     /// From now on this path is unfinished.
     pub fn new(path: &Path) -> Self {
-        unfinished().insert(path.to_owned());
+        lock(&UNFINISHED).insert(path.to_owned());
         Self(path.to_owned())
     }
 }
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
-        unfinished().remove(&self.0);
+        lock(&UNFINISHED).remove(&self.0);
     }
 }
 
@@ -481,7 +619,7 @@ impl Moving {
 /// as soon as this returns, while other threads still work.
 pub fn remove_unfinished() {
     let guard = MOVING.write().unwrap_or_else(PoisonError::into_inner);
-    for path in &*unfinished() {
+    for path in &*lock(&UNFINISHED) {
         // Gone already, or not ours to remove any more: both are as they should be.
         let _ = if path.is_dir() {
             fs::remove_dir_all(path)
@@ -497,108 +635,210 @@ pub fn remove_unfinished() {
 mod tests {
     use super::*;
 
-    /// A result can be read by whoever the user's umask allows, as any new file, and what is replaced keeps its permissions.
-    #[test]
-    fn replaces_whole_files_and_leaves_no_other() {
-        let dir = tempfile::tempdir().expect("temporary folder");
-        let (path, plain) = (dir.path().join("a/b.txt"), dir.path().join("plain"));
-        write_whole(&path, b"one").expect("writes");
-        fs::write(&plain, b"x").expect("writes");
-        let permissions = |p: &Path| fs::metadata(p).expect("is there").permissions();
-        assert_eq!(permissions(&path), permissions(&plain));
-        #[cfg(unix)]
-        {
-            let private: fs::Permissions = std::os::unix::fs::PermissionsExt::from_mode(0o600);
-            fs::set_permissions(&path, private).expect("is ours");
+    const NOTE: Kind = Kind {
+        name: "a note",
+        is: |head| head.starts_with(b"note"),
+    };
+
+    /// What a file or a link holds, by path, and its permissions.
+    fn everything(folder: &Path) -> BTreeMap<PathBuf, (String, bool)> {
+        let entries = fs::read_dir(folder).expect("lists");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        let mut found = BTreeMap::new();
+        for path in paths {
+            let metadata = fs::symlink_metadata(&path).expect("stands");
+            let text = if metadata.is_symlink() {
+                let target = fs::read_link(&path).expect("a link");
+                target.to_string_lossy().into_owned()
+            } else if metadata.is_file() {
+                fs::read_to_string(&path).expect("reads")
+            } else {
+                if metadata.is_dir() {
+                    found.extend(everything(&path));
+                }
+                String::new()
+            };
+            found.insert(path, (text, metadata.permissions().readonly()));
         }
-        let before = permissions(&path);
-        write_whole(&path, b"two").expect("writes");
-        assert_eq!(fs::read(&path).expect("reads"), b"two");
-        assert_eq!(permissions(&path), before);
-        // A file in the way of a folder, and a folder in the way of a file.
-        assert!(write_whole(&path.join("c.txt"), b"one").is_err());
-        assert!(write_whole(dir.path(), b"one").is_err());
-        for (folder, files) in [(dir.path(), 2), (&dir.path().join("a"), 1)] {
-            assert_eq!(fs::read_dir(folder).expect("lists").count(), files);
-        }
+        found
     }
 
+    /// A folder of files, links and a pipe, and an open file of it.
     #[cfg(unix)]
-    #[test]
-    fn links_stay_and_devices_are_written() {
-        use std::os::unix::fs::symlink;
-        let dir = tempfile::tempdir().expect("temporary folder");
+    fn folder() -> (tempfile::TempDir, fs::File) {
+        use std::os::unix::fs::{PermissionsExt as _, symlink};
+        let parent = std::env::temp_dir().canonicalize().expect("stands");
+        let dir = tempfile::tempdir_in(parent).expect("temporary folder");
         let at = |name: &str| dir.path().join(name);
         fs::create_dir(at("far")).expect("creates");
+        for (name, text) in [
+            ("note", "note: old"),
+            ("input", "note: read"),
+            ("mine", "a user's own"),
+            ("empty", ""),
+            ("far/note", "note: far"),
+        ] {
+            fs::write(at(name), text).expect("writes");
+        }
+        fs::set_permissions(at("note"), fs::Permissions::from_mode(0o440)).expect("is ours");
+        fs::hard_link(at("input"), at("hard")).expect("links");
         for (target, link) in [
-            ("far/file", "link"),
+            ("note", "link"),
             ("link", "chain"),
+            ("gone", "dangling"),
             ("circle", "circle"),
-            ("/dev/full", "full"),
+            ("far", "near"),
+            ("/dev/null", "null"),
         ] {
             symlink(target, at(link)).expect("links");
         }
-        // First to a file that does not exist, then to one that does.
-        for text in [b"one", b"two"] {
-            write_whole(&at("chain"), text).expect("writes");
-            assert_eq!(fs::read(at("far/file")).expect("reads"), text);
-        }
-        for refused in ["circle", "full"] {
-            assert!(write_whole(&at(refused), b"x").is_err(), "{refused}");
-        }
-        for link in ["chain", "link", "circle", "full"] {
-            assert!(at(link).is_symlink(), "{link}");
-        }
-        write_whole(Path::new("/dev/null"), b"x").expect("writes");
-        assert!(!fs::metadata("/dev/null").expect("is there").is_file());
-        for stdout in [STDOUT, "/dev/stdout"] {
-            let found = destination(Path::new(stdout)).expect("is found");
-            assert_eq!(found, Destination::Stdout, "{stdout}");
+        let pipe = std::process::Command::new("mkfifo")
+            .arg(at("pipe"))
+            .status();
+        assert!(pipe.expect("mkfifo runs").success());
+        let open = fs::File::open(at("note")).expect("opens");
+        (dir, open)
+    }
+
+    /// One line a case: the output (`DIR` is the folder), what happens there after it is reserved, and words of the error, none where it
+    /// is written. An error leaves everything as it was, and nothing else is changed by an output.
+    #[cfg(unix)]
+    #[test]
+    fn only_what_is_allowed_is_replaced() {
+        use std::os::fd::AsRawFd as _;
+        type Change = fn(&Path) -> io::Result<()>;
+        let no: Change = |_| Ok(());
+        let appears: Change = |dir| fs::write(dir.join("new"), "note: another's");
+        let cases: &[(&str, Change, &str)] = &[
+            ("DIR/new", no, ""),
+            ("DIR/empty", no, ""),
+            ("DIR/note", no, ""),
+            ("DIR/deep/er/new", no, ""),
+            ("DIR/deep/../note", no, ""),
+            ("DIR/near/note", no, ""),
+            ("DIR/near/../note", no, ""),
+            ("file://DIR/note", no, ""),
+            ("s3://bucket/note", no, "no file of this machine"),
+            ("DIR/mine", no, "is not a note; choose another name, or"),
+            ("DIR/input", no, "this command reads that file"),
+            ("DIR/far/../input", no, "this command reads that file"),
+            ("DIR/near/../input", no, "this command reads that file"),
+            ("file://DIR/input", no, "this command reads that file"),
+            ("DIR/hard", no, "this command reads that file"),
+            ("DIR/far", no, "is a directory"),
+            ("DIR/far/..", no, "is a directory"),
+            ("DIR/mine/new", no, "cannot be written"),
+            ("DIR/link", no, "is a link"),
+            ("DIR/chain", no, "is a link"),
+            ("DIR/dangling", no, "is a link"),
+            ("DIR/circle", no, "is a link"),
+            ("DIR/null", no, "is a link"),
+            ("DIR/dangling/new", no, "leads nowhere"),
+            ("DIR/pipe", no, "no regular file"),
+            ("/dev/null", no, "no regular file"),
+            ("/dev/stdout", no, "is a link"),
+            ("/proc/self/fd/OPEN", no, "is a link"),
+            ("/proc/self/fd/1", no, "is a link"),
+            ("/proc/self/new", no, "cannot be written"),
+            ("DIR/new", appears, "another file came there"),
+            ("DIR/deep/../new", appears, "another file came there"),
+            ("DIR/note", |dir| fs::remove_file(dir.join("note")), ""),
+            (
+                "DIR/empty",
+                |dir| fs::write(dir.join("empty"), "mine"),
+                "the file changed",
+            ),
+            (
+                "DIR/note",
+                |dir| fs::rename(dir.join("mine"), dir.join("note")),
+                "the file changed",
+            ),
+            (
+                "DIR/new",
+                |dir| std::os::unix::fs::symlink("mine", dir.join("new")),
+                "is a link",
+            ),
+            (
+                "DIR/near/note",
+                |dir| {
+                    fs::remove_file(dir.join("near"))?;
+                    std::os::unix::fs::symlink(".", dir.join("near"))
+                },
+                "the file changed",
+            ),
+        ];
+        for (path, change, words) in cases {
+            let (dir, open) = folder();
+            let text = path.replace("DIR", &dir.path().to_string_lossy());
+            let path = PathBuf::from(text.replace("OPEN", &open.as_raw_fd().to_string()));
+            let mut outputs = Outputs::new(("--force", false), [dir.path().join("input")]);
+            let mut before = everything(dir.path());
+            let result = outputs.file("--out", &path, NOTE).and_then(|()| {
+                change(dir.path()).expect("changes");
+                before = everything(dir.path());
+                write_whole(&path, b"note: new").map_err(Refused::from)
+            });
+            let said = result.err().map_or_else(String::new, |e| e.to_string());
+            let is_as_expected = said.contains(words) && said.is_empty() == words.is_empty();
+            assert!(is_as_expected, "{path:?}: '{said}'");
+            let mut after = everything(dir.path());
+            if words.is_empty() {
+                let Output { file, .. } = Output::look(&path).expect("leads there");
+                let file = file.expect("is no stdout");
+                let (text, is_read_only) = after.remove(&file).expect("is written");
+                assert_eq!(text, "note: new");
+                let was = before.remove(&file);
+                assert_eq!(is_read_only, was.is_some_and(|(_, r)| r), "{path:?}");
+                after.retain(|path, _| !path.starts_with(dir.path().join("deep")));
+            }
+            assert_eq!(after, before, "{path:?}");
         }
     }
 
+    /// Commands that write a file several times, and files whose names are known late.
     #[test]
-    fn what_lies_there_is_known_by_its_content() {
-        const NOTE: Kind = Kind {
-            name: "a note",
-            is: |head| head.starts_with(b"note"),
-        };
+    fn what_a_command_wrote_is_its_own() {
         let dir = tempfile::tempdir().expect("temporary folder");
-        for (name, text) in [("a", "note: x"), ("b", "not a note"), ("c", "")] {
-            fs::write(dir.path().join(name), text).expect("writes");
+        let at = |name: &str| dir.path().join(name);
+        let mut outputs = Outputs::new(("--force", false), [""; 0]);
+        outputs.file("--out", &at("a"), NOTE).expect("is free");
+        let images = at("images");
+        outputs
+            .files_like("--out", &images, "png", NOTE)
+            .expect("are free");
+        for file in [at("a"), at("images/1.png")] {
+            for text in [b"note: 1", b"note: 2"] {
+                write_whole(&file, text).expect("is its own");
+                assert_eq!(fs::read(&file).expect("reads"), text);
+            }
         }
-        let path = |name: &str| match name {
-            STDOUT => PathBuf::from(STDOUT),
-            name => dir.path().join(name),
-        };
-        for (name, expected) in [
-            ("a", Standing::Replaced),
-            ("b", Standing::Foreign),
-            ("c", Standing::Free),
-            ("d/e", Standing::Free),
-            (STDOUT, Standing::Free),
-        ] {
-            assert_eq!(NOTE.standing(&path(name)).expect("stands"), expected);
+        fs::write(at("images/2.png"), "mine").expect("writes");
+        assert!(write_whole(&at("images/2.png"), b"note").is_err());
+        drop(outputs);
+        // A library's caller decides.
+        write_whole(&at("images/2.png"), b"note").expect("writes");
+        assert!(write_whole(dir.path(), b"note").is_err());
+    }
+
+    #[test]
+    fn what_is_forced_is_said() {
+        let dir = tempfile::tempdir().expect("temporary folder");
+        let at = |name: &str| dir.path().join(name);
+        for (name, text) in [("a", "note"), ("b", "mine")] {
+            fs::write(at(name), text).expect("writes");
         }
-        assert!(NOTE.standing(dir.path()).is_err());
-        let mut outputs = Outputs::new(("--force", false), [path("a")]);
-        // An input, a foreign file, a new one, and a second of its name.
-        for (name, words) in [
-            ("a", "this command reads that file"),
-            (
-                "b",
-                "is not a note; choose another name, or replace it with --force",
-            ),
-            ("c", ""),
-            ("c", "another output of this command has the same name"),
-        ] {
-            let result = outputs.file("--out", &path(name), NOTE);
-            let text = result.err().map_or_else(String::new, |e| e.to_string());
-            assert!(text.contains(words) && text.is_empty() == words.is_empty());
+        let mut outputs = Outputs::new(("--force", true), [at("a")]);
+        for name in ["a", "b"] {
+            outputs.file("--out", &at(name), NOTE).expect("is forced");
         }
-        let mut forced = Outputs::new(("--force", true), [path("a")]);
-        forced.file("--out", &path("a"), NOTE).expect("is forced");
-        let said = forced.begin([]).expect("is forced").unwrap_or_default();
-        assert!(said.ends_with("a (a note)"), "{said}");
+        let twice = outputs.file("--out", &at("b"), NOTE).expect_err("twice");
+        assert!(twice.to_string().contains("another output"), "{twice}");
+        outputs
+            .file("--out", Path::new(STDOUT), NOTE)
+            .expect("is stdout");
+        assert!(outputs.is_stdout_taken());
+        let said = outputs.begin([]).expect("is forced").unwrap_or_default();
+        assert!(said.ends_with("a (a note) and one more file"), "{said}");
+        write_whole(&at("b"), b"note").expect("is forced");
     }
 }

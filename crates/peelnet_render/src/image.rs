@@ -2,7 +2,7 @@
 
 use crate::error::RenderError;
 use peelnet_core::srgb;
-use peelnet_files::{Destination, Kind};
+use peelnet_files::{Kind, STDOUT};
 use std::path::Path;
 
 /// The formats of image files.
@@ -17,23 +17,21 @@ pub enum ImageFormat {
 }
 
 impl ImageFormat {
-    /// The format of a file by its ending. Stdout and devices, whose names say nothing, get PNG.
+    /// The format of a file by its ending. Stdout, whose name says nothing, gets PNG.
     ///
     /// # Errors
-    /// [`RenderError::Image`] for any other ending, or a folder.
+    /// [`RenderError::Image`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, RenderError> {
         let ending = path.extension().and_then(|e| e.to_str());
         match ending.unwrap_or_default().to_lowercase().as_str() {
             "png" => Ok(Self::Png),
             "exr" => Ok(Self::Exr),
             "npy" => Ok(Self::Npy),
-            _ => match peelnet_files::destination(path).map_err(|e| failed(path, &e))? {
-                Destination::File(_) => Err(failed(
-                    path,
-                    &"the ending says the format; use .png (sRGB), .exr or .npy (linear)",
-                )),
-                _ => Ok(Self::Png),
-            },
+            _ if path == Path::new(STDOUT) => Ok(Self::Png),
+            _ => Err(failed(
+                path,
+                &"the ending says the format; use .png (sRGB), .exr or .npy (linear)",
+            )),
         }
     }
 

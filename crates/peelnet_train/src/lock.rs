@@ -28,6 +28,8 @@ impl OutputLock {
         let path = beside(out, "lock");
         let failed = io_error(&path);
         std::fs::create_dir_all(peelnet_files::folder_of(&path)).map_err(&failed)?;
+        // No link, whose target would be created, and no device.
+        peelnet_files::Output::reserve(&path).map_err(&failed)?;
         loop {
             let file = OpenOptions::new()
                 .write(true)

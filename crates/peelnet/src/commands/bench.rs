@@ -41,11 +41,11 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     let mut outputs = outputs(context, args, Results::<Bench>::FILES)?;
     outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
     let results = if args.redraw {
-        context.begin(outputs, &[])?;
+        context.begin(&mut outputs, &[])?;
         read(&args.out)?
     } else {
         let scenes = context.scenes(&args.scenes)?;
-        context.begin(outputs, &scenes)?;
+        context.begin(&mut outputs, &scenes)?;
         let comparison = Comparison {
             methods: args.methods.as_deref(),
             models: &args.models,
@@ -92,8 +92,8 @@ pub(super) fn show<'a>(context: &'a Context<'_>, bar: &'a Bar) -> impl FnMut(Pro
 
 /// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let outputs = outputs(context, args, Results::<Scaling>::FILES)?;
-    context.begin(outputs, &[])?;
+    let mut outputs = outputs(context, args, Results::<Scaling>::FILES)?;
+    context.begin(&mut outputs, &[])?;
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
     let named = args.methods.as_deref();
@@ -116,13 +116,13 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
 
 /// What effects cost.
 fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let outputs = outputs(context, args, Results::<Effects>::FILES)?;
+    let mut outputs = outputs(context, args, Results::<Effects>::FILES)?;
     let scenes = if args.scenes.is_empty() {
         context.shipped(suite::EFFECTS)?
     } else {
         context.scenes(&args.scenes)?
     };
-    context.begin(outputs, &scenes)?;
+    context.begin(&mut outputs, &scenes)?;
     let method = args.methods.iter().flatten().next().cloned();
     let settings = effects::Settings {
         method: method.map_or_else(|| EFFECTS_METHOD.parse(), Ok)?,
@@ -154,9 +154,9 @@ fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if args.frames == 0 {
         return Err(Failure::wrong("--frames 0: a path has at least one frame"));
     }
-    let outputs = outputs(context, args, Results::<Along>::FILES)?;
+    let mut outputs = outputs(context, args, Results::<Along>::FILES)?;
     let scenes = context.scenes(&args.scenes)?;
-    context.begin(outputs, &scenes)?;
+    context.begin(&mut outputs, &scenes)?;
     let gpu = context.gpu()?;
     // A path costs as much as sixty views.
     let named = args.methods.as_deref();

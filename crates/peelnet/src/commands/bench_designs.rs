@@ -33,7 +33,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         config.check()?;
     }
     let scenes = context.scenes(&args.scenes)?;
-    context.begin(outputs, &scenes)?;
+    context.begin(&mut outputs, &scenes)?;
     let datasets = args.designs.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
     let trained_on = check_scenes(context, &scenes, &datasets)?;

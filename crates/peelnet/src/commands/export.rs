@@ -14,7 +14,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     }
     let model = peelnet::load_model(&args.model)?;
     let gpu = context.gpu()?;
-    context.begin(outputs, &[])?;
+    context.begin(&mut outputs, &[])?;
     let options = peelnet_export::Options {
         language: args.lang,
         precision: args.precision,

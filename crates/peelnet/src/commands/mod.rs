@@ -72,7 +72,7 @@ impl Context<'_> {
     }
 
     /// Says what will be replaced, before work on these scenes begins.
-    fn begin(&self, outputs: Outputs, scenes: &[Scene]) -> Result<(), Failure> {
+    fn begin(&self, outputs: &mut Outputs, scenes: &[Scene]) -> Result<(), Failure> {
         if outputs.is_stdout_taken() {
             self.console.give_stdout_away();
         }

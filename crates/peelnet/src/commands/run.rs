@@ -66,14 +66,14 @@ fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
 }
 
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
-    let outputs = outputs(context, args)?;
+    let mut outputs = outputs(context, args)?;
     let scenes = if args.scenes.is_empty() {
         let all = suite::SCENES.iter();
         context.shipped(all.filter(|file| file.name.starts_with(FAMILY)))?
     } else {
         context.scenes(&args.scenes)?
     };
-    context.begin(outputs, &scenes)?;
+    context.begin(&mut outputs, &scenes)?;
     if scenes.iter().all(|s| s.held_out) {
         return Err(Failure::wrong(
             "every scene is marked held-out, so there is none to train on; add one that is not",

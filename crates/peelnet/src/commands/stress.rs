@@ -15,10 +15,10 @@ use std::sync::atomic::Ordering;
 
 pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
     let cases = cases(&args.cases)?;
+    let mut outputs = context.outputs(&args.models);
     if let Some(out) = &args.out {
-        let mut outputs = context.outputs(&args.models);
         context.results(&mut outputs, out, Results::<Stressed>::FILES)?;
-        context.begin(outputs, &[])?;
+        context.begin(&mut outputs, &[])?;
     }
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && args.methods.is_none();

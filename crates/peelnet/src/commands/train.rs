@@ -25,7 +25,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     )?;
     let datasets = args.datasets.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
-    context.begin(outputs, &[])?;
+    context.begin(&mut outputs, &[])?;
     let mut options = RunOptions::new(place.file(), context.stop);
     options.resume = args.resume;
     options.loss_curve = args.loss_curve.clone();

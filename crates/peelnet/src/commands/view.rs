@@ -21,6 +21,7 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
     let camera = camera
         .transpose()
         .map_err(|e| Failure::wrong(format!("--camera: {e}")))?;
+    let mut outputs = context.outputs(args.model.iter().chain([&args.scene]));
     if let Some(path) = &args.screenshot {
         if !matches!(ImageFormat::of(path), Ok(ImageFormat::Png)) {
             return Err(Failure::wrong(format!(
@@ -28,9 +29,8 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
                 shown(path)
             )));
         }
-        let mut outputs = context.outputs(args.model.iter().chain([&args.scene]));
         outputs.file("--screenshot", path, ImageFormat::Png.kind())?;
-        context.begin(outputs, &[])?;
+        context.begin(&mut outputs, &[])?;
     }
     let is_script = args.frames.is_some() || args.screenshot.is_some();
     // A script has nobody who reads messages in the window: what does not load ends it here.
