@@ -8,8 +8,9 @@ use crate::{
 use std::{env, path::PathBuf, process::Command, time::Instant};
 
 /// A step's name and what it does.
-type Step = (&'static str, fn() -> Outcome);
+pub type Step = (&'static str, fn() -> Outcome);
 
+/// What every change may break.
 const SHORT: [Step; 4] = [
     ("formatting", || run("cargo fmt --all --check")),
     ("build and clippy", || {
@@ -21,8 +22,8 @@ const SHORT: [Step; 4] = [
     }),
 ];
 
-/// Everything else, the quickest first.
-const LONG: [Step; 15] = [
+/// What only `test --all` runs beside the suites.
+const LONG: [Step; 3] = [
     ("long tests", || {
         ensure_browser()?;
         linted("nextest run --workspace --no-fail-fast --run-ignored only")
@@ -34,32 +35,16 @@ const LONG: [Step; 15] = [
         let mut doc = command("cargo doc --workspace --no-deps --quiet");
         start(doc.env("RUSTDOCFLAGS", "-D warnings"))
     }),
-    ("docs", suites::docs),
-    ("deny", deny),
-    ("wasm", suites::wasm),
-    ("languages", suites::languages),
-    ("python", || suites::python("test,ray")),
-    ("faults", suites::faults),
-    ("search", suites::search),
-    ("fuzz", || suites::fuzz("60")),
-    ("three", suites::three),
-    ("bevy", suites::bevy),
-    ("view-test", || suites::view(&[])),
-    ("cluster", || suites::cluster(&[])),
 ];
 
-/// What every change may break; ends with the first step that fails.
-pub fn test() -> Outcome {
+/// What every change may break, ending with the first step that fails; or everything, each suite whatever became of those before it.
+pub fn test(all: bool) -> Outcome {
     ensure_driver()?;
     ensure_subcommand("nextest")?;
-    steps(&SHORT, true)
-}
-
-/// Everything, each suite whatever became of those before it.
-pub fn test_all() -> Outcome {
-    ensure_driver()?;
-    ensure_subcommand("nextest")?;
-    steps(&[&SHORT[..], &LONG].concat(), false)
+    match all {
+        false => steps(&SHORT, true),
+        true => steps(&[&SHORT[..], &LONG, &suites::SUITES].concat(), false),
+    }
 }
 
 fn steps(steps: &[Step], ends_early: bool) -> Outcome {
@@ -109,14 +94,4 @@ fn linted(line: &str) -> Outcome {
             "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__",
         );
     start(&mut command)
-}
-
-/// Licences, sources and versions; advisories where their database can be reached.
-pub fn deny() -> Outcome {
-    ensure_subcommand("deny")?;
-    run("cargo deny check licenses bans sources")?;
-    run("cargo deny fetch db").map_err(|e| {
-        format!("{e}: the database of advisories cannot be reached, they are not checked")
-    })?;
-    run("cargo deny check advisories")
 }

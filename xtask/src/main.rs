@@ -27,9 +27,9 @@ cargo xtask <command>
   test            what every change may break: formatting, clippy, unit tests, methods against their CPU references, pictures
   test --all      everything: also the long tests, documentation, and every suite below, each with a line at the end (hours)
   ci              test, and cargo-deny: licences, advisories, sources, versions
-  measure [--binary PEELNET] [--only STEP,…] [--name NAME] [--into DIR]
-                  every result in docs/results, of this machine and under its name (up to 40 minutes); with a program that was built
-                  elsewhere neither a compiler nor a network is needed
+  measure MACHINE [STEP…]
+                  every result in docs/results/MACHINE, or those of some steps, measured on this machine (up to 40 minutes); with a program
+                  that was built elsewhere, PEELNET_BINARY, neither a compiler nor a network is needed
   bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
                   minutes to compile)
   wasm            check the crates that run in a browser for wasm32
@@ -64,25 +64,22 @@ fn main() -> ExitCode {
         ["train-models"] => product::train_models(),
         ["train-models", "--designs"] => product::designs(),
         ["meshes"] => run("python3 benches/meshes.py"),
-        ["test"] => checks::test(),
-        ["test", "--all"] => checks::test_all(),
-        ["ci"] => checks::test().and_then(|()| checks::deny()),
-        ["measure", ref rest @ ..] => measure::measure(rest),
-        ["bevy"] => suites::bevy(),
-        ["wasm"] => suites::wasm(),
+        ["test"] => checks::test(false),
+        ["test", "--all"] => checks::test(true),
+        ["ci"] => checks::test(false).and_then(|()| suites::deny()),
+        ["measure", machine, ref steps @ ..] => measure::measure(machine, steps),
         ["web"] => web::web(),
         ["view-test", ref steps @ ..] => suites::view(steps),
-        ["docs"] => suites::docs(),
-        ["search"] => suites::search(),
-        ["faults"] => suites::faults(),
         ["fuzz"] => suites::fuzz("1800"),
         ["fuzz", seconds] => suites::fuzz(seconds),
-        ["peers"] => suites::peers(),
-        ["languages"] => suites::languages(),
-        ["three"] => suites::three(),
+        ["peers"] => run("python3 benches/peers/train.py")
+            .and_then(|()| run("python3 benches/peers/transparency.py")),
         ["python"] => suites::python("test"),
         ["python", "--ray"] => suites::python("test,ray"),
         ["cluster", ref rest @ ..] => suites::cluster(rest),
+        [name] if suites::find(name).is_some() => {
+            suites::find(name).map_or(Ok(()), |suite| suite())
+        }
         [] | ["help" | "--help" | "-h", ..] => {
             print!("{HELP}");
             Ok(())

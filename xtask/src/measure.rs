@@ -5,11 +5,7 @@ use crate::{
     product::{Program, held_out_scenes, scene_file},
     root, run,
 };
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{fs, path::Path, time::Instant};
 
 /// A command of peelnet whose results are kept.
 struct Step {
@@ -90,58 +86,17 @@ fn measured(step: &Step) -> String {
     format!("out/measure/{}", step.name)
 }
 
-/// What `cargo xtask measure` was asked for.
-#[derive(Default)]
-struct Options {
-    /// A program that was built elsewhere; built here otherwise.
-    binary: Option<PathBuf>,
-    /// The folder of results; made from the machine's adapter and processor otherwise.
-    name: Option<String>,
-    /// Where that folder lies; `docs/results` otherwise.
-    into: Option<PathBuf>,
-    /// The steps to take; all of them where there are none.
-    only: Vec<String>,
-}
-
-impl Options {
-    fn parse(args: &[&str]) -> Result<Self, String> {
-        let mut options = Self::default();
-        for pair in args.chunks(2) {
-            let &[flag, value] = pair else {
-                return Err(format!("measure: {} needs a value", pair[0]));
-            };
-            match flag {
-                "--binary" => options.binary = Some(value.into()),
-                "--name" => options.name = Some(value.to_owned()),
-                "--into" => options.into = Some(value.into()),
-                "--only" => options.only = value.split(',').map(str::to_owned).collect(),
-                _ => return Err(format!("measure: unknown option {flag}")),
-            }
-        }
-        let names = STEPS.map(|s| s.name);
-        let mut only = options.only.iter();
-        match only.find(|name| !names.contains(&name.as_str())) {
-            Some(name) => Err(format!(
-                "measure: no step {name}; there are {}",
-                names.join(", ")
-            )),
-            None => Ok(options),
-        }
+/// Runs the steps of these names, or every step, and puts what they keep into a folder of the machine's name. PEELNET_BINARY is a program that
+/// is built already.
+pub fn measure(machine: &str, names: &[&str]) -> Outcome {
+    let known = STEPS.map(|s| s.name);
+    if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
+        let known = known.join(", ");
+        return Err(format!("measure has no step {unknown}: {known}"));
     }
-}
-
-/// Runs every step and puts what it keeps into a folder with the machine's name.
-pub fn measure(args: &[&str]) -> Outcome {
-    let options = Options::parse(args)?;
-    let program = match &options.binary {
-        // The caller's paths are relative to where it stands.
-        Some(path) => {
-            Program(fs::canonicalize(path).map_err(|e| format!("{}: {e}", path.display()))?)
-        }
-        None => Program::build()?,
-    };
-    let is_asked =
-        |step: &&Step| options.only.is_empty() || options.only.iter().any(|n| n == step.name);
+    let program = Program::given_or_built("")?;
+    let is_asked = |step: &&Step| names.is_empty() || names.contains(&step.name);
+    let into = root().join("docs/results").join(machine);
     let mut times = String::new();
     let begin = Instant::now();
     for step in STEPS.iter().filter(is_asked) {
@@ -156,14 +111,8 @@ pub fn measure(args: &[&str]) -> Outcome {
         } else {
             program.run(&line)?;
         }
-        times += &format!("{:>7.1} s  {}\n", begin.elapsed().as_secs_f64(), step.name);
-    }
-    let name = options.name.clone().map_or_else(machine_name, Ok)?;
-    let into = options.into.clone();
-    let into = into.unwrap_or_else(|| root().join("docs/results"));
-    let into = into.join(name);
-    for step in STEPS.iter().filter(is_asked) {
         keep(step, &into)?;
+        times += &format!("{:>7.1} s  {}\n", begin.elapsed().as_secs_f64(), step.name);
     }
     let together = begin.elapsed().as_secs_f64();
     println!(
@@ -202,67 +151,4 @@ fn keep(step: &Step, into: &Path) -> Outcome {
         }
     }
     Ok(())
-}
-
-/// A name for this machine, from the first result that says what it was measured on.
-fn machine_name() -> Result<String, String> {
-    for step in &STEPS {
-        let written = fs::read_dir(root().join(measured(step))).into_iter();
-        let paths = written.flatten().flatten().map(|entry| entry.path());
-        for file in paths.filter(|path| path.extension().is_some_and(|e| e == "json")) {
-            if let Some(name) = fs::read_to_string(file).ok().as_deref().and_then(name_of) {
-                return Ok(name);
-            }
-        }
-    }
-    Err("measure: no result says which machine this is; give it a name with --name".to_owned())
-}
-
-/// `llvmpipe-epyc-2cores` for a software rasteriser, whose speed is the processor's; `nvidia-h100` for a GPU.
-fn name_of(results: &str) -> Option<String> {
-    let field = |key: &str| {
-        let (_, rest) = results.split_once(&format!("\"{key}\": "))?;
-        rest.split(['"', ',', '\n']).find(|part| !part.is_empty())
-    };
-    let slug = |text: &str, words: usize| {
-        let text = text.split('(').next().unwrap_or(text).to_lowercase();
-        let parts = text.split(|c: char| !c.is_ascii_alphanumeric());
-        let parts: Vec<_> = parts.filter(|p| !p.is_empty()).take(words).collect();
-        parts.join("-")
-    };
-    let adapter = field("adapter")?;
-    if field("adapter_kind")? != "software" {
-        return Some(slug(adapter, 4));
-    }
-    let cpu = field("cpu")?;
-    // The maker's name says less than what it made.
-    let cpu = ["AMD ", "Intel(R) ", "Intel ", "Apple "]
-        .iter()
-        .find_map(|maker| cpu.strip_prefix(maker))
-        .unwrap_or(cpu);
-    Some(format!(
-        "{}-{}-{}cores",
-        slug(adapter, 1),
-        slug(cpu, 2),
-        field("cores")?
-    ))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn machines_have_names() {
-        let name = |adapter: &str, kind: &str| {
-            name_of(&format!(
-                "{{\n  \"machine\": {{\n    \"cpu\": \"AMD EPYC\",\n    \"cores\": 2,\n    \"adapter\": \"{adapter}\",\n    \"adapter_kind\": \"{kind}\"\n  }}\n}}"
-            ))
-        };
-        let llvmpipe = name("llvmpipe (LLVM 15.0.6, 256 bits)", "software");
-        assert_eq!(llvmpipe.as_deref(), Some("llvmpipe-epyc-2cores"));
-        let gpu = name("NVIDIA H100 80GB HBM3", "discrete");
-        assert_eq!(gpu.as_deref(), Some("nvidia-h100-80gb-hbm3"));
-        assert_eq!(name_of("{}"), None);
-    }
 }

@@ -1,16 +1,24 @@
 //! What runs the program itself: the demo, and the shipped networks.
 
 use crate::{Outcome, captured, in_root, program, root, run, setup::ensure_driver, start};
-use std::{fs, path::PathBuf, process::Command};
+use std::{env, fs, path::PathBuf, process::Command};
 
 /// `peelnet` as cargo builds it, for commands whose words are parted by spaces.
 pub struct Program(pub PathBuf);
 
 impl Program {
-    /// Compiles the release build, with cargo's own progress.
-    pub fn build() -> Result<Self, String> {
+    /// The program that PEELNET_BINARY names, or the release build with these features, compiled with cargo's own progress.
+    pub fn given_or_built(features: &str) -> Result<Self, String> {
         ensure_driver()?;
-        run("cargo build --release --package peelnet")?;
+        if let Some(path) = env::var_os("PEELNET_BINARY") {
+            // The caller's path is relative to where it stands.
+            let found = fs::canonicalize(&path);
+            let found = found.map_err(|e| format!("{}: {e}", path.to_string_lossy()));
+            return found.map(Self);
+        }
+        run(&format!(
+            "cargo build --release --package peelnet --features={features}"
+        ))?;
         Ok(Self(program("release")))
     }
 
@@ -34,7 +42,7 @@ impl Program {
 
 pub fn demo(out: &str, full: &str) -> Outcome {
     println!("Compiling peelnet: minutes the first time.");
-    Program::build()?.run(&format!("run --out {out} {full}"))?;
+    Program::given_or_built("")?.run(&format!("run --out {out} {full}"))?;
     let report = root().join(out).join("report.html");
     println!("\nThe report: {}", report.display());
     Ok(())
@@ -76,7 +84,7 @@ const ACROSS: [&str; 5] = ["boxes", "cups", "foliage", "panes", "smoke-30"];
 /// Makes everything in `models/` from the shipped scenes and the seed.
 pub fn train_models() -> Outcome {
     // Built once: networks that change on the way would make cargo build it again.
-    let program = Program::build()?;
+    let program = Program::given_or_built("")?;
     // What an earlier run left would be in the way of extraction.
     let _ = fs::remove_dir_all(root().join("out/models"));
     program.run("extract --synthetic 600000 --out out/models/synthetic")?;
@@ -122,7 +130,7 @@ fn train(program: &Program, recipe: &str, budget: &str) -> Outcome {
 /// Compares designs of slabs by what networks of them do on every fourth scene that is not held out; they learn from the others. Those resemble one
 /// another: the five scenes of a second run are apart from what it trains on.
 pub fn designs() -> Outcome {
-    let program = Program::build()?;
+    let program = Program::given_or_built("")?;
     let _ = fs::remove_dir_all(root().join("out/search"));
     program.run("extract --synthetic 204800 --out out/search/synthetic")?;
     let all = scene_files(|name| !name.ends_with("-held"))?;

@@ -1,7 +1,11 @@
 //! The suites that `cargo xtask test` leaves out: other compilers, languages and programs, and searches that take long.
 
 use crate::{
-    Outcome, answers, command, program, root, run,
+    Outcome, answers,
+    checks::Step,
+    command,
+    product::Program,
+    program, root, run,
     setup::{apt_install, ensure, ensure_browser, ensure_driver, ensure_subcommand},
     start, target_folder, web,
 };
@@ -11,8 +15,38 @@ use std::{
     process::Command,
 };
 
+/// Every suite by its command, the quickest first; some commands take arguments as well.
+pub const SUITES: [Step; 12] = [
+    ("docs", || {
+        ensure("mdbook --version", "mdbook")?;
+        run("mdbook build docs")
+    }),
+    ("deny", deny),
+    ("wasm", wasm),
+    ("languages", languages),
+    ("python", || python("test,ray")),
+    ("faults", || {
+        again("PEELNET_KILLS", "50", "peelnet --test faults --")
+    }),
+    ("search", || {
+        let tests = "peelnet_tests --test all -- random_lists";
+        again("PROPTEST_CASES", "1000000", tests)
+    }),
+    ("fuzz", || fuzz("60")),
+    ("three", || npm("packages/three", &[])),
+    ("bevy", bevy),
+    ("view-test", || view(&[])),
+    ("cluster", || cluster(&[])),
+];
+
+/// The suite of a command without arguments.
+pub fn find(name: &str) -> Option<fn() -> Outcome> {
+    let suite = SUITES.iter().find(|(known, _)| *known == name);
+    suite.map(|(_, run)| *run)
+}
+
 /// The Bevy plugin, a workspace of its own: its lints and tests, and its comparison against the exact image.
-pub fn bevy() -> Outcome {
+fn bevy() -> Outcome {
     ensure_driver()?;
     // The crate declares the compiler that Bevy asks for. Older ones compile it, down to that of this workspace.
     const BEVY: &str = "--manifest-path bevy/Cargo.toml --ignore-rust-version";
@@ -25,7 +59,7 @@ pub fn bevy() -> Outcome {
 }
 
 /// Compiles what a page in a browser needs, without linking it.
-pub fn wasm() -> Outcome {
+fn wasm() -> Outcome {
     let crates = "-p peelnet_core -p peelnet_scene -p peelnet_shaders -p peelnet_gpu -p peelnet_model \
                   -p peelnet_export -p peelnet_render -p peelnet_peel -p peelnet_eval -p peelnet_view";
     let check = run(&format!("cargo check --target {} {crates}", web::TARGET));
@@ -43,13 +77,8 @@ fn npm(folder: &str, more: &[(&str, &Path)]) -> Outcome {
     start(test.envs(more.iter().copied()))
 }
 
-/// The package for three.js.
-pub fn three() -> Outcome {
-    npm("packages/three", &[])
-}
-
 /// The exported texts, by the compilers that renderers use.
-pub fn languages() -> Outcome {
+fn languages() -> Outcome {
     if !answers("glslangValidator --version") {
         let installed = apt_install("glslang-tools");
         installed.map_err(|e| {
@@ -59,39 +88,15 @@ pub fn languages() -> Outcome {
     run("python3 benches/languages.py")
 }
 
-/// The book.
-pub fn docs() -> Outcome {
-    ensure("mdbook --version", "mdbook")?;
-    run("mdbook build docs")
-}
-
-/// Training against PyTorch, transparency against VTK and pygfx.
-pub fn peers() -> Outcome {
-    run("python3 benches/peers/train.py")?;
-    run("python3 benches/peers/transparency.py")
-}
-
 /// Tests again, at the length that an environment variable asks for, their output shown.
 fn again(variable: &str, value: &str, tests: &str) -> Outcome {
+    ensure_driver()?;
     let mut command = command(&format!("cargo test --package {tests} --nocapture"));
     start(command.env(variable, value))
 }
 
-/// A million random lists of fragments.
-pub fn search() -> Outcome {
-    let tests = "peelnet_tests --test all -- random_lists";
-    again("PROPTEST_CASES", "1000000", tests)
-}
-
-/// Commands that are killed again and again.
-pub fn faults() -> Outcome {
-    ensure_driver()?;
-    again("PEELNET_KILLS", "50", "peelnet --test faults --")
-}
-
 /// Commands as a whole and every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
 pub fn fuzz(seconds: &str) -> Outcome {
-    ensure_driver()?;
     println!("\n== commands, {seconds} s");
     let commands = "peelnet --test fuzzed_commands --";
     again("PEELNET_FUZZ_SECONDS", seconds, commands)?;
@@ -117,14 +122,7 @@ pub fn view(names: &[&str]) -> Outcome {
     if let Some(unknown) = names.iter().find(|n| !["window", "page"].contains(n)) {
         return Err(format!("view-test has no step {unknown}: window, page"));
     }
-    ensure_driver()?;
-    let binary = match env::var_os("PEELNET_BINARY") {
-        Some(path) => PathBuf::from(path),
-        None => {
-            run("cargo build --release --package peelnet --features view")?;
-            program("release")
-        }
-    };
+    let Program(binary) = Program::given_or_built("view")?;
     let is_asked = |name: &str| names.is_empty() || names.contains(&name);
     if is_asked("window") {
         println!("\n== window");
@@ -222,4 +220,14 @@ fn installed(extras: &str) -> Result<PathBuf, String> {
         .env("CARGO_TARGET_DIR", target_folder())
         .env("MATURIN_PEP517_ARGS", "--profile dev");
     start(pip.current_dir(root())).map(|()| python)
+}
+
+/// Licences, sources and versions; advisories where their database can be reached.
+pub fn deny() -> Outcome {
+    ensure_subcommand("deny")?;
+    run("cargo deny check licenses bans sources")?;
+    run("cargo deny fetch db").map_err(|e| {
+        format!("{e}: the database of advisories cannot be reached, they are not checked")
+    })?;
+    run("cargo deny check advisories")
 }

@@ -224,8 +224,6 @@ impl Output {
                 Ok(file) => file,
             },
         };
-        // Some file systems cannot; the file is whole anyway.
-        let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
         if self.allowed().is_some() {
             lock(&ALLOWED).insert(self.path.clone(), Self::look(&self.path)?);
         }
