@@ -124,11 +124,11 @@ impl Variant {
 
 /// Declares [`Effect`]: name, what it adds to a frame, and whether a material needs it, from the material and its [`Variant`].
 macro_rules! effects {
-    ($($(#[$doc:meta])* $effect:ident $name:literal $adds:literal $needed:expr;)*) => {
+    ($($effect:ident $name:literal $adds:literal $needed:expr;)*) => {
         /// Something that a renderer does only where a scene needs it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Effect {
-            $($(#[$doc])* $effect,)*
+            $(#[doc = concat!($name, ": adds ", $adds)] $effect,)*
         }
 
         impl Effect {
@@ -137,58 +137,42 @@ macro_rules! effects {
 
             /// Its name.
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$effect => $name,)* }
+                [$($name),*][self as usize]
             }
 
             /// What it adds to a frame.
             pub const fn adds(self) -> &'static str {
-                match self { $(Self::$effect => $adds,)* }
+                [$($adds),*][self as usize]
             }
 
             fn is_needed_by(self, material: &Material, variant: Variant) -> bool {
-                let needed: fn(&Material, Variant) -> bool = match self { $(Self::$effect => $needed,)* };
-                needed(material, variant)
+                let needed: [fn(&Material, Variant) -> bool; Self::ALL.len()] = [$($needed),*];
+                needed[self as usize](material, variant)
             }
         }
     };
 }
 
 effects! {
-    /// Opaque surfaces.
     Opaque "opaque" "its draws in the background pass, a depth target of 4 bytes a pixel, a comparison in transparent passes"
         |material, _| material.is_opaque();
-    /// Surfaces whose back faces are culled.
     Culling "culling" "nothing: back faces are not rasterised" |_, variant| variant.culled;
-    /// Blinn–Phong.
     Lighting "lighting" "normals and positions, a binding of lights, Blinn–Phong in the shader"
         |_, variant| variant.lighting == Lighting::Phong;
-    /// Cook–Torrance.
     Pbr "pbr" "normals and positions, a binding of lights, Cook–Torrance in the shader"
         |_, variant| variant.lighting == Lighting::Pbr;
-    /// Holes where opacity is low.
     Cutout "cutout" "a comparison and a discard in the pipelines of these materials" |_, variant| variant.cutout;
-    /// Emissive surfaces.
     Emission "emission" "an addition in the pipelines of these materials" |_, variant| variant.emissive;
-    /// Textures of base colour and opacity.
     ColorMap "color-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[0];
-    /// Textures of normals.
     NormalMap "normal-map" "a texture with its fetch, tangents, UVs, a sampler" |_, variant| variant.maps[1];
-    /// Textures of metallic and roughness.
     MetallicRoughnessMap "metallic-roughness-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[2];
-    /// Textures of ambient occlusion.
     OcclusionMap "occlusion-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[3];
-    /// Textures of emission.
     EmissiveMap "emissive-map" "a texture with its fetch, UVs, a sampler" |_, variant| variant.maps[4];
-    /// Vertex colours.
     VertexColors "vertex-colors" "16 bytes a vertex and a product" |_, variant| variant.vertex_colors;
-    /// Directional lights.
     Sun "directional-light" "a choice between position and direction for each light" |_, variant| variant.sun;
-    /// Coloured transmission through surfaces.
     Transmission "transmission" "three channels of transmittance instead of one where it is not grey"
         |_, variant| variant.transmissive;
-    /// A scene whose colours are all grey.
     Monochrome "monochrome" "nothing: weighted sums and transmittance share one target" |_, _| false;
-    /// Transparency at a lower resolution.
     LowResolution "low-resolution"
         "two passes over the pixels and 36 bytes a sample; fewer samples for everything transparent" |_, _| false;
 }

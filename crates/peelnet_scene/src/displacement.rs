@@ -174,17 +174,10 @@ pub(crate) fn displaced(
     Ok(Arc::new(cut))
 }
 
-/// What the triangles around a position add up to.
-#[derive(Clone, Copy, Default)]
-struct Around {
-    normal: DVec3,
-    height: f64,
-    angle: f64,
-}
-
 /// How far each position moves that does.
 fn moves(mesh: &Mesh, materials: &[Material]) -> HashMap<[u32; 3], Vec3> {
-    let mut all: HashMap<[u32; 3], Around> = HashMap::new();
+    // Sums over the triangles around a position: normals and heights by their angles, and the angles.
+    let mut all: HashMap<[u32; 3], (DVec3, f64, f64)> = HashMap::new();
     for (part, material) in mesh.parts.iter().zip(materials) {
         let displacement = material.maps.displacement.as_ref();
         for t in part.triangles.clone() {
@@ -201,20 +194,18 @@ fn moves(mesh: &Mesh, materials: &[Material]) -> HashMap<[u32; 3], Vec3> {
                     displacement.at(uv, material.maps.wrap)
                 });
                 let around = all.entry(key_of(a)).or_default();
-                around.normal += mesh.normals[triangle[k]].as_dvec3() * angle;
-                around.height += f64::from(height) * angle;
-                around.angle += angle;
+                around.0 += mesh.normals[triangle[k]].as_dvec3() * angle;
+                around.1 += f64::from(height) * angle;
+                around.2 += angle;
             }
         }
     }
-    let moved = all.into_iter().filter(|(_, a)| a.height != 0.0);
-    moved
-        .map(|(key, around)| {
-            let height = around.height / around.angle;
-            let by = around.normal.normalize_or_zero() * height;
-            (key, by.as_vec3())
-        })
-        .collect()
+    let moved = all.into_iter().filter(|(_, (_, height, _))| *height != 0.0);
+    let by = |(key, (normal, height, angle)): (_, (DVec3, f64, f64))| {
+        let by = normal.normalize_or_zero() * (height / angle);
+        (key, by.as_vec3())
+    };
+    moved.map(by).collect()
 }
 
 /// The normals of a mesh whose vertices move. Vertices of one position and normal are one: a seam of its texture does not split a surface.

@@ -273,6 +273,27 @@ pub(crate) fn normals_by_position<'a>(
     sums
 }
 
+/// How often each edge, by the positions of its ends, is one of a triangle.
+#[cfg(test)]
+pub(crate) fn edges_of(mesh: &Mesh) -> HashMap<[[u32; 3]; 2], usize> {
+    let mut edges = HashMap::new();
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|i| key_of(mesh.positions[i as usize]));
+        for edge in [[a, b], [b, c], [c, a]] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    edges
+}
+
+/// Whether each edge has exactly one triangle on either side.
+#[cfg(test)]
+pub(crate) fn is_closed(mesh: &Mesh) -> bool {
+    let edges = edges_of(mesh);
+    let mut all = edges.iter();
+    all.all(|([a, b], n)| *n == 1 && edges.contains_key(&[*b, *a]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

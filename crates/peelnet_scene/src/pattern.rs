@@ -4,7 +4,7 @@ mod letters;
 
 use crate::{
     parameters::parameters,
-    texture::{Texture, normals_of},
+    texture::{Texture, fill, normals_of},
 };
 use glam::{IVec2, Vec2};
 use peelnet_core::{hash::pixel_hash, srgb};
@@ -127,14 +127,7 @@ impl Pattern {
             };
             ((raw - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0)
         };
-        let mut values = vec![0.0; n as usize * n as usize];
-        let rows = values.par_chunks_mut(n as usize);
-        rows.zip(0..n).for_each(|(row, y)| {
-            for (value, x) in row.iter_mut().zip(0..) {
-                *value = at(x, y);
-            }
-        });
-        values
+        fill([n, n], at)
     }
 
     /// Random numbers for the nodes of a grid.

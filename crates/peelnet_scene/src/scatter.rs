@@ -78,12 +78,16 @@ impl NumberOrRange {
 /// How objects are turned.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
-    untagged,
+    rename_all = "kebab-case",
     expecting = "expected \"random\", \"camera\" or [x, y, z] degrees"
 )]
 pub(crate) enum Rotate {
-    Word(RotateWord),
+    /// Every orientation alike.
+    Random,
+    /// +z towards the eye of the first view, as billboards do.
+    Camera,
     /// About the fixed axes x, y, z in this order, degrees.
+    #[serde(untagged)]
     Degrees([f32; 3]),
 }
 
@@ -93,28 +97,17 @@ impl Default for Rotate {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum RotateWord {
-    /// Every orientation alike.
-    Random,
-    /// +z towards the eye of the first view, as billboards do.
-    Camera,
-}
-
 /// How objects are coloured.
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(untagged, expecting = "expected \"random\" or [r, g, b]")]
+#[serde(
+    rename_all = "kebab-case",
+    expecting = "expected \"random\" or [r, g, b]"
+)]
 pub(crate) enum ColorChoice {
-    Word(ColorWord),
-    Color([f32; 3]),
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ColorWord {
     /// Every component evenly from 0 to 1.
     Random,
+    #[serde(untagged)]
+    Color([f32; 3]),
 }
 
 /// One object of a scatter.
@@ -133,7 +126,7 @@ impl Scatter {
         let is_above = (0..3).any(|k| self.min[k] > self.max[k]);
         let degrees = match &self.rotate {
             Rotate::Degrees(degrees) => degrees,
-            Rotate::Word(_) => &[0.0; 3],
+            _ => &[0.0; 3],
         };
         let [low, high] = self.scale.ends();
         let [clear, dense] = self.alpha.map_or([0.0; 2], NumberOrRange::ends);
@@ -214,8 +207,8 @@ impl Scatter {
                 // Drawn whether it is used or not, so that the rest of the scene does not depend on `rotate`.
                 let turn = random_rotation(&mut random);
                 let rotation = match &self.rotate {
-                    Rotate::Word(RotateWord::Random) => turn,
-                    Rotate::Word(RotateWord::Camera) => {
+                    Rotate::Random => turn,
+                    Rotate::Camera => {
                         Quat::from_rotation_arc(Vec3::Z, (eye - position).normalize_or(Vec3::Z))
                     }
                     Rotate::Degrees(d) => fixed_axes(*d),
@@ -230,7 +223,7 @@ impl Scatter {
                         position,
                     ),
                     color: self.color.map(|c| match c {
-                        ColorChoice::Word(ColorWord::Random) => color,
+                        ColorChoice::Random => color,
                         ColorChoice::Color(c) => c,
                     }),
                     alpha: self

@@ -200,23 +200,26 @@ impl Scene {
 
     /// The scene with every surface opaque, shaded as before: what shading takes without transparency. Holes of cut-outs stay.
     pub fn opaque(&self) -> Self {
-        let mut scene = self.clone();
-        for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
+        self.with_materials(|material| {
             (material.alpha, material.blend) = (1.0, false);
             material.transmission = [0.0; 3];
-        }
+        })
+    }
+
+    fn with_materials(&self, change: impl FnMut(&mut Material)) -> Self {
+        let mut scene = self.clone();
+        let materials = scene.objects.iter_mut().flat_map(|o| &mut o.materials);
+        materials.for_each(change);
         scene
     }
 
     /// The scene with every surface as opaque as before, and unlit: what transparency takes without shading. Colour maps stay, because
     /// they hold opacity.
     pub fn unlit(&self) -> Self {
-        let mut scene = self.clone();
-        for material in scene.objects.iter_mut().flat_map(|o| &mut o.materials) {
+        self.with_materials(|material| {
             material.lighting = Lighting::Unlit;
             material.emission = [0.0; 3];
-        }
-        scene
+        })
     }
 
     /// Number of triangles.
@@ -226,23 +229,15 @@ impl Scene {
 
     /// The world-space box around all transparent parts; `None` where nothing is transparent.
     pub fn transparent_bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut bounds: Option<(Vec3, Vec3)> = None;
-        for object in &self.objects {
-            for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
-                if material.is_opaque() {
-                    continue;
-                }
-                for &i in object.mesh.triangles[part.triangles.clone()]
-                    .iter()
-                    .flatten()
-                {
-                    let p = object
-                        .world_from_object
-                        .transform_point3(object.mesh.positions[i as usize]);
-                    bounds = Some(bounds.map_or((p, p), |(lo, hi)| (lo.min(p), hi.max(p))));
-                }
-            }
-        }
-        bounds
+        let points = self.objects.iter().flat_map(|object| {
+            let Object { mesh, .. } = object;
+            let parts = mesh.parts.iter().zip(&object.materials);
+            let parts = parts.filter(|(_, material)| !material.is_opaque());
+            let triangles = parts.flat_map(|(part, _)| &mesh.triangles[part.triangles.clone()]);
+            let vertices = triangles.flatten().map(|&i| mesh.positions[i as usize]);
+            vertices.map(|p| object.world_from_object.transform_point3(p))
+        });
+        let boxes = points.map(|p| (p, p));
+        boxes.reduce(|(lo, hi), (p, _)| (lo.min(p), hi.max(p)))
     }
 }

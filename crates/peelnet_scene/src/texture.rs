@@ -152,15 +152,7 @@ impl Texture {
 
     /// A texture from a function of column and row.
     pub fn of(name: &str, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4] + Sync) -> Self {
-        let [width, height] = size;
-        let mut texels = vec![[0; 4]; width as usize * height as usize];
-        let rows = texels.par_chunks_mut(width.max(1) as usize);
-        rows.zip(0..height).for_each(|(row, y)| {
-            for (t, x) in row.iter_mut().zip(0..) {
-                *t = texel(x, y);
-            }
-        });
-        Self::new(name, size, texels)
+        Self::new(name, size, fill(size, texel))
     }
 
     /// The same texture without holes.
@@ -235,6 +227,21 @@ impl Texture {
             heights[((y % height) * width + x % width) as usize]
         })
     }
+}
+
+/// The values of a function of column and row, row by row.
+pub(crate) fn fill<T: Clone + Default + Send>(
+    [width, height]: [u32; 2],
+    value: impl Fn(u32, u32) -> T + Sync,
+) -> Vec<T> {
+    let mut all = vec![T::default(); width as usize * height as usize];
+    let rows = all.par_chunks_mut(width.max(1) as usize);
+    rows.zip(0..height).for_each(|(row, y)| {
+        for (at, x) in row.iter_mut().zip(0..) {
+            *at = value(x, y);
+        }
+    });
+    all
 }
 
 /// Textures that are made of others, each once.

@@ -24,59 +24,55 @@ fn gltf(buffer: &str, image: &str) -> String {
     .to_string()
 }
 
-/// Puts something that never ends at a path.
-type Endless = fn(&Path);
+/// Puts something that is no file to read at a path.
+type Put = fn(&Path);
 
-const ENDLESS: [Endless; 2] = [
-    |path| symlink("/dev/zero", path).unwrap(),
-    |path| assert!(Command::new("mkfifo").arg(path).status().unwrap().success()),
-];
-
-/// A folder's files, the one that never ends, and the scene that is loaded.
-type Case<'a> = (&'a [(&'a str, &'a str)], &'a str, &'a str);
-
-/// What loading says, in an error or, where it goes on without the file, in warnings.
-fn said((files, endless, scene): Case<'_>, put: Endless) -> String {
+/// What loading a scene says, in an error or, where it goes on without the file, in warnings. All others are beside the file that is put.
+fn said(put: Put, name: &str, scene: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
+    let zeros =
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let map = "mesh = { shape = 'box' }\nmaterial = { color_map = 'a.png' }\n";
+    for (name, text) in [
+        ("obj.toml", &*format!("{CAMERA}mesh = 'a.obj'\n")),
+        ("map.toml", &format!("{CAMERA}{map}")),
+        ("a.obj", OBJ),
+        ("a.mtl", "newmtl m\nmap_Kd a.png\n"),
+        ("a.gltf", &gltf("a.bin", "a.png")),
+        ("inside.gltf", &gltf(zeros, "a.png")),
+    ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
-    put(&folder.path().join(endless));
+    let path = folder.path().join(name);
+    let _ = fs::remove_file(&path);
+    put(&path);
     match Scene::load(folder.path().join(scene)) {
         Ok(scene) => scene.warnings.join("\n"),
         Err(e) => e.to_string(),
     }
 }
 
+const ENDLESS: [Put; 2] = [
+    |path| symlink("/dev/zero", path).unwrap(),
+    |path| assert!(Command::new("mkfifo").arg(path).status().unwrap().success()),
+];
+
 #[test]
 fn files_that_never_end_are_refused_by_name() {
-    let with_obj = format!("{CAMERA}mesh = 'a.obj'\n");
-    let with_map =
-        format!("{CAMERA}mesh = {{ shape = 'box' }}\nmaterial = {{ color_map = 'a.png' }}\n");
-    let (mtl, outside) = ("newmtl m\nmap_Kd a.png\n", gltf("a.bin", "a.png"));
-    let inside = gltf(
-        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
-        "a.png",
-    );
-    let cases: [Case<'_>; 8] = [
-        (&[], "s.toml", "s.toml"),
-        (&[("s.toml", &with_obj)], "a.obj", "s.toml"),
-        (&[("s.toml", &with_obj), ("a.obj", OBJ)], "a.mtl", "s.toml"),
-        (
-            &[("s.toml", &with_obj), ("a.obj", OBJ), ("a.mtl", mtl)],
-            "a.png",
-            "s.toml",
-        ),
-        (&[("s.toml", &with_map)], "a.png", "s.toml"),
-        (&[], "a.glb", "a.glb"),
-        (&[("a.gltf", &outside)], "a.bin", "a.gltf"),
-        (&[("a.gltf", &inside)], "a.png", "a.gltf"),
-    ];
-    for case in cases {
+    for (name, scene) in [
+        ("obj.toml", "obj.toml"),
+        ("a.obj", "obj.toml"),
+        ("a.mtl", "obj.toml"),
+        ("a.png", "obj.toml"),
+        ("a.png", "map.toml"),
+        ("a.glb", "a.glb"),
+        ("a.bin", "a.gltf"),
+        ("a.png", "inside.gltf"),
+    ] {
         for put in ENDLESS {
-            let said = said(case, put);
-            let named = said.contains(case.1) && said.contains("not a regular file");
-            assert!(named, "{case:?}: {said}");
+            let said = said(put, name, scene);
+            let named = said.contains(name) && said.contains("not a regular file");
+            assert!(named, "{name} of {scene}: {said}");
         }
     }
 }
@@ -84,15 +80,10 @@ fn files_that_never_end_are_refused_by_name() {
 /// A sparse file takes no space on the disk, but would in memory: the limit of its kind holds before it is read.
 #[test]
 fn files_beyond_their_kinds_limit_are_not_read() {
-    let with_map =
-        format!("{CAMERA}mesh = {{ shape = 'box' }}\nmaterial = {{ color_map = 'a.png' }}\n");
-    let put: Endless = |path| fs::File::create(path).unwrap().set_len(3 << 30).unwrap();
-    for case in [
-        (&[][..], "s.toml", "s.toml"),
-        (&[("s.toml", with_map.as_str())], "a.png", "s.toml"),
-    ] {
-        let said = said(case, put);
-        assert!(said.contains(case.1) && said.contains("at most"), "{said}");
+    let put: Put = |path| fs::File::create(path).unwrap().set_len(3 << 30).unwrap();
+    for (name, scene) in [("obj.toml", "obj.toml"), ("a.png", "map.toml")] {
+        let said = said(put, name, scene);
+        assert!(said.contains(name) && said.contains("at most"), "{said}");
     }
     if let Ok(status) = fs::read_to_string("/proc/self/status") {
         let peak = status.lines().find(|l| l.starts_with("VmHWM:")).unwrap();

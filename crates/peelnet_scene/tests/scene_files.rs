@@ -68,6 +68,8 @@ fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 1 => scatter 1.mesh & either
 [scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 1 ; mesh = { shape = 'box' } ; alpha = [0.5, 1.5] => scatter 1.alpha & 0 … 1
 [scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 1 ; mesh = { shape = 'box' } ; color = [255, 0, 0] => scatter 1.color & 255 & divide
+[scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 1 ; mesh = { shape = 'box' } ; color = 'red' => expected \"random\" or [r, g, b]
+[scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 1 ; mesh = { shape = 'box' } ; rotate = 'x' => expected \"random\", \"camera\" or [x, y, z] degrees
 [scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 4294967295 ; mesh = { shape = 'box' } => scatter 1.count & at most
 [scatter] ; min = [0, 0, 0] ; max = [1, 1, 1] ; count = 1 ; mesh = { shape = 'box' } ; grid = [4294967295, 4294967295, 1] => scatter 1.grid & 65535
 ";

@@ -1,7 +1,10 @@
 //! Surfaces whose displacement is known.
 
 use super::*;
-use crate::{mesh::Part, shapes::Shape};
+use crate::{
+    mesh::{Part, is_closed},
+    shapes::Shape,
+};
 
 fn material(map: Texture, scale: f32, level: u32) -> Material {
     let mut material = Material::unlit([1.0; 3], 0.5);
@@ -49,19 +52,6 @@ fn square(a: f32, b: f32) -> Mesh {
         *uv = Vec2::new(a + (b - a) * uv.x, 0.25 + 0.5 * uv.y);
     }
     mesh
-}
-
-/// Whether each edge has exactly one triangle on either side, by position.
-fn is_closed(mesh: &Mesh) -> bool {
-    let mut edges: HashMap<_, i32> = HashMap::new();
-    for t in &mesh.triangles {
-        let keys = t.map(|i| key_of(mesh.positions[i as usize]));
-        for k in 0..3 {
-            *edges.entry([keys[k], keys[(k + 1) % 3]]).or_default() += 1;
-        }
-    }
-    let is_paired = |(edge, n): (&[_; 2], &i32)| *n == 1 && edges.contains_key(&[edge[1], edge[0]]);
-    edges.iter().all(is_paired)
 }
 
 /// A plane under a white map moves by exactly the scale, and less the middle; black stays.

@@ -1,15 +1,17 @@
 //! A scene file with the changes that somebody made to the scene while looking at it.
 
+use super::raw::RawObject;
 use crate::{
     camera::Camera,
     error::SceneError,
     material::{Lighting, Material},
-    scatter::{fixed_axes, from_fixed_axes},
+    scatter::from_fixed_axes,
     scene::{Light, Object, Scene, Source},
     texture::Maps,
 };
 use glam::{Mat4, Quat, Vec3};
 use peelnet_files::printable;
+use serde::Deserialize;
 use toml::{Table, Value};
 
 /// A scene file's text, and what of the changes it cannot say.
@@ -180,20 +182,8 @@ fn write_object(own: &mut Table, now: &Object, before: &Object, name: &str) -> V
 
 /// The transform that an object's keys say, without `fit`.
 fn placed(own: &Table) -> Mat4 {
-    let float = |v: &Value| match v {
-        Value::Float(x) => Some(*x as f32),
-        Value::Integer(n) => Some(*n as f32),
-        _ => None,
-    };
-    let vector = |key: &str| {
-        let list = own.get(key).and_then(Value::as_array);
-        let all: Vec<f32> = list.into_iter().flatten().filter_map(float).collect();
-        <[f32; 3]>::try_from(all).unwrap_or_default()
-    };
-    let scale = own.get("scale").and_then(float).unwrap_or(1.0);
-    Mat4::from_translation(vector("translate").into())
-        * Mat4::from_quat(fixed_axes(vector("rotate")))
-        * Mat4::from_scale(Vec3::splat(scale))
+    let raw = RawObject::deserialize(own.clone());
+    raw.map_or(Mat4::IDENTITY, |raw| raw.placed())
 }
 
 /// A transform as one scale for all axes, a rotation and a translation.

@@ -62,6 +62,15 @@ pub(super) fn place(
     })
 }
 
+impl RawObject {
+    /// Its transform without `fit`.
+    pub fn placed(&self) -> Mat4 {
+        Mat4::from_translation(self.translate.into())
+            * Mat4::from_quat(fixed_axes(self.rotate))
+            * Mat4::from_scale(Vec3::splat(self.scale))
+    }
+}
+
 /// An object's transform.
 fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, Fault> {
     let fail = |key, message: &str| Err((key, message.to_owned()));
@@ -72,9 +81,7 @@ fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, Fault> {
     if turns.into_iter().any(|x| !x.is_finite()) {
         return fail("translate", "and rotate must be finite");
     }
-    let world_from_object = Mat4::from_translation(raw.translate.into())
-        * Mat4::from_quat(fixed_axes(raw.rotate))
-        * Mat4::from_scale(Vec3::splat(raw.scale));
+    let world_from_object = raw.placed();
     let Some(fit) = raw.fit else {
         return Ok(world_from_object);
     };

@@ -103,18 +103,6 @@ fn bad_files() {
     assert!(e.contains("a.obj:2: is not UTF-8"), "{e}");
 }
 
-#[test]
-fn physically_based_values_and_emission() {
-    let mtl = b"newmtl m\nKd 1 0 0\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
-    let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
-    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
-    let m = &loaded.mesh.parts[0].material;
-    let values = (m.roughness, m.metallic, m.emission);
-    assert_eq!(values, (0.3, 0.8, [2.0, 0.0, 1.0]));
-    // Unlit scenes stay unlit.
-    assert_eq!(m.lighting, Lighting::Unlit);
-}
-
 /// Vertices that a UV seam splits keep one normal: the surface is smooth there.
 #[test]
 fn seams_do_not_split_normals() {
@@ -206,7 +194,7 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
 /// One number is grey, a halo's factor is an opacity, an exponent of 0 is no highlight, colours end at 1; marks are no statements.
 #[test]
 fn materials_as_old_exporters_write_them() {
-    let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\n";
+    let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
     let obj = format!("\u{feff}mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n");
     let files: [(&str, &[u8]); 2] = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
     let loaded = load(&files).expect("loads");
@@ -214,6 +202,10 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!((m.color, m.specular, m.alpha), ([0.5; 3], 0.0, 0.25));
     assert_eq!((n.color, n.shininess, n.alpha), ([1.0, 1.0, 0.0], 9.0, 1.0));
     assert!((n.specular - 0.8).abs() < 1e-6);
+    let values = (n.roughness, n.metallic, n.emission);
+    assert_eq!(values, (0.3, 0.8, [2.0, 0.0, 1.0]));
+    // Unlit scenes stay unlit.
+    assert_eq!(n.lighting, Lighting::Unlit);
     let warnings = loaded.warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
     assert!(

@@ -1,8 +1,11 @@
 //! Generated shapes: closed, facing outwards, of the right volume.
 
 use super::*;
-use crate::{material::Lighting, mesh::key_of};
-use std::collections::HashMap;
+use crate::{
+    material::Lighting,
+    mesh::{edges_of, is_closed},
+};
+use std::collections::HashSet;
 
 fn build(text: &str) -> Result<Mesh, String> {
     let shape: Shape = toml::from_str(text).map_err(|e| e.to_string())?;
@@ -21,23 +24,11 @@ fn volume(mesh: &Mesh) -> f64 {
 
 /// Every edge belongs to two triangles, once each way; V − E + F is the surface's Euler characteristic.
 fn check_closed(name: &str, mesh: &Mesh, euler: i64) {
-    let mut welded: HashMap<[u32; 3], u32> = HashMap::new();
-    let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
-    for t in &mesh.triangles {
-        let t = t.map(|i| {
-            let next = welded.len() as u32;
-            let key = key_of(mesh.positions[i as usize]);
-            *welded.entry(key).or_insert(next)
-        });
-        for k in 0..3 {
-            *edges.entry((t[k], t[(k + 1) % 3])).or_default() += 1;
-        }
-    }
-    for (&(a, b), &n) in &edges {
-        assert_eq!(n, 1, "{name}: edge {a} {b}");
-        assert!(edges.contains_key(&(b, a)), "{name}: edge {a} {b} is open");
-    }
-    let [v, e, f] = [welded.len(), edges.len() / 2, mesh.triangles.len()].map(|n| n as i64);
+    assert!(is_closed(mesh), "{name} is open");
+    let edges = edges_of(mesh);
+    let vertices: HashSet<_> = edges.keys().map(|[from, _]| from).collect();
+    let counts = [vertices.len(), edges.len() / 2, mesh.triangles.len()];
+    let [v, e, f] = counts.map(|n| n as i64);
     assert_eq!(v - e + f, euler, "{name}");
     assert!(volume(mesh) > 0.0, "{name} is turned inside out");
     for n in &mesh.normals {

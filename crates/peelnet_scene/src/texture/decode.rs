@@ -2,11 +2,8 @@
 
 use crate::budget::Budget;
 use image::{
-    ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, Limits,
-    codecs::{jpeg::JpegDecoder, png::PngDecoder},
-    error::LimitErrorKind,
+    DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, error::LimitErrorKind,
 };
-use rayon::prelude::*;
 use std::io::Cursor;
 
 /// Longest side of a texture that is read: WebGPU guarantees no longer one.
@@ -17,61 +14,23 @@ type Decoded = ([u32; 2], Vec<[u8; 4]>);
 
 /// Decodes a PNG or JPEG image.
 pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Decoded, String> {
+    let format = image::guess_format(bytes).ok();
+    let Some(format) = format.filter(|f| [ImageFormat::Png, ImageFormat::Jpeg].contains(f)) else {
+        return Err("is neither a PNG nor a JPEG image; save it as one of them".into());
+    };
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
-    match image::guess_format(bytes) {
-        Ok(ImageFormat::Png) => {
-            let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits);
-            texels(decoder.map_err(|e| plain(&e))?, budget)
-        }
-        Ok(ImageFormat::Jpeg) => {
-            let decoder = JpegDecoder::new(Cursor::new(bytes)).and_then(|mut decoder| {
-                decoder.set_limits(limits)?;
-                Ok(decoder)
-            });
-            texels(decoder.map_err(|e| plain(&e))?, budget)
-        }
-        _ => Err("is neither a PNG nor a JPEG image; save it as one of them".into()),
-    }
-}
-
-fn texels(decoder: impl ImageDecoder, budget: &mut Budget) -> Result<Decoded, String> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(|e| plain(&e))?;
     let (width, height) = decoder.dimensions();
     if width.max(height) > LONGEST {
         return Err(too_large());
     }
-    let size = [width, height];
-    let count = width as usize * height as usize;
-    budget.take_texels(size)?;
-    let mut all = vec![[0; 4]; count];
-    let color = decoder.color_type();
-    match color {
-        ColorType::Rgba8 => read(decoder, all.as_flattened_mut())?,
-        ColorType::Rgb8 | ColorType::L8 | ColorType::La8 => {
-            let channels = usize::from(color.channel_count());
-            let mut raw = vec![0; count * channels];
-            read(decoder, &mut raw)?;
-            let raw = raw.par_chunks_exact(channels);
-            all.par_iter_mut().zip(raw).for_each(|(texel, raw)| {
-                *texel = match *raw {
-                    [r, g, b] => [r, g, b, 255],
-                    [grey, alpha] => [grey, grey, grey, alpha],
-                    _ => [raw[0], raw[0], raw[0], 255],
-                }
-            });
-        }
-        // Of 16 bits a channel.
-        _ => {
-            drop(all);
-            let image = DynamicImage::from_decoder(decoder).map_err(|e| plain(&e))?;
-            all = image.into_rgba8().pixels().map(|p| p.0).collect();
-        }
-    }
-    Ok((size, all))
-}
-
-fn read(decoder: impl ImageDecoder, into: &mut [u8]) -> Result<(), String> {
-    decoder.read_image(into).map_err(|e| plain(&e))
+    budget.take_texels([width, height])?;
+    let image = DynamicImage::from_decoder(decoder).map_err(|e| plain(&e))?;
+    let texels = image.into_rgba8().pixels().map(|p| p.0).collect();
+    Ok(([width, height], texels))
 }
 
 fn too_large() -> String {

@@ -29,6 +29,7 @@ impl Reader<'_, '_> {
             self.missing.about(format!("{mode:?} ("), &place, ")");
             return Ok(());
         }
+        let (material, placement) = self.material(&primitive.material());
         let fail = |message: String| self.fail(format!("{place}{message}"));
         check_accessors(primitive).map_err(fail)?;
         let buffers = &self.buffers;
@@ -78,9 +79,6 @@ impl Reader<'_, '_> {
         if primitive.morph_targets().len() > 0 {
             self.missing.add("morph targets");
         }
-        let (material, placement) = self.material(&primitive.material());
-        let buffers = &self.buffers;
-        let reader = primitive.reader(|b| buffers.get(b.index()).map(Vec::as_slice));
         let uvs: Vec<Vec2> = reader
             .read_tex_coords(placement.set)
             .map_or_else(Vec::new, |uvs| {
