@@ -8,8 +8,8 @@ use peelnet_core::{
     features::{self, Rest},
     fragment::{Fragment, transmittances},
     methods::{
-        anchored, mboit4, mboit6,
-        moments::{MomentSums, Settings},
+        anchored,
+        moments::{Moments, Settings},
         over,
         slabs::{self, Between, Design},
         wavelet,
@@ -217,7 +217,7 @@ proptest! {
         let f = list(of);
         let warp = warp(&f);
         let (mut four, mut six, mut haar) =
-            (mboit4::Moments::default(), mboit6::Moments::default(), wavelet::Averages::of_rank(3));
+            (Moments::new(Settings::FOUR.basis), Moments::new(Settings::SIX.basis), wavelet::Averages::of_rank(3));
         for f in &f {
             let (b, z) = (absorbance(f.alpha), warp.apply(f.depth.into()));
             four.add(b, z);
@@ -227,8 +227,8 @@ proptest! {
         let at = f.iter().map(|f| warp.apply(f.depth.into())).take(8).chain([zeta]);
         for z in at {
             for t in [
-                four.transmittance(z, &Settings::PAPER),
-                six.transmittance(z, &mboit6::PAPER),
+                four.transmittance(z, &Settings::FOUR),
+                six.transmittance(z, &Settings::SIX),
                 (-haar.in_front(0.5 + 0.5 * z)).exp(),
             ] {
                 prop_assert!((0.0..=1.0 + 1e-12).contains(&t), "{} at {}", t, z);

@@ -9,7 +9,7 @@
 //! Written once for 32 and 64 bits: shaders compute in 32, training and tests in 64.
 
 use crate::{
-    methods::mboit4,
+    methods::moments::power::four_moment_bounds,
     statistics::{DEPTH_CODES, Statistics},
 };
 use num_traits::Float;
@@ -45,6 +45,30 @@ pub struct Feature<C: 'static> {
     pub about: About,
     /// Its value, in Rust.
     pub value: fn(&C) -> f64,
+}
+
+impl<C> Feature<C> {
+    /// A feature by name, unit, WGSL and value.
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        wgsl: &'static str,
+        value: fn(&C) -> f64,
+    ) -> Self {
+        let about = About {
+            name,
+            unit,
+            wgsl,
+            shared: None,
+        };
+        Self { about, value }
+    }
+
+    /// One whose WGSL needs a value that several have in common.
+    pub const fn sharing(mut self, shared: &'static Shared) -> Self {
+        self.about.shared = Some(shared);
+        self
+    }
 }
 
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
@@ -129,7 +153,7 @@ impl<F: Float> Rest<F> {
     /// The least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four moments
     /// (Münstermann et al. 2018, §3.2; overestimation 0 and 1).
     pub fn moment_bounds(&self) -> (F, F) {
-        clamped(mboit4::share_bounds(self.means, self.bias, self.place))
+        clamped(four_moment_bounds(self.means, self.bias, self.place))
     }
 }
 
@@ -145,77 +169,40 @@ const MOMENT_BOUNDS: Shared = Shared {
     module: Some("learned::moment_bounds"),
 };
 
-/// A feature of the rest.
-const fn of_rest(
-    name: &'static str,
-    unit: &'static str,
-    wgsl: &'static str,
-    shared: Option<&'static Shared>,
-    value: fn(&Rest<f64>) -> f64,
-) -> Feature<Rest<f64>> {
-    Feature {
-        about: About {
-            name,
-            unit,
-            wgsl,
-            shared,
-        },
-        value,
-    }
-}
-
-/// [`Rest::root_absorbance`].
-pub static ROOT_ABSORBANCE: Feature<Rest<f64>> = of_rest(
-    "root_absorbance",
-    "root of the rest's absorbance",
-    "rest.root_absorbance",
-    None,
-    Rest::root_absorbance,
-);
-
-/// [`Rest::depth_fraction`].
-pub static DEPTH_FRACTION: Feature<Rest<f64>> = of_rest(
-    "depth_fraction",
-    "of the pixel's depth range",
-    "0.5 * rest.place + 0.5",
-    None,
-    Rest::depth_fraction,
-);
-
-/// [`Rest::mean_fraction`].
-pub static MEAN_FRACTION: Feature<Rest<f64>> = of_rest(
-    "mean_fraction",
-    "of the pixel's depth range",
-    "0.5 * rest.means.x + 0.5",
-    None,
-    Rest::mean_fraction,
-);
-
-/// The first of [`Rest::moment_bounds`].
-pub static SHARE_LOW: Feature<Rest<f64>> = of_rest(
-    "share_low",
-    "of the rest's absorbance",
-    "bounds.x",
-    Some(&MOMENT_BOUNDS),
-    |rest| rest.moment_bounds().0,
-);
-
-/// The second of [`Rest::moment_bounds`].
-pub static SHARE_HIGH: Feature<Rest<f64>> = of_rest(
-    "share_high",
-    "of the rest's absorbance",
-    "bounds.y",
-    Some(&MOMENT_BOUNDS),
-    |rest| rest.moment_bounds().1,
-);
-
-/// All features of the rest. A recipe reads some of them; tests compare the twins of each.
+/// All features of the rest, which the recipes of anchored networks read.
 pub static FEATURES: [&Feature<Rest<f64>>; 5] = [
-    &ROOT_ABSORBANCE,
-    &DEPTH_FRACTION,
-    &MEAN_FRACTION,
-    &SHARE_LOW,
-    &SHARE_HIGH,
+    &Feature::new(
+        "root_absorbance",
+        "root of the rest's absorbance",
+        "rest.root_absorbance",
+        Rest::root_absorbance,
+    ),
+    &Feature::new(
+        "depth_fraction",
+        "of the pixel's depth range",
+        "0.5 * rest.place + 0.5",
+        Rest::depth_fraction,
+    ),
+    &Feature::new(
+        "mean_fraction",
+        "of the pixel's depth range",
+        "0.5 * rest.means.x + 0.5",
+        Rest::mean_fraction,
+    ),
+    &Feature::new(
+        "share_low",
+        "of the rest's absorbance",
+        "bounds.x",
+        |rest: &Rest<f64>| rest.moment_bounds().0,
+    )
+    .sharing(&MOMENT_BOUNDS),
+    &Feature::new(
+        "share_high",
+        "of the rest's absorbance",
+        "bounds.y",
+        |rest: &Rest<f64>| rest.moment_bounds().1,
+    )
+    .sharing(&MOMENT_BOUNDS),
 ];
 
 /// The values of all [`FEATURES`].
@@ -250,7 +237,7 @@ mod tests {
             let x = f64::from(random.between(-0.96, 0.96));
             let share = points.iter().filter(|p| p.0 < x).map(|p| p.1).sum::<f64>() / total;
             // The bias gives way by up to its square root times a few.
-            let (low, high) = clamped(mboit4::share_bounds(m, BIAS, x));
+            let (low, high) = clamped(four_moment_bounds(m, BIAS, x));
             let slack = 4.0 * BIAS.sqrt();
             assert!(
                 low <= share + slack && share <= high + slack,

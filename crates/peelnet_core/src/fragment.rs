@@ -49,6 +49,11 @@ pub fn sort_front_to_back(fragments: &mut [Fragment]) {
     fragments.sort_by(Fragment::cmp_front_to_back);
 }
 
+/// Linear depth and opacity of each fragment, which is all that estimates of transmittance depend on.
+pub fn points(fragments: &[Fragment]) -> Vec<(f32, f32)> {
+    fragments.iter().map(|f| (f.depth, f.alpha)).collect()
+}
+
 /// `T_i` of every fragment of a sorted pixel, then `T_∞`: `n + 1` values.
 ///
 /// ```
@@ -85,20 +90,10 @@ mod tests {
 
     #[test]
     fn ties_go_by_triangle() {
-        let mut f = [
-            Fragment {
-                triangle: 7,
-                ..Fragment::new(1.0, 0.1, [0.0; 3])
-            },
-            Fragment {
-                triangle: 3,
-                ..Fragment::new(1.0, 0.2, [0.0; 3])
-            },
-            Fragment {
-                triangle: 9,
-                ..Fragment::new(0.5, 0.3, [0.0; 3])
-            },
-        ];
+        let mut f = [(7, 1.0), (3, 1.0), (9, 0.5)].map(|(triangle, depth)| Fragment {
+            triangle,
+            ..Fragment::new(depth, 0.1, [0.0; 3])
+        });
         sort_front_to_back(&mut f);
         assert_eq!(f.map(|f| f.triangle), [9, 3, 7]);
     }

@@ -4,7 +4,9 @@
 //! agree with. Weights are stored as PyTorch's `nn.Linear` stores them: row-major `[outputs][inputs]`,
 //! `y = W x + b`.
 
+use num_traits::Float;
 use serde::{Deserialize, Serialize};
+use std::iter::Sum;
 
 /// The function applied after a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,19 +22,10 @@ pub enum Activation {
 
 impl Activation {
     /// Applies the function to one value.
-    pub fn apply(self, x: f32) -> f32 {
+    pub fn apply<F: Float>(self, x: F) -> F {
         match self {
-            Self::Relu => x.max(0.0),
-            Self::Sigmoid => 1.0 / (1.0 + (-x).exp()),
-            Self::Identity => x,
-        }
-    }
-
-    /// Applies the function to one value in 64 bits.
-    pub fn apply_f64(self, x: f64) -> f64 {
-        match self {
-            Self::Relu => x.max(0.0),
-            Self::Sigmoid => 1.0 / (1.0 + (-x).exp()),
+            Self::Relu => x.max(F::zero()),
+            Self::Sigmoid => F::one() / (F::one() + (-x).exp()),
             Self::Identity => x,
         }
     }
@@ -51,45 +44,10 @@ pub struct Layer {
     pub bias: Vec<f32>,
 }
 
-/// Why layers do not make a network.
+/// Why layers do not make a network: the first layer that does not fit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ShapeError {
-    /// A network needs at least one layer.
-    #[error("the network has no layers")]
-    Empty,
-    /// The number of weights is not `outputs × inputs`.
-    #[error("layer {layer}: {found} weights for a {outputs}×{inputs} matrix")]
-    Weights {
-        /// Index of the layer.
-        layer: usize,
-        /// Rows of the matrix.
-        outputs: usize,
-        /// Columns of the matrix.
-        inputs: usize,
-        /// Number of weights given.
-        found: usize,
-    },
-    /// The number of biases is not `outputs`.
-    #[error("layer {layer}: {found} biases for {outputs} outputs")]
-    Bias {
-        /// Index of the layer.
-        layer: usize,
-        /// Outputs of the layer.
-        outputs: usize,
-        /// Number of biases given.
-        found: usize,
-    },
-    /// A layer's inputs are not the outputs of the layer before it.
-    #[error("layer {layer} takes {inputs} inputs but the layer before it gives {before}")]
-    Chain {
-        /// Index of the layer.
-        layer: usize,
-        /// Inputs of the layer.
-        inputs: usize,
-        /// Outputs of the layer before.
-        before: usize,
-    },
-}
+#[error("{0}")]
+pub struct ShapeError(String);
 
 /// A fully connected network. Its inputs are *normalised* features.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,34 +71,24 @@ impl Mlp {
         output: Activation,
     ) -> Result<Self, ShapeError> {
         if layers.is_empty() {
-            return Err(ShapeError::Empty);
+            return Err(ShapeError("the network has no layers".into()));
         }
         for (i, layer) in layers.iter().enumerate() {
             let Layer {
                 inputs, outputs, ..
             } = *layer;
-            if layer.weights.len() != inputs * outputs {
-                return Err(ShapeError::Weights {
-                    layer: i,
-                    outputs,
-                    inputs,
-                    found: layer.weights.len(),
-                });
-            }
-            if layer.bias.len() != outputs {
-                return Err(ShapeError::Bias {
-                    layer: i,
-                    outputs,
-                    found: layer.bias.len(),
-                });
-            }
-            if i > 0 && layers[i - 1].outputs != inputs {
-                return Err(ShapeError::Chain {
-                    layer: i,
-                    inputs,
-                    before: layers[i - 1].outputs,
-                });
-            }
+            let [weights, biases] = [&layer.weights, &layer.bias].map(Vec::len);
+            let before = if i > 0 { layers[i - 1].outputs } else { inputs };
+            let wrong = if weights != inputs * outputs {
+                format!("layer {i}: {weights} weights for a {outputs}×{inputs} matrix")
+            } else if biases != outputs {
+                format!("layer {i}: {biases} biases for {outputs} outputs")
+            } else if before != inputs {
+                format!("layer {i} takes {inputs} inputs but the layer before it gives {before}")
+            } else {
+                continue;
+            };
+            return Err(ShapeError(wrong));
         }
         Ok(Self {
             layers,
@@ -177,51 +125,14 @@ impl Mlp {
         text
     }
 
-    /// The forward pass in 32 bits.
+    /// The forward pass: in 32 bits, or in 64 bits, which are the reference for every other one.
     ///
     /// # Panics
     /// If `input` does not have [`Mlp::inputs`] values.
-    pub fn forward(&self, input: &[f32]) -> Vec<f32> {
-        assert_eq!(input.len(), self.inputs(), "network input length");
-        let mut x = input.to_vec();
-        for (i, layer) in self.layers.iter().enumerate() {
-            let f = self.activation(i);
-            x = layer
-                .weights
-                .chunks_exact(layer.inputs)
-                .zip(&layer.bias)
-                .map(|(row, &b)| f.apply(b + row.iter().zip(&x).map(|(w, v)| w * v).sum::<f32>()))
-                .collect();
-        }
-        x
-    }
-
-    /// The forward pass in 64 bits, the judge of every other one.
-    ///
-    /// # Panics
-    /// If `input` does not have [`Mlp::inputs`] values.
-    pub fn forward_f64(&self, input: &[f64]) -> Vec<f64> {
-        assert_eq!(input.len(), self.inputs(), "network input length");
-        let mut x = input.to_vec();
-        for (i, layer) in self.layers.iter().enumerate() {
-            let f = self.activation(i);
-            x = layer
-                .weights
-                .chunks_exact(layer.inputs)
-                .zip(&layer.bias)
-                .map(|(row, &b)| {
-                    f.apply_f64(
-                        f64::from(b)
-                            + row
-                                .iter()
-                                .zip(&x)
-                                .map(|(&w, v)| f64::from(w) * v)
-                                .sum::<f64>(),
-                    )
-                })
-                .collect();
-        }
-        x
+    pub fn forward<F: Float + Sum>(&self, input: &[F]) -> Vec<F> {
+        self.run(self.layers.len(), input.to_vec(), |f, b, row, x| {
+            f.apply(wide::<F>(b) + products(row, x).sum())
+        })
     }
 
     /// The forward pass as a half-float unit does it: every product, sum and activation rounded to 16 bits.
@@ -229,22 +140,29 @@ impl Mlp {
     /// # Panics
     /// If `input` does not have [`Mlp::inputs`] values.
     pub fn forward_half(&self, input: &[f32]) -> Vec<f32> {
-        assert_eq!(input.len(), self.inputs(), "network input length");
         let half = |x: f32| half::f16::from_f32(x).to_f32();
-        let mut x: Vec<f32> = input.iter().map(|&v| half(v)).collect();
-        for (i, layer) in self.layers.iter().enumerate() {
-            let f = self.activation(i);
-            x = layer
-                .weights
-                .chunks_exact(layer.inputs)
-                .zip(&layer.bias)
-                .map(|(row, &b)| {
-                    let products = row.iter().zip(&x).map(|(&w, v)| half(half(w) * v));
-                    half(f.apply(products.fold(half(b), |sum, p| half(sum + p))))
-                })
-                .collect();
-        }
-        x
+        let input = input.iter().map(|&v| half(v)).collect();
+        self.run(self.layers.len(), input, |f, b, row, x| {
+            let products = row.iter().zip(x).map(|(&w, v)| half(half(w) * v));
+            half(f.apply(products.fold(half(b), |sum, p| half(sum + p))))
+        })
+    }
+
+    /// The outputs of the first `count` layers. `neuron` computes one from its activation, its bias, its weights and the layer's inputs.
+    fn run<F>(
+        &self,
+        count: usize,
+        input: Vec<F>,
+        neuron: impl Fn(Activation, f32, &[f32], &[F]) -> F,
+    ) -> Vec<F> {
+        assert_eq!(input.len(), self.inputs(), "network input length");
+        let layers = self.layers.iter().enumerate().take(count);
+        layers.fold(input, |x, (i, layer)| {
+            let is_last = i + 1 == self.layers.len();
+            let f = if is_last { self.output } else { self.hidden };
+            let rows = layer.weights.chunks_exact(layer.inputs).zip(&layer.bias);
+            rows.map(|(row, &b)| neuron(f, b, row, &x)).collect()
+        })
     }
 
     /// The size that rounding errors of the last layer are relative to, the largest of its outputs': `Σ|w||x| + |b|`. A dot
@@ -254,35 +172,27 @@ impl Mlp {
     /// # Panics
     /// If `input` does not have [`Mlp::inputs`] values.
     pub fn magnitude(&self, input: &[f64]) -> f64 {
-        let Some((last, before)) = self.layers.split_last() else {
+        let Some(last) = self.layers.last() else {
             return 0.0;
         };
-        let hidden = Self {
-            layers: before.to_vec(),
-            hidden: self.hidden,
-            output: self.hidden,
-        };
-        let x = if before.is_empty() {
-            input.to_vec()
-        } else {
-            hidden.forward_f64(input)
-        };
+        let before = self.layers.len() - 1;
+        let x = self.run(before, input.to_vec(), |f, b, row, x| {
+            f.apply(f64::from(b) + products(row, x).sum::<f64>())
+        });
         let sizes = last.weights.chunks_exact(last.inputs).zip(&last.bias);
         sizes
-            .map(|(row, &b)| {
-                let terms = row.iter().zip(&x).map(|(&w, v)| (f64::from(w) * v).abs());
-                f64::from(b).abs() + terms.sum::<f64>()
-            })
+            .map(|(row, &b)| f64::from(b).abs() + products(row, &x).map(f64::abs).sum::<f64>())
             .fold(0.0, f64::max)
     }
+}
 
-    fn activation(&self, layer: usize) -> Activation {
-        if layer + 1 == self.layers.len() {
-            self.output
-        } else {
-            self.hidden
-        }
-    }
+/// 32 and 64 bits hold every weight.
+fn wide<F: Float>(weight: f32) -> F {
+    F::from(weight).unwrap_or_else(F::nan)
+}
+
+fn products<F: Float>(row: &[f32], x: &[F]) -> impl Iterator<Item = F> {
+    row.iter().zip(x).map(|(&w, &v)| wide::<F>(w) * v)
 }
 
 #[cfg(test)]
@@ -310,42 +220,34 @@ mod tests {
         )
         .expect("shapes fit");
         // hidden: 3 − 1 + 0.25 = 2.25; 1.5 + 2 − 4 = −0.5 → 0
-        assert_eq!(net.forward(&[3.0, 1.0]), vec![5.5]);
-        assert_eq!(net.forward_f64(&[3.0, 1.0]), vec![5.5]);
+        assert_eq!(net.forward(&[3.0f32, 1.0]), vec![5.5]);
+        assert_eq!(net.forward(&[3.0f64, 1.0]), vec![5.5]);
         assert_eq!(net.parameters(), 9);
         assert_eq!(net.topology(), "2-2-1");
     }
 
     #[test]
     fn wrong_shapes_are_named() {
-        let e = Mlp::new(
-            vec![
-                layer(2, 2, &[0.0; 4], &[0.0; 2]),
-                layer(3, 1, &[0.0; 3], &[0.0]),
-            ],
-            Activation::Relu,
-            Activation::Identity,
-        );
-        assert_eq!(
-            e,
-            Err(ShapeError::Chain {
-                layer: 1,
-                inputs: 3,
-                before: 2
-            })
-        );
-        let e = Mlp::new(
-            vec![layer(2, 2, &[0.0; 3], &[0.0; 2])],
-            Activation::Relu,
-            Activation::Identity,
-        );
-        assert!(matches!(
-            e,
-            Err(ShapeError::Weights {
-                layer: 0,
-                found: 3,
-                ..
-            })
-        ));
+        for (layers, want) in [
+            (vec![], "the network has no layers"),
+            (
+                vec![
+                    layer(2, 2, &[0.0; 4], &[0.0; 2]),
+                    layer(3, 1, &[0.0; 3], &[0.0]),
+                ],
+                "layer 1 takes 3 inputs but the layer before it gives 2",
+            ),
+            (
+                vec![layer(2, 2, &[0.0; 3], &[0.0; 2])],
+                "layer 0: 3 weights for a 2×2 matrix",
+            ),
+            (
+                vec![layer(2, 2, &[0.0; 4], &[0.0])],
+                "layer 0: 1 biases for 2 outputs",
+            ),
+        ] {
+            let error = Mlp::new(layers, Activation::Relu, Activation::Identity).err();
+            assert_eq!(error.map(|e| e.to_string()).as_deref(), Some(want));
+        }
     }
 }

@@ -16,14 +16,6 @@ pub fn composite(n: usize, peak: f64) -> f64 {
     peak * (n as f64 + 1.0) * (3.0 * UNIT_ROUNDOFF + transmittance(n).min(UNIT_ROUNDOFF * 8.0))
 }
 
-/// Bound on the absolute error of a colour composited by compensated sums (Kahan 1965) from any number of fragments up to 2²² whose radiance is
-/// at most `peak`. The terms of a pixel's sums add up to at most `peak`. Each is a product of three numbers, rounded twice; its transmittance
-/// is off by a rounding and by what is carried; the sum errs by two roundings, and by `n` squares of one, which are 2⁻²⁶; and the last product
-/// and sum over the background by two more.
-pub fn compensated(peak: f64) -> f64 {
-    peak * 8.0 * UNIT_ROUNDOFF
-}
-
 /// Agreement that the specification asks of exact methods with a 64-bit composite, linear light.
 pub const EXACT: f64 = 1e-5;
 

@@ -108,34 +108,28 @@ impl Weight {
 mod tests {
     use super::*;
 
-    /// Values worked out by hand: at z = 200 eq 9 is 0.03/(1e−5 + 1), at z = 10 eq 8 is 10/(1e−5 + 1 + 1.5625e−8).
+    /// Values worked out by hand, where published_values.rs has none.
     #[test]
     fn closed_forms() {
-        let close = |a: f32, b: f64| assert!((f64::from(a) / b - 1.0).abs() < 1e-6, "{a} {b}");
-        close(Weight::Eq9.eval(200.0, 1.0, 0.0), 0.03 / 1.00001);
-        close(
-            Weight::Eq8.eval(10.0, 0.5, 0.0),
-            0.5 * 10.0 / (1.00001 + 1.5625e-8),
-        );
-        close(
-            Weight::Eq7.eval(5.0, 1.0, 0.0),
-            10.0 / (1.00001 + 2.441_406_25e-10),
-        );
-        close(Weight::Eq10 { factor: 3e3 }.eval(0.0, 1.0, 0.5), 375.0);
-        close(
-            Weight::InversePower { k: 2, epsilon: 5.0 }.eval(5.0, 0.3, 0.0),
-            0.01,
-        );
-        // z k = 1/2: 10 / (1 + 10/32).
-        close(Weight::Smoke { k: 0.1 }.eval(5.0, 0.3, 0.0), 320.0 / 42.0);
-        close(
-            Weight::InversePower { k: 4, epsilon: 0.0 }.eval(2.0, 0.3, 0.0),
-            1.0 / 16.0,
-        );
-        close(Weight::Eq10 { factor: 3e4 }.eval(0.0, 0.5, 0.5), 1875.0);
-        // (1 − z)/200 = −1 at z = 201: 0.3/1.00001, between its clamps.
-        close(Weight::Papakostas.eval(201.0, 1.0, 0.0), 0.3 / 1.00001);
-        close(Weight::Papakostas.eval(1.0, 0.5, 0.0), 0.5);
+        let power = |k, epsilon| Weight::InversePower { k, epsilon };
+        for (weight, z, alpha, window, want) in [
+            (Weight::Eq10 { factor: 3e3 }, 0.0, 1.0, 0.5, 375.0),
+            (Weight::Eq10 { factor: 3e4 }, 0.0, 0.5, 0.5, 1875.0),
+            (power(2, 5.0), 5.0, 0.3, 0.0, 0.01),
+            (power(4, 0.0), 2.0, 0.3, 0.0, 1.0 / 16.0),
+            // z k = 1/2: 10 / (1 + 10/32).
+            (Weight::Smoke { k: 0.1 }, 5.0, 0.3, 0.0, 320.0 / 42.0),
+            (Weight::Eq8, 10.0, 0.5, 0.0, 5.0 / (1.00001 + 1.5625e-8)),
+            // (1 − z)/200 = −1 at z = 201: 0.3/1.00001, between its clamps.
+            (Weight::Papakostas, 201.0, 1.0, 0.0, 0.3 / 1.00001),
+            (Weight::Papakostas, 1.0, 0.5, 0.0, 0.5),
+        ] {
+            let found = f64::from(weight.eval(z, alpha, window));
+            assert!(
+                (found / want - 1.0).abs() < 1e-6,
+                "{weight:?}: {found} {want}"
+            );
+        }
     }
 
     /// The published flaw of weights of depth in scene units: moved along z with all that lies between them kept, two surfaces
@@ -147,30 +141,24 @@ mod tests {
             let [a, b] = [z, z + 2.0].map(|z| f64::from(w.eval(z, 0.5, 0.0)));
             a / (a + b)
         };
-        // Weights of 32 bits: a few roundings.
-        let close = |w: Weight, z: f32, want: f64| {
-            let got = share(w, z);
-            assert!(
-                (got - want).abs() < 1e-5,
-                "{} at {z}: {got} for {want}",
-                w.name()
-            );
-        };
-        let ratio = |a: f64, b: f64| 1.0 / (1.0 + a / b);
         // Eq 7: 10/(z/5)² but for a sixth power of z/200.
         let eq7 = |z: f64| 10.0 / (1e-5 + (z / 5.0).powi(2) + (z / 200.0).powi(6));
-        close(Weight::Eq7, 2.0, ratio(eq7(4.0), eq7(2.0)));
-        close(Weight::Eq7, 102.0, ratio(eq7(104.0), eq7(102.0)));
-        assert!(share(Weight::Eq7, 2.0) > 0.79 && share(Weight::Eq7, 102.0) < 0.52);
         let eq9 = |z: f64| 0.03 / (1e-5 + (z / 200.0).powi(4));
-        close(Weight::Eq9, 2.0, ratio(eq9(4.0), eq9(2.0)));
-        close(Weight::Eq9, 102.0, ratio(eq9(104.0), eq9(102.0)));
+        let smoke = |z: f64| 10.0 / (1.0 + 10.0 * (z / 10.0).powi(5));
         let z4 = Weight::InversePower { k: 4, epsilon: 0.0 };
-        close(z4, 2.0, 16.0 / 17.0);
-        close(z4, 102.0, ratio(102f64.powi(4), 104f64.powi(4)));
-        let smoke = Weight::Smoke { k: 0.1 };
-        close(smoke, 2.0, ratio(1.0 / 1.1024, 1.0 / 1.0032));
-        close(smoke, 102.0, ratio(102f64.powi(5), 104f64.powi(5)));
+        let forms: [(Weight, &dyn Fn(f64) -> f64); 4] = [
+            (Weight::Eq7, &eq7),
+            (Weight::Eq9, &eq9),
+            (z4, &|z| z.powi(-4)),
+            (Weight::Smoke { k: 0.1 }, &smoke),
+        ];
+        for ((weight, form), z) in forms.into_iter().flat_map(|f| [(f, 2.0f32), (f, 102.0)]) {
+            let [a, b] = [z, z + 2.0].map(|z| form(z.into()));
+            let got = share(weight, z);
+            // Weights of 32 bits: a few roundings.
+            assert!((got - a / (a + b)).abs() < 1e-5, "{weight:?} at {z}: {got}");
+        }
+        assert!(share(Weight::Eq7, 2.0) > 0.79 && share(Weight::Eq7, 102.0) < 0.52);
         for z in [2.0, 102.0] {
             assert_eq!(share(Weight::Papakostas, z), 0.5);
         }

@@ -10,8 +10,8 @@ use peelnet_core::{
     absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance},
     guards,
     methods::{
-        bins, mboit_trig, mboit4, mboit6, mboit8,
-        moments::{MomentSums, Settings, transmittances},
+        bins,
+        moments::{Moments, Settings, transmittances, trigonometric},
         range,
     },
     weights::Weight,
@@ -23,21 +23,21 @@ const TOLERANCE: f64 = 1e-7;
 
 /// Of each number of moments: the transmittance at −0.6, 0.3 and 0.9 times √bias from a lone layer of absorbance 2 at 0, with the paper's
 /// settings; and at −0.7, 0.2 and 0.6 among three layers, with a bias of 0.25.
-const ESTIMATES: [(usize, f64, [f64; 3], [f64; 3]); 3] = [
+const ESTIMATES: [(Settings, f64, [f64; 3], [f64; 3]); 3] = [
     (
-        4,
+        Settings::FOUR,
         5e-7,
         [0.774_837_428_914, 0.453_698_369_412, 0.217_552_192_093],
         [0.887_102_105_669, 0.394_346_278_839, 0.252_094_318_325],
     ),
     (
-        6,
+        Settings::SIX,
         5e-6,
         [0.964_561_001_239, 0.193_188_868_520, 0.142_290_881_193],
         [0.879_220_114_503, 0.349_375_184_288, 0.227_123_448_770],
     ),
     (
-        8,
+        Settings::EIGHT,
         5e-5,
         [0.970_132_189_824, 0.184_070_385_394, 0.141_115_613_550],
         [0.831_671_403_061, 0.352_406_416_644, 0.228_637_958_245],
@@ -46,49 +46,38 @@ const ESTIMATES: [(usize, f64, [f64; 3], [f64; 3]); 3] = [
 
 const THREE: [(f64, f64); 3] = [(0.7, -0.5), (0.9, 0.1), (0.4, 0.75)];
 
-fn transmittance(count: usize, layers: &[(f64, f64)], zeta: f64, settings: &Settings) -> f64 {
-    let (mut four, mut six, mut eight) = (
-        mboit4::Moments::default(),
-        mboit6::Moments::default(),
-        mboit8::Moments::default(),
-    );
+fn transmittance(layers: &[(f64, f64)], zeta: f64, settings: &Settings) -> f64 {
+    let mut moments = Moments::new(settings.basis);
     for &(b, z) in layers {
-        four.add(b, z);
-        six.add(b, z);
-        eight.add(b, z);
+        moments.add(b, z);
     }
-    match count {
-        4 => four.transmittance(zeta, settings),
-        6 => six.transmittance(zeta, settings),
-        _ => eight.transmittance(zeta, settings),
-    }
+    moments.transmittance(zeta, settings)
 }
 
-fn paper(count: usize) -> Settings {
-    match count {
-        4 => Settings::PAPER,
-        6 => mboit6::PAPER,
-        _ => mboit8::PAPER,
-    }
+/// Its differences from the estimates beside a lone layer.
+fn off_beside_lone(settings: &Settings, bias: f64, wanted: [f64; 3]) -> [f64; 3] {
+    let at = |t: f64| transmittance(&[(2.0, 0.0)], t * bias.sqrt(), settings);
+    let found = [-0.6, 0.3, 0.9].map(at);
+    std::array::from_fn(|k| (found[k] - wanted[k]).abs())
 }
 
 #[test]
 fn estimates_are_those_computed_apart() {
-    for (count, bias, lone, among) in ESTIMATES {
-        let settings = paper(count);
-        for (t, want) in [-0.6, 0.3, 0.9].into_iter().zip(lone) {
-            let found = transmittance(count, &[(2.0, 0.0)], t * f64::sqrt(bias), &settings);
-            assert!((found - want).abs() < TOLERANCE, "{count} at {t}: {found}");
-        }
+    for (settings, bias, lone, among) in ESTIMATES {
+        let off = off_beside_lone(&settings, bias, lone);
+        assert!(
+            off.iter().all(|off| *off < TOLERANCE),
+            "{settings:?}: {off:?}"
+        );
         let blurred = Settings {
             bias: 0.25,
             ..settings
         };
         for (zeta, want) in [-0.7, 0.2, 0.6].into_iter().zip(among) {
-            let found = transmittance(count, &THREE, zeta, &blurred);
+            let found = transmittance(&THREE, zeta, &blurred);
             assert!(
                 (found - want).abs() < TOLERANCE,
-                "{count} at {zeta}: {found}"
+                "{blurred:?} at {zeta}: {found}"
             );
         }
     }
@@ -97,25 +86,16 @@ fn estimates_are_those_computed_apart() {
 /// What a tenth of a constant is worth in that table.
 #[test]
 fn a_tenth_of_a_setting_shows() {
-    for (count, bias, lone, _) in ESTIMATES {
-        let settings = paper(count);
-        let changed = [
-            Settings {
-                bias: 1.1 * settings.bias,
+    for (settings, bias, lone, _) in ESTIMATES {
+        for [by_bias, by_overestimation] in [[1.1, 1.0], [1.0, 1.1]] {
+            let changed = Settings {
+                bias: by_bias * settings.bias,
+                overestimation: by_overestimation * settings.overestimation,
                 ..settings
-            },
-            Settings {
-                overestimation: 1.1 * settings.overestimation,
-                ..settings
-            },
-        ];
-        for changed in changed {
-            let moved = [-0.6, 0.3, 0.9].into_iter().zip(lone).map(|(t, want)| {
-                let found = transmittance(count, &[(2.0, 0.0)], t * f64::sqrt(bias), &changed);
-                (found - want).abs()
-            });
-            let moved = moved.fold(0.0, f64::max);
-            assert!(moved > 1e4 * TOLERANCE, "{count}, {changed:?}: {moved:e}");
+            };
+            let off = off_beside_lone(&changed, bias, lone);
+            let moved = off.into_iter().fold(0.0, f64::max);
+            assert!(moved > 1e4 * TOLERANCE, "{changed:?}: {moved:e}");
         }
     }
 }
@@ -123,8 +103,8 @@ fn a_tenth_of_a_setting_shows() {
 /// Less absorbance than 1e-4 counts as none.
 #[test]
 fn faint_pixels_have_no_estimate() {
-    for (count, ..) in ESTIMATES {
-        let behind = |b: f64| transmittance(count, &[(b, -0.5)], 0.5, &paper(count));
+    for (settings, ..) in ESTIMATES {
+        let behind = |b: f64| transmittance(&[(b, -0.5)], 0.5, &settings);
         assert_eq!(behind(0.99e-4), 1.0);
         assert!(behind(1.01e-4) < 1.0 - 0.9e-4);
     }
@@ -135,19 +115,20 @@ fn faint_pixels_have_no_estimate() {
 #[test]
 fn trigonometric_moments_have_their_closed_form() {
     let angle = |zeta: f64| (zeta + 1.0) * (PI - 0.5 * 0.1 * PI);
-    for count in 2..=mboit_trig::MOST {
+    for count in 2..=trigonometric::MOST {
         let size = count as f64 + 1.0;
-        for (bias, paper) in [(1e-4, mboit_trig::BIAS), (1e-3, mboit_trig::BIAS_HALF)] {
+        for (bias, paper) in [
+            (1e-4, trigonometric::BIAS),
+            (1e-3, trigonometric::BIAS_HALF),
+        ] {
             for zeta in [0.001, 0.004, 0.02] {
-                let mut m = mboit_trig::Moments::new(count);
-                m.add(2.0, 0.0);
                 let with = |overestimation: f64| {
                     let settings = Settings {
                         overestimation,
                         bias: paper,
-                        own_share_out: false,
+                        ..Settings::trigonometric(count)
                     };
-                    m.transmittance(zeta, &settings).ln()
+                    transmittance(&[(2.0, 0.0)], zeta, &settings).ln()
                 };
                 let own = (with(0.0) - with(1.0)) / 2.0;
                 let turn = angle(zeta) - angle(0.0);
@@ -164,7 +145,7 @@ fn trigonometric_moments_have_their_closed_form() {
         }
         // Half a zone lies before the nearest depth's angle and after the farthest's.
         assert!((angle(1.0) - angle(-1.0) - (2.0 * PI - 0.1 * PI)).abs() < 1e-12);
-        assert_eq!(mboit_trig::WRAPPING_ZONE, 0.1 * PI);
+        assert_eq!(trigonometric::WRAPPING_ZONE, 0.1 * PI);
     }
 }
 
@@ -174,53 +155,22 @@ fn trigonometric_moments_have_their_closed_form() {
 fn two_fragments_see_each_other() {
     let points = [(1.0, 0.5), (4.0, 0.25)];
     let warp = DepthWarp::new(0.5, 8.0);
-    for own_share_out in [false, true] {
-        let of = |paper: Settings| Settings {
-            own_share_out,
-            ..paper
-        };
-        let trigonometric = Settings {
-            bias: mboit_trig::BIAS,
-            ..Settings::PAPER
-        };
-        let own = if own_share_out { 0.0 } else { 0.25f64 };
-        let want = [0.5f64.powf(own), 0.5 * 0.75f64.powf(own)];
-        for found in [
-            transmittances(
-                &points,
-                &warp,
-                mboit4::Moments::default(),
-                &of(Settings::PAPER),
-            ),
-            transmittances(
-                &points,
-                &warp,
-                mboit6::Moments::default(),
-                &of(mboit6::PAPER),
-            ),
-            transmittances(
-                &points,
-                &warp,
-                mboit8::Moments::default(),
-                &of(mboit8::PAPER),
-            ),
-            transmittances(
-                &points,
-                &warp,
-                mboit_trig::Moments::new(2),
-                &of(trigonometric),
-            ),
-            transmittances(
-                &points,
-                &warp,
-                mboit_trig::Moments::new(3),
-                &of(trigonometric),
-            ),
-        ] {
+    let powers = ESTIMATES.map(|(settings, ..)| settings).into_iter();
+    for paper in powers.chain([2, 3].map(Settings::trigonometric)) {
+        for (own_share_out, own) in [(true, 0.0), (false, 0.25f64)] {
+            let settings = Settings {
+                own_share_out,
+                ..paper
+            };
+            let found = transmittances(&points, &warp, &settings);
             assert_eq!(found.len(), 2);
+            let want = [0.5f64.powf(own), 0.5 * 0.75f64.powf(own)];
             for (found, want) in found.into_iter().zip(want) {
                 // Biases of up to 1e-4 and what they blur over a third of the range.
-                assert!((found - want).abs() < 2e-3, "{found} for {want}");
+                assert!(
+                    (found - want).abs() < 2e-3,
+                    "{settings:?}: {found} for {want}"
+                );
             }
         }
     }

@@ -150,7 +150,7 @@ impl Model {
             .zip(raw_inputs)
             .map(|(input, &raw)| input.normalise_f64(raw))
             .collect();
-        let mut outputs = self.mlp.forward_f64(&normalised);
+        let mut outputs = self.mlp.forward(&normalised);
         for value in &mut outputs {
             *value = self.meta.output.guard_f64(*value);
         }

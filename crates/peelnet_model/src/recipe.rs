@@ -12,9 +12,7 @@ use std::{
 };
 
 use peelnet_core::{
-    features::{
-        About, DEPTH_FRACTION, Feature, MEAN_FRACTION, ROOT_ABSORBANCE, Rest, SHARE_HIGH, SHARE_LOW,
-    },
+    features::{About, FEATURES, Feature, Rest},
     methods::{
         deep::{Row, THESIS_INPUTS},
         dfaoit::{self, Layers},
@@ -35,8 +33,7 @@ pub enum Inputs {
     Row(&'static [&'static Feature<Row>]),
     /// The moments of a pixel and a depth: every row is an example.
     Moments(&'static [&'static Feature<nmt::Seen>]),
-    /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be
-    /// [`ROOT_ABSORBANCE`].
+    /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be the root of its absorbance.
     Rest(&'static [&'static Feature<Rest<f64>>]),
     /// What lies between the known ends of a fragment's slab, in a design of slabs: whole pixels are examples. The first input must be
     /// the root of its absorbance, the fourth and fifth the bounds of the share in front.
@@ -257,13 +254,7 @@ impl Recipe {
     pub const ANCHORED_SMALL: Self = Self(&Declaration {
         name: "anchored-small",
         method: "deep-anchored-small",
-        inputs: Inputs::Rest(&[
-            &ROOT_ABSORBANCE,
-            &DEPTH_FRACTION,
-            &MEAN_FRACTION,
-            &SHARE_LOW,
-            &SHARE_HIGH,
-        ]),
+        inputs: Inputs::Rest(&FEATURES),
         output: Output::AnchoredShare,
         sums: SumPrecision::Half,
         network: relu(&[8], Activation::Sigmoid),
@@ -275,13 +266,7 @@ impl Recipe {
     pub const ANCHORED_MEDIUM: Self = Self(&Declaration {
         name: "anchored-medium",
         method: "deep-anchored-medium",
-        inputs: Inputs::Rest(&[
-            &ROOT_ABSORBANCE,
-            &DEPTH_FRACTION,
-            &MEAN_FRACTION,
-            &SHARE_LOW,
-            &SHARE_HIGH,
-        ]),
+        inputs: Inputs::Rest(&FEATURES),
         output: Output::AnchoredShareSeparateEnds,
         sums: SumPrecision::Half,
         network: relu(&[12], Activation::Sigmoid),
@@ -457,12 +442,9 @@ mod tests {
             let shares = matches!(recipe.inputs, Inputs::Rest(_) | Inputs::Slabs(..));
             assert_eq!(recipe.output.is_share(), shares, "{recipe}");
             assert_eq!(recipe.loss.is_some(), shares, "{recipe}");
-            assert!(
-                !shares || names[0] == ROOT_ABSORBANCE.about.name,
-                "{recipe}"
-            );
+            assert!(!shares || names[0] == "root_absorbance", "{recipe}");
             let bounded = recipe.output == Output::BoundedShare;
-            let bounds = [&SHARE_LOW, &SHARE_HIGH].map(|f| f.about.name);
+            let bounds = ["share_low", "share_high"];
             assert!(!bounded || names[3..5] == bounds, "{recipe}");
         }
     }

@@ -6,9 +6,9 @@ use peelnet_core::fragment::Fragment;
 use peelnet_core::methods::anchored::{self, Place};
 use peelnet_core::methods::deep::Row;
 use peelnet_core::methods::dfaoit::{FRONT, Layers};
-use peelnet_core::methods::moments::{MomentSums, Settings};
+use peelnet_core::methods::moments::{Moments, Settings};
 use peelnet_core::methods::slabs::{self, Between};
-use peelnet_core::methods::{mboit4, nmt};
+use peelnet_core::methods::nmt;
 use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
 
@@ -199,7 +199,7 @@ fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
 
 /// The colour of a pixel over black that MBOIT-4 draws.
 fn by_moments(pixel: &Pixel<'_>, warp: &DepthWarp) -> [f64; 3] {
-    let mut moments = mboit4::Moments::default();
+    let mut moments = Moments::new(Settings::FOUR.basis);
     let mut zetas = Vec::with_capacity(pixel.points.len());
     for &(depth, alpha) in pixel.points {
         let zeta = warp.apply(depth.into());
@@ -208,7 +208,7 @@ fn by_moments(pixel: &Pixel<'_>, warp: &DepthWarp) -> [f64; 3] {
     }
     let seen = pixel.points.iter().zip(&zetas);
     let seen = seen.map(|((_, alpha), &zeta)| {
-        f64::from(*alpha) * moments.transmittance(zeta, &Settings::PAPER)
+        f64::from(*alpha) * moments.transmittance(zeta, &Settings::FOUR)
     });
     let seen: Vec<f64> = seen.collect();
     let scale = (1.0 - pixel.behind()) / seen.iter().sum::<f64>().max(1e-12);

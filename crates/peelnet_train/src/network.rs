@@ -247,7 +247,7 @@ mod tests {
             (0..rows)
                 .map(|r| {
                     let input = [0, 1, 2].map(|i| f64::from(inputs[i * rows + r]));
-                    mlp.forward_f64(&input)[0].powi(2)
+                    mlp.forward(&input)[0].powi(2)
                 })
                 .sum()
         };

@@ -10,7 +10,7 @@
 use crate::{
     absorbance::{DepthWarp, absorbance},
     features::Rest,
-    fragment::Fragment,
+    fragment::{Fragment, points},
     guards::FILL_MAX,
     statistics::{
         self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, zeta_of_code,
@@ -58,33 +58,12 @@ impl Seen {
 
 /// What the network knows of each fragment of a pixel, in the order given: fragments are (linear depth, α).
 pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp, precision: SumPrecision) -> Vec<Seen> {
-    let points = points(fragments, warp);
-    let sums = Statistics::rounded(points.iter().copied(), precision).moments;
-    seen_at(fragments, &points, sums)
-}
-
-/// As [`seen`], with the sums `b_0 … b_4` as something else added them up.
-pub fn seen_given(fragments: &[(f32, f32)], warp: &DepthWarp, moments: [f64; 5]) -> Vec<Seen> {
-    seen_at(fragments, &points(fragments, warp), moments)
-}
-
-/// Absorbance and warped depth of every fragment.
-fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<(f64, f64)> {
-    fragments
-        .iter()
-        .map(|&(depth, alpha)| (absorbance(alpha), warp.apply(depth.into())))
-        .collect()
-}
-
-fn seen_at(fragments: &[(f32, f32)], points: &[(f64, f64)], moments: [f64; 5]) -> Vec<Seen> {
-    let mut s = Statistics {
-        moments,
-        ..Statistics::empty()
-    };
+    let points = super::points(fragments, warp);
+    let mut s = Statistics::rounded(points.iter().copied(), precision);
     let visible = || {
         fragments
             .iter()
-            .zip(points)
+            .zip(&points)
             .filter(|((_, alpha), _)| *alpha >= FAINT)
             .map(|(_, &(b, zeta))| (zeta, b))
     };
@@ -101,7 +80,7 @@ fn seen_at(fragments: &[(f32, f32)], points: &[(f64, f64)], moments: [f64; 5]) -
     s.farthest = FAR_END.zeta(far);
     fragments
         .iter()
-        .zip(points)
+        .zip(&points)
         .map(|(&(_, alpha), &(b, zeta))| {
             let code = depth_code(zeta);
             let (own_near, own_far) = (NEAR_END.mirrored(zeta, b), FAR_END.level(zeta, b));
@@ -145,32 +124,38 @@ pub fn composite(
     separate_ends: bool,
     share: impl Fn(&Rest<f64>) -> f64,
 ) -> [f32; 3] {
-    let points: Vec<(f32, f32)> = fragments.iter().map(|f| (f.depth, f.alpha)).collect();
+    let seen = seen(&points(fragments), warp, SumPrecision::Exact);
+    let weights = seen
+        .iter()
+        .map(|s| (s.weight(&share), s.place != Place::Between));
+    composite_weighted(fragments, background, separate_ends, weights)
+}
+
+/// Composites a pixel with the weight of each fragment, and whether it is known. Those have sums of their own where they are `apart`.
+pub(super) fn composite_weighted(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    apart: bool,
+    weights: impl Iterator<Item = (f64, bool)>,
+) -> [f32; 3] {
     let total: f64 = fragments.iter().map(|f| absorbance(f.alpha)).sum();
     if total == 0.0 {
         return background;
     }
-    // Premultiplied colour and alpha of what lies between, and of the ends.
+    // Premultiplied colour and alpha of what is guessed, and of what is known.
     let mut sums = [[0.0f64; 4]; 2];
-    for (f, s) in fragments
-        .iter()
-        .zip(seen(&points, warp, SumPrecision::Exact))
-    {
-        let w = s.weight(&share);
-        let end = separate_ends && s.place != Place::Between;
-        let sum = &mut sums[usize::from(end)];
+    for (f, (w, is_known)) in fragments.iter().zip(weights) {
+        let sum = &mut sums[usize::from(apart && is_known)];
         for (sum, c) in sum.iter_mut().zip(f.premultiplied()) {
             *sum += f64::from(c) * w;
         }
         sum[3] += f64::from(f.alpha) * w;
     }
-    let [between, ends] = sums;
-    let t = (-total).exp();
-    let background = background.map(f64::from);
-    if separate_ends {
-        resolve_separate_ends(between, ends, t, background)
+    let (t, background) = ((-total).exp(), background.map(f64::from));
+    if apart {
+        resolve_separate_ends(sums[0], sums[1], t, background)
     } else {
-        resolve(between, t, background)
+        resolve(sums[0], t, background)
     }
     .map(|c| c as f32)
 }
@@ -252,7 +237,7 @@ mod tests {
         for seed in 0..100 {
             let mut f = stack(12, seed);
             crate::fragment::sort_front_to_back(&mut f);
-            let points: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
+            let points = points(&f);
             let exact = over::composite(&f, C0);
             let all = seen(&points, &warp, SumPrecision::Exact);
             for separate_ends in [false, true] {
@@ -279,7 +264,7 @@ mod tests {
     fn features_are_free_of_scale() {
         for seed in 0..50 {
             let f = stack(9, seed);
-            let points: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
+            let points = points(&f);
             let near = points.iter().map(|p| p.0).fold(f32::MAX, f32::min);
             let far = points.iter().map(|p| p.0).fold(0.0, f32::max);
             let base = seen(

@@ -5,10 +5,7 @@
 //! block's pixels, linear between blocks and slices; slices of equal ratio of depth over what transparent objects span, as other methods
 //! have; the slice of the fragment itself does not count, so that it does not hide itself; coverage is the exact `T_∞`.
 
-use crate::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::Fragment,
-};
+use crate::absorbance::{DepthWarp, absorbance};
 
 /// Absorbances are added in whole numbers of this: the sum does not depend on the order.
 pub const UNIT: f64 = 1.0 / 2048.0;
@@ -37,18 +34,6 @@ pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, slices: usize)
         up_to[slice] + (up_to[slice + 1] - up_to[slice]) * t
     };
     fragments.iter().map(|f| (-in_front(f)).exp()).collect()
-}
-
-/// Eq 6's composite with the estimated transmittance as the weight, where all pixels around are like this one.
-pub fn composite(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    slices: usize,
-) -> [f32; 3] {
-    super::composite_by(fragments, background, |points| {
-        transmittances(points, warp, slices)
-    })
 }
 
 #[cfg(test)]

@@ -8,10 +8,7 @@
 //! holds; "opaque" raises what such a fragment hides, to [`ABSORBANCE_MAX`], and leaves its opacity, so that one surface stays exact.
 
 use super::range::{Bounds, Range};
-use crate::{
-    absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance},
-    fragment::Fragment,
-};
+use crate::absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance};
 
 /// Fragments of more opacity hide all that is behind them.
 pub const OPAQUE: f32 = 0.99;
@@ -63,19 +60,6 @@ pub fn transmittances(
         before + (after - before - b) * t
     });
     in_front.map(|b| (-b).exp().min(1.0)).collect()
-}
-
-/// Eq 6's composite with the estimated transmittance as the weight.
-pub fn composite(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    bins: usize,
-    bounds: Bounds,
-) -> [f32; 3] {
-    super::composite_by(fragments, background, |points| {
-        transmittances(points, warp, bins, bounds)
-    })
 }
 
 #[cfg(test)]

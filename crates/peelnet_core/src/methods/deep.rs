@@ -1,6 +1,6 @@
 //! `deep-thesis`: Papakostas 2022 — eq 6 with a weight that a network predicts.
 
-use crate::features::{About, Feature};
+use crate::features::Feature;
 use crate::fragment::Fragment;
 use crate::methods::wboit::{Sums, normalised};
 
@@ -26,31 +26,13 @@ impl Row {
     }
 }
 
-/// A feature of a row; in WGSL a function of `linear_depth` and `statistics`.
-const fn of_row(
-    name: &'static str,
-    unit: &'static str,
-    wgsl: &'static str,
-    value: fn(&Row) -> f64,
-) -> Feature<Row> {
-    Feature {
-        about: About {
-            name,
-            unit,
-            wgsl,
-            shared: None,
-        },
-        value,
-    }
-}
-
-/// The inputs of the thesis's network, `(z_i, Σα, n)`.
+/// The inputs of the thesis's network, `(z_i, Σα, n)`; in WGSL functions of `linear_depth` and `statistics`.
 pub static THESIS_INPUTS: [&Feature<Row>; 3] = [
-    &of_row("linear_depth", "scene units", "linear_depth", |row| {
+    &Feature::new("linear_depth", "scene units", "linear_depth", |row| {
         row.linear_depth.into()
     }),
-    &of_row("alpha_sum", "1", "statistics.x", |row| row.alpha_sum.into()),
-    &of_row("fragment_count", "1", "statistics.y", |row| {
+    &Feature::new("alpha_sum", "1", "statistics.x", |row| row.alpha_sum.into()),
+    &Feature::new("fragment_count", "1", "statistics.y", |row| {
         row.fragment_count.into()
     }),
 ];

@@ -8,7 +8,7 @@
 
 use super::over;
 use crate::{
-    features::{About, Feature, Shared},
+    features::{Feature, Shared},
     fragment::Fragment,
 };
 
@@ -58,44 +58,32 @@ impl Layers {
     }
 }
 
-/// A feature; in WGSL a function of `front`, `behind`, `all` and `count`.
-const fn feature(
-    name: &'static str,
-    wgsl: &'static str,
-    shared: Option<&'static Shared>,
-    value: fn(&Layers) -> f64,
-) -> Feature<Layers> {
-    Feature {
-        about: About {
-            name,
-            unit: "1",
-            wgsl,
-            shared,
-        },
-        value,
-    }
-}
-
-const AVERAGE: Option<&Shared> = Some(&Shared {
+const AVERAGE: Shared = Shared {
     name: "average",
     wgsl: "behind / max(count, 1.0)",
     module: None,
-});
+};
 
-/// The inputs of the network, in the published order.
+const fn feature(
+    name: &'static str,
+    wgsl: &'static str,
+    value: fn(&Layers) -> f64,
+) -> Feature<Layers> {
+    Feature::new(name, "1", wgsl, value)
+}
+
+/// The inputs of the network, in the published order; in WGSL functions of `front`, `behind`, `all` and `count`.
 pub static INPUTS: [&Feature<Layers>; 10] = [
-    &feature("average_alpha", "average.a", AVERAGE, |layers| {
-        layers.average_alpha
-    }),
-    &feature("average_r", "average.r", AVERAGE, |l| l.average[0]),
-    &feature("average_g", "average.g", AVERAGE, |l| l.average[1]),
-    &feature("average_b", "average.b", AVERAGE, |l| l.average[2]),
-    &feature("sum_r", "all.r", None, |layers| layers.sum[0]),
-    &feature("sum_g", "all.g", None, |layers| layers.sum[1]),
-    &feature("sum_b", "all.b", None, |layers| layers.sum[2]),
-    &feature("front_r", "front.r", None, |layers| layers.front[0]),
-    &feature("front_g", "front.g", None, |layers| layers.front[1]),
-    &feature("front_b", "front.b", None, |layers| layers.front[2]),
+    &feature("average_alpha", "average.a", |l| l.average_alpha).sharing(&AVERAGE),
+    &feature("average_r", "average.r", |l| l.average[0]).sharing(&AVERAGE),
+    &feature("average_g", "average.g", |l| l.average[1]).sharing(&AVERAGE),
+    &feature("average_b", "average.b", |l| l.average[2]).sharing(&AVERAGE),
+    &feature("sum_r", "all.r", |layers| layers.sum[0]),
+    &feature("sum_g", "all.g", |layers| layers.sum[1]),
+    &feature("sum_b", "all.b", |layers| layers.sum[2]),
+    &feature("front_r", "front.r", |layers| layers.front[0]),
+    &feature("front_g", "front.g", |layers| layers.front[1]),
+    &feature("front_b", "front.b", |layers| layers.front[2]),
 ];
 
 /// Composites a pixel; `network` predicts the colour of all fragments over black.

@@ -1,62 +1,109 @@
-//! What all moment-based methods share (Münstermann, Krumpen, Klein & Peters 2018): settings, power moments, and eq 6 with the
-//! estimate as the weight.
+//! `mboit4`, `mboit6`, `mboit8` and `mboit-trig-M`: moment-based order-independent transparency (Münstermann, Krumpen, Klein & Peters,
+//! "Moment-Based Order-Independent Transparency", PACMCGIT 1(1), 2018) with four, six and eight power moments, and with M = 2 or 3
+//! trigonometric ones (its supplement). The shader twins are `methods/mboit4/` and its neighbours.
+//!
+//! Pass 1 sums absorbance `b_i` and its moments over warped depth ζ: `b_k = Σ b_i ζ_i^k`, or `c_k = Σ b_i e^{ikθ_i}` of depths as angles. The
+//! moments do not determine where the absorbance lies, but they bound how much of it can lie in front of a depth; the bound's
+//! ends are met by the one measure with these moments that has a point at the depth, and the estimate lies between them.
 
-use crate::{absorbance::DepthWarp, fragment::Fragment};
+pub mod power;
+mod roots;
+pub mod trigonometric;
+
+use crate::absorbance::DepthWarp;
+
+/// What is summed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Powers of ζ from the first to the fourth, the sixth or the eighth.
+    Power(usize),
+    /// Two or three powers of `e^{iθ}`, complex numbers.
+    Trigonometric(usize),
+}
 
 /// How moments are turned into transmittance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
+    /// What is summed.
+    pub basis: Basis,
     /// Where between the two bounds the estimate lies: 0 the most light, 1 the least; 0.25 in the paper.
     pub overestimation: f64,
-    /// Pull towards moments of a measure that can always be inverted; 5e−7 for 32-bit power moments in the paper's
-    /// code, 6e−5 for 16-bit ones.
+    /// Pull towards moments of a measure that can always be inverted.
     pub bias: f64,
     /// Whether a fragment's own absorbance is taken out of the moments before it is asked what lies in front of it.
     pub own_share_out: bool,
 }
 
 impl Settings {
-    /// The paper's, for 32-bit moments.
-    pub const PAPER: Self = Self {
-        overestimation: 0.25,
-        bias: 5e-7,
-        own_share_out: false,
-    };
-}
+    /// The paper's, for four power moments of 32 bits.
+    pub const FOUR: Self = Self::published(Basis::Power(4), 5e-7);
+    /// The paper's, for six.
+    pub const SIX: Self = Self::published(Basis::Power(6), 5e-6);
+    /// The paper's, for eight.
+    pub const EIGHT: Self = Self::published(Basis::Power(8), 5e-5);
 
-/// The absorbance of a pixel and its power moments, `b_0 … b_{N−1}`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PowerMoments<const N: usize>(pub [f64; N]);
+    /// For trigonometric moments of 32 bits.
+    pub const fn trigonometric(count: usize) -> Self {
+        Self::published(Basis::Trigonometric(count), trigonometric::BIAS)
+    }
 
-impl<const N: usize> Default for PowerMoments<N> {
-    fn default() -> Self {
-        Self([0.0; N])
+    const fn published(basis: Basis, bias: f64) -> Self {
+        Self {
+            basis,
+            overestimation: 0.25,
+            bias,
+            own_share_out: false,
+        }
     }
 }
 
-impl<const N: usize> PowerMoments<N> {
-    /// Adds absorbance `b` at warped depth `zeta`.
-    pub(super) fn add_powers(&mut self, b: f64, zeta: f64) {
-        let mut power = b;
-        for m in &mut self.0 {
-            *m += power;
-            power *= zeta;
+/// Absorbance and moments of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments {
+    basis: Basis,
+    /// Absorbance, then its moments: real and imaginary part of each that is complex.
+    pub sums: [f64; 9],
+}
+
+impl Moments {
+    /// Of a pixel without fragments.
+    pub const fn new(basis: Basis) -> Self {
+        Self {
+            basis,
+            sums: [0.0; 9],
         }
     }
 
-    /// The estimate of the transmittance in front of a depth, from the share of the absorbance that can lie there: its `bounds`
-    /// given `b_k / b_0`, `k` from 1.
-    pub(super) fn estimate<const M: usize>(
-        &self,
-        settings: &Settings,
-        bounds: impl FnOnce([f64; M]) -> (f64, f64),
-    ) -> f64 {
-        let total = self.0[0];
+    /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
+    pub fn add(&mut self, b: f64, zeta: f64) {
+        match self.basis {
+            Basis::Power(_) => {
+                let mut power = b;
+                for sum in &mut self.sums {
+                    *sum += power;
+                    power *= zeta;
+                }
+            }
+            Basis::Trigonometric(_) => trigonometric::add(&mut self.sums, b, zeta),
+        }
+    }
+
+    /// The estimate of the transmittance in front of `zeta`.
+    pub fn transmittance(&self, zeta: f64, settings: &Settings) -> f64 {
+        let (total, bias) = (self.sums[0], settings.bias);
         // Less than that is invisible (1 − e^−x ≈ x) and its normalised moments are noise.
         if total < 1e-4 {
             return 1.0;
         }
-        let (low, high) = bounds(std::array::from_fn(|k| self.0[k + 1] / total));
+        let means = self.sums.map(|sum| sum / total);
+        let (low, high) = match self.basis {
+            Basis::Power(4) => {
+                power::four_moment_bounds([means[1], means[2], means[3], means[4]], bias, zeta)
+            }
+            Basis::Power(6) => power::bounds::<4>(means, bias, zeta),
+            Basis::Power(_) => power::bounds::<5>(means, bias, zeta),
+            Basis::Trigonometric(count) => trigonometric::bounds(means, count, bias, zeta),
+        };
         let share = low + settings.overestimation * (high - low);
         let t = (-total * share).exp();
         // Degenerate points give NaN; nothing in front is the harmless answer.
@@ -64,41 +111,136 @@ impl<const N: usize> PowerMoments<N> {
     }
 }
 
-/// Absorbance and moments of a pixel, which bound how much of the absorbance lies in front of a depth.
-pub trait MomentSums: Copy {
-    /// Adds absorbance `b` at warped depth `zeta`; a negative `b` takes it away.
-    fn add(&mut self, b: f64, zeta: f64);
-
-    /// The estimate of the transmittance in front of `zeta`.
-    fn transmittance(&self, zeta: f64, settings: &Settings) -> f64;
+/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
+pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
+    let points = super::points(fragments, warp);
+    let mut all = Moments::new(settings.basis);
+    for &(b, zeta) in &points {
+        all.add(b, zeta);
+    }
+    let in_front = points.iter().map(|&(b, zeta)| {
+        let mut seen = all;
+        if settings.own_share_out {
+            seen.add(-b, zeta);
+        }
+        seen.transmittance(zeta, settings)
+    });
+    in_front.collect()
 }
 
-/// The transmittance in front of each of a pixel's fragments, given as (linear depth, α), from sums that begin as `empty`.
-pub fn transmittances<M: MomentSums>(
-    fragments: &[(f32, f32)],
-    warp: &DepthWarp,
-    empty: M,
-    settings: &Settings,
-) -> Vec<f64> {
-    super::transmittances(
-        fragments,
-        warp,
-        empty,
-        settings.own_share_out,
-        M::add,
-        |m, zeta| m.transmittance(zeta, settings),
-    )
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
 
-/// Eq 6's composite with the estimated transmittance as the weight.
-pub fn composite<M: MomentSums>(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    empty: M,
-    settings: &Settings,
-) -> [f32; 3] {
-    super::composite_by(fragments, background, |points| {
-        transmittances(points, warp, empty, settings)
-    })
+    /// Each with the layers that it tells apart, how well, and what it errs at a lone layer.
+    const ALL: [(Settings, usize, f64, f64); 5] = [
+        (Settings::FOUR, 2, 2e-3, 1e-3),
+        (Settings::SIX, 3, 2e-2, 2e-3),
+        (Settings::EIGHT, 4, 2e-2, 5e-3),
+        (Settings::trigonometric(2), 2, 2e-2, 2e-3),
+        (Settings::trigonometric(3), 3, 2e-2, 2e-3),
+    ];
+
+    fn of_layers(settings: &Settings, layers: &[(f64, f64)]) -> Moments {
+        let mut moments = Moments::new(settings.basis);
+        for &(b, zeta) in layers {
+            moments.add(b, zeta);
+        }
+        moments
+    }
+
+    fn in_front(layers: &[(f64, f64)], zeta: f64) -> f64 {
+        let front = layers.iter().filter(|l| l.1 < zeta);
+        front.map(|l| l.0).sum()
+    }
+
+    fn random_layers(seed: u64, count: usize) -> Vec<(f64, f64)> {
+        let mut stream = Random::new(seed, &[]);
+        let mut random = move || f64::from(stream.unit());
+        let layer = |_| (0.1 + 0.5 * random(), 1.8 * random() - 0.9);
+        (0..count).map(layer).collect()
+    }
+
+    /// A measure of few points is determined by its moments, so that the estimate between them is sharp.
+    #[test]
+    fn few_layers_are_told_apart() {
+        for (settings, count, tolerance, _) in ALL {
+            let layers = [(0.7, -0.8), (1.1, -0.1), (0.4, 0.3), (0.6, 0.8)];
+            let moments = of_layers(&settings, &layers[..count]);
+            for zeta in [-0.95, -0.45, 0.1, 0.55, 0.97] {
+                let t = moments.transmittance(zeta, &settings);
+                let want = (-in_front(&layers[..count], zeta)).exp();
+                assert!(
+                    (t - want).abs() < tolerance,
+                    "{settings:?} {zeta}: {t} {want}"
+                );
+            }
+        }
+    }
+
+    /// At a lone layer a quarter of it counts, as published, anywhere in the range; nothing with its own share out.
+    #[test]
+    fn a_lone_layer_counts_a_quarter_of_itself() {
+        for (settings, .., tolerance) in ALL {
+            for zeta in (0..=100).map(|i| f64::from(i) / 50.0 - 1.0) {
+                let mut moments = of_layers(&settings, &[(0.8, zeta)]);
+                let t = moments.transmittance(zeta, &settings);
+                let error = (t - f64::exp(-0.25 * 0.8)).abs();
+                assert!(error < tolerance, "{settings:?} {zeta}: {t}");
+                moments.add(-0.8, zeta);
+                assert_eq!(moments.transmittance(zeta, &settings), 1.0);
+            }
+        }
+    }
+
+    /// The estimate never leaves 0 … 1, and falls from the front to the back of a stack of 40 layers, whose transmittance is e⁻¹².
+    #[test]
+    fn it_stays_a_transmittance() {
+        for (settings, ..) in ALL {
+            let layers = (0..40).map(|i| (0.3, (f64::from(i) * 0.37).sin() * 0.8));
+            let moments = of_layers(&settings, &layers.collect::<Vec<_>>());
+            let at = |zeta: f64| moments.transmittance(zeta, &settings);
+            assert!((-200..=200).all(|i| (0.0..=1.0).contains(&at(f64::from(i) / 200.0))));
+            let [front, amid, behind] = [-1.0, 0.0, 1.0].map(at);
+            assert!(front > amid && amid > behind, "{front} {amid} {behind}");
+            assert!(behind >= f64::exp(-12.0) * 0.999 && behind < f64::exp(-12.0 * 0.75));
+        }
+    }
+
+    /// More moments are nearer the truth, over random stacks; no estimate leaves 0 … 1.
+    #[test]
+    fn more_moments_are_nearer() {
+        let errors = ALL.map(|(settings, ..)| {
+            let mut error = 0.0;
+            for seed in 0..50 {
+                let layers = random_layers(seed, 8);
+                let moments = of_layers(&settings, &layers);
+                for zeta in (0..100).map(|i| f64::from(i) / 50.0 - 1.0) {
+                    let t = moments.transmittance(zeta, &settings);
+                    assert!((0.0..=1.0).contains(&t), "{t}");
+                    error += (t - (-in_front(&layers, zeta)).exp()).abs();
+                }
+            }
+            error
+        });
+        let [four, six, eight, two, three] = errors;
+        assert!(four > six && six > eight && two > three, "{errors:?}");
+    }
+
+    /// The share that lies in front is between the bounds, but for what the bias moves.
+    #[test]
+    fn bounds_hold_the_truth() {
+        for seed in 0..50 {
+            let layers = random_layers(seed, 12);
+            let moments = of_layers(&Settings::EIGHT, &layers);
+            let (total, slack) = (moments.sums[0], Settings::EIGHT.bias);
+            for zeta in (0..100).map(|i| f64::from(i) / 50.0 - 1.0) {
+                let share = in_front(&layers, zeta) / total;
+                let (low, high) = power::bounds::<5>(moments.sums.map(|m| m / total), slack, zeta);
+                let holds = low - slack < share && share < high + slack;
+                assert!(holds, "{low} {share} {high}");
+            }
+        }
+    }
 }

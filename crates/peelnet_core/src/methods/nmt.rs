@@ -8,10 +8,10 @@
 //! where they divide zero by zero, has the depth 0 ([`EXTENT_FLOOR`]). Pixels of `b_0` below 0.001 are drawn as all others, where they
 //! sum no colour.
 
-use super::{mboit4, moments::MomentSums};
+use super::moments::{Basis, Moments};
 use crate::{
     absorbance::{DepthWarp, absorbance},
-    features::{About, Feature},
+    features::Feature,
 };
 
 /// The most absorbance of one fragment: `e⁻¹⁰ ≈ 4.5e−5`.
@@ -38,7 +38,7 @@ impl Seen {
     /// What is known of each of a pixel's fragments, given as (linear depth, α), in any order.
     pub fn all(points: &[(f32, f32)], warp: &DepthWarp) -> Vec<Self> {
         let zetas: Vec<f64> = points.iter().map(|&(z, _)| warp.apply(z.into())).collect();
-        let mut moments = mboit4::Moments::default();
+        let mut moments = Moments::new(Basis::Power(4));
         for (&(_, alpha), &zeta) in points.iter().zip(&zetas) {
             moments.add(absorbance(alpha).min(ABSORBANCE_MAX), zeta);
         }
@@ -48,7 +48,7 @@ impl Seen {
             zeta,
             extent: [nearest, farthest],
             count: points.len(),
-            moments: moments.0,
+            moments: std::array::from_fn(|k| moments.sums[k]),
         };
         zetas.iter().map(seen).collect()
     }
@@ -61,38 +61,21 @@ impl Seen {
     }
 }
 
-/// A feature; in WGSL a function of `zeta`, `extent`, `totals` and `moments`.
-const fn feature(
-    name: &'static str,
-    unit: &'static str,
-    wgsl: &'static str,
-    value: fn(&Seen) -> f64,
-) -> Feature<Seen> {
-    Feature {
-        about: About {
-            name,
-            unit,
-            wgsl,
-            shared: None,
-        },
-        value,
-    }
-}
-
-/// The inputs of the network, in the published order: depth, the number of fragments, `b_0`, and `b_1 … b_4`.
+/// The inputs of the network, in the published order: depth, the number of fragments, `b_0`, and `b_1 … b_4`. In WGSL functions of `zeta`,
+/// `extent`, `totals` and `moments`.
 pub static INPUTS: [&Feature<Seen>; 7] = [
-    &feature(
+    &Feature::new(
         "depth",
         "exponentially, 0 .. 1 from the pixel's nearest to its farthest fragment",
         "peelnet_depth(zeta, extent)",
         Seen::depth,
     ),
-    &feature("fragment_count", "1", "totals.y", |seen| seen.count as f64),
-    &feature("absorbance", "1", "totals.x", |seen| seen.moments[0]),
-    &feature("moment_1", "1", "moments.x", |seen| seen.moments[1]),
-    &feature("moment_2", "1", "moments.y", |seen| seen.moments[2]),
-    &feature("moment_3", "1", "moments.z", |seen| seen.moments[3]),
-    &feature("moment_4", "1", "moments.w", |seen| seen.moments[4]),
+    &Feature::new("fragment_count", "1", "totals.y", |seen| seen.count as f64),
+    &Feature::new("absorbance", "1", "totals.x", |seen| seen.moments[0]),
+    &Feature::new("moment_1", "1", "moments.x", |seen| seen.moments[1]),
+    &Feature::new("moment_2", "1", "moments.y", |seen| seen.moments[2]),
+    &Feature::new("moment_3", "1", "moments.z", |seen| seen.moments[3]),
+    &Feature::new("moment_4", "1", "moments.w", |seen| seen.moments[4]),
 ];
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ mod inputs;
 
 pub use inputs::{FIVE, NINE};
 
-use super::anchored::{FAINT, resolve, resolve_separate_ends};
+use super::anchored::{FAINT, composite_weighted};
 use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
@@ -458,22 +458,6 @@ pub fn weights(
     seen.iter().map(|seen| seen.weight(&guess)).collect()
 }
 
-/// As [`seen`], with the sums of each slab, absorbance and absorbance times depth, as something else added them up.
-pub fn seen_given(
-    fragments: &[(f32, f32)],
-    warp: &DepthWarp,
-    design: Design,
-    sums: &[[f64; 2]],
-) -> Vec<Seen> {
-    let points = points(fragments, warp);
-    let mut slabs = Slabs::of(&points, design, SumPrecision::Exact);
-    for (slab, &[absorbance, first]) in slabs.slabs.iter_mut().zip(sums) {
-        (slab.absorbance, slab.first) = (absorbance, first);
-    }
-    let of = |&(b, zeta, counts): &Point| slabs.seen(b, zeta, counts);
-    points.iter().map(of).collect()
-}
-
 fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
     let of = |&(depth, alpha): &(f32, f32)| point(alpha, warp.apply(depth.into()));
     fragments.iter().map(of).collect()
@@ -510,33 +494,14 @@ pub fn composite_on(
     precision: SumPrecision,
     guess: impl Fn(&Between) -> f64,
 ) -> [f32; 3] {
-    let points: Vec<Point> = fragments
-        .iter()
-        .map(|f| point(f.alpha, zeta(f.depth)))
-        .collect();
-    let total: f64 = points.iter().map(|p| p.0).sum();
-    if total == 0.0 {
-        return background;
-    }
+    let all = fragments.iter();
+    let points: Vec<Point> = all.map(|f| point(f.alpha, zeta(f.depth))).collect();
     let slabs = Slabs::of(&points, design, precision);
-    // Premultiplied colour and alpha of what is guessed, and of what is known.
-    let mut sums = [[0.0f64; 4]; 2];
-    for (f, &(b, zeta, counts)) in fragments.iter().zip(&points) {
+    let weights = points.iter().map(|&(b, zeta, counts)| {
         let seen = slabs.seen(b, zeta, counts);
-        let w = seen.weight(&guess);
-        let sum = &mut sums[usize::from(design.apart && seen.between.is_none())];
-        for (sum, c) in sum.iter_mut().zip(f.premultiplied()) {
-            *sum += f64::from(c) * w;
-        }
-        sum[3] += f64::from(f.alpha) * w;
-    }
-    let (t, background) = ((-total).exp(), background.map(f64::from));
-    if design.apart {
-        resolve_separate_ends(sums[0], sums[1], t, background)
-    } else {
-        resolve(sums[0], t, background)
-    }
-    .map(|c| c as f32)
+        (seen.weight(&guess), seen.between.is_none())
+    });
+    composite_weighted(fragments, background, design.apart, weights)
 }
 
 #[cfg(test)]

@@ -7,10 +7,7 @@
 //! (`signal_corrected_transmittance`).
 
 use super::range::{Bounds, Range};
-use crate::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::Fragment,
-};
+use crate::absorbance::DepthWarp;
 
 /// Bins of rank 3, the most; the last one lies behind all depths.
 const MOST_BINS: usize = 16;
@@ -74,15 +71,14 @@ impl Averages {
 
 /// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
 pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
-    let zetas = fragments.iter().map(|&(z, _)| warp.apply(z.into()));
-    let range = Range::of(settings.bounds, zetas.clone());
-    let point = |(zeta, &(_, alpha)): (f64, &(f32, f32))| (range.place(zeta), absorbance(alpha));
-    let points: Vec<_> = zetas.zip(fragments).map(point).collect();
+    let mut points = super::points(fragments, warp);
+    let range = Range::of(settings.bounds, points.iter().map(|p| p.1));
     let mut averages = Averages::of_rank(settings.rank);
-    for &(place, b) in &points {
-        averages.add(b, place);
+    for (b, place) in &mut points {
+        *place = range.place(*place);
+        averages.add(*b, *place);
     }
-    let in_front = points.iter().map(|&(place, b)| {
+    let in_front = points.iter().map(|&(b, place)| {
         let own = if settings.own_share_out {
             averages.own(b, place)
         } else {
@@ -91,18 +87,6 @@ pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Set
         averages.in_front(place) - own
     });
     in_front.map(|b| (-b).exp().min(1.0)).collect()
-}
-
-/// Eq 6's composite with the estimated transmittance as the weight.
-pub fn composite(
-    fragments: &[Fragment],
-    background: [f32; 3],
-    warp: &DepthWarp,
-    settings: &Settings,
-) -> [f32; 3] {
-    super::composite_by(fragments, background, |points| {
-        transmittances(points, warp, settings)
-    })
 }
 
 #[cfg(test)]
@@ -135,7 +119,11 @@ mod tests {
                 .map(|i| {
                     let t = i as f32 * 0.3;
                     let place = (4.0 * f64::from(i) + 0.5) / last;
-                    Fragment::new(100f64.powf(place) as f32, 0.6, [t, 1.0 - t, 0.5])
+                    crate::fragment::Fragment::new(
+                        100f64.powf(place) as f32,
+                        0.6,
+                        [t, 1.0 - t, 0.5],
+                    )
                 })
                 .collect();
             let settings = Settings {
@@ -143,7 +131,8 @@ mod tests {
                 bounds: Bounds::Frame,
                 own_share_out: true,
             };
-            let got = composite(&f, [0.1; 3], &warp, &settings);
+            let t = transmittances(&crate::fragment::points(&f), &warp, &settings);
+            let got = crate::methods::composite(&f, [0.1; 3], &t);
             let want = over::composite(&f, [0.1; 3]);
             for k in 0..3 {
                 // Roundings of 32-bit depths in a logarithm, times a slope of b/bin.

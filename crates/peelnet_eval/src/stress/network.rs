@@ -35,7 +35,7 @@ pub(super) fn in_half_floats(
         let normalised: Vec<f32> = normalised.collect();
         let wide: Vec<f64> = normalised.iter().map(|&x| f64::from(x)).collect();
         let limit = EXPORT_F16 * model.mlp.magnitude(&wide).max(1.0);
-        let exact = model.mlp.forward_f64(&wide);
+        let exact = model.mlp.forward(&wide);
         let place = || format!("inputs {raw:?}");
         for (half, exact) in model.mlp.forward_half(&normalised).iter().zip(exact) {
             let finite = half.is_finite();

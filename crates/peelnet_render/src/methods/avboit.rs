@@ -2,7 +2,10 @@
 //! which states the source.
 
 use super::prelude::*;
-use peelnet_core::methods::avboit;
+use peelnet_core::{
+    fragment::points,
+    methods::{avboit, composite},
+};
 
 // A voxel of 16 x 16 pixels holds 512 opaque layers before its sum ends.
 const CELL: Parameter = Parameter::whole(
@@ -32,8 +35,9 @@ pub(super) const METHOD: Method = Method {
     curve: &["", ":cell=4", ":cell=2,slices=128"],
     // Of a pixel whose neighbours are like it: `per_pixel` is not promised.
     twin: Some(|s, p| {
-        let (fragments, c0, slices) = (p.fragments, p.background, slices(s) as usize);
-        Some(avboit::composite(fragments, c0, &p.warp, slices))
+        let slices = slices(s) as usize;
+        let t = avboit::transmittances(&points(p.fragments), &p.warp, slices);
+        Some(composite(p.fragments, p.background, &t))
     }),
     ..Method::new(
         "avboit",

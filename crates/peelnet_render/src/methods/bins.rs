@@ -65,10 +65,7 @@ pub(super) const METHOD: Method = Method {
     numbered: Numbered::powers(4, 16),
     parameters: &[RANGE_TARGETS, BOUNDS],
     curve: &["-8", "-4", "-8:bounds=frame", "-16", "-8:targets=f16"],
-    twin: Some(|s, p| {
-        let (fragments, c0, n) = (p.fragments, p.background, s.number() as usize);
-        Some(bins::composite(fragments, c0, &p.warp, n, bounds(s, BOUNDS)))
-    }),
+    twin: Some(weighted_twin),
     transmittances: Some(|s, fragments, warp, _| {
         let n = s.number() as usize;
         Some(bins::transmittances(fragments, warp, n, bounds(s, BOUNDS)))

@@ -2,43 +2,37 @@
 //! `mboit-trig-M`, with M trigonometric moments (its supplement).
 
 use super::prelude::*;
-use peelnet_core::{
-    absorbance::DepthWarp,
-    methods::{
-        mboit_trig, mboit4, mboit6, mboit8,
-        moments::{self, MomentSums, Settings},
-    },
-};
+use peelnet_core::methods::moments::{self, Settings, trigonometric};
 
 const OVERESTIMATION: Parameter = Parameter::share(
     "overestimation",
     "0.25 by default",
-    Settings::PAPER.overestimation,
+    Settings::FOUR.overestimation,
 );
 
 // The defaults are those of 32-bit moments.
 const BIAS_4: Parameter = Parameter::share(
     "bias",
     "5e-7 by default, 6e-5 with 16-bit moments",
-    Settings::PAPER.bias,
+    Settings::FOUR.bias,
 );
 
 const BIAS_6: Parameter = Parameter::share(
     "bias",
     "5e-6 by default, 6e-4 with 16-bit moments",
-    mboit6::PAPER.bias,
+    Settings::SIX.bias,
 );
 
 const BIAS_8: Parameter = Parameter::share(
     "bias",
     "5e-5 by default, 2.5e-3 with 16-bit moments",
-    mboit8::PAPER.bias,
+    Settings::EIGHT.bias,
 );
 
 const BIAS_TRIG: Parameter = Parameter::share(
     "bias",
     "1e-4 by default, 1e-3 with 16-bit moments",
-    mboit_trig::BIAS,
+    trigonometric::BIAS,
 );
 
 const OWN: Parameter = Parameter::words(
@@ -53,11 +47,14 @@ fn own_out(spec: &MethodSpec) -> bool {
 
 /// The settings that were asked for; by default those of the paper for the moments' number and precision.
 fn settings(spec: &MethodSpec) -> Settings {
-    let (bias, of_half) = match spec.name() {
-        "mboit4" => (BIAS_4, 6e-5),
-        "mboit6" => (BIAS_6, 6e-4),
-        "mboit8" => (BIAS_8, mboit8::BIAS_HALF),
-        _ => (BIAS_TRIG, mboit_trig::BIAS_HALF),
+    let (paper, bias, of_half) = match spec.name() {
+        "mboit4" => (Settings::FOUR, BIAS_4, 6e-5),
+        "mboit6" => (Settings::SIX, BIAS_6, 6e-4),
+        "mboit8" => (Settings::EIGHT, BIAS_8, 2.5e-3),
+        _ => {
+            let paper = Settings::trigonometric(spec.number() as usize);
+            (paper, BIAS_TRIG, trigonometric::BIAS_HALF)
+        }
     };
     Settings {
         overestimation: OVERESTIMATION.number(spec),
@@ -66,28 +63,8 @@ fn settings(spec: &MethodSpec) -> Settings {
             _ => bias.number(spec),
         },
         own_share_out: own_out(spec),
+        ..paper
     }
-}
-
-/// The CPU twin of a method whose sums begin as `empty`.
-fn composite<M: MomentSums>(spec: &MethodSpec, p: &Pixel<'_>, empty: M) -> Option<[f32; 3]> {
-    let (fragments, c0, settings) = (p.fragments, p.background, settings(spec));
-    Some(moments::composite(fragments, c0, &p.warp, empty, &settings))
-}
-
-/// The estimate of such a method.
-fn estimate<M: MomentSums>(
-    spec: &MethodSpec,
-    fragments: &[(f32, f32)],
-    warp: &DepthWarp,
-    empty: M,
-) -> Option<Vec<f64>> {
-    Some(moments::transmittances(
-        fragments,
-        warp,
-        empty,
-        &settings(spec),
-    ))
 }
 
 fn promises(spec: &MethodSpec, root: u32) -> Promises {
@@ -123,11 +100,20 @@ const fn jumping(cases: &'static str) -> Flaw {
         .seen_on_llvmpipe()
 }
 
+/// What all of them have in common.
+const fn estimated(name: &'static str, about: &'static str) -> Method {
+    Method {
+        twin: Some(weighted_twin),
+        transmittances: Some(|s, fragments, warp, _| {
+            Some(moments::transmittances(fragments, warp, &settings(s)))
+        }),
+        ..Method::new(name, about, plan)
+    }
+}
+
 pub(super) const FOUR: Method = Method {
     parameters: &[MOMENT_TARGETS, OVERESTIMATION, BIAS_4, OWN],
     promises: |s| promises(s, 2),
-    twin: Some(|s, p| composite(s, p, mboit4::Moments::default())),
-    transmittances: Some(|s, f, warp, _| estimate(s, f, warp, mboit4::Moments::default())),
     curve: &[
         "",
         ":targets=f16",
@@ -147,19 +133,13 @@ pub(super) const FOUR: Method = Method {
         ),
         Flaw::reordered("deep near-overflow"),
     ],
-    ..Method::new(
-        "mboit4",
-        "Münstermann et al. 2018, four power moments",
-        plan,
-    )
+    ..estimated("mboit4", "Münstermann et al. 2018, four power moments")
 };
 
 pub(super) const SIX: Method = Method {
     parameters: &[MOMENT_TARGETS, OVERESTIMATION, BIAS_6, OWN],
     promises: |s| promises(s, 3),
     curve: &["", ":own=out"],
-    twin: Some(|s, p| composite(s, p, mboit6::Moments::default())),
-    transmittances: Some(|s, f, warp, _| estimate(s, f, warp, mboit6::Moments::default())),
     flaws: &[
         Flaw::swallowed("deep"),
         BLURRED.when(half_statistics).seen_on_llvmpipe(),
@@ -177,15 +157,13 @@ pub(super) const SIX: Method = Method {
         .when(|s| !half_statistics(s))
         .seen_on_llvmpipe(),
     ],
-    ..Method::new("mboit6", "Münstermann et al. 2018, six power moments", plan)
+    ..estimated("mboit6", "Münstermann et al. 2018, six power moments")
 };
 
 pub(super) const EIGHT: Method = Method {
     parameters: &[MOMENT_TARGETS, OVERESTIMATION, BIAS_8, OWN],
     promises: |s| promises(s, 4),
     curve: &["", ":own=out"],
-    twin: Some(|s, p| composite(s, p, mboit8::Moments::default())),
-    transmittances: Some(|s, f, warp, _| estimate(s, f, warp, mboit8::Moments::default())),
     flaws: &[
         Flaw::swallowed("deep"),
         Flaw::swallowed("near-overflow").when(|s| own_out(s) && half_sums(s)),
@@ -198,10 +176,9 @@ pub(super) const EIGHT: Method = Method {
              opaque-mix passing two-layers",
         ),
     ],
-    ..Method::new(
+    ..estimated(
         "mboit8",
         "Münstermann et al. 2018, eight power moments, in two passes",
-        plan,
     )
 };
 
@@ -210,10 +187,6 @@ pub(super) const TRIGONOMETRIC: Method = Method {
     parameters: &[MOMENT_TARGETS, OVERESTIMATION, BIAS_TRIG, OWN],
     promises: |s| promises(s, s.number()),
     curve: &["-2", "-3", "-3:own=out", "-2:targets=f16"],
-    twin: Some(|s, p| composite(s, p, mboit_trig::Moments::new(s.number() as usize))),
-    transmittances: Some(|s, f, warp, _| {
-        estimate(s, f, warp, mboit_trig::Moments::new(s.number() as usize))
-    }),
     flaws: &[
         Flaw::swallowed("deep near-overflow"),
         Flaw::swallowed("alpha-tiny").when(|s| s.number() == 2 && half_statistics(s)),
@@ -241,11 +214,7 @@ pub(super) const TRIGONOMETRIC: Method = Method {
         Flaw::unsettled(Property::Order, "deep emissive high-alpha passing"),
         Flaw::reordered("near-overflow").when(|s| half_sums(s) && !half_statistics(s)),
     ],
-    ..Method::new(
-        "mboit-trig",
-        "Münstermann et al. 2018, M trigonometric moments, two values each",
-        plan,
-    )
+    ..estimated("mboit-trig", "Münstermann et al. 2018, M trigonometric moments, two values each")
 };
 
 /// What a pass that sums moments has as its feature, and its targets with their channels.

@@ -10,7 +10,11 @@ use super::{
     spec::MethodSpec,
 };
 use crate::{error::RenderError, flaw::Flaw};
-use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
+use peelnet_core::{
+    absorbance::DepthWarp,
+    fragment::{Fragment, points},
+    methods::composite,
+};
 use peelnet_model::Model;
 
 /// A method.
@@ -57,6 +61,12 @@ pub type Twin = fn(&MethodSpec, &Pixel<'_>) -> Option<[f32; 3]>;
 /// The transmittance in front of each fragment, given as (linear depth, α), nearest first; `None` without the model that a
 /// learned method needs.
 pub type Estimate = fn(&MethodSpec, &[(f32, f32)], &DepthWarp, Option<&Model>) -> Option<Vec<f64>>;
+
+/// The twin of a method whose weights are its estimates of transmittance.
+pub(super) fn weighted_twin(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
+    let t = spec.transmittances(&points(p.fragments), &p.warp, p.model)?;
+    Some(composite(p.fragments, p.background, &t))
+}
 
 /// What a CPU twin composites.
 #[derive(Clone, Copy, Debug)]

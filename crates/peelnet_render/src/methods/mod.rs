@@ -43,7 +43,7 @@ pub use spec::MethodSpec;
 mod prelude {
     pub(super) use super::{
         compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
-        method::{Method, Numbered, Pixel, Promises},
+        method::{Method, Numbered, Pixel, Promises, weighted_twin},
         parameter::{MOMENT_TARGETS, Parameter, Precision, TARGETS},
         plan::{Blend, ENDS, Plan, SUMS, TRANSMITTANCE, Target},
         spec::MethodSpec,

@@ -52,10 +52,7 @@ pub(super) const METHOD: Method = Method {
         "-2:bounds=pixel",
         "-3:targets=f32",
     ],
-    twin: Some(|s, p| {
-        let (fragments, c0) = (p.fragments, p.background);
-        Some(wavelet::composite(fragments, c0, &p.warp, &settings(s)))
-    }),
+    twin: Some(weighted_twin),
     transmittances: Some(|s, fragments, warp, _| {
         Some(wavelet::transmittances(fragments, warp, &settings(s)))
     }),

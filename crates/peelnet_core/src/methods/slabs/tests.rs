@@ -1,6 +1,7 @@
 use super::*;
 use crate::{
-    methods::{mboit4, moments, over},
+    fragment::points as points_of,
+    methods::{self, moments, over},
     random::Random,
 };
 
@@ -78,7 +79,7 @@ fn depths_that_are_rounded_otherwise_are_known_still() {
         let design = Layout::ALL[seed % 3].design();
         let places: Vec<_> = (0..4).map(|_| f64::from(random.unit())).collect();
         let list = at(&places, 0.98, &mut random);
-        let list: Vec<_> = list.iter().map(|f| (f.depth, f.alpha)).collect();
+        let list = points_of(&list);
         let points = points(&list, &warp());
         let slabs = Slabs::of(&points, design, SumPrecision::Exact);
         for &(b, zeta, counts) in &points {
@@ -137,7 +138,7 @@ fn bounds_hold() {
         cells.dedup();
         let places: Vec<_> = cells.iter().map(|&c| c as f64 / 1999.0).collect();
         let f = at(&places, MOST, &mut random);
-        let list: Vec<_> = f.iter().map(|f| (f.depth, f.alpha)).collect();
+        let list = points_of(&f);
         let mut front = 0.0f64;
         let all = seen(&list, &warp(), Design::LARGE, SumPrecision::Exact);
         for (f, seen) in f.iter().zip(all) {
@@ -168,9 +169,8 @@ fn known_layers_beat_moments() {
         let mut found = designs
             .map(|d| composite(&f, C0, &warp(), d, middle))
             .to_vec();
-        let empty = mboit4::Moments::default();
-        let settings = moments::Settings::PAPER;
-        found.push(moments::composite(&f, C0, &warp(), empty, &settings));
+        let estimate = moments::transmittances(&points_of(&f), &warp(), &moments::Settings::FOUR);
+        found.push(methods::composite(&f, C0, &estimate));
         for (sum, found) in squares.iter_mut().zip(found) {
             *sum += (0..3)
                 .map(|k| f64::from(found[k] - exact[k]).powi(2))

@@ -1,8 +1,21 @@
 //! Zeros of polynomials all of whose zeros are real, as the kernels of moment problems have them. Coefficients are given from the constant
 //! one up.
 
+/// The zeros of a polynomial of degree 2 to 4, then infinities. Those of a cubic and a quartic lie within ±1e4 and ±1e3: farther points of a
+/// measure on −1 … 1 hold nothing.
+pub(super) fn real(c: &[f64]) -> [f64; 4] {
+    let mut all = [f64::INFINITY; 4];
+    match *c {
+        [c0, c1, c2] => all[..2].copy_from_slice(&quadratic([c0, c1, c2])),
+        [c0, c1, c2, c3] => all[..3].copy_from_slice(&cubic([c0, c1, c2, c3])),
+        [c0, c1, c2, c3, c4] => all = quartic([c0, c1, c2, c3, c4]),
+        _ => {}
+    }
+    all
+}
+
 /// Of a quadratic; two equal values where rounding left no real zero.
-pub(super) fn quadratic([c0, c1, c2]: [f64; 3]) -> [f64; 2] {
+fn quadratic([c0, c1, c2]: [f64; 3]) -> [f64; 2] {
     let half = 0.5 * c1;
     let root = (half * half - c0 * c2).max(0.0).sqrt();
     // Of the two sums, the one without cancellation.
@@ -13,8 +26,8 @@ pub(super) fn quadratic([c0, c1, c2]: [f64; 3]) -> [f64; 2] {
     [q / c2, c0 / q]
 }
 
-/// Of a cubic, by cosines (Viète); at most ±1e4, where a point of a measure on −1 … 1 holds nothing.
-pub(super) fn cubic([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
+/// Of a cubic, by cosines (Viète).
+fn cubic([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
     // The polynomial of 1/t, where that keeps the roots finite.
     let reversed = c0.abs() > c3.abs();
     let [a, b, c] = if reversed {
@@ -38,7 +51,12 @@ const STEPS: usize = 6;
 
 /// Of a quartic: the zero of the largest magnitude by Laguerre's method, which approaches it from
 /// beyond without passing it, then the cubic that is left.
-pub(super) fn quartic(c: [f64; 5]) -> [f64; 4] {
+fn quartic(mut c: [f64; 5]) -> [f64; 4] {
+    // The polynomial of 1/t, where that keeps the zeros finite.
+    let reversed = c[0].abs() > c[4].abs();
+    if reversed {
+        c.reverse();
+    }
     let [b0, b1, b2, b3] = [c[0] / c[4], c[1] / c[4], c[2] / c[4], c[3] / c[4]];
     // Laguerre's and Samuelson's bound of the zeros, on the side of their mean.
     let side = f64::copysign(1.0, -b3);
@@ -65,7 +83,10 @@ pub(super) fn quartic(c: [f64; 5]) -> [f64; 4] {
         [b1 + x * d1, d1, d2]
     };
     let [r, s, t] = cubic([d0, d1, d2, 1.0]);
-    [x, r, s, t]
+    [x, r, s, t].map(|t| {
+        let t = if reversed { t.recip() } else { t };
+        t.clamp(-1e3, 1e3)
+    })
 }
 
 #[cfg(test)]
@@ -94,25 +115,13 @@ mod tests {
     }
 
     #[test]
-    fn roots_of_quadratics() {
+    fn zeros_are_found() {
         for want in [[1.0, -2.0], [1e-6, 1e6], [0.0, 0.0], [3.0, 3.0]] {
-            assert_roots(&quadratic(polynomial(&want)), &want);
+            assert_roots(&real(&polynomial::<3>(&want)), &want);
         }
-    }
-
-    #[test]
-    fn roots_of_cubics() {
-        // (t − 1)(t + 2)(t − 0.5), and two roots with one at infinity.
-        for (c, want) in [
-            ([1.0, -2.5, 0.5, 1.0], vec![-2.0, 0.5, 1.0]),
-            ([-2.0, 1.0, 1.0, 0.0], vec![-2.0, 1.0]),
-        ] {
-            assert_roots(&cubic(c), &want);
-        }
-    }
-
-    #[test]
-    fn roots_of_quartics() {
+        // (t − 1)(t + 2)(t − 0.5), and two zeros with one at infinity.
+        assert_roots(&real(&[1.0, -2.5, 0.5, 1.0]), &[-2.0, 0.5, 1.0]);
+        assert_roots(&real(&[-2.0, 1.0, 1.0, 0.0]), &[-2.0, 1.0]);
         for want in [
             [1.0, -2.0, 0.5, 3.0],
             [-1.0, -2.0, -0.5, 0.25],
@@ -121,7 +130,7 @@ mod tests {
             [0.1, 0.2, 0.3, 0.4],
             [0.0, 0.0, 0.0, 1.0],
         ] {
-            assert_roots(&quartic(polynomial(&want)), &want);
+            assert_roots(&real(&polynomial::<5>(&want)), &want);
         }
     }
 }
