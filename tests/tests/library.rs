@@ -95,7 +95,7 @@ fn drawn_over(
     let (gpu, camera) = (renderer.gpu(), &renderer.scene().views[0]);
     let view = target(gpu, FULL, size, 1, behind);
     let status = draw(renderer, method, camera, &Target::over(&view));
-    (status, gpu.read_rgba32f(&view).unwrap())
+    (status, gpu.read_texture(&view).unwrap())
 }
 
 /// The image of the first view.
@@ -154,7 +154,7 @@ fn every_method_draws_over_what_a_target_holds() {
         // With the scene's own background the same.
         let view = target(&gpu, FULL, size, 1, [0.0; 3]);
         draw(&renderer, &mut method, &camera, &Target::cleared(&view));
-        let found = gpu.read_rgba32f(&view).unwrap();
+        let found = gpu.read_texture(&view).unwrap();
         assert_alike(&found, &image.pixels, BLENDED, format!("{spec} cleared"));
     }
 }

@@ -165,23 +165,24 @@ pub(crate) fn pick(
         return Err(GpuError::NoAdapter);
     }
     let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
+    let mut all = adapters.into_iter();
     let (wanted, found) = match request {
-        AdapterRequest::Auto => ("auto", adapters.into_iter().next()),
-        AdapterRequest::Software => (
-            "software",
-            adapters
-                .into_iter()
-                .find(|a| a.get_info().device_type == wgpu::DeviceType::Cpu),
-        ),
-        AdapterRequest::Named(name) => (
-            name.as_str(),
-            adapters.into_iter().find(|a| {
-                a.get_info()
+        AdapterRequest::Auto => ("auto", all.next()),
+        AdapterRequest::Software => {
+            let is_software =
+                |a: &_| wgpu::Adapter::get_info(a).device_type == wgpu::DeviceType::Cpu;
+            ("software", all.find(is_software))
+        }
+        AdapterRequest::Named(name) => {
+            let text = name.to_lowercase();
+            let is_named = |a: &_| {
+                wgpu::Adapter::get_info(a)
                     .name
                     .to_lowercase()
-                    .contains(&name.to_lowercase())
-            }),
-        ),
+                    .contains(&text)
+            };
+            (name.as_str(), all.find(is_named))
+        }
     };
     found.ok_or_else(|| GpuError::NoSuchAdapter {
         wanted: wanted.to_owned(),

@@ -50,6 +50,14 @@ pub(crate) fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
         .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
+const fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
+    wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    }
+}
+
 impl Gpu {
     /// Opens the adapter that `request` names, with every optional feature that it has.
     ///
@@ -164,6 +172,31 @@ impl Gpu {
         })
     }
 
+    /// Fails where something needs more than a limit of the adapter, both counted in `unit`.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`], with `hint` as the way out.
+    pub fn check_limit(
+        &self,
+        what: impl Into<String>,
+        needed: u64,
+        limit: u64,
+        unit: &'static str,
+        hint: &'static str,
+    ) -> Result<(), GpuError> {
+        if needed <= limit {
+            return Ok(());
+        }
+        Err(GpuError::TooLarge {
+            what: what.into(),
+            needed,
+            limit,
+            unit,
+            adapter: self.info.name.clone(),
+            hint,
+        })
+    }
+
     /// From now on allocations of more bytes fail as they do on a GPU whose memory is full, in this handle and clones made from it:
     /// for tests of what then happens.
     pub fn pretend_memory(&mut self, largest_allocation: u64) {
@@ -236,16 +269,8 @@ impl Gpu {
             .min(self.limits.max_buffer_size);
         // A zero-size binding is an error, and an empty frame is not.
         let size = bytes.max(16).next_multiple_of(4);
-        if size > limit {
-            return Err(GpuError::TooLarge {
-                what: label.to_owned(),
-                needed: size,
-                limit,
-                unit: "bytes",
-                adapter: self.info.name.clone(),
-                hint: "draw a smaller frame or use an adapter with larger storage bindings",
-            });
-        }
+        let hint = "draw a smaller frame or use an adapter with larger storage bindings";
+        self.check_limit(label, size, limit, "bytes", hint)?;
         self.allocate(label, size, || {
             self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -278,6 +303,13 @@ impl Gpu {
         buffer
     }
 
+    /// Writes elements into a buffer of such, from the element `first` on.
+    pub fn write_at<T: bytemuck::NoUninit>(&self, buffer: &wgpu::Buffer, first: usize, data: &[T]) {
+        let offset = (first * size_of::<T>()) as u64;
+        self.queue
+            .write_buffer(buffer, offset, bytemuck::cast_slice(data));
+    }
+
     /// A 2-D texture of `samples` samples a pixel that can be drawn to and read by shaders and, of one sample, copied from.
     ///
     /// # Errors
@@ -290,18 +322,6 @@ impl Gpu {
         samples: u32,
         extra: wgpu::TextureUsages,
     ) -> Result<wgpu::TextureView, GpuError> {
-        let side = width.max(height);
-        let limit = self.limits.max_texture_dimension_2d;
-        if side > limit {
-            return Err(GpuError::TooLarge {
-                what: format!("a frame of {width}×{height} pixels"),
-                needed: u64::from(side),
-                limit: u64::from(limit),
-                unit: "pixels a side",
-                adapter: self.info.name.clone(),
-                hint: "draw a smaller frame",
-            });
-        }
         let bytes = u64::from(width)
             * u64::from(height)
             * u64::from(samples)
@@ -311,14 +331,14 @@ impl Gpu {
         } else {
             wgpu::TextureUsages::empty()
         };
+        let side = u64::from(self.limits.max_texture_dimension_2d);
+        let what = format!("a frame of {width}×{height} pixels");
+        let (unit, hint) = ("pixels a side", "draw a smaller frame");
+        self.check_limit(what, width.max(height).into(), side, unit, hint)?;
         let texture = self.allocate(label, bytes, || {
             self.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
+                size: extent([width, height]),
                 mip_level_count: 1,
                 sample_count: samples,
                 dimension: wgpu::TextureDimension::D2,
@@ -344,26 +364,14 @@ impl Gpu {
         levels: &[([u32; 2], Cow<'_, [u8]>)],
     ) -> Result<wgpu::TextureView, GpuError> {
         let [width, height] = levels.first().map_or([1, 1], |(size, _)| *size);
-        let limit = self.limits.max_texture_dimension_2d;
-        if width.max(height) > limit {
-            return Err(GpuError::TooLarge {
-                what: format!("the image {label} of {width}×{height} texels"),
-                needed: width.max(height).into(),
-                limit: limit.into(),
-                unit: "texels a side",
-                adapter: self.info.name.clone(),
-                hint: "make it smaller",
-            });
-        }
+        let side = u64::from(self.limits.max_texture_dimension_2d);
+        let what = format!("the image {label} of {width}×{height} texels");
+        let (unit, hint) = ("texels a side", "make it smaller");
+        self.check_limit(what, width.max(height).into(), side, unit, hint)?;
         let format = if srgb {
             wgpu::TextureFormat::Rgba8UnormSrgb
         } else {
             wgpu::TextureFormat::Rgba8Unorm
-        };
-        let extent = |[width, height]: [u32; 2]| wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
         };
         let bytes = levels.iter().map(|(_, texels)| texels.len() as u64).sum();
         let texture = self.allocate(label, bytes, || {

@@ -17,5 +17,6 @@ mod scope;
 pub use adapter::{AdapterRequest, OptionalFeature};
 pub use device::Gpu;
 pub use error::GpuError;
+pub use pipelines::RenderPipeline;
 pub use scope::AdapterScope;
 pub use wgpu;

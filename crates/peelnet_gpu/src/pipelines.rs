@@ -10,23 +10,86 @@ pub(crate) struct PipelineCache {
     compute: Mutex<HashMap<String, wgpu::ComputePipeline>>,
 }
 
+/// A render pipeline that is not made yet, with the entry points `vertex_main` and `fragment_main`.
+#[derive(Debug)]
+pub struct RenderPipeline<'a> {
+    /// Label for messages.
+    pub label: &'a str,
+    /// Name and text of the vertex shader.
+    pub vertex: [&'a str; 2],
+    /// Name and text of the fragment shader.
+    pub fragment: [&'a str; 2],
+    /// Bind groups of the layouts that it takes.
+    pub groups: &'a [Option<&'a Bound>],
+    /// Vertex buffers.
+    pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    /// Colour targets.
+    pub targets: &'a [Option<wgpu::ColorTargetState>],
+    /// Depth state.
+    pub depth: Option<wgpu::DepthStencilState>,
+    /// Samples a pixel of the targets.
+    pub samples: u32,
+    /// Faces that are not drawn.
+    pub culled: Option<wgpu::Face>,
+}
+
 impl Gpu {
-    /// The render pipeline of `key`, made where there is none yet. The key holds everything that decides the pipeline: shader
-    /// texts, [`Bound::signature`] of each group, targets, states.
-    pub fn render_pipeline(
-        &self,
-        key: String,
-        make: impl FnOnce() -> wgpu::RenderPipeline,
-    ) -> wgpu::RenderPipeline {
+    /// A render pipeline, made where there is none that equals it yet.
+    pub fn render_pipeline(&self, made_of: &RenderPipeline<'_>) -> wgpu::RenderPipeline {
+        let RenderPipeline { groups, .. } = made_of;
+        let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
+        let states = (
+            made_of.targets,
+            &made_of.depth,
+            made_of.samples,
+            made_of.culled,
+        );
+        let ([_, vertex], [_, fragment], buffers) =
+            (made_of.vertex, made_of.fragment, made_of.buffers);
+        let key = format!(
+            "{signatures:?}
+{states:?}
+{buffers:?}
+{vertex}
+{fragment}"
+        );
         // Compiling takes long: the lock is not held meanwhile, and the first of two equal pipelines stays.
         if let Some(known) = locked(&self.pipelines().render).get(&key) {
             return known.clone();
         }
-        let made = make();
-        locked(&self.pipelines().render)
-            .entry(key)
-            .or_insert(made)
-            .clone()
+        let [vertex, fragment] =
+            [made_of.vertex, made_of.fragment].map(|[name, wgsl]| self.shader(name, wgsl));
+        let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
+        let descriptor = wgpu::RenderPipelineDescriptor {
+            label: Some(made_of.label),
+            layout: Some(&self.layout(&layouts)),
+            vertex: wgpu::VertexState {
+                module: &vertex,
+                entry_point: Some("vertex_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: made_of.buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: made_of.culled,
+                ..Default::default()
+            },
+            depth_stencil: made_of.depth.clone(),
+            multisample: wgpu::MultisampleState {
+                count: made_of.samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &fragment,
+                entry_point: Some("fragment_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: made_of.targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        };
+        let made = self.device.create_render_pipeline(&descriptor);
+        let mut all = locked(&self.pipelines().render);
+        all.entry(key).or_insert(made).clone()
     }
 
     /// A compute pipeline with one entry point, `main`, and one bind group.

@@ -19,6 +19,8 @@ const CHUNK: u64 = 16 << 20;
 #[cfg(not(target_arch = "wasm32"))]
 const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
 
+const DID_NOT_MAP: &str = "a buffer did not map";
+
 /// What a mapping, or a submission, came to, and who waits for it.
 #[derive(Debug, Default)]
 struct Mapping {
@@ -86,7 +88,7 @@ impl Download {
         match locked(&self.mapping).result.take() {
             Some(Ok(())) => {}
             Some(Err(e)) => return Err(GpuError::Lost(e.to_string())),
-            None => return Err(GpuError::Lost("a buffer did not map".into())),
+            None => return Err(GpuError::Lost(DID_NOT_MAP.into())),
         }
         let view = self
             .staging
@@ -168,17 +170,12 @@ impl Gpu {
             if let Poll::Ready(result) = future.as_mut().poll(&mut cx) {
                 return result;
             }
-            let waited = self.device.poll(wgpu::PollType::Wait {
-                submission_index: None,
-                timeout: Some(PATIENCE),
-            });
+            let waited = self.poll(None);
             self.check()?;
-            let queue_empty = waited
-                .map_err(|e| GpuError::Lost(e.to_string()))?
-                .is_queue_empty();
+            let queue_empty = waited?.is_queue_empty();
             waits_in_vain = if queue_empty { waits_in_vain + 1 } else { 0 };
             if waits_in_vain > 1_000 {
-                return Err(GpuError::Lost("a buffer did not map".into()).into());
+                return Err(GpuError::Lost(DID_NOT_MAP.into()).into());
             }
         }
     }
@@ -239,12 +236,7 @@ impl Gpu {
     /// # Errors
     /// A lost device, or the first validation error since the last call.
     pub fn wait(&self) -> Result<(), GpuError> {
-        self.device
-            .poll(wgpu::PollType::Wait {
-                submission_index: None,
-                timeout: Some(PATIENCE),
-            })
-            .map_err(|e| GpuError::Lost(e.to_string()))?;
+        self.poll(None)?;
         self.check()
     }
 
@@ -326,14 +318,6 @@ impl Gpu {
         Ok(without_padding(&padded, row, view.texture().width()))
     }
 
-    /// Copies an RGBA32F texture.
-    ///
-    /// # Errors
-    /// A lost device, or a validation error.
-    pub fn read_rgba32f(&self, view: &wgpu::TextureView) -> Result<Vec<[f32; 4]>, GpuError> {
-        self.read_texture(view)
-    }
-
     fn map(
         &self,
         buffer: &wgpu::Buffer,
@@ -345,22 +329,22 @@ impl Gpu {
             // The receiver is alive until it has got this one message.
             let _ = sender.send(result);
         });
-        self.device
-            .poll(wgpu::PollType::Wait {
-                submission_index: Some(after),
-                timeout: Some(PATIENCE),
-            })
-            .map_err(|e| GpuError::Lost(e.to_string()))?;
-        match receiver.try_recv() {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(e)) => {
-                self.check()?;
-                Err(GpuError::Lost(e.to_string()))
-            }
-            Err(_) => {
-                self.check()?;
-                Err(GpuError::Lost("a buffer did not map".into()))
-            }
-        }
+        self.poll(Some(after))?;
+        let lost = match receiver.try_recv() {
+            Ok(Ok(())) => return Ok(()),
+            Ok(Err(e)) => e.to_string(),
+            Err(_) => DID_NOT_MAP.into(),
+        };
+        self.check()?;
+        Err(GpuError::Lost(lost))
+    }
+
+    /// Waits until a submission, or all of them, is done.
+    fn poll(&self, after: Option<wgpu::SubmissionIndex>) -> Result<wgpu::PollStatus, GpuError> {
+        let waited = self.device.poll(wgpu::PollType::Wait {
+            submission_index: after,
+            timeout: Some(PATIENCE),
+        });
+        waited.map_err(|e| GpuError::Lost(e.to_string()))
     }
 }

@@ -1,7 +1,7 @@
 //! A pass over the boxes around transparent parts instead of their surfaces: what lies where is known less well, by far fewer triangles.
 
 use crate::{FrameTargets, GeometryPass, RasterError, SceneBuffers};
-use peelnet_gpu::{Gpu, bind::Bound, record::Recorder, wgpu};
+use peelnet_gpu::{Gpu, RenderPipeline, bind::Bound, record::Recorder, wgpu};
 
 /// Two triangles for each face.
 const VERTICES: u32 = 36;
@@ -31,47 +31,23 @@ impl BoxPass {
         let groups = &groups[..1 + usize::from(pass.group.is_some())];
         let vertex = peelnet_shaders::link("scene::box_vertex", &[], &[])?;
         let fragment = peelnet_shaders::link(pass.shader, pass.features, pass.extra)?;
-        let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
-        let key = format!(
-            "boxes\n{:?}\n{signatures:?}\n{vertex}\n{fragment}",
-            pass.targets
-        );
-        let pipeline = gpu.render_pipeline(key, || {
-            let vertex = gpu.shader("scene::box_vertex", &vertex);
-            let fragment = gpu.shader(pass.shader, &fragment);
-            let attributes = wgpu::vertex_attr_array![
-                0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4
-            ];
-            let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
-            gpu.device
-                .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                    label: Some(pass.label),
-                    layout: Some(&gpu.layout(&layouts)),
-                    vertex: wgpu::VertexState {
-                        module: &vertex,
-                        entry_point: Some("vertex_main"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        buffers: &[Some(wgpu::VertexBufferLayout {
-                            array_stride: size_of::<BoxData>() as u64,
-                            step_mode: wgpu::VertexStepMode::Instance,
-                            attributes: &attributes,
-                        })],
-                    },
-                    primitive: wgpu::PrimitiveState {
-                        cull_mode: Some(wgpu::Face::Front),
-                        ..Default::default()
-                    },
-                    depth_stencil: None,
-                    multisample: wgpu::MultisampleState::default(),
-                    fragment: Some(wgpu::FragmentState {
-                        module: &fragment,
-                        entry_point: Some("fragment_main"),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        targets: pass.targets,
-                    }),
-                    multiview_mask: None,
-                    cache: None,
-                })
+        let attributes = wgpu::vertex_attr_array![
+            0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4
+        ];
+        let pipeline = gpu.render_pipeline(&RenderPipeline {
+            label: pass.label,
+            vertex: ["scene::box_vertex", &vertex],
+            fragment: [pass.shader, &fragment],
+            groups,
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<BoxData>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &attributes,
+            })],
+            targets: pass.targets,
+            depth: None,
+            samples: 1,
+            culled: Some(wgpu::Face::Front),
         });
         let parts: Vec<_> = scene
             .transparent_parts()

@@ -1,6 +1,9 @@
 //! How many fragments each pixel has, and the prefix sum of that.
 
-use crate::{FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces};
+use crate::{
+    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
+    frame::attachment, long_runs::Kernel,
+};
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
@@ -73,7 +76,7 @@ pub struct CountPass {
     attachment: wgpu::TextureView,
     pipelines: GeometryPipelines,
     group: Bound,
-    kernels: [(&'static str, wgpu::ComputePipeline, Bound, [u32; 2]); 3],
+    kernels: [(Kernel, [u32; 2]); 3],
 }
 
 impl CountPass {
@@ -122,42 +125,29 @@ impl CountPass {
             &[pixels, blocks_count, groups[0], 0],
             wgpu::BufferUsages::UNIFORM,
         );
-        let kernel = |name: &'static str, entries: &[Bind<'_>], groups| {
-            let bound = gpu.bind(name, wgpu::ShaderStages::COMPUTE, entries);
-            let wgsl = peelnet_shaders::link(name, &[], &[])?;
-            let pipeline = gpu.compute(name, &wgsl, &bound);
-            Ok::<_, RasterError>((name, pipeline, bound, groups))
-        };
+        let extent = Bind::Uniform(&extent);
         let kernels = [
-            kernel(
+            (
                 "peel::scan_blocks",
-                &[
-                    Bind::Uniform(&extent),
-                    Bind::Read(&counts),
-                    Bind::Write(&blocks),
-                ],
-                groups,
-            )?,
-            kernel(
+                vec![extent, Bind::Read(&counts), Bind::Write(&blocks)],
+            ),
+            (
                 "peel::scan_top",
-                &[
-                    Bind::Uniform(&extent),
-                    Bind::Write(&blocks),
-                    Bind::Write(&total),
-                ],
-                [1, 1],
-            )?,
-            kernel(
+                vec![extent, Bind::Write(&blocks), Bind::Write(&total)],
+            ),
+            (
                 "peel::scan_pixels",
-                &[
-                    Bind::Uniform(&extent),
+                vec![
+                    extent,
                     Bind::Read(&counts),
                     Bind::Read(&blocks),
                     Bind::Write(&offsets),
                 ],
-                groups,
-            )?,
+            ),
         ];
+        let kernels = kernels.map(|(name, entries)| Kernel::new(gpu, name, &[], &entries));
+        let [blocks, top, pixels] = kernels;
+        let kernels = [(blocks?, groups), (top?, [1, 1]), (pixels?, groups)];
         Ok(Self {
             counts,
             offsets,
@@ -180,11 +170,8 @@ impl CountPass {
             pass.set_bind_group(1, &self.group.group, &[]);
             scene.draw(&mut pass, frame, Surfaces::Transparent, &self.pipelines);
         }
-        for (name, pipeline, bound, groups) in &self.kernels {
-            let mut pass = recorder.compute(name);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bound.group, &[]);
-            pass.dispatch_workgroups(groups[0], groups[1], 1);
+        for (kernel, groups) in &self.kernels {
+            kernel.dispatch(recorder, *groups);
         }
     }
 
@@ -261,13 +248,7 @@ pub fn unwritten() -> Option<wgpu::ColorTargetState> {
 pub fn unwritten_attachment(
     view: &wgpu::TextureView,
 ) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-    Some(wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-            store: wgpu::StoreOp::Discard,
-        },
-    })
+    let mut cleared = attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))?;
+    cleared.ops.store = wgpu::StoreOp::Discard;
+    Some(cleared)
 }

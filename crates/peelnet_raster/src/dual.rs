@@ -11,7 +11,7 @@ use crate::{
     frame::clear_color,
 };
 use peelnet_gpu::{
-    Gpu, GpuError,
+    Gpu,
     bind::{Bind, Bound},
     record::Recorder,
     wgpu,
@@ -180,16 +180,8 @@ fn check_adapter(gpu: &Gpu) -> Result<(), RasterError> {
         "dual depth peeling",
         HINT,
     )?;
-    const SAMPLE_BYTES: u32 = 8 + 16 + 16;
-    if gpu.limits.max_color_attachment_bytes_per_sample < SAMPLE_BYTES {
-        return Err(RasterError::Gpu(GpuError::TooLarge {
-            what: "dual depth peeling with its colour targets".into(),
-            needed: u64::from(SAMPLE_BYTES),
-            limit: u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
-            unit: "bytes a sample",
-            adapter: gpu.info.name.clone(),
-            hint: HINT,
-        }));
-    }
+    let (needed, what) = (8 + 16 + 16, "dual depth peeling with its colour targets");
+    let limit = gpu.limits.max_color_attachment_bytes_per_sample.into();
+    gpu.check_limit(what, needed, limit, "bytes a sample", HINT)?;
     Ok(())
 }

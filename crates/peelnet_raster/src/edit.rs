@@ -43,9 +43,7 @@ impl SceneBuffers {
                 continue;
             }
             let first = part.run.vertices.start as usize;
-            let offset = (first * size_of::<Vertex>()) as u64;
-            gpu.queue
-                .write_buffer(&self.vertices, offset, bytemuck::cast_slice(&vertices));
+            gpu.write_at(&self.vertices, first, &vertices);
             let attributes = placement.attributes(triangles, part.run.variant);
             // Positions and UVs are the same wherever the object stands.
             if turned || part.run.variant.has_normal_map() {
@@ -89,9 +87,7 @@ impl SceneBuffers {
         };
         let object = &self.scene.objects[object];
         let data = MaterialData::of(&object.materials[part], object.layer.unwrap_or(0));
-        let offset = (number * size_of::<MaterialData>()) as u64;
-        gpu.queue
-            .write_buffer(&self.materials, offset, bytemuck::bytes_of(&data));
+        gpu.write_at(&self.materials, number, &[data]);
         if self.specify(gpu, number)? {
             self.upload_lights(gpu)?;
             self.arrange();

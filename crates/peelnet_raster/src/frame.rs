@@ -248,6 +248,19 @@ pub(crate) fn depth_state(
     }
 }
 
+/// A depth attachment.
+pub(crate) fn depth_attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<f32>,
+    store: wgpu::StoreOp,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load, store }),
+        stencil_ops: None,
+    }
+}
+
 /// A colour attachment that starts from one value.
 pub fn clear_color(
     view: &wgpu::TextureView,

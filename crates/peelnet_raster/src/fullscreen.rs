@@ -2,7 +2,7 @@
 
 use crate::{RasterError, frame::Output};
 use peelnet_gpu::{
-    Gpu,
+    Gpu, RenderPipeline,
     bind::{Bind, Bound},
     record::Recorder,
     wgpu,
@@ -67,34 +67,16 @@ impl FullscreenPass {
     ) -> Result<Self, RasterError> {
         let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
         let wgsl = peelnet_shaders::link(shader, features, extra)?;
-        let key = format!("{targets:?} {samples}\n{}\n{wgsl}", group.signature);
-        let pipeline = gpu.render_pipeline(key, || {
-            let module = gpu.shader(shader, &wgsl);
-            let descriptor = wgpu::RenderPipelineDescriptor {
-                label: Some(shader),
-                layout: Some(&gpu.layout(&[Some(&group.layout)])),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex_main"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState {
-                    count: samples,
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fragment_main"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            };
-            gpu.device.create_render_pipeline(&descriptor)
+        let pipeline = gpu.render_pipeline(&RenderPipeline {
+            label: shader,
+            vertex: [shader, &wgsl],
+            fragment: [shader, &wgsl],
+            groups: &[Some(&group)],
+            buffers: &[],
+            targets,
+            depth: None,
+            samples,
+            culled: None,
         });
         Ok(Self {
             label: shader.to_owned(),
@@ -109,20 +91,11 @@ impl FullscreenPass {
         recorder: &mut Recorder<'_>,
         colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
     ) {
-        self.record(recorder, colors, None);
+        self.draw_within(recorder, colors, None);
     }
 
     /// Records the pass over a rectangle: x, y, width, height.
     pub fn draw_within(
-        &self,
-        recorder: &mut Recorder<'_>,
-        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-        rectangle: [u32; 4],
-    ) {
-        self.record(recorder, colors, Some(rectangle));
-    }
-
-    fn record(
         &self,
         recorder: &mut Recorder<'_>,
         colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],

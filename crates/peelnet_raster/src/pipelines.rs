@@ -4,7 +4,7 @@ use crate::{
     FrameTargets, RasterError, SceneBuffers, specialise,
     upload::{ATTRIBUTES, Vertex},
 };
-use peelnet_gpu::{Gpu, bind::Bound, wgpu};
+use peelnet_gpu::{Gpu, RenderPipeline, bind::Bound, wgpu};
 use peelnet_scene::Variant;
 
 /// Which half of the scene a geometry pass draws.
@@ -147,71 +147,45 @@ fn pipeline(
     let mut of_vertex = features.to_vec();
     of_vertex.retain(|f| carried.contains(f));
     let vertex = peelnet_shaders::link("scene::vertex", &of_vertex, &[])?;
-    let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
-    // The vertex shader's text says which attributes are bound.
-    let states = (pass.targets, &pass.depth, pass.samples, culled);
-    let key = format!("{states:?}\n{signatures:?}\n{vertex}\n{fragment}");
-    Ok(gpu.render_pipeline(key, || {
-        let vertex = gpu.shader("scene::vertex", &vertex);
-        let fragment = gpu.shader(pass.shader, fragment);
-        let attributes = ATTRIBUTES.iter().zip(2..);
-        let attributes: Vec<[wgpu::VertexAttribute; 1]> = attributes
-            .map(|((_, format, _), shader_location)| {
-                [wgpu::VertexAttribute {
-                    format: *format,
-                    offset: 0,
-                    shader_location,
-                }]
-            })
-            .collect();
-        let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
-        let mut buffers = vec![Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &always,
-        })];
-        buffers.extend(ATTRIBUTES.iter().zip(&attributes).map(
-            |((_, format, feature), attributes)| {
-                features
-                    .contains(feature)
-                    .then(|| wgpu::VertexBufferLayout {
-                        array_stride: format.size(),
-                        step_mode: wgpu::VertexStepMode::Vertex,
-                        attributes,
-                    })
-            },
-        ));
-        while buffers.last().is_some_and(Option::is_none) {
-            buffers.pop();
-        }
-        let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
-        gpu.device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(pass.label),
-                layout: Some(&gpu.layout(&layouts)),
-                vertex: wgpu::VertexState {
-                    module: &vertex,
-                    entry_point: Some("vertex_main"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    cull_mode: culled.then_some(wgpu::Face::Back),
-                    ..Default::default()
-                },
-                depth_stencil: pass.depth.clone(),
-                multisample: wgpu::MultisampleState {
-                    count: pass.samples,
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: &fragment,
-                    entry_point: Some("fragment_main"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: pass.targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+    let layout = |step: u64, attributes| wgpu::VertexBufferLayout {
+        array_stride: step,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes,
+    };
+    let attributes: Vec<[wgpu::VertexAttribute; 1]> = ATTRIBUTES
+        .iter()
+        .zip(2..)
+        .map(|((_, format, _), shader_location)| {
+            [wgpu::VertexAttribute {
+                format: *format,
+                offset: 0,
+                shader_location,
+            }]
+        })
+        .collect();
+    let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
+    let mut buffers = vec![Some(layout(size_of::<Vertex>() as u64, always.as_slice()))];
+    buffers.extend(
+        ATTRIBUTES
+            .iter()
+            .zip(&attributes)
+            .map(|((_, format, feature), attributes)| {
+                let is_read = features.contains(feature);
+                is_read.then(|| layout(format.size(), attributes.as_slice()))
+            }),
+    );
+    while buffers.last().is_some_and(Option::is_none) {
+        buffers.pop();
+    }
+    Ok(gpu.render_pipeline(&RenderPipeline {
+        label: pass.label,
+        vertex: ["scene::vertex", &vertex],
+        fragment: [pass.shader, fragment],
+        groups,
+        buffers: &buffers,
+        targets: pass.targets,
+        depth: pass.depth.clone(),
+        samples: pass.samples,
+        culled: culled.then_some(wgpu::Face::Back),
     }))
 }

@@ -3,7 +3,7 @@
 use crate::{
     FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RasterError, SamplePoint,
     Submission, Surfaces,
-    frame::{OpaqueDepth, attachment, clear_color, depth_state},
+    frame::{OpaqueDepth, attachment, clear_color, depth_attachment, depth_state},
     maps::MapSets,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
     upload::{
@@ -14,7 +14,7 @@ use crate::{
 use bytemuck::Zeroable;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
-    Gpu, GpuError,
+    Gpu,
     bind::{Bind, Bound},
     record::Recorder,
     wgpu,
@@ -82,16 +82,14 @@ impl SceneBuffers {
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RasterError> {
         let triangles = scene.triangles();
         let needed = triangles as u64 * 3 * size_of::<Vertex>() as u64;
-        if needed > gpu.limits.max_buffer_size || triangles > (u32::MAX / 3) as usize {
-            return Err(RasterError::Gpu(GpuError::TooLarge {
-                what: format!("scene '{}' with {triangles} triangles", scene.name),
-                needed,
-                limit: gpu.limits.max_buffer_size,
-                unit: "bytes",
-                adapter: gpu.info.name.clone(),
-                hint: "split the scene or simplify its meshes",
-            }));
-        }
+        // Numbers of vertices have 32 bits.
+        let limit = gpu
+            .limits
+            .max_buffer_size
+            .min(u64::from(u32::MAX) * size_of::<Vertex>() as u64);
+        let what = format!("scene '{}' with {triangles} triangles", scene.name);
+        let hint = "split the scene or simplify its meshes";
+        gpu.check_limit(what, needed, limit, "bytes", hint)?;
         let setting = Setting::of(scene);
         let mut attributes = AttributeData::default();
         let mut maps = MapSets::default();
@@ -419,17 +417,13 @@ impl SceneBuffers {
             .depth
             .as_ref()
             .filter(|_| pipelines.is_some() || !over);
-        let depth = depth.map(|depth| wgpu::RenderPassDepthStencilAttachment {
-            view: &depth.view,
-            depth_ops: Some(wgpu::Operations {
-                load: if depth.is_callers {
-                    wgpu::LoadOp::Load
-                } else {
-                    wgpu::LoadOp::Clear(1.0)
-                },
-                store: wgpu::StoreOp::Store,
-            }),
-            stencil_ops: None,
+        let depth = depth.map(|depth| {
+            let load = if depth.is_callers {
+                wgpu::LoadOp::Load
+            } else {
+                wgpu::LoadOp::Clear(1.0)
+            };
+            depth_attachment(&depth.view, load, wgpu::StoreOp::Store)
         });
         let mut pass = recorder.render(BACKGROUND_PASS, &[color], depth);
         if let Some(pipelines) = pipelines {

@@ -3,7 +3,7 @@
 
 use crate::{
     FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
-    frame::{attachment, clear_color, depth_state},
+    frame::{attachment, clear_color, depth_attachment, depth_state},
 };
 use peelnet_gpu::{
     Gpu,
@@ -104,14 +104,8 @@ impl SinglePeel {
             clear_color(&self.layer, [0.0; 4]),
             clear_color(&self.keys[1 - from], [end; 4]),
         ];
-        let depth = wgpu::RenderPassDepthStencilAttachment {
-            view: &self.depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(1.0),
-                store: wgpu::StoreOp::Discard,
-            }),
-            stencil_ops: None,
-        };
+        let clear = wgpu::LoadOp::Clear(1.0);
+        let depth = depth_attachment(&self.depth, clear, wgpu::StoreOp::Discard);
         let mut pass = recorder.render("peel", &targets, Some(depth));
         pass.set_bind_group(1, &self.groups[from].group, &[]);
         scene.draw(&mut pass, frame, Surfaces::Transparent, &self.peel);

@@ -5,7 +5,7 @@ use crate::{
     pipelines::GeometryPipelines,
     upload::{DrawRun, push_run},
 };
-use peelnet_gpu::{Gpu, GpuError, record::Recorder, wgpu};
+use peelnet_gpu::{Gpu, record::Recorder, wgpu};
 use peelnet_scene::Camera;
 
 /// The order in which transparent surfaces are drawn.
@@ -48,15 +48,10 @@ impl Sorted {
     pub fn new(gpu: &Gpu, scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RasterError> {
         let triangles: usize = scene.transparent_parts().map(|p| p.centroids.len()).sum();
         let size = triangles.max(1) as u64 * 12;
-        if order == Order::Triangles && size > gpu.limits.max_buffer_size {
-            return Err(RasterError::Gpu(GpuError::TooLarge {
-                what: format!("the order of {triangles} triangles"),
-                needed: size,
-                limit: gpu.limits.max_buffer_size,
-                unit: "bytes",
-                adapter: gpu.info.name.clone(),
-                hint: "sort objects instead (painter-object)",
-            }));
+        if order == Order::Triangles {
+            let what = format!("the order of {triangles} triangles");
+            let hint = "sort objects instead (painter-object)";
+            gpu.check_limit(what, size, gpu.limits.max_buffer_size, "bytes", hint)?;
         }
         let indices = (order == Order::Triangles).then(|| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {

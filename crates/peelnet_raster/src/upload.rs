@@ -237,9 +237,7 @@ pub(crate) fn write_attributes(
                 mapped_at_creation: false,
             })
         });
-        let offset = (first * floats(i) * 4) as u64;
-        gpu.queue
-            .write_buffer(buffer, offset, bytemuck::cast_slice(part));
+        gpu.write_at(buffer, first * floats(i), part);
     }
 }
 
@@ -253,9 +251,7 @@ pub(crate) fn write_shared(
     first: usize,
 ) {
     let numbers = sharing.numbers(triangles, part, first);
-    let offset = (first * size_of::<u32>()) as u64;
-    gpu.queue
-        .write_buffer(buffer, offset, bytemuck::cast_slice(&numbers));
+    gpu.write_at(buffer, first, &numbers);
 }
 
 /// The middle of a triangle.

@@ -257,7 +257,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             ratios.push(drawn / written);
         }
         // Both draw the same.
-        let image = gpu.read_rgba32f(&plain.image)?;
+        let image = gpu.read_texture::<[f32; 4]>(&plain.image)?;
         let frame = renderer.image(&mut prepared, &camera)?;
         let differs = |(a, b): (&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-3);
         let pairs = image.iter().zip(&frame.image.pixels);

@@ -91,9 +91,6 @@ pub fn with_altered<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Everything that decides a linked text.
-type LinkKey = (String, Vec<String>, Vec<(String, String)>);
-
 /// Links `root` (a path such as `methods::wboit::gather`) with the given features on and extra modules in place.
 ///
 /// Linking is deterministic, so its results are kept for the life of the process.
@@ -101,33 +98,18 @@ type LinkKey = (String, Vec<String>, Vec<(String, String)>);
 /// # Errors
 /// An unknown module, a missing import, or WGSL that does not parse.
 pub fn link(root: &str, features: &[&str], extra: &[(&str, &str)]) -> Result<String, ShaderError> {
-    static LINKED: Mutex<Option<HashMap<LinkKey, String>>> = Mutex::new(None);
+    static LINKED: Mutex<Option<HashMap<String, String>>> = Mutex::new(None);
     let altered = ALTERED.with_borrow(Clone::clone);
     let altered = altered.iter().map(|(p, t)| (p.as_str(), t.as_str()));
     // Of a module's texts, the last counts.
     let extra: Vec<_> = altered.chain(extra.iter().copied()).collect();
-    let key: LinkKey = (
-        root.to_owned(),
-        features.iter().map(|&f| f.to_owned()).collect(),
-        extra
-            .iter()
-            .map(|&(p, t)| (p.to_owned(), t.to_owned()))
-            .collect(),
-    );
-    if let Some(text) = LINKED
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .get_or_insert_default()
-        .get(&key)
-    {
+    let key = format!("{root:?} {features:?} {extra:?}");
+    let linked = || LINKED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = linked().get_or_insert_default().get(&key) {
         return Ok(text.clone());
     }
     let text = link_uncached(root, features, &extra)?;
-    LINKED
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .get_or_insert_default()
-        .insert(key, text.clone());
+    linked().get_or_insert_default().insert(key, text.clone());
     Ok(text)
 }
 

@@ -53,12 +53,9 @@ impl<'a> DrawContext<'a, '_> {
     /// Records the pass that writes finished pixels: over a target only those that a transparent surface can touch.
     pub fn resolve(&mut self, pass: &FullscreenPass) {
         let output = [self.output()];
-        if self.frame.output.is_over() {
-            let touched = self.scene.touched(self.camera, self.frame, self.point);
-            pass.draw_within(self.recorder, &output, touched);
-        } else {
-            pass.draw(self.recorder, &output);
-        }
+        let over = self.frame.output.is_over();
+        let touched = || self.scene.touched(self.camera, self.frame, self.point);
+        pass.draw_within(self.recorder, &output, over.then(touched));
     }
 }
 
