@@ -7,8 +7,8 @@ use peelnet_core::methods::anchored::{self, Place};
 use peelnet_core::methods::deep::Row;
 use peelnet_core::methods::dfaoit::{FRONT, Layers};
 use peelnet_core::methods::moments::{Moments, Settings};
-use peelnet_core::methods::slabs::{self, Between};
 use peelnet_core::methods::nmt;
+use peelnet_core::methods::slabs::{self, Between};
 use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
 

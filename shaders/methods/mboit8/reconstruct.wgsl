@@ -1,5 +1,5 @@
 // Transmittance in front of a warped depth from eight power moments (Muenstermann et al. 2018); the steps are explained in the twin,
-// peelnet_core::methods::mboit8.
+// peelnet_core::methods::moments::power.
 import package::methods::mboit_trig::roots::quartic;
 import package::parameters::{BIAS, OVERESTIMATION};
 
