@@ -133,45 +133,35 @@ mod tests {
         })
     }
 
-    /// The contour pairs of a frame with errors of so many levels, in one channel each time.
-    fn contours(pairs: &Pairs, levels: &[f32]) -> [u64; 3] {
-        std::array::from_fn(|channel| {
-            let errors = levels.iter().map(|&level| {
-                let mut error = [0.0; 3];
-                error[channel] = level;
-                error
-            });
-            pairs.contours(&errors.collect::<Vec<_>>()).unwrap()
-        })
-    }
-
-    /// Rows do not run on into the next one, and pixels that hold nothing are no pair.
+    /// Rows do not run on into the next one, and pixels that hold nothing are no pair. An error that jumps by three levels inside a surface is
+    /// a contour, across and down and in any channel; where the surfaces change it is none.
     #[test]
-    fn pairs_share_a_side_and_their_surfaces() {
+    fn pairs_share_surfaces_and_contours_jump_inside_them() {
         // Two across and three down of surface 1; one across of 2.
         let frame = [1, 1, 2, 1, 1, 0, 1, 2, 2];
         assert_eq!(pairs(3, &frame).count(), 2 + 3 + 1);
-        assert_eq!(pairs(1, &[1, 1, 1]).count(), 2);
-        assert_eq!(pairs(3, &[0, 0, 0]).count(), 0);
         assert_eq!(pairs(3, &[1, 1, 2, 2, 1, 1]).count(), 3);
-    }
-
-    /// An error that jumps by three levels inside a surface is a contour, across and down; where the surfaces change it is none.
-    #[test]
-    fn an_error_that_jumps_inside_a_surface_is_a_contour() {
         let inside = [0.0, 0.0, 3.0, 3.0];
-        assert_eq!(contours(&pairs(4, &[1, 1, 1, 1]), &inside), [1; 3]);
-        assert_eq!(contours(&pairs(1, &[1, 1, 1, 1]), &inside), [1; 3]);
-        assert_eq!(contours(&pairs(2, &[1, 1, 1, 1]), &inside), [2; 3]);
-        assert_eq!(contours(&pairs(4, &[1, 1, 2, 2]), &inside), [0; 3]);
-        // A background of no surface has no pairs, whatever its errors.
-        assert_eq!(contours(&pairs(4, &[0, 0, 0, 0]), &inside), [0; 3]);
         // Signs count: from 1.5 below to 1.5 above.
         let signs = [-1.5, 1.5, 1.5, -1.5];
-        assert_eq!(contours(&pairs(4, &[1, 1, 1, 1]), &signs), [2; 3]);
-        let share = |pairs: &Pairs| pairs.share(&inside.map(|x| [x; 3])).unwrap();
-        assert_eq!(share(&pairs(4, &[1, 1, 1, 1])), Some(1.0 / 3.0));
-        assert_eq!(share(&pairs(4, &[0, 0, 0, 0])), None);
+        for (width, surfaces, levels, count, contours) in [
+            (4, [1, 1, 1, 1], inside, 3, 1),
+            (1, [1, 1, 1, 1], inside, 3, 1),
+            (2, [1, 1, 1, 1], inside, 4, 2),
+            (4, [1, 1, 2, 2], inside, 2, 0),
+            (4, [0, 0, 0, 0], inside, 0, 0),
+            (4, [1, 1, 1, 1], signs, 3, 2),
+        ] {
+            let pairs = pairs(width, &surfaces);
+            assert_eq!(pairs.count(), count);
+            let share = (count > 0).then(|| contours as f64 / count as f64);
+            for channel in 0..3 {
+                let error = |level| std::array::from_fn(|k| if k == channel { level } else { 0.0 });
+                let errors = levels.map(error);
+                assert_eq!(pairs.contours(&errors).unwrap(), contours);
+                assert_eq!(pairs.share(&errors).unwrap(), share);
+            }
+        }
     }
 
     /// Exactly two levels are no contour, three are one: for every level of an 8-bit display, as its linear light is drawn.

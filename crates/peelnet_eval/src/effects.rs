@@ -54,7 +54,8 @@ fn cost(
 ) -> Result<Cost, EvalError> {
     let plain = scene.without(effect);
     let name = format!("{} ({effect})", settings.method);
-    let mut stages = settings.stages(gpu, [scene, &plain], &name)?;
+    let ready = |stage: &Stage<'_>| settings.ready(stage, &name);
+    let mut stages = stages(gpu, [scene, &plain], ready)?;
     let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
     for (k, (stage, ready)) in stages.iter_mut().enumerate() {
         let drawn = stage.image(ready, &scene.views[0])?;
@@ -88,7 +89,8 @@ fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>,
     }
     let (opaque, unlit) = (scene.opaque(), scene.unlit());
     let name = settings.method.to_string();
-    let stages = settings.stages(gpu, [scene, &opaque, &unlit], &name)?;
+    let ready = |stage: &Stage<'_>| settings.ready(stage, &name);
+    let stages = stages(gpu, [scene, &opaque, &unlit], ready)?;
     let [ms_both, ms_shading, ms_transparency] = times(stages, &scene.views[0], settings.frames)?;
     Ok(Some(Parts {
         scene: scene.name.clone(),
@@ -101,17 +103,9 @@ fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>,
 type Stages<'s, const N: usize> = [(Stage<'s>, Ready); N];
 
 impl Settings {
-    /// Scenes ready to be drawn with the method.
-    fn stages<'s, const N: usize>(
-        &self,
-        gpu: &Gpu,
-        scenes: [&'s Scene; N],
-        name: &str,
-    ) -> Result<Stages<'s, N>, EvalError> {
-        let options = || MethodOptions::sized(self.size);
-        stages(gpu, scenes, |stage| {
-            stage.prepare(name, |renderer| renderer.method(&self.method, options()))
-        })
+    fn ready(&self, stage: &Stage<'_>, name: &str) -> Result<Ready, EvalError> {
+        let options = MethodOptions::sized(self.size);
+        stage.prepare(name, |renderer| renderer.method(&self.method, options))
     }
 }
 

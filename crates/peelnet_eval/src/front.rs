@@ -23,7 +23,7 @@ pub enum Mean {
 }
 
 /// A method with its parameters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     /// The method's name with its parameters.
     pub method: String,

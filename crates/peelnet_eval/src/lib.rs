@@ -44,9 +44,9 @@ cfg_if::cfg_if! {
         mod transmittance;
 
         pub use bench::bench;
-        pub use machine::{Machine, load};
+        pub use machine::load;
         pub use partial::{Partial, settings_hash};
-        pub use records::Row;
+        pub use records::{Machine, Row};
         pub use rows::{each_once, geometric_mean};
     }
 }

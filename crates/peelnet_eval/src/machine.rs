@@ -1,27 +1,6 @@
+use crate::Machine;
 use peelnet_gpu::Gpu;
-use serde::{Deserialize, Serialize};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
-
-/// What a result was measured on, and with which version.
-#[allow(
-    missing_docs,
-    reason = "docs/results-files.md says what each field is, and its unit"
-)]
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Machine {
-    pub os: String,
-    pub arch: String,
-    pub cpu: String,
-    pub cores: usize,
-    #[serde(default)]
-    pub memory: u64,
-    pub adapter: String,
-    pub adapter_kind: String,
-    pub backend: String,
-    pub driver: String,
-    pub peelnet: String,
-    pub build: String,
-}
 
 impl Machine {
     /// This machine, with an open device.

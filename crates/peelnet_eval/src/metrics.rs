@@ -171,12 +171,7 @@ mod tests {
     /// White against black in one channel of one of four pixels: the error is 255² / (4 · 3) on the display scale.
     #[test]
     fn one_wrong_channel() {
-        let exact = [
-            [1.0, 1.0, 1.0, 0.5],
-            [1.0, 1.0, 1.0, 0.0],
-            [1.0, 1.0, 1.0, 0.0],
-            [1.0, 1.0, 1.0, 0.0],
-        ];
+        let exact = [0.5, 0.0, 0.0, 0.0].map(|covered| [1.0, 1.0, 1.0, covered]);
         let mut wrong = exact;
         wrong[0][1] = 0.0;
         let d = differences(&exact, &wrong).unwrap();
@@ -219,18 +214,14 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_is_counted_and_black() {
-        let exact = [[1.0, 1.0, 1.0, 1.0]];
-        let d = differences(&exact, &[[f32::NAN, f32::INFINITY, 1.0, 1.0]]).unwrap();
+        let exact = [[1.0; 4]];
+        let wrong = [[f32::NAN, f32::INFINITY, f32::NAN, 1.0]];
+        let d = differences(&exact, &wrong).unwrap();
         assert_eq!((d.non_finite_pixels, d.dark_pixels), (1, 1));
-        assert!((d.mse_linear - 2.0 / 3.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn what_is_not_finite_is_black_in_the_error_image() {
-        let exact = [[1.0; 4]; 6];
-        let errors = error_image(&exact, &[[f32::NAN; 4]; 6]).unwrap();
+        assert_eq!(d.mse_linear, 1.0);
+        let errors = error_image(&exact, &wrong).unwrap();
         let is_white = |x: &f32| (f64::from(*x) + 255.0).abs() < ERROR_ROUNDING;
         assert!(errors.as_flattened().iter().all(is_white), "{errors:?}");
-        assert!(error_image(&exact, &exact[1..]).is_err());
+        assert!(error_image(&exact, &[]).is_err());
     }
 }

@@ -86,43 +86,29 @@ impl Partial {
             why,
         };
         let bytes = peelnet_files::read(&path, MAX_BYTES).map_err(EvalError::io(&path, "read"))?;
-        let Stored {
-            sha256,
-            kept: found,
-        }: Stored<Kept> = serde_json::from_slice(&bytes).map_err(|e| refuse(e.to_string()))?;
-        if found.plan != plan {
-            let differs = |key: &str| found.plan.get(key) != plan.get(key);
-            let keys = plan
-                .as_object()
-                .into_iter()
-                .flatten()
-                .map(|(k, _)| k.as_str());
-            let names: Vec<&str> = keys.filter(|k| differs(k)).collect();
+        let found = serde_json::from_slice(&bytes).map_err(|e| refuse(e.to_string()))?;
+        let Stored::<Kept> { sha256, kept } = found;
+        if kept.plan != plan {
+            let settings = plan.as_object().into_iter().flatten();
+            let others = settings.filter(|(key, value)| kept.plan.get(key) != Some(*value));
+            let names: Vec<&str> = others.map(|(key, _)| key.as_str()).collect();
+            let names = names.join(", ");
             return Err(refuse(format!(
-                "it was measured with other settings: {}",
-                names.join(", ")
+                "it was measured with other settings: {names}"
             )));
         }
-        if found.sha256() != sha256 {
-            return Err(refuse(
-                "it was changed after it was written: its sha256 differs".to_owned(),
-            ));
+        if kept.sha256() != sha256 {
+            let why = "it was changed after it was written: its sha256 differs";
+            return Err(refuse(why.to_owned()));
         }
-        Ok(Self {
-            path: Some(path),
-            kept: found,
-        })
+        let path = Some(path);
+        Ok(Self { kept, path })
     }
 
     /// Views of a scene that are done.
     pub fn done(&self, scene: &str) -> Vec<u32> {
-        let mut views: Vec<u32> = self
-            .kept
-            .rows
-            .iter()
-            .filter(|r| r.scene == scene)
-            .map(|r| r.view)
-            .collect();
+        let own = self.kept.rows.iter().filter(|r| r.scene == scene);
+        let mut views: Vec<u32> = own.map(|r| r.view).collect();
         views.dedup();
         views
     }

@@ -143,16 +143,12 @@ mod tests {
         .map(|(method, error, time_ms, bytes)| Point {
             method: method.to_owned(),
             error,
-            time: time_ms,
             time_ms,
             bytes: Bytes {
-                mean: bytes,
-                median: bytes,
                 most: bytes,
+                ..Bytes::default()
             },
-            on_front: true,
-            time_at_equal_error: 1.0,
-            error_at_equal_time: 1.0,
+            ..Point::default()
         })
         .collect()
     }

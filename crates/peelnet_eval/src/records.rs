@@ -7,6 +7,23 @@ use peelnet_model::PixelLoss;
 use peelnet_render::Property;
 use serde::{Deserialize, Serialize};
 
+/// What a result was measured on, and with which version.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Machine {
+    pub os: String,
+    pub arch: String,
+    pub cpu: String,
+    pub cores: usize,
+    #[serde(default)]
+    pub memory: u64,
+    pub adapter: String,
+    pub adapter_kind: String,
+    pub backend: String,
+    pub driver: String,
+    pub peelnet: String,
+    pub build: String,
+}
+
 /// One method on one view of one scene: a row of `results.json`.
 ///
 /// Errors are against the exact image of the same view, see [`crate::metrics`]. A value that was not measured is

@@ -41,11 +41,7 @@ impl Series {
 
 impl fmt::Display for Series {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Fragments => "fragments",
-            Self::Pixels => "pixels",
-            Self::Triangles => "triangles",
-        })
+        f.pad(["fragments", "pixels", "triangles"][*self as usize])
     }
 }
 

@@ -7,26 +7,20 @@ use peelnet_scene::{Camera, Scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a measurement reports.
+#[allow(missing_docs, reason = "each variant names its fields")]
 #[derive(Debug)]
 pub enum Progress<'a> {
-    /// A frame was drawn.
+    /// Frame `done` of at most `total` (0 where that is not known) was drawn.
     Drawn {
-        /// Frames so far.
         done: u64,
-        /// Frames in all, at most; 0 where that is not known.
         total: u64,
-        /// The scene's name.
         scene: &'a str,
-        /// The method's name.
         method: &'a str,
     },
-    /// A method needs more than the adapter allows and is left out of a scene from here on.
+    /// A method needs more than the adapter allows and is left out of a scene from here on, and why.
     LeftOut {
-        /// The scene's name.
         scene: &'a str,
-        /// The method's name.
         method: &'a str,
-        /// What it lacks.
         why: String,
     },
 }

@@ -56,11 +56,15 @@ pub(crate) fn chart(class: &str, svg: &Svg) -> Markup {
 
 /// Name and value of each property of the machine, and of what else is reported.
 fn machine(m: &Machine, more: &[(String, String)]) -> Table {
+    let memory = match m.memory {
+        0 => "unknown".to_owned(),
+        bytes => format!("{:.0} GiB", bytes as f64 / f64::from(1 << 30)),
+    };
     let lines = [
         ("adapter", format!("{} ({})", m.adapter, m.adapter_kind)),
         ("driver", format!("{}, {}", m.backend, m.driver)),
         ("processor", format!("{}, {} cores", m.cpu, m.cores)),
-        ("memory", memory(m.memory)),
+        ("memory", memory),
         ("system", format!("{} {}", m.os, m.arch)),
         ("peelnet", format!("{} ({} build)", m.peelnet, m.build)),
     ];
@@ -69,12 +73,4 @@ fn machine(m: &Machine, more: &[(String, String)]) -> Table {
         .iter()
         .map(|(name, value)| vec![name.clone(), value.clone()]);
     Table::new(["property", "value"], lines.into_iter().chain(more))
-}
-
-/// An amount of main memory.
-fn memory(bytes: u64) -> String {
-    if bytes == 0 {
-        return "unknown".to_owned();
-    }
-    format!("{:.0} GiB", bytes as f64 / f64::from(1 << 30))
 }

@@ -27,13 +27,7 @@ pub enum Source {
 impl Source {
     /// Its name in files.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pixel => "pixel",
-            Self::Frame => "frame",
-            Self::Boxes => "boxes",
-            Self::Last => "last",
-            Self::Quantiles => "quantiles",
-        }
+        ["pixel", "frame", "boxes", "last", "quantiles"][self as usize]
     }
 }
 

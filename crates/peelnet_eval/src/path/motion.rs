@@ -28,37 +28,19 @@ pub struct Moment {
     pub objects: Vec<Mat4>,
 }
 
-/// The path of a scene: the camera of its first view on an arc with a dolly, and every object on a small swing of its own. Nothing is
-/// random.
-#[derive(Debug)]
-pub struct Motion<'a> {
-    scene: &'a Scene,
-    camera: Camera,
-}
-
-impl<'a> Motion<'a> {
-    /// The path of a scene.
-    pub fn of(scene: &'a Scene) -> Self {
-        Self {
-            scene,
-            camera: scene.views[0],
-        }
-    }
-
-    /// Camera and objects at a share `t` of the path, 0 … 1: at 0 as the scene has them.
-    pub fn at(&self, t: f32) -> Moment {
-        let mut camera = self.camera.orbited(ORBIT_DEGREES * t);
-        // From 1 to 1 − DOLLY and back.
-        let nearer = 1.0 - DOLLY * (1.0 - (TAU * t).cos()) / 2.0;
-        camera.position = camera.target + (camera.position - camera.target) * nearer;
-        let up = self.camera.up.normalize_or(Vec3::Y);
-        let objects = self.scene.objects.iter().enumerate();
-        Moment {
-            camera,
-            objects: objects
-                .map(|(k, object)| swing(object, up, k as f32 * GOLDEN_ANGLE, t))
-                .collect(),
-        }
+/// Camera and objects at a share `t` of a scene's path, 0 … 1: the camera of its first view on an arc with a dolly, and every object on a
+/// small swing of its own; at 0 as the scene has them. Nothing is random.
+pub fn moment(scene: &Scene, t: f32) -> Moment {
+    let mut camera = scene.views[0].orbited(ORBIT_DEGREES * t);
+    // From 1 to 1 − DOLLY and back.
+    let nearer = 1.0 - DOLLY * (1.0 - (TAU * t).cos()) / 2.0;
+    camera.position = camera.target + (camera.position - camera.target) * nearer;
+    let up = scene.views[0].up.normalize_or(Vec3::Y);
+    let objects = scene.objects.iter().enumerate();
+    let objects = objects.map(|(k, object)| swing(object, up, k as f32 * GOLDEN_ANGLE, t));
+    Moment {
+        camera,
+        objects: objects.collect(),
     }
 }
 
@@ -91,18 +73,18 @@ mod tests {
     #[test]
     fn a_path_is_what_it_says() {
         let scene = peelnet_scene::suite::load("cups").unwrap();
-        let motion = Motion::of(&scene);
-        let first = motion.at(0.0);
+        let at = |t| moment(&scene, t);
+        let first = at(0.0);
         assert_eq!(first.camera, scene.views[0]);
         for (o, place) in scene.objects.iter().zip(&first.objects) {
             assert_eq!(o.world_from_object, *place);
         }
         let distance = |m: &Moment| (m.camera.position - m.camera.target).length();
-        let middle = motion.at(0.5);
+        let middle = at(0.5);
         let ratio = distance(&middle) / distance(&first);
         assert!((ratio - (1.0 - DOLLY)).abs() < 1e-4, "{ratio}");
         for k in 1..10 {
-            let moment = motion.at(k as f32 / 10.0);
+            let moment = at(k as f32 / 10.0);
             for (o, place) in scene.objects.iter().zip(&moment.objects) {
                 let (low, high) = o.mesh.bounds().unwrap();
                 let before = o.world_from_object.transform_point3((low + high) / 2.0);
@@ -113,6 +95,6 @@ mod tests {
                 assert!(*place != o.world_from_object);
             }
         }
-        assert_eq!(motion.at(0.3), motion.at(0.3));
+        assert_eq!(at(0.3), at(0.3));
     }
 }

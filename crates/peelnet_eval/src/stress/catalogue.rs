@@ -7,7 +7,7 @@ use super::{
 use crate::EvalError;
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
-use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source, suite};
+use peelnet_scene::{Camera, Light, Lighting, Material, Object, Source, suite};
 
 /// Every hard case, in the order of the specification.
 pub const CASES: &[Case] = &[
@@ -128,7 +128,7 @@ pub const CASES: &[Case] = &[
                 stack("1e6", vec![(1e6, 0.5)]),
                 stack("all", vec![(500.0, 0.3), (1e4, 0.4), (1e6, 0.5)]),
             ];
-            Ok(vec![Trial::of_stacks([0.1, 2e6], BACKGROUND, 2, all)])
+            Ok(vec![Trial::of_stacks([0.1, 2e6], 2, all)])
         }),
     },
     Case {
@@ -197,7 +197,7 @@ pub const CASES: &[Case] = &[
             let at = |i: usize| 0.5 * 200f32.powf(i as f32 / 800.0);
             let one = |i: usize| stack(&format!("depth {}", at(i)), vec![(at(i), 0.5)]);
             let all = (0..801).map(one).collect();
-            Ok(vec![Trial::of_stacks(PLANES, BACKGROUND, 1, all)])
+            Ok(vec![Trial::of_stacks(PLANES, 1, all)])
         }),
     },
     Case {
@@ -287,9 +287,9 @@ pub const CASES: &[Case] = &[
             let hidden = object("behind", triangle, [1.0; 3], 0.5);
             let none = object("none", [], [1.0; 3], 0.5);
             Ok(vec![
-                generated("behind the camera", PLANES, vec![hidden]),
-                generated("no triangle", PLANES, vec![none]),
-                generated("no object", PLANES, vec![]),
+                Trial::judged("behind the camera", PLANES, vec![hidden]),
+                Trial::judged("no triangle", PLANES, vec![none]),
+                Trial::judged("no object", PLANES, vec![]),
             ])
         }),
     },
@@ -354,11 +354,11 @@ pub const CASES: &[Case] = &[
                     object("far", wall(5.0, 5.0), [0.2, 0.9, 0.3], 0.5),
                 ]
             });
-            let mut frames: Vec<Trial> = steps
-                .map(|objects| generated("passing", NARROW, objects))
-                .collect();
-            frames.iter_mut().for_each(|f| f.moves = true);
-            Ok(frames)
+            let frames = steps.map(|objects| Trial {
+                moves: true,
+                ..Trial::judged("passing", NARROW, objects)
+            });
+            Ok(frames.collect())
         }),
     },
 ];
@@ -369,7 +369,7 @@ const PLANES: [f32; 2] = [0.01, 2e4];
 /// Those of scenes whose surfaces are no stacks.
 const NARROW: [f32; 2] = [0.1, 100.0];
 
-const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
+pub(super) const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
 
 /// At the origin, looking along −z, 90° high.
 pub(super) fn camera([near, far]: [f32; 2]) -> Camera {
@@ -417,23 +417,18 @@ fn layers(n: usize) -> Result<Vec<Trial>, EvalError> {
     let drawn: Vec<_> = (0..n).map(|i| all[shuffled(i)]).collect();
     let of = |cover: u32| {
         let stack = vec![stack(&format!("{n} layers"), drawn.clone())];
-        Trial::of_stacks(PLANES, BACKGROUND, cover, stack)
+        Trial::of_stacks(PLANES, cover, stack)
     };
     Ok(vec![of(1), of(3)])
 }
 
 fn trial(stacks: Vec<Stack>) -> Trial {
-    Trial::of_stacks(PLANES, BACKGROUND, 3, stacks)
+    Trial::of_stacks(PLANES, 3, stacks)
 }
 
 fn stacks(of: &[(&str, &[(f32, f32)])]) -> Result<Vec<Trial>, EvalError> {
     let all = of.iter().map(|(name, layers)| stack(name, layers.to_vec()));
     Ok(vec![trial(all.collect())])
-}
-
-fn generated(name: &str, planes: [f32; 2], objects: Vec<Object>) -> Trial {
-    let (maker, camera) = ("the stress catalogue", camera(planes));
-    Trial::judged(Scene::generated(name, maker, BACKGROUND, camera, objects))
 }
 
 fn sixteen(alpha: f32) -> Result<Trial, EvalError> {
@@ -443,7 +438,10 @@ fn sixteen(alpha: f32) -> Result<Trial, EvalError> {
     }
     scene.name = format!("sixteen at {alpha}");
     scene.views.truncate(1);
-    Ok(Trial::judged(scene))
+    Ok(Trial {
+        scene,
+        ..Trial::judged("", PLANES, Vec::new())
+    })
 }
 
 fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
@@ -474,7 +472,7 @@ fn crossing() -> Trial {
     let v = |x: f32, y: f32| Vec3::new(x, y, -6.0);
     let wall = [[v(-4.0, -5.0), v(5.0, -4.0), v(0.0, 5.0)]];
     objects.push(object("wall", wall, [0.9, 0.8, 0.1], 0.7));
-    generated("crossing", NARROW, objects)
+    Trial::judged("crossing", NARROW, objects)
 }
 
 /// Three bars that overlap in a cycle: no order of the triangles is right.
@@ -492,7 +490,7 @@ fn cycle() -> Trial {
         let color = [[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9]][i];
         object(&format!("bar {i}"), bar, color, 0.6)
     };
-    generated("cycle", NARROW, (0..3).map(bar).collect())
+    Trial::judged("cycle", NARROW, (0..3).map(bar).collect())
 }
 
 /// Triangles that break normals and clipping, lit.
@@ -541,7 +539,7 @@ fn grazing() -> Trial {
     mesh.normals.fill(Vec3::ZERO);
     flat.mesh = mesh.into();
     objects.push(flat);
-    let mut trial = generated("grazing", NARROW, objects);
+    let mut trial = Trial::judged("grazing", NARROW, objects);
     trial.scene.lights.push(Light {
         source: Source::Point(v(1.0, 2.0, 1.0)),
         color: [1.0; 3],

@@ -27,10 +27,11 @@ use crate::{
     compare::{EXACT, image_name},
     stage::{Ready, Stage, exact_method},
 };
-use network::Network;
+use peelnet_export::ExportError;
 use peelnet_files::counted;
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
-use peelnet_render::{Flaw, Image, MethodOptions, MethodSpec, Submission};
+use peelnet_model::Model;
+use peelnet_render::{Flaw, Image, LearnedWeight, MethodOptions, MethodSpec, Submission};
 use peelnet_scene::{Camera, Scene};
 use properties::Finding;
 use std::{collections::BTreeMap, path::Path};
@@ -59,8 +60,8 @@ enum Work {
     Network(Examine),
 }
 
-/// Evaluates a network and returns what it finds.
-type Examine = fn(&Gpu, &Network<'_>, &mut Note<'_>) -> Result<(), EvalError>;
+/// Evaluates a network, and notes what it finds.
+type Examine = fn(&Gpu, &(LearnedWeight, Model), &mut Note<'_>) -> Result<(), ExportError>;
 
 impl Case {
     /// Whether a method takes part.
@@ -81,18 +82,14 @@ impl Stressed {
 
     /// How many rows there are of each outcome.
     pub fn summary(&self) -> String {
-        let [pass, declared, fail] =
-            [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(|o| self.of(o).count());
-        format!(
-            "{pass} {}, {}, {}",
-            if pass == 1 {
-                "property holds"
-            } else {
-                "properties hold"
-            },
-            counted(declared as u64, "declared flaw"),
-            counted(fail as u64, "failure"),
-        )
+        let count = |outcome| self.of(outcome).count() as u64;
+        let pass = match count(Outcome::Pass) {
+            1 => "1 property holds".to_owned(),
+            n => format!("{n} properties hold"),
+        };
+        let declared = counted(count(Outcome::Declared), "declared flaw");
+        let fail = counted(count(Outcome::Fail), "failure");
+        format!("{pass}, {declared}, {fail}")
     }
 }
 
@@ -123,13 +120,26 @@ pub fn stress(
     let mut findings = Findings::new();
     // Of every trial its name, the exact image, and every subject's.
     let mut drawn: Vec<(String, Vec<Image>)> = Vec::new();
-    let trials = match case.work {
-        Work::Frames(make) | Work::Deep(make) => make()?,
+    let names: Vec<String> = subjects.iter().map(|s| s.method.to_string()).collect();
+    let mut trials = Vec::new();
+    match case.work {
+        Work::Frames(make) | Work::Deep(make) => trials = make()?,
         Work::Network(examine) => {
-            examine_networks(gpu, examine, subjects, &mut findings, notify)?;
-            Vec::new()
+            for (i, subject) in subjects.iter().enumerate() {
+                notify(&names[i])?;
+                if let Some(network) = &subject.learned {
+                    examine(gpu, network, &mut |property, value, limit, place| {
+                        let finding: &mut Finding = findings.entry((i, property)).or_default();
+                        finding.worsen(value, limit, place);
+                    })
+                    .map_err(|source| EvalError::Network {
+                        method: names[i].clone(),
+                        source: Box::new(source),
+                    })?;
+                }
+            }
         }
-    };
+    }
     let has_network = |s: &Subject| s.learned.is_some() && case.judges(&s.method);
     let with_networks = subjects.iter().any(has_network);
     for (trial, number) in trials.iter().zip(0..) {
@@ -144,8 +154,7 @@ pub fn stress(
                 frames.push(exact[0].clone());
                 continue;
             }
-            let method = subject.method.to_string();
-            notify(&method)?;
+            notify(&names[i])?;
             let mut note = |property, value, limit, place: &dyn Fn() -> String| {
                 let finding: &mut Finding = findings.entry((i, property)).or_default();
                 finding.worsen(value, limit, || {
@@ -164,53 +173,21 @@ pub fn stress(
         drawn.push((scene, frames));
     }
     let rows = rows(case, subjects, &findings, strict, &gpu.info);
-    if let Some(folder) = images {
-        let failed = |method: &str| {
-            let of_method = |r: &Row| r.result == Outcome::Fail && r.method == method;
-            rows.iter().any(of_method)
-        };
-        let any = rows.iter().any(|r| r.result == Outcome::Fail);
-        let names: Vec<String> = subjects.iter().map(|s| s.method.to_string()).collect();
-        for (scene, frames) in &drawn {
-            let subjects = names.iter().map(String::as_str).zip(&frames[1..]);
-            let failing = subjects.filter(|(method, _)| failed(method));
-            for (method, image) in any
-                .then_some((EXACT, &frames[0]))
-                .into_iter()
-                .chain(failing)
-            {
+    let Some(folder) = images else {
+        return Ok(rows);
+    };
+    for (scene, frames) in &drawn {
+        let methods = [EXACT].into_iter().chain(names.iter().map(String::as_str));
+        for (k, (method, image)) in methods.zip(frames).enumerate() {
+            // The exact image where any method fails.
+            let fails = |r: &Row| r.result == Outcome::Fail && (k == 0 || r.method == method);
+            if rows.iter().any(fails) {
                 let saved = image.save(&folder.join(image_name(scene, method)));
                 saved.map_err(EvalError::render(scene, method))?;
             }
         }
     }
     Ok(rows)
-}
-
-/// Looks at the networks of those subjects that have one.
-fn examine_networks(
-    gpu: &Gpu,
-    examine: Examine,
-    subjects: &[Subject],
-    findings: &mut Findings,
-    notify: &mut dyn FnMut(&str) -> Result<(), EvalError>,
-) -> Result<(), EvalError> {
-    for (i, subject) in subjects.iter().enumerate() {
-        let method = subject.method.to_string();
-        notify(&method)?;
-        if let Some((text, model)) = &subject.learned {
-            let network = Network {
-                method: &method,
-                model,
-                wgsl: &text.wgsl,
-            };
-            examine(gpu, &network, &mut |property, value, limit, place| {
-                let finding: &mut Finding = findings.entry((i, property)).or_default();
-                finding.worsen(value, limit, place);
-            })?;
-        }
-    }
-    Ok(())
 }
 
 /// What became of every property that was looked at.

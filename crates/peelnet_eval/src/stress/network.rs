@@ -1,21 +1,11 @@
 //! Cases that evaluate a network without drawing.
 
 use super::{Note, Property};
-use crate::EvalError;
 use peelnet_core::{random::Random, tolerance::EXPORT_F16};
+use peelnet_export::ExportError;
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
-
-/// A network and its exported text.
-#[derive(Clone, Copy, Debug)]
-pub struct Network<'a> {
-    /// The method that draws with it, for messages.
-    pub method: &'a str,
-    /// The network.
-    pub model: &'a Model,
-    /// Its text.
-    pub wgsl: &'a str,
-}
+use peelnet_render::LearnedWeight;
 
 /// Inputs that are drawn at random.
 const RANDOM: usize = 16_384;
@@ -23,10 +13,9 @@ const RANDOM: usize = 16_384;
 /// Every operation rounded to 16 bits, against 64 bits. The function need not be exported in 16 bits for that.
 pub(super) fn in_half_floats(
     _: &Gpu,
-    network: &Network<'_>,
+    (_, model): &(LearnedWeight, Model),
     note: &mut Note<'_>,
-) -> Result<(), EvalError> {
-    let model = network.model;
+) -> Result<(), ExportError> {
     let mut random = Random::new(5, &[]);
     for _ in 0..RANDOM {
         let inputs = || model.meta.inputs.iter();
@@ -50,10 +39,10 @@ pub(super) fn in_half_floats(
 /// Any bits that are a finite number, on the GPU.
 pub(super) fn on_hostile_inputs(
     gpu: &Gpu,
-    network: &Network<'_>,
+    (text, model): &(LearnedWeight, Model),
     note: &mut Note<'_>,
-) -> Result<(), EvalError> {
-    let count = network.model.meta.inputs.len();
+) -> Result<(), ExportError> {
+    let count = model.meta.inputs.len();
     let mut random = Random::new(6, &[]);
     let extremes = [
         0.0,
@@ -86,15 +75,9 @@ pub(super) fn on_hostile_inputs(
     let samples: Vec<Vec<f32>> = (0..RANDOM)
         .map(|_| (0..count).map(|_| hostile()).collect())
         .collect();
-    let answers = peelnet_export::evaluate(gpu, network.model, network.wgsl, &samples);
-    let answers = answers.map_err(|source| EvalError::Network {
-        method: network.method.to_owned(),
-        source: Box::new(source),
-    })?;
-    for (sample, answer) in samples
-        .iter()
-        .zip(answers.chunks_exact(network.model.meta.output.count()))
-    {
+    let answers = peelnet_export::evaluate(gpu, model, &text.wgsl, &samples)?;
+    let answers = answers.chunks_exact(model.meta.output.count());
+    for (sample, answer) in samples.iter().zip(answers) {
         // Transmittances and colours: a little more than 1 is a matter of rounding.
         let good = answer.iter().all(|x| (0.0..=1.0 + 1e-5).contains(x));
         note(Property::Finite, f64::from(u8::from(!good)), 0.0, &|| {

@@ -1,6 +1,9 @@
 //! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit judge.
 
-use super::{catalogue::camera, judge};
+use super::{
+    catalogue::{BACKGROUND, camera},
+    judge,
+};
 
 use glam::Vec3;
 use peelnet_core::{
@@ -40,7 +43,7 @@ pub struct Trial {
     /// Whether it is a sequence of frames (its views, or the trials of its case), which is judged by how much they differ.
     pub moves: bool,
     /// What the pixels hold, where that is known without drawing.
-    known: Option<Truth>,
+    pub(super) known: Option<Truth>,
 }
 
 /// What is known of a pixel.
@@ -163,10 +166,11 @@ fn material(layer: &Fragment) -> Material {
 const JUDGED_SIZE: [u32; 2] = [48, 36];
 
 impl Trial {
-    /// A scene whose pixels the judge finds when it is drawn.
-    pub fn judged(scene: Scene) -> Self {
+    /// Objects before the background, whose pixels the judge finds when they are drawn.
+    pub fn judged(name: &str, planes: [f32; 2], objects: Vec<Object>) -> Self {
+        let (maker, camera) = ("the stress catalogue", camera(planes));
         Self {
-            scene,
+            scene: Scene::generated(name, maker, BACKGROUND, camera, objects),
             size: JUDGED_SIZE,
             moves: false,
             known: None,
@@ -174,12 +178,7 @@ impl Trial {
     }
 
     /// Stacks side by side, `cover` pixels wide and high each, with a row of empty pixels around.
-    pub fn of_stacks(
-        planes: [f32; 2],
-        background: [f32; 3],
-        cover: u32,
-        stacks: Vec<Stack>,
-    ) -> Self {
+    pub fn of_stacks(planes: [f32; 2], cover: u32, stacks: Vec<Stack>) -> Self {
         let pitch = cover + 1;
         let columns = (stacks.len() as f32).sqrt().ceil() as u32;
         let rows = (stacks.len() as u32).div_ceil(columns);
@@ -210,7 +209,7 @@ impl Trial {
                 let vertices = vertices(layer.depth);
                 objects.push(Object::of_triangles(&name, &vertices, material));
             }
-            let mut behind = background;
+            let mut behind = BACKGROUND;
             if let Some((depth, color)) = stack.opaque {
                 let material = Material {
                     blend: false,
@@ -229,13 +228,10 @@ impl Trial {
                 }
             }
         }
-        let maker = "the stress catalogue";
-        let camera = camera(planes);
         Self {
-            scene: Scene::generated("stacks", maker, background, camera, objects),
             size,
-            moves: false,
             known: Some(truth),
+            ..Self::judged("stacks", planes, objects)
         }
     }
 

@@ -87,6 +87,9 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
     let points = front::points(&own, Mean::Geometric);
     let first = own.of_method(EXACT).0.first().copied();
     let (fragments, most) = first.map_or((None, None), |r| (r.fragments, r.max_layers));
+    let mean_depth = first.map_or(0.0, |r| {
+        r.fragments.unwrap_or_default() as f64 / f64::from(r.width * r.height).max(1.0)
+    });
     let is_shown = |p: &&Point| p.on_front || p.method == WEIGHTED || p.method == MOMENTS;
     let shown = points.iter().filter(is_shown);
     let count = |x: Option<u64>| x.map_or_else(|| "–".to_owned(), |x| x.to_string());
@@ -95,7 +98,7 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
             summary { (scene_heading(scene, &bench.trained_on)) }
             p.note {
                 "View 0: " (count(fragments)) " fragments, at most " (count(most.map(u64::from))) " in a pixel, "
-                (format!("{:.2}", first.map_or(0.0, mean_depth))) " per pixel on average."
+                (format!("{mean_depth:.2}")) " per pixel on average."
             }
             (page::chart("chart", &chart(&points)))
             (points_table(&own, &points))
@@ -103,11 +106,6 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
         }
         "\n"
     })
-}
-
-/// Fragments per pixel.
-fn mean_depth(row: &Row) -> f64 {
-    row.fragments.unwrap_or_default() as f64 / f64::from(row.width * row.height).max(1.0)
 }
 
 /// A line for every point, with all measures.
