@@ -36,7 +36,7 @@ type OrAll<T> = Option<T>;
   peelnet recommend cups --budget-ms 30                 which method to use
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 interrupted.
-An output replaces only a file of its own kind, any file with --force; - is stdout. A folder of a dataset replaces only a dataset.
+An output replaces only a file of its own kind, any file with --force, never a link, a device or a pipe; - is stdout. A folder of a dataset replaces only a dataset.
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
