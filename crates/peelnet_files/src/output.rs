@@ -272,8 +272,9 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// Whether files can be created in a folder, or in the nearest of those above it that exists: creates one and removes it.
 fn check_folder(folder: &Path) -> io::Result<()> {
+    let folder = absolute(local(folder)?)?;
     let nearest = folder.ancestors().find(|folder| folder.exists());
-    tempfile::tempfile_in(nearest.unwrap_or(folder))
+    tempfile::tempfile_in(nearest.unwrap_or(&folder))
         .map(drop)
         .map_err(plain)
 }
@@ -816,6 +817,14 @@ mod tests {
         // A library's caller decides.
         write_whole(&at("images/2.png"), b"note").expect("writes");
         assert!(write_whole(dir.path(), b"note").is_err());
+    }
+
+    /// A relative folder that does not exist yet: it is created in the one where the command runs.
+    #[test]
+    fn new_folders_may_be_relative() {
+        for folder in ["new", "new/er", "./new", "../new"] {
+            check_is_folder("--out", Path::new(folder)).expect("can be created");
+        }
     }
 
     #[test]
