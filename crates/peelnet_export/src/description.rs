@@ -1,10 +1,10 @@
 //! What a renderer must do around an exported text: the one source of the text's header and of the documents.
 
-use crate::language::{Dialect, WGSL};
+use crate::language::Language;
 use peelnet_core::methods::slabs::{Design, Layout};
 use peelnet_model::{Inputs, Output, Recipe};
 use serde::Serialize;
-use std::fmt::{self, Write as _};
+use std::fmt;
 
 /// How a target blends, per channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -70,7 +70,7 @@ pub struct Value {
 /// The WGSL statement.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&WGSL.declare(self))
+        f.write_str(&Language::Wgsl.declare(self))
     }
 }
 
@@ -103,36 +103,78 @@ pub struct Description {
     /// The call that resolves each pixel.
     pub resolve: &'static str,
     /// The targets that it reads.
-    pub resolve_reads: &'static [&'static str],
+    pub resolve_reads: Vec<&'static str>,
     /// What holds in all passes, and what breaks the result.
     pub rules: &'static [&'static str],
 }
 
-const fn sum(name: &'static str, format: &'static str, write: &'static str) -> Target {
+/// What levels are cleared to.
+const LEAST: f32 = -65504.0;
+
+const fn target(
+    name: &'static str,
+    format: &'static str,
+    (clear, color, alpha): ([f32; 4], Blend, Blend),
+    write: &'static str,
+) -> Target {
     Target {
         name,
         format,
-        clear: [0.0; 4],
-        color: Blend::Add,
-        alpha: Blend::Add,
+        clear,
+        color,
+        alpha,
         write,
     }
 }
+
+const fn sum(name: &'static str, format: &'static str, write: &'static str) -> Target {
+    target(name, format, ([0.0; 4], Blend::Add, Blend::Add), write)
+}
+
+const fn most(name: &'static str, format: &'static str, clear: f32, write: &'static str) -> Target {
+    target(name, format, ([clear; 4], Blend::Max, Blend::Max), write)
+}
+
+const fn most_and_sum(name: &'static str, write: &'static str) -> Target {
+    let blend = ([LEAST, LEAST, LEAST, 0.0], Blend::Max, Blend::Add);
+    target(name, HALF, blend, write)
+}
+
+const fn statistics(
+    reads: &'static [&'static str],
+    call: &'static str,
+    targets: &'static [Target],
+) -> Pass {
+    let (name, kind) = ("s", Kind::Statistics);
+    Pass {
+        name: "statistics",
+        reads,
+        compute: Some(Value { name, kind, call }),
+        targets,
+    }
+}
+
+const fn weights(
+    reads: &'static [&'static str],
+    call: &'static str,
+    targets: &'static [Target],
+) -> Pass {
+    let (name, kind) = ("w", Kind::Number);
+    Pass {
+        name: "weights",
+        reads,
+        compute: Some(Value { name, kind, call }),
+        targets,
+    }
+}
+
+const HALF: &str = "rgba16float";
+const WHOLE: &str = "rgba32float";
 
 const ZETA: &str = "zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the \
     bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else \
     you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: \
     peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.";
-
-const fn statistics(call: &'static str) -> Option<Value> {
-    let (name, kind) = ("s", Kind::Statistics);
-    Some(Value { name, kind, call })
-}
-
-const fn weight(call: &'static str) -> Option<Value> {
-    let (name, kind) = ("w", Kind::Number);
-    Some(Value { name, kind, call })
-}
 
 const WEIGHTED: &str = "vec4f(alpha * rgb, alpha) * w";
 
@@ -143,32 +185,29 @@ const RULES: &[&str] = &[
     "With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.",
 ];
 
-const ANCHORED_STATISTICS: Pass = Pass {
-    name: "statistics",
-    reads: &[],
-    compute: statistics("peelnet_statistics(alpha, zeta)"),
-    targets: &[
-        sum("moments", "rgba16float", "s.moments"),
-        Target {
-            name: "extent",
-            format: "rgba16float",
-            clear: [-65504.0, -65504.0, -65504.0, 0.0],
-            color: Blend::Max,
-            alpha: Blend::Add,
-            write: "s.extent",
-        },
+const SUMS: &[Target] = &[sum("sums", HALF, WEIGHTED)];
+
+const ANCHORED_STATISTICS: Pass = statistics(
+    &[],
+    "peelnet_statistics(alpha, zeta)",
+    &[
+        sum("moments", HALF, "s.moments"),
+        most_and_sum("extent", "s.extent"),
     ],
-};
+);
 
 const ONE_SUM: &[Pass] = &[
     ANCHORED_STATISTICS,
-    Pass {
-        name: "weights",
-        reads: &["moments", "extent"],
-        compute: weight("peelnet_fragment(alpha, zeta, moments, extent).x"),
-        targets: &[sum("sums", "rgba16float", WEIGHTED)],
-    },
+    weights(
+        &["moments", "extent"],
+        "peelnet_fragment(alpha, zeta, moments, extent).x",
+        SUMS,
+    ),
 ];
+
+const BETWEEN: &str = "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))";
+
+const ENDS: &str = "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))";
 
 const SEPARATE_ENDS: &[Pass] = &[
     ANCHORED_STATISTICS,
@@ -180,31 +219,9 @@ const SEPARATE_ENDS: &[Pass] = &[
             kind: Kind::Pair,
             call: "peelnet_fragment(alpha, zeta, moments, extent)",
         }),
-        targets: &[
-            sum(
-                "sums",
-                "rgba16float",
-                "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))",
-            ),
-            sum(
-                "ends",
-                "rgba16float",
-                "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))",
-            ),
-        ],
+        targets: &[sum("sums", HALF, BETWEEN), sum("ends", HALF, ENDS)],
     },
 ];
-
-const fn most(name: &'static str, format: &'static str, clear: f32, write: &'static str) -> Target {
-    Target {
-        name,
-        format,
-        clear: [clear; 4],
-        color: Blend::Max,
-        alpha: Blend::Max,
-        write,
-    }
-}
 
 const RANGE: Pass = Pass {
     name: "range",
@@ -217,87 +234,46 @@ const RANGE: Pass = Pass {
     targets: &[most("range", "rg8unorm", 0.0, "r")],
 };
 
-/// What levels are cleared to.
-const LEAST: f32 = -65504.0;
-
-const ABSORBANCES: Target = sum("absorbances", "rgba16float", "s.absorbances");
-
-const NEAREST: Target = most("nearest", "rgba16float", LEAST, "s.nearest");
-
-const fn most_and_sum(name: &'static str, write: &'static str) -> Target {
-    Target {
-        name,
-        format: "rgba16float",
-        clear: [LEAST, LEAST, LEAST, 0.0],
-        color: Blend::Max,
-        alpha: Blend::Add,
-        write,
-    }
+const fn slabs(
+    targets: &'static [Target],
+    reads: &'static [&'static str],
+    call: &'static str,
+) -> [Pass; 3] {
+    let in_range = "peelnet_statistics(alpha, zeta, range)";
+    let statistics = statistics(&["range"], in_range, targets);
+    [RANGE, statistics, weights(reads, call, SUMS)]
 }
 
-const IN_RANGE: Option<Value> = statistics("peelnet_statistics(alpha, zeta, range)");
+const ABSORBANCES: Target = sum("absorbances", HALF, "s.absorbances");
 
-const SUMS: &[Target] = &[sum("sums", "rgba16float", WEIGHTED)];
+const NEAREST: Target = most("nearest", HALF, LEAST, "s.nearest");
 
-const fn slab_weights(reads: &'static [&'static str], call: &'static str) -> Pass {
-    Pass {
-        name: "weights",
-        reads,
-        compute: weight(call),
-        targets: SUMS,
-    }
-}
+const SMALL_SLABS: &[Pass] = &slabs(
+    &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
+    &["range", "absorbances", "nearest", "firsts"],
+    "peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x",
+);
 
-const SMALL_SLABS: &[Pass] = &[
-    RANGE,
-    Pass {
-        name: "statistics",
-        reads: &["range"],
-        compute: IN_RANGE,
-        targets: &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
-    },
-    slab_weights(
-        &["range", "absorbances", "nearest", "firsts"],
-        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x",
-    ),
-];
+const MEDIUM_SLABS: &[Pass] = &slabs(
+    &[
+        ABSORBANCES,
+        most_and_sum("nearest", "s.nearest"),
+        most_and_sum("farthest", "s.farthest"),
+    ],
+    &["range", "absorbances", "nearest", "farthest"],
+    "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x",
+);
 
-const MEDIUM_SLABS: &[Pass] = &[
-    RANGE,
-    Pass {
-        name: "statistics",
-        reads: &["range"],
-        compute: IN_RANGE,
-        targets: &[
-            ABSORBANCES,
-            most_and_sum("nearest", "s.nearest"),
-            most_and_sum("farthest", "s.farthest"),
-        ],
-    },
-    slab_weights(
-        &["range", "absorbances", "nearest", "farthest"],
-        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x",
-    ),
-];
-
-const LARGE_SLABS: &[Pass] = &[
-    RANGE,
-    Pass {
-        name: "statistics",
-        reads: &["range"],
-        compute: IN_RANGE,
-        targets: &[
-            ABSORBANCES,
-            NEAREST,
-            most("farthest", "rgba16float", LEAST, "s.farthest"),
-            sum("firsts", "rgba16float", "s.firsts"),
-        ],
-    },
-    slab_weights(
-        &["range", "absorbances", "nearest", "farthest", "firsts"],
-        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x",
-    ),
-];
+const LARGE_SLABS: &[Pass] = &slabs(
+    &[
+        ABSORBANCES,
+        NEAREST,
+        most("farthest", HALF, LEAST, "s.farthest"),
+        sum("firsts", HALF, "s.firsts"),
+    ],
+    &["range", "absorbances", "nearest", "farthest", "firsts"],
+    "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x",
+);
 
 const THESIS: &[Pass] = &[
     Pass {
@@ -306,67 +282,52 @@ const THESIS: &[Pass] = &[
         compute: None,
         targets: &[sum("statistics", "rg16float", "peelnet_statistics(alpha)")],
     },
-    Pass {
-        name: "weights",
-        reads: &["statistics"],
-        compute: weight("peelnet_fragment(z, statistics)"),
-        targets: &[
-            sum("sums", "rgba16float", WEIGHTED),
-            Target {
-                name: "transmittance",
-                format: "r16float",
-                clear: [1.0; 4],
-                color: Blend::Transmit,
-                alpha: Blend::Transmit,
-                write: "alpha",
-            },
+    weights(
+        &["statistics"],
+        "peelnet_fragment(z, statistics)",
+        &[
+            sum("sums", HALF, WEIGHTED),
+            target(
+                "transmittance",
+                "r16float",
+                ([1.0; 4], Blend::Transmit, Blend::Transmit),
+                "alpha",
+            ),
         ],
-    },
+    ),
 ];
 
 const NMT: &[Pass] = &[
-    Pass {
-        name: "statistics",
-        reads: &[],
-        compute: statistics("peelnet_statistics(alpha, zeta)"),
-        targets: &[
-            sum("totals", "rgba32float", "s.totals"),
-            sum("moments", "rgba32float", "s.moments"),
-            Target {
-                name: "extent",
-                format: "rg32float",
-                clear: [-65504.0; 4],
-                color: Blend::Max,
-                alpha: Blend::Max,
-                write: "s.extent",
-            },
+    statistics(
+        &[],
+        "peelnet_statistics(alpha, zeta)",
+        &[
+            sum("totals", WHOLE, "s.totals"),
+            sum("moments", WHOLE, "s.moments"),
+            most("extent", "rg32float", LEAST, "s.extent"),
         ],
-    },
-    Pass {
-        name: "weights",
-        reads: &["totals", "moments", "extent"],
-        compute: weight("peelnet_fragment(zeta, totals, moments, extent)"),
-        targets: &[sum("sums", "rgba32float", WEIGHTED)],
-    },
+    ),
+    weights(
+        &["totals", "moments", "extent"],
+        "peelnet_fragment(zeta, totals, moments, extent)",
+        &[sum("sums", WHOLE, WEIGHTED)],
+    ),
 ];
 
-const DFAOIT: &[Pass] = &[Pass {
-    name: "statistics",
-    reads: &["front"],
-    compute: statistics("peelnet_statistics(vec4f(rgb, alpha), front)"),
-    targets: &[
-        sum("behind", "rgba16float", "s.behind"),
-        Target {
-            name: "all",
-            format: "rgba16float",
-            clear: [0.0, 0.0, 0.0, 1.0],
-            color: Blend::Add,
-            alpha: Blend::Transmit,
-            write: "s.all",
-        },
+const DFAOIT: &[Pass] = &[statistics(
+    &["front"],
+    "peelnet_statistics(vec4f(rgb, alpha), front)",
+    &[
+        sum("behind", HALF, "s.behind"),
+        target(
+            "all",
+            HALF,
+            ([0.0, 0.0, 0.0, 1.0], Blend::Add, Blend::Transmit),
+            "s.all",
+        ),
         sum("count", "r16float", "s.count"),
     ],
-}];
+)];
 
 const THESIS_BEFORE: &str = "z is the distance along the view axis, in the unit of the scenes that the network was trained on.";
 
@@ -382,50 +343,40 @@ pub(crate) fn layout(design: &Design) -> Layout {
 impl Description {
     /// Of the networks of a recipe.
     pub fn of(recipe: Recipe) -> Self {
-        let (before, passes, resolve, resolve_reads): (_, _, _, &[_]) = match (
-            recipe.inputs,
-            recipe.output,
-        ) {
-            (Inputs::Rest(_), Output::AnchoredShareSeparateEnds) => (
-                ZETA,
-                SEPARATE_ENDS,
-                "peelnet_resolve(sums, ends, moments.x, background)",
-                &["sums", "ends", "moments"],
-            ),
-            (Inputs::Rest(_), _) => (
-                ZETA,
-                ONE_SUM,
-                "peelnet_resolve(sums, moments.x, background)",
-                &["sums", "moments"],
-            ),
-            (Inputs::Slabs(design, _), _) => {
-                let three = "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)";
-                let four = "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)";
-                let (passes, resolve) = match layout(&design) {
-                    Layout::Small => (SMALL_SLABS, three),
-                    Layout::Medium => (MEDIUM_SLABS, three),
-                    Layout::Large => (LARGE_SLABS, four),
-                };
-                (ZETA, passes, resolve, &["sums", "absorbances"])
+        let three =
+            "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)";
+        let four = "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)";
+        let (passes, resolve) = match recipe.inputs {
+            Inputs::Rest(_) if recipe.output == Output::AnchoredShareSeparateEnds => {
+                let resolve = "peelnet_resolve(sums, ends, moments.x, background)";
+                (SEPARATE_ENDS, resolve)
             }
-            (Inputs::Row(_), _) => (
-                THESIS_BEFORE,
-                THESIS,
-                "peelnet_resolve(sums, transmittance, background)",
-                &["sums", "transmittance"],
-            ),
-            (Inputs::Moments(_), _) => (
-                ZETA,
-                NMT,
-                "peelnet_resolve(sums, totals.x, background)",
-                &["sums", "totals"],
-            ),
-            (Inputs::Layers(_), _) => (
-                DFAOIT_BEFORE,
-                DFAOIT,
-                "peelnet_resolve(front, behind, all, count, background)",
-                &["front", "behind", "all", "count"],
-            ),
+            Inputs::Rest(_) => (ONE_SUM, "peelnet_resolve(sums, moments.x, background)"),
+            Inputs::Slabs(design, _) => match layout(&design) {
+                Layout::Small => (SMALL_SLABS, three),
+                Layout::Medium => (MEDIUM_SLABS, three),
+                Layout::Large => (LARGE_SLABS, four),
+            },
+            Inputs::Row(_) => (THESIS, "peelnet_resolve(sums, transmittance, background)"),
+            Inputs::Moments(_) => (NMT, "peelnet_resolve(sums, totals.x, background)"),
+            Inputs::Layers(_) => {
+                let resolve = "peelnet_resolve(front, behind, all, count, background)";
+                (DFAOIT, resolve)
+            }
+        };
+        let targets = passes.iter().flat_map(|pass| pass.targets);
+        let mut names: Vec<&str> = targets.map(|target| target.name).collect();
+        names.extend(passes.iter().flat_map(|pass| pass.reads));
+        let mut resolve_reads = Vec::new();
+        for word in resolve.split(|c: char| !c.is_alphanumeric()) {
+            if names.contains(&word) && !resolve_reads.contains(&word) {
+                resolve_reads.push(word);
+            }
+        }
+        let before = match recipe.inputs {
+            Inputs::Row(_) => THESIS_BEFORE,
+            Inputs::Layers(_) => DFAOIT_BEFORE,
+            _ => ZETA,
         };
         Self {
             before,
@@ -437,101 +388,49 @@ impl Description {
     }
 
     /// As lines of a comment in a language, without their marks.
-    pub(crate) fn lines(&self, dialect: &dyn Dialect) -> Vec<String> {
+    pub(crate) fn lines(&self, language: Language) -> Vec<String> {
         let mut lines = vec![
             "How to draw with it. Targets may have 32 bits a channel wherever 16 are named."
                 .to_owned(),
             format!("0. {}", self.before),
         ];
         for (k, pass) in (1..).zip(self.passes) {
-            let compute = pass.compute.map(|value| dialect.declare(&value));
+            let compute = pass.compute.map(|value| language.declare(&value));
+            let (name, compute) = (pass.name, compute.unwrap_or_default());
             lines.push(format!(
-                "{k}. Pass \"{}\": draw all transparent surfaces, in any order. {}",
-                pass.name,
-                compute.unwrap_or_default()
+                "{k}. Pass \"{name}\": draw all transparent surfaces, in any order. {compute}"
             ));
-            for target in pass.targets {
-                lines.push(format!("   {}", target.line(dialect)));
-            }
+            lines.extend(pass.targets.iter().map(|target| target.line(language)));
         }
         lines.push(format!(
             "{}. Resolve: {} is the colour of the pixel, and its coverage in alpha.",
             self.passes.len() + 1,
-            dialect.expression(self.resolve)
+            language.expression(self.resolve)
         ));
         lines.extend(self.rules.iter().map(|rule| format!("- {rule}")));
         lines
     }
-
-    /// As a section of a document.
-    pub fn markdown(&self) -> String {
-        let mut t = String::new();
-        // Writing to a string cannot fail.
-        let _ = writeln!(t, "**0. Before.** {}\n", self.before);
-        for (k, pass) in (1..).zip(self.passes) {
-            let compute = pass.compute.map_or_else(String::new, |value| {
-                format!(" Each fragment computes `{value}`")
-            });
-            let _ = writeln!(
-                t,
-                "**{k}. Pass `{}`.** Draw all transparent surfaces, in any order.{compute}\n\n\
-                 | target | format | clear | blend | each fragment writes |\n|---|---|---|---|---|",
-                pass.name
-            );
-            for target in pass.targets {
-                let _ = writeln!(
-                    t,
-                    "| `{}` | `{}` | {} | {} | `{}` |",
-                    target.name,
-                    target.format,
-                    target.clear_text(),
-                    target.blend_text(),
-                    target.write
-                );
-            }
-            t.push('\n');
-        }
-        let _ = writeln!(
-            t,
-            "**{}. Resolve.** `{}` is the colour of the pixel, and its coverage in alpha.\n",
-            self.passes.len() + 1,
-            self.resolve
-        );
-        for rule in self.rules {
-            let _ = writeln!(t, "- {rule}");
-        }
-        t
-    }
 }
 
 impl Target {
-    fn line(&self, dialect: &dyn Dialect) -> String {
+    fn line(&self, language: Language) -> String {
+        let (mut clear, last) = (&self.clear[..], &self.clear[3..]);
+        if clear.iter().all(|c| *c == last[0]) {
+            clear = last;
+        }
+        let clear: Vec<String> = clear.iter().map(f32::to_string).collect();
+        let (color, alpha) = (self.color.text(), self.alpha.text());
+        let blending = if color == alpha {
+            color.to_owned()
+        } else {
+            format!("{color} for rgb, {alpha} for alpha")
+        };
         format!(
-            "{}: {}, cleared to {}, blending {}, from {}",
+            "   {}: {}, cleared to {}, blending {blending}, from {}",
             self.name,
             self.format,
-            self.clear_text(),
-            self.blend_text(),
-            dialect.expression(self.write)
+            clear.join(", "),
+            language.expression(self.write)
         )
-    }
-
-    fn clear_text(&self) -> String {
-        if self.clear.iter().all(|c| *c == self.clear[0]) {
-            return self.clear[0].to_string();
-        }
-        self.clear.map(|c| c.to_string()).join(", ")
-    }
-
-    fn blend_text(&self) -> String {
-        if self.color == self.alpha {
-            self.color.text().to_owned()
-        } else {
-            format!(
-                "{} for rgb, {} for alpha",
-                self.color.text(),
-                self.alpha.text()
-            )
-        }
     }
 }

@@ -3,12 +3,11 @@
 use crate::{
     Options, Precision,
     description::Description,
-    language::Dialect,
+    language::Language,
     literal::{float, identifier},
     network::function_name,
     self_test::SelfTest,
-    text::multiply_adds,
-    verify::RANDOM as HALF_SAMPLES,
+    text::{RANDOM, multiply_adds},
 };
 use peelnet_core::tolerance::EXPORT_F16;
 use peelnet_files::{printable, printable_lines};
@@ -35,18 +34,18 @@ fn names<'a>(all: impl ExactSizeIterator<Item = Cow<'a, str>>) -> String {
 
 /// What the text is, where it comes from, how to check it and what a renderer must do around it, as comments.
 pub(crate) fn header(model: &Model, options: &Options) -> String {
-    let dialect = options.language.dialect();
-    let mut lines = about(model, dialect);
+    let language = options.language;
+    let mut lines = about(model, language);
     if options.precision == Precision::F16 {
         lines.push(format!(
-            "Layers in 16 bits, the last one in 32: answers differ from the network's by {EXPORT_F16} at most, on {HALF_SAMPLES} random inputs of the range seen in training."
+            "Layers in 16 bits, the last one in 32: answers differ from the network's by {EXPORT_F16} at most, on {RANDOM} random inputs of the range seen in training."
         ));
     }
     lines.extend(provenance(model));
     lines.push(String::new());
     lines.extend(SelfTest::of(model).lines(function_name(model.meta.output)));
     lines.push(String::new());
-    lines.extend(Description::of(model.meta.recipe).lines(dialect));
+    lines.extend(Description::of(model.meta.recipe).lines(language));
     let mut text: String = lines
         .iter()
         // Names were bounded; whatever else a line holds, it must not end it.
@@ -58,7 +57,7 @@ pub(crate) fn header(model: &Model, options: &Options) -> String {
 }
 
 /// The network, what it answers and what it reads.
-fn about(model: &Model, dialect: &dyn Dialect) -> Vec<String> {
+fn about(model: &Model, language: Language) -> Vec<String> {
     let meta = &model.meta;
     let (low, high) = meta.output.range();
     let answer = match meta.output {
@@ -84,7 +83,7 @@ fn about(model: &Model, dialect: &dyn Dialect) -> Vec<String> {
             env!("CARGO_PKG_VERSION")
         ),
         "Licence of this generated text: MIT OR Apache-2.0.".into(),
-        dialect.about().into(),
+        language.spelling().about.into(),
         format!(
             "Network: {} ({:?} hidden, {:?} last), {} parameters, {} multiply-adds. Recipe {}, seed {}, {} epochs.",
             model.mlp.topology(),
@@ -124,17 +123,15 @@ fn provenance(model: &Model) -> [String; 3] {
             )
         },
     );
-    let loss = |name: &str, value: Option<f64>| value.map(|v| format!("{name} {v:.6}"));
-    let losses: Vec<_> = [
-        loss("training", meta.losses.train),
-        loss("validation", meta.losses.validation),
-        loss("test", meta.losses.test),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    let losses = match losses.as_slice() {
-        [] => "unknown".to_owned(),
+    let losses = [
+        ("training", meta.losses.train),
+        ("validation", meta.losses.validation),
+        ("test", meta.losses.test),
+    ];
+    let losses = losses.iter();
+    let losses = losses.filter_map(|(name, loss)| Some(format!("{name} {:.6}", (*loss)?)));
+    let losses = match losses.collect::<Vec<_>>() {
+        none if none.is_empty() => "unknown".to_owned(),
         losses => losses.join(", "),
     };
     let errors = meta.held_out.iter();

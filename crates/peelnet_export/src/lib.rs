@@ -15,21 +15,17 @@ mod literal;
 mod network;
 mod self_test;
 mod text;
-mod verify;
-// A browser has no files.
+// A browser has no files, and nothing in it may block.
 #[cfg(not(target_arch = "wasm32"))]
-mod write;
+mod verify;
 
 pub use description::{Blend, Description, Kind as ValueKind, Pass, Target, Value};
 pub use json::json;
 pub use language::Language;
 pub use self_test::{Drawn, Pixel, Point, SelfTest};
 pub use text::{multiply_adds, text, wgsl};
-pub use verify::{Verification, evaluate_async, verify_async};
 #[cfg(not(target_arch = "wasm32"))]
-pub use verify::{evaluate, verify};
-#[cfg(not(target_arch = "wasm32"))]
-pub use write::{description_path, export};
+pub use verify::{Verification, description_path, evaluate, export, verify};
 
 use peelnet_files::Kind;
 use std::path::PathBuf;
@@ -73,6 +69,7 @@ pub enum Precision {
 }
 
 /// What can go wrong while exporting.
+#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// A model that does not hold together.
@@ -85,16 +82,11 @@ pub enum ExportError {
     #[error(
         "the exported text holds other declarations than the model's: {found}; nothing was written"
     )]
-    Declares {
-        /// What it declares.
-        found: String,
-    },
+    Declares { found: String },
     /// A text that another language cannot hold: a bug here.
     #[error("the text cannot be translated to {language}: {reason}; nothing was written")]
     Language {
-        /// The language.
         language: &'static str,
-        /// Why.
         reason: String,
     },
     /// A description that cannot be written: a bug here.
@@ -113,21 +105,15 @@ pub enum ExportError {
         "the exported function differs from the model: inputs {inputs:?} give {found} instead of {expected} (allowed difference {tolerance:e}); nothing was written"
     )]
     Differs {
-        /// Raw inputs of the worst sample.
         inputs: Vec<f32>,
-        /// What the GPU answered.
         found: f32,
-        /// What the model answers in 64 bits.
         expected: f64,
-        /// Allowed difference there.
         tolerance: f64,
     },
     /// The file could not be written.
     #[error("cannot write {path}: {source}")]
     Write {
-        /// The file.
         path: PathBuf,
-        /// The reason.
         source: std::io::Error,
     },
 }

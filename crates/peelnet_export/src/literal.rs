@@ -1,7 +1,5 @@
 //! Numbers as shader text.
 
-use std::fmt::Write as _;
-
 /// The shortest decimal text that reads back to the same bits, as a WGSL `f32` literal without suffix.
 pub(crate) fn float(x: f32) -> String {
     ryu::Buffer::new().format_finite(x).to_owned()
@@ -9,18 +7,8 @@ pub(crate) fn float(x: f32) -> String {
 
 /// `vec4f(a, b, c, d)`, padded with zeros.
 pub(crate) fn vec4(values: &[f32]) -> String {
-    let mut text = String::from("vec4f(");
-    for k in 0..4 {
-        let separator = if k == 0 { "" } else { ", " };
-        // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "{separator}{}",
-            float(values.get(k).copied().unwrap_or(0.0))
-        );
-    }
-    text.push(')');
-    text
+    let value = |k: usize| float(values.get(k).copied().unwrap_or(0.0));
+    format!("vec4f({})", [0, 1, 2, 3].map(value).join(", "))
 }
 
 /// A name that no translator renames: naga changes those that end in a digit.

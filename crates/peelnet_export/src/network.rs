@@ -9,7 +9,6 @@ use peelnet_core::{
     mlp::{Activation, Layer},
 };
 use peelnet_model::{BOUNDS, Input, Inputs, Model, Output};
-use std::fmt::Write as _;
 
 /// The exported function's name.
 pub(crate) const fn function_name(output: Output) -> &'static str {
@@ -44,21 +43,20 @@ pub(crate) fn call(model: &Model) -> String {
     for shared in about.iter().filter_map(|about| about.shared) {
         if !written.contains(&shared.name) {
             written.push(shared.name);
-            // Writing to a string cannot fail.
-            let _ = writeln!(t, "    let {} = {};", shared.name, shared.wgsl);
+            t += &format!("    let {} = {};\n", shared.name, shared.wgsl);
         }
     }
     let values: Vec<&str> = about.iter().map(|about| about.wgsl).collect();
-    let _ = writeln!(
-        t,
-        "    return {function}(\n        {});\n}}",
-        values.join(", ")
-    );
-    t
+    let values = values.join(", ");
+    t + &format!("    return {function}(\n        {values});\n}}\n")
 }
 
 const fn kind(output: Output) -> &'static str {
     if output.count() == 1 { "f32" } else { "vec3f" }
+}
+
+fn join(inputs: &[Input], each: impl Fn(&Input) -> String) -> String {
+    inputs.iter().map(each).collect::<Vec<_>>().join(", ")
 }
 
 /// The network as straight-line code: the function that the model's inputs go to, and for shares of absorbance the share
@@ -66,75 +64,51 @@ const fn kind(output: Output) -> &'static str {
 pub(crate) fn weight_function(model: &Model, precision: Precision) -> String {
     let inputs = &model.meta.inputs;
     let output = model.meta.output;
-    let list = |each: &dyn Fn(&Input) -> String| -> String {
-        let all: Vec<String> = inputs.iter().map(each).collect();
-        all.join(", ")
+    let parameters = join(inputs, |i| format!("{}: f32", identifier(&i.name)));
+    let (kind, name) = (kind(output), function_name(output));
+    let clamped = |value: &str, low: f32, high: f32| {
+        format!("clamp({value}, {}, {})", float(low), float(high))
     };
-    let parameters = list(&|i| format!("{}: f32", identifier(&i.name)));
-    let kind = kind(output);
-    let name = function_name(output);
-    let (low, high) = output.range();
-    let (low, high) = (float(low), float(high));
-    let mut t = String::new();
-    // Writing to a string cannot fail.
-    let _ = match output {
-        Output::Transmittance | Output::Color => {
-            let _ = writeln!(t, "fn {name}({parameters}) -> {kind} {{");
-            let last = network(&mut t, model, true, precision);
-            let answer = if output.count() == 1 {
-                format!("clamp({last}_a, {low}, {high})")
-            } else {
-                format!("clamp({last}_a.xyz, vec3f({low}), vec3f({high}))")
-            };
-            writeln!(t, "    return {answer};\n}}")
-        }
-        Output::AnchoredShare | Output::AnchoredShareSeparateEnds | Output::BoundedShare => {
-            let bounded = output == Output::BoundedShare;
-            let share = if bounded {
-                "Where between its bounds the share of the absorbance lies that is in front"
-            } else {
-                "The share of the rest's absorbance that lies in front"
-            };
-            let _ = writeln!(
-                t,
-                "// {share}, for inputs as peelnet_network evaluates them.\nfn peelnet_share({parameters}) -> {kind} {{"
-            );
-            let last = network(&mut t, model, false, precision);
-            let _ = writeln!(t, "    return {last}_a;\n}}\n");
-            let _ = writeln!(
-                t,
-                "// Its transmittance, for any finite inputs.\nfn {name}({parameters}) -> {kind} {{"
-            );
-            let limited = list(&|i| {
-                let [low, high] = limits(i, INPUT_LIMIT);
-                format!(
-                    "clamp({}, {}, {})",
-                    identifier(&i.name),
-                    float(low),
-                    float(high)
-                )
-            });
-            let root = format!(
-                "clamp({}, 0.0, {})",
-                identifier(&inputs[0].name),
-                float(ROOT_ABSORBANCE_LIMIT)
-            );
-            let _ = writeln!(t, "    let root = {root};");
-            let _ = writeln!(t, "    let share = peelnet_share(\n        {limited});");
-            let front = if bounded {
-                let [low, high] = BOUNDS.map(|k| identifier(&inputs[k].name));
-                let _ = writeln!(
-                    t,
-                    "    let bounds = clamp(vec2f({low}, {high}), vec2f(0.0), vec2f(1.0));"
-                );
-                "mix(bounds.x, bounds.y, share)"
-            } else {
-                "share"
-            };
-            writeln!(t, "    return exp(-root * root * {front});\n}}")
-        }
-    };
-    t
+    let (lines, last) = network(model, !output.is_share(), precision);
+    if !output.is_share() {
+        let (low, high) = output.range();
+        let answer = if output.count() == 1 {
+            clamped(&format!("{last}_a"), low, high)
+        } else {
+            let (low, high) = (float(low), float(high));
+            format!("clamp({last}_a.xyz, vec3f({low}), vec3f({high}))")
+        };
+        return format!("fn {name}({parameters}) -> {kind} {{\n{lines}    return {answer};\n}}\n");
+    }
+    let mut what = "The share of the rest's absorbance that lies in front";
+    let (mut bounds, mut front) = (String::new(), "share");
+    if output == Output::BoundedShare {
+        what = "Where between its bounds the share of the absorbance lies that is in front";
+        let [low, high] = BOUNDS.map(|k| identifier(&inputs[k].name));
+        let pair = format!("clamp(vec2f({low}, {high}), vec2f(0.0), vec2f(1.0))");
+        bounds = format!("    let bounds = {pair};\n");
+        front = "mix(bounds.x, bounds.y, share)";
+    }
+    let limited = join(inputs, |i| {
+        let [low, high] = limits(i, INPUT_LIMIT);
+        clamped(&identifier(&i.name), low, high)
+    });
+    let root = clamped(&identifier(&inputs[0].name), 0.0, ROOT_ABSORBANCE_LIMIT);
+    format!(
+        "// {what}, for inputs as peelnet_network evaluates them.
+fn peelnet_share({parameters}) -> {kind} {{
+{lines}    return {last}_a;
+}}
+
+// Its transmittance, for any finite inputs.
+fn {name}({parameters}) -> {kind} {{
+    let root = {root};
+    let share = peelnet_share(
+        {limited});
+{bounds}    return exp(-root * root * {front});
+}}
+"
+    )
 }
 
 /// Normalised inputs of layers in 16 bits: twice what data have, and far from where half floats become infinite.
@@ -146,92 +120,64 @@ fn limits(input: &Input, limit: f32) -> [f32; 2] {
     [input.offset - reach, input.offset + reach]
 }
 
-/// The lines from the raw inputs to the last layer; returns that layer's name.
+/// The lines from the raw inputs to the last layer, and that layer's name.
 ///
 /// With limits the inputs are normalised as the model does it; without, they are known to be small (see
 /// `peelnet_network`), and the first layer takes the normalisation in.
 ///
 /// In 16 bits: all layers but the last one, whose sum of many terms is what is exponentiated. Their inputs are normalised in 32 bits and
 /// limited closer, so that no sum becomes infinite.
-fn network(t: &mut String, model: &Model, limited: bool, precision: Precision) -> String {
+fn network(model: &Model, limited: bool, precision: Precision) -> (String, String) {
     let inputs = &model.meta.inputs;
     let halves = precision == Precision::F16 && model.mlp.layers.len() > 1;
     let limited = limited || halves;
-    let limits = |i: &Input| limits(i, if halves { HALF_LIMIT } else { INPUT_LIMIT });
+    let limit = if halves { HALF_LIMIT } else { INPUT_LIMIT };
+    let mut t = String::new();
     if limited {
-        t.push_str("    // The limits never bind on real data and keep everything finite.\n");
+        t += "    // The limits never bind on real data and keep everything finite.\n";
     }
     for (c, here) in inputs.chunks(4).enumerate() {
-        let names: Vec<_> = (0..4)
-            .map(|k| {
-                here.get(k)
-                    .map_or("0.0".to_owned(), |i| identifier(&i.name))
-            })
-            .collect();
+        let mut names: Vec<_> = here.iter().map(|i| identifier(&i.name)).collect();
+        names.resize(4, "0.0".to_owned());
         let column = |value: &dyn Fn(&Input) -> f32| -> String {
-            let values: Vec<f32> = here.iter().map(value).collect();
-            vec4(&values)
+            vec4(&here.iter().map(value).collect::<Vec<_>>())
         };
-        let raw = format!("vec4f({})", names.join(", "));
-        let _ = if halves {
-            let (low, high) = (column(&|i| limits(i)[0]), column(&|i| limits(i)[1]));
+        let mut value = format!("vec4f({})", names.join(", "));
+        if limited {
+            let low = column(&|i| limits(i, limit)[0]);
+            let high = column(&|i| limits(i, limit)[1]);
             let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
-            writeln!(
-                t,
-                "    let {} = vec4h((clamp({raw}, {low}, {high}) - {offset}) * {scale});",
-                part("input", c)
-            )
-        } else if limited {
-            let (low, high) = (column(&|i| limits(i)[0]), column(&|i| limits(i)[1]));
-            let (offset, scale) = (column(&|i| i.offset), column(&|i| i.scale));
-            writeln!(
-                t,
-                "    let {} = (clamp({raw}, {low}, {high}) - {offset}) * {scale};",
-                part("input", c)
-            )
-        } else {
-            writeln!(t, "    let {} = {raw};", part("input", c))
-        };
+            value = format!("(clamp({value}, {low}, {high}) - {offset}) * {scale}");
+        }
+        if halves {
+            value = format!("vec4h({value})");
+        }
+        t += &format!("    let {} = {value};\n", part("input", c));
     }
     let last = model.mlp.layers.len() - 1;
     let mut before = "input".to_owned();
     for (l, layer) in model.mlp.layers.iter().enumerate() {
-        let activation = if l == last {
-            model.mlp.output
-        } else {
-            model.mlp.hidden
-        };
+        let (hidden, output) = (model.mlp.hidden, model.mlp.output);
+        let activation = if l == last { output } else { hidden };
         let name = format!("layer_{}", letters(l));
-        let begin = t.len();
-        if l == 0 && !limited {
-            layer_text(
-                t,
-                &for_raw_inputs(layer, inputs),
-                &before,
-                &name,
-                activation,
-            );
+        let mut text = if l == 0 && !limited {
+            layer_text(&for_raw_inputs(layer, inputs), &before, &name, activation)
         } else {
-            layer_text(t, layer, &before, &name, activation);
-        }
-        if halves {
-            let text = t.split_off(begin);
-            if l == last {
-                // Back to 32 bits.
-                let parts = (0..layer.inputs.div_ceil(4)).map(|c| part(&before, c));
-                let whole = |text: String, part| text.replace(&part, &format!("vec4f({part})"));
-                t.push_str(&parts.fold(text, whole));
-            } else {
-                t.push_str(
-                    &text
-                        .replace("vec4f(", "vec4h(")
-                        .replace("mat4x4f(", "mat4x4h("),
-                );
+            layer_text(layer, &before, &name, activation)
+        };
+        if halves && l == last {
+            // Back to 32 bits.
+            for part in (0..layer.inputs.div_ceil(4)).map(|c| part(&before, c)) {
+                text = text.replace(&part, &format!("vec4f({part})"));
             }
+        } else if halves {
+            text = text.replace("vec4f(", "vec4h(");
+            text = text.replace("mat4x4f(", "mat4x4h(");
         }
+        t += &text;
         before = name;
     }
-    before
+    (t, before)
 }
 
 /// A first layer that normalises its inputs itself: `W s (x − o) + c = (W s) x + (c − W s o)`.
@@ -259,61 +205,44 @@ fn part(layer: &str, k: usize) -> String {
 }
 
 /// One layer: `name_a …` from `before_a …`, four outputs at a time, or a single one as a number.
-fn layer_text(t: &mut String, layer: &Layer, before: &str, name: &str, activation: Activation) {
-    if layer.outputs == 1 {
-        let mut sum = float(layer.bias[0]);
-        for (c, weights) in layer.weights.chunks(4).enumerate() {
-            let before = part(before, c);
-            let _ = match weights {
-                [single] => write!(sum, "\n        + {} * {before}.x", float(*single)),
-                _ => write!(sum, "\n        + dot({}, {before})", vec4(weights)),
-            };
-        }
-        let _ = writeln!(
-            t,
-            "    let {name}_a = {};",
-            activated(&sum, activation, float)
-        );
-        return;
-    }
-    for row in 0..layer.outputs.div_ceil(4) {
-        let mut sum = vec4(&layer.bias[row * 4..layer.outputs.min(row * 4 + 4)]);
+fn layer_text(layer: &Layer, before: &str, name: &str, activation: Activation) -> String {
+    let weight = |r: usize, c: usize| {
+        let row = layer.weights.chunks(layer.inputs).nth(r);
+        row.and_then(|row| row.get(c)).copied().unwrap_or(0.0)
+    };
+    let is_single = layer.outputs == 1;
+    let constant = |x| match is_single {
+        true => float(x),
+        false => format!("vec4f({})", float(x)),
+    };
+    let mut t = String::new();
+    for (row, bias) in layer.bias.chunks(4).enumerate() {
+        let mut sum = if is_single {
+            float(bias[0])
+        } else {
+            vec4(bias)
+        };
         for column in 0..layer.inputs.div_ceil(4) {
-            let columns: Vec<_> = (column * 4..column * 4 + 4)
-                .map(|c| {
-                    let weight = |r: usize| {
-                        let inside = r < layer.outputs && c < layer.inputs;
-                        inside.then(|| layer.weights[r * layer.inputs + c])
-                    };
-                    let values = [0, 1, 2, 3].map(|r| weight(row * 4 + r).unwrap_or(0.0));
-                    vec4(&values)
-                })
-                .collect();
+            let columns = [0, 1, 2, 3].map(|c| {
+                let values = [0, 1, 2, 3].map(|r| weight(row * 4 + r, column * 4 + c));
+                vec4(&values)
+            });
+            let weights = [0, 1, 2, 3].map(|c| weight(0, column * 4 + c));
+            let before = part(before, column);
             // A single input left over needs no matrix.
-            let _ = if column * 4 + 1 == layer.inputs {
-                write!(
-                    sum,
-                    "\n        + {} * {}.x",
-                    columns[0],
-                    part(before, column)
-                )
-            } else {
-                write!(
-                    sum,
-                    "\n        + mat4x4f({}) * {}",
-                    columns.join(", "),
-                    part(before, column)
-                )
+            let is_left_over = column * 4 + 1 == layer.inputs;
+            let product = match (is_single, is_left_over) {
+                (true, true) => format!("{} * {before}.x", float(weights[0])),
+                (true, false) => format!("dot({}, {before})", vec4(&weights)),
+                (false, true) => format!("{} * {before}.x", columns[0]),
+                (false, false) => format!("mat4x4f({}) * {before}", columns.join(", ")),
             };
+            sum += &format!("\n        + {product}");
         }
-        let splat = |x| format!("vec4f({})", float(x));
-        let _ = writeln!(
-            t,
-            "    let {} = {};",
-            part(name, row),
-            activated(&sum, activation, splat)
-        );
+        let value = activated(&sum, activation, constant);
+        t += &format!("    let {} = {value};\n", part(name, row));
     }
+    t
 }
 
 /// An activation's text; `constant` writes a number in the sum's type.

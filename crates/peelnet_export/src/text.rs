@@ -12,6 +12,9 @@ use peelnet_model::{Inputs, Model, Output, Recipe};
 /// The directive that a text in 16 bits begins with, behind its header.
 const ENABLE_HALVES: &str = "enable f16;\n";
 
+/// Random inputs of a verification, drawn evenly from the range that training saw.
+pub(crate) const RANDOM: usize = 4096;
+
 /// Whether a WGSL text computes in 16 bits.
 pub(crate) fn has_halves(wgsl: &str) -> bool {
     wgsl.lines().any(|line| line == ENABLE_HALVES.trim_end())
@@ -29,11 +32,11 @@ pub fn multiply_adds(mlp: &Mlp) -> usize {
 /// # Errors
 /// A model that does not hold together, or whose output has no shader function.
 pub fn text(model: &Model, options: &Options) -> Result<String, ExportError> {
-    let dialect = options.language.dialect();
-    if options.precision == Precision::F16 && !dialect.has_halves() {
-        return Err(ExportError::NoHalves(dialect.name()));
+    let language = options.language;
+    if options.precision == Precision::F16 && !language.spelling().has_halves {
+        return Err(ExportError::NoHalves(language.name()));
     }
-    Ok(header(model, options) + &dialect.translate(&code(model, options.precision)?)?)
+    Ok(header(model, options) + &language.translate(&code(model, options.precision)?)?)
 }
 
 /// [`text()`] in WGSL, with which the renderer draws.
@@ -64,32 +67,30 @@ pub(crate) fn code(model: &Model, precision: Precision) -> Result<String, Export
 
 /// The shader modules that surround a network.
 fn modules(recipe: Recipe) -> Vec<&'static str> {
-    let mut modules = match (recipe.inputs, recipe.output) {
-        (Inputs::Row(_), _) => vec!["learned::thesis", "learned::composite"],
-        (Inputs::Moments(_), _) => vec![
+    let mut modules = match recipe.inputs {
+        Inputs::Row(_) => vec!["learned::thesis", "learned::composite"],
+        Inputs::Moments(_) => vec![
             "learned::zeta",
             "learned::absorbance",
             "learned::nmt",
             "learned::resolve",
             "learned::composite",
         ],
-        (Inputs::Layers(_), _) => vec!["learned::dfaoit"],
-        (Inputs::Rest(_), output) => {
-            let mut modules = vec![
-                "learned::zeta",
-                "learned::absorbance",
-                "learned::levels",
-                "learned::anchored",
-                "learned::anchored_fragment",
-            ];
-            modules.extend(match output {
-                Output::AnchoredShareSeparateEnds => &["learned::resolve_separate_ends"][..],
-                _ => &["learned::resolve", "learned::composite"],
-            });
-            modules
-        }
-        (Inputs::Slabs(design, _), _) => peelnet_shaders::slab_modules(layout(&design).name()),
+        Inputs::Layers(_) => vec!["learned::dfaoit"],
+        Inputs::Rest(_) => vec![
+            "learned::zeta",
+            "learned::absorbance",
+            "learned::levels",
+            "learned::anchored",
+            "learned::anchored_fragment",
+        ],
+        Inputs::Slabs(design, _) => peelnet_shaders::slab_modules(layout(&design).name()),
     };
+    modules.extend(match recipe.output {
+        Output::AnchoredShareSeparateEnds => &["learned::resolve_separate_ends"][..],
+        Output::AnchoredShare => &["learned::resolve", "learned::composite"],
+        _ => &[],
+    });
     for about in recipe.inputs.about() {
         let module = about.shared.and_then(|shared| shared.module);
         modules.extend(module.filter(|module| !modules.contains(module)));

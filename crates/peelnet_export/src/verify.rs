@@ -1,23 +1,25 @@
-//! The exported text, run on the GPU, against the trainer's forward pass.
+//! The exported text, run on the GPU, against the trainer's forward pass, and written with its description if it agrees.
 
 use crate::{
-    ExportError, Precision,
+    ExportError, Language, Options, Precision,
+    json::json,
     language::parsed,
     network::function_name,
     self_test::SelfTest,
-    text::{code, has_halves},
+    text::{RANDOM, code, has_halves, text},
 };
 use peelnet_core::{
     random::Random,
     tolerance::{EXPORT_F16, EXPORT_F32},
 };
+use peelnet_files::STDOUT;
 use peelnet_gpu::{Gpu, bind::Bind, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
-use std::fmt;
-
-/// Random inputs, drawn evenly from the range that training saw.
-pub(crate) const RANDOM: usize = 4096;
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
 
 /// Inputs that nobody should pass and somebody will.
 const EXTREMES: [f32; 10] = [
@@ -81,20 +83,7 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
 ///
 /// # Errors
 /// [`ExportError::Differs`] with the worst input; a text that is not valid; a GPU that fails.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, ExportError> {
-    gpu.block_on(verify_async(gpu, model, wgsl))
-}
-
-/// [`verify()`] where nothing may block, as in a browser.
-///
-/// # Errors
-/// Those of [`verify()`].
-pub async fn verify_async(
-    gpu: &Gpu,
-    model: &Model,
-    wgsl: &str,
-) -> Result<Verification, ExportError> {
     let halves = has_halves(wgsl);
     if halves {
         let flag = wgpu::Features::SHADER_F16;
@@ -106,18 +95,14 @@ pub async fn verify_async(
         Precision::F32
     };
     let expected = declarations(&code(model, precision)?)?;
-    let found = declarations(wgsl)?;
+    let mut found = declarations(wgsl)?;
     if found != expected {
-        return Err(ExportError::Declares {
-            found: found
-                .into_iter()
-                .filter(|d| !expected.contains(d))
-                .collect::<Vec<_>>()
-                .join(", "),
-        });
+        found.retain(|declaration| !expected.contains(declaration));
+        let found = found.join(", ");
+        return Err(ExportError::Declares { found });
     }
     let samples = samples(model);
-    let outputs = evaluate_async(gpu, model, wgsl, &samples).await?;
+    let outputs = evaluate(gpu, model, wgsl, &samples)?;
     let mut result = Verification {
         samples: samples.len(),
         worst_absolute: 0.0,
@@ -163,25 +148,20 @@ pub async fn verify_async(
 /// Everything that a text declares, in order: nothing may come with the network, such as out of a name in its header.
 fn declarations(wgsl: &str) -> Result<Vec<String>, ExportError> {
     let (module, _) = parsed(wgsl)?;
-    let name = |name: &Option<String>| name.clone().unwrap_or_default();
-    let functions = module.functions.iter();
-    let functions = functions.map(|(_, f)| format!("fn {}", name(&f.name)));
-    let entries = module
-        .entry_points
-        .iter()
-        .map(|e| format!("entry {}", e.name));
+    let named = |kind: &str, name: &Option<String>| {
+        format!("{kind} {}", name.as_deref().unwrap_or_default())
+    };
+    let mut all: Vec<String> = Vec::new();
+    all.extend(module.functions.iter().map(|(_, f)| named("fn", &f.name)));
+    let entries = module.entry_points.iter();
+    all.extend(entries.map(|e| format!("entry {}", e.name)));
     let variables = module.global_variables.iter();
-    let variables = variables.map(|(_, v)| format!("var {}", name(&v.name)));
+    all.extend(variables.map(|(_, v)| named("var", &v.name)));
     let constants = module.constants.iter();
-    let constants = constants.map(|(_, c)| format!("const {}", name(&c.name)));
+    all.extend(constants.map(|(_, c)| named("const", &c.name)));
     let overrides = module.overrides.iter();
-    let overrides = overrides.map(|(_, o)| format!("override {}", name(&o.name)));
-    Ok(functions
-        .chain(entries)
-        .chain(variables)
-        .chain(constants)
-        .chain(overrides)
-        .collect())
+    all.extend(overrides.map(|(_, o)| named("override", &o.name)));
+    Ok(all)
 }
 
 fn samples(model: &Model) -> Vec<Vec<f32>> {
@@ -194,15 +174,10 @@ fn samples(model: &Model) -> Vec<Vec<f32>> {
     };
     all.extend([0.0, 0.5, 1.0].map(between));
     let mut random = Random::new(1, &[]);
-    for _ in 0..RANDOM {
-        let sample = model
-            .meta
-            .inputs
-            .iter()
-            .map(|i| random.between(i.min, i.max))
-            .collect();
-        all.push(sample);
-    }
+    all.extend((0..RANDOM).map(|_| {
+        let inputs = model.meta.inputs.iter();
+        inputs.map(|i| random.between(i.min, i.max)).collect()
+    }));
     for extreme in EXTREMES {
         all.push(vec![extreme; count]);
         for k in 0..count {
@@ -218,21 +193,7 @@ fn samples(model: &Model) -> Vec<Vec<f32>> {
 ///
 /// # Errors
 /// A text that does not link, or a GPU that fails.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn evaluate(
-    gpu: &Gpu,
-    model: &Model,
-    wgsl: &str,
-    samples: &[Vec<f32>],
-) -> Result<Vec<f32>, ExportError> {
-    gpu.block_on(evaluate_async(gpu, model, wgsl, samples))
-}
-
-/// [`evaluate`] where nothing may block, as in a browser.
-///
-/// # Errors
-/// Those of [`evaluate`].
-pub async fn evaluate_async(
     gpu: &Gpu,
     model: &Model,
     wgsl: &str,
@@ -284,86 +245,97 @@ pub async fn evaluate_async(
         &bound,
         (samples.len() as u32).div_ceil(64),
     );
-    Ok(gpu.read_async(&answers, 0..bytes).await?)
+    Ok(gpu.read(&answers, 0..bytes)?)
+}
+
+/// The description beside an exported text: its name with `json` instead of the last extension, `.es.glsl` being one. `None` of a text that
+/// goes to stdout.
+pub fn description_path(text: &Path) -> Option<PathBuf> {
+    let name = text.to_string_lossy();
+    let stem = name
+        .strip_suffix(".es.glsl")
+        .filter(|_| text.to_str().is_some());
+    let path = stem.map_or_else(
+        || text.with_extension("json"),
+        |s| format!("{s}.json").into(),
+    );
+    (text != Path::new(STDOUT)).then_some(path)
+}
+
+/// Exports a model, verifies the text on the GPU, and only then writes it, whole, and its description beside it.
+///
+/// # Errors
+/// A model without a shader function, a text that differs from the model, or a file that cannot be written.
+pub fn export(
+    gpu: &Gpu,
+    model: &Model,
+    path: &Path,
+    options: &Options,
+) -> Result<Verification, ExportError> {
+    let in_wgsl = Options {
+        language: Language::Wgsl,
+        ..*options
+    };
+    write_verified(gpu, model, path, options, &text(model, &in_wgsl)?)
+}
+
+/// Writes if the text computes what the model does.
+fn write_verified(
+    gpu: &Gpu,
+    model: &Model,
+    path: &Path,
+    options: &Options,
+    wgsl: &str,
+) -> Result<Verification, ExportError> {
+    let verification = verify(gpu, model, wgsl)?;
+    let description = json(model)?;
+    let beside = description_path(path).map(|path| (path, description));
+    let text = (path.to_owned(), text(model, options)?);
+    for (path, text) in [text].into_iter().chain(beside) {
+        peelnet_files::write_whole(&path, text.as_bytes())
+            .map_err(|source| ExportError::Write { path, source })?;
+    }
+    Ok(verification)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Language, Options, export, wgsl};
-    use peelnet_core::mlp::{Activation, Layer, Mlp};
+    use crate::wgsl;
+    use peelnet_core::mlp::{Layer, Mlp};
     use peelnet_gpu::AdapterRequest;
-    use peelnet_model::{DatasetRef, Input, Losses, Metadata, Recipe};
+    use peelnet_model::Recipe;
 
-    /// A random network of the thesis's recipe with these hidden layers.
-    fn model(hidden: &[usize], seed: u64) -> Model {
-        model_of(Recipe::THESIS, hidden, seed)
-    }
-
-    /// A random network of a recipe.
-    fn model_of(recipe: Recipe, hidden: &[usize], seed: u64) -> Model {
+    /// A random network of a recipe with these hidden layers, for inputs of small ranges.
+    fn model(recipe: Recipe, hidden: &[usize], seed: u64) -> Model {
         let mut stream = Random::new(seed, &[]);
         let mut random = move || stream.between(-1.0, 1.0);
-        let (output, activation) = (recipe.output, recipe.network.output_activation);
-        let names = recipe.input_names();
-        let mut sizes = vec![names.len()];
+        let mut model = Model::shipped(recipe).expect("ships");
+        let mut sizes = vec![model.mlp.inputs()];
         sizes.extend(hidden);
-        sizes.push(output.count());
-        let mut layers: Vec<_> = sizes
-            .windows(2)
-            .map(|s| Layer {
-                inputs: s[0],
-                outputs: s[1],
-                weights: (0..s[0] * s[1]).map(|_| random() / s[0] as f32).collect(),
-                bias: (0..s[1]).map(|_| random()).collect(),
-            })
-            .collect();
+        sizes.push(model.mlp.outputs());
+        let layers = sizes.windows(2).map(|s| Layer {
+            inputs: s[0],
+            outputs: s[1],
+            weights: (0..s[0] * s[1]).map(|_| random() / s[0] as f32).collect(),
+            bias: (0..s[1]).map(|_| random()).collect(),
+        });
+        let mut layers: Vec<_> = layers.collect();
+        let ranges = [
+            (6.0, 0.5, 0.1, 12.0),
+            (3.0, 0.3, 0.0, 9.0),
+            (8.0, 0.125, 1.0, 34.0),
+        ];
+        for (i, range) in model.meta.inputs.iter_mut().zip(ranges.iter().cycle()) {
+            (i.offset, i.scale, i.min, i.max) = *range;
+        }
         // In the middle of the guarded range, so that the guard does not hide a difference.
         if let Some(last) = layers.last_mut() {
             last.bias[0] = 0.5;
             last.weights.iter_mut().for_each(|w| *w *= 0.2);
         }
-        let inputs = names
-            .iter()
-            .zip(
-                [
-                    (6.0, 0.5, 0.1, 12.0),
-                    (3.0, 0.3, 0.0, 9.0),
-                    (8.0, 0.125, 1.0, 34.0),
-                ]
-                .into_iter()
-                .cycle(),
-            )
-            .map(|(name, (offset, scale, min, max))| Input {
-                name: (*name).to_owned(),
-                unit: "1".into(),
-                offset,
-                scale,
-                min,
-                max,
-            })
-            .collect();
-        Model {
-            mlp: Mlp::new(layers, Activation::Relu, activation).expect("shapes fit"),
-            meta: Metadata {
-                format_version: peelnet_model::FORMAT_VERSION,
-                tool_version: "test".into(),
-                recipe,
-                inputs,
-                output,
-                seed: 0,
-                dataset: Some(DatasetRef {
-                    hash: "0".into(),
-                    rows: 1,
-                    set_aside: Vec::new(),
-                    scenes: vec!["sixteen".into()],
-                }),
-                epochs: 1,
-                losses: Losses::default(),
-                held_out: std::collections::BTreeMap::new(),
-                config: serde_json::Value::Null,
-            },
-        }
+        model.mlp = Mlp::new(layers, model.mlp.hidden, model.mlp.output).expect("shapes fit");
+        model
     }
 
     fn gpu() -> Gpu {
@@ -374,8 +346,8 @@ mod tests {
     fn exports_agree_for_every_topology() {
         let gpu = gpu();
         let topologies = [&[10, 8][..], &[8], &[], &[32, 16], &[5, 3, 2]];
-        let thesis = topologies.map(|hidden| model(hidden, 7));
-        let recipes = Recipe::ALL.map(|recipe| model_of(recipe, &[8, 8], 11));
+        let thesis = topologies.map(|hidden| model(Recipe::THESIS, hidden, 7));
+        let recipes = Recipe::ALL.map(|recipe| model(recipe, &[8, 8], 11));
         for model in thesis.into_iter().chain(recipes) {
             let text = wgsl(&model).expect("exports");
             assert_eq!(text, wgsl(&model).expect("exports"));
@@ -390,25 +362,22 @@ mod tests {
     #[test]
     fn a_changed_weight_is_found_and_nothing_is_written() {
         let gpu = gpu();
-        let model = model(&[10, 8], 3);
+        let model = model(Recipe::THESIS, &[10, 8], 3);
         let text = wgsl(&model).expect("exports");
         let folder = tempfile::tempdir().expect("temporary folder");
         let path = folder.path().join("w.wgsl");
         let mut other = model.clone();
         other.mlp.layers[1].weights[3] += 0.01;
-        assert!(matches!(
-            crate::write::write_verified(&gpu, &other, &path, &Options::default(), &text),
-            Err(ExportError::Differs { .. })
-        ));
+        let options = Options::default();
+        let written = write_verified(&gpu, &other, &path, &options, &text);
+        assert!(matches!(written, Err(ExportError::Differs { .. })));
         assert!(!path.exists());
-        export(&gpu, &model, &path, &Options::default()).expect("exports");
+        export(&gpu, &model, &path, &options).expect("exports");
         assert_eq!(std::fs::read_to_string(&path).expect("reads"), text);
         // A file stands where a folder would have to be.
         let missing = path.join("w.wgsl");
-        assert!(matches!(
-            export(&gpu, &model, &missing, &Options::default()),
-            Err(ExportError::Write { .. })
-        ));
+        let written = export(&gpu, &model, &missing, &options);
+        assert!(matches!(written, Err(ExportError::Write { .. })));
     }
 
     /// Half floats are written where they hold their bound, in languages that have them; a device without them says so.
@@ -417,27 +386,26 @@ mod tests {
         let gpu = gpu();
         let of = |model: &Model, language| {
             let precision = Precision::F16;
-            crate::text(
-                model,
-                &Options {
-                    language,
-                    precision,
-                },
-            )
+            let options = Options {
+                language,
+                precision,
+            };
+            text(model, &options)
         };
-        let model = model(&[8], 3);
-        let text = of(&model, Language::Wgsl).expect("exports");
-        assert!(text.contains("vec4h("), "{text}");
-        for language in [Language::Hlsl, Language::Msl] {
+        let model = model(Recipe::THESIS, &[8], 3);
+        for (language, word) in [
+            (Language::Wgsl, "vec4h("),
+            (Language::Hlsl, "half"),
+            (Language::Msl, "half"),
+        ] {
             let text = of(&model, language).expect("exports");
-            assert!(text.contains("half"), "{text}");
+            assert!(text.contains(word), "{text}");
         }
         for language in [Language::Glsl, Language::GlslEs] {
-            assert!(matches!(
-                of(&model, language),
-                Err(ExportError::NoHalves(_))
-            ));
+            let refused = of(&model, language);
+            assert!(matches!(refused, Err(ExportError::NoHalves(_))));
         }
+        let text = of(&model, Language::Wgsl).expect("exports");
         if !gpu.has(wgpu::Features::SHADER_F16) {
             let error = verify(&gpu, &model, &text).expect_err("the device lacks them");
             assert!(error.to_string().contains("shader-f16"), "{error}");
@@ -463,7 +431,7 @@ mod tests {
     /// The header's vectors are what the model answers, to the bit.
     #[test]
     fn the_header_says_what_a_user_needs() {
-        let model = model(&[10, 8], 5);
+        let model = model(Recipe::THESIS, &[10, 8], 5);
         let text = wgsl(&model).expect("exports");
         for word in [
             "3-10-8-1",
@@ -474,17 +442,13 @@ mod tests {
         ] {
             assert!(text.contains(word), "{word} in {text}");
         }
-        let tests: Vec<_> = text
-            .lines()
-            .filter(|l| l.starts_with("// peelnet_weight("))
-            .collect();
+        let tests = text.lines();
+        let tests = tests.filter_map(|l| l.strip_prefix("// peelnet_weight("));
+        let tests: Vec<_> = tests.filter_map(|l| l.split_once(") = ")).collect();
         assert_eq!(tests.len(), 3);
-        for line in tests {
-            let (call, answer) = line.rsplit_once(" = ").expect("a vector");
-            let inputs: Vec<f32> = call[call.find('(').expect("open") + 1..call.len() - 1]
-                .split(", ")
-                .map(|x| x.parse().expect("a number"))
-                .collect();
+        for (inputs, answer) in tests {
+            let inputs = inputs.split(", ").map(|x| x.parse().expect("a number"));
+            let inputs: Vec<f32> = inputs.collect();
             let answer: f32 = answer.parse().expect("a number");
             assert_eq!(answer.to_bits(), model.shader_output(&inputs)[0].to_bits());
         }

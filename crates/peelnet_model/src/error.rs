@@ -1,7 +1,7 @@
 //! What can be wrong with a model file.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use peelnet_core::mlp::ShapeError;
 
@@ -9,32 +9,35 @@ use crate::metadata::{FORMAT_VERSION, Output};
 use crate::recipe::Recipe;
 
 /// An error of loading or saving a model.
+#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum ModelError {
     /// The file system refused.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
-        /// The file.
         path: PathBuf,
-        /// What was tried.
         action: &'static str,
-        /// Why it failed.
         source: io::Error,
     },
     /// The file, or the model that was to be saved, is not a usable model.
     #[error("{}: {problem}", path.display())]
-    Invalid {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: Problem,
-    },
+    Invalid { path: PathBuf, problem: Problem },
     /// A recipe whose network does not ship.
     #[error("no network ships for recipe {0}; train one and name its file")]
     NotShipped(Recipe),
 }
 
+impl ModelError {
+    pub(crate) fn invalid(path: &Path) -> impl FnOnce(Problem) -> Self {
+        |problem| Self::Invalid {
+            path: path.to_owned(),
+            problem,
+        }
+    }
+}
+
 /// What is wrong with a model.
+#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
     /// Not a safetensors file, or a truncated one.
@@ -58,11 +61,8 @@ pub enum Problem {
     /// A metadata number that no arithmetic can use.
     #[error("metadata: {field} is {value}, it must be {allowed}; train again")]
     Value {
-        /// Where it stands.
         field: String,
-        /// The number as text.
         value: String,
-        /// What is allowed.
         allowed: &'static str,
     },
     /// A tensor is missing.
@@ -78,11 +78,8 @@ pub enum Problem {
     /// A tensor of the wrong type or shape.
     #[error("tensor {name:?} is {found}, expected {expected}")]
     Tensor {
-        /// The tensor.
         name: String,
-        /// Type and shape found.
         found: String,
-        /// Type and shape expected.
         expected: String,
     },
     /// Layers that do not fit one another.
@@ -93,47 +90,28 @@ pub enum Problem {
         "tensor {name:?}: value {index} is {value}, all weights must be finite; the training diverged, train again with a lower rate"
     )]
     NotFinite {
-        /// The tensor.
         name: String,
-        /// Position of the value.
         index: usize,
-        /// The value as text.
         value: String,
     },
     /// The network does not take the inputs that the metadata lists.
     #[error("the network takes {network} inputs but the metadata lists {listed}")]
-    InputCount {
-        /// Inputs of the first layer.
-        network: usize,
-        /// Entries of the metadata.
-        listed: usize,
-    },
+    InputCount { network: usize, listed: usize },
     /// The model was made for other features.
     #[error("made for other features: recipe {recipe} takes {expected}, the model lists ({}); train again with this version", found.join(", "))]
     Features {
-        /// The model's recipe.
         recipe: Recipe,
-        /// The inputs it should have.
         expected: String,
-        /// The inputs it lists.
         found: Vec<String>,
     },
     /// An output that the recipe does not have.
     #[error("recipe {recipe} does not predict {output}")]
-    OutputKind {
-        /// The model's recipe.
-        recipe: Recipe,
-        /// The output it lists.
-        output: Output,
-    },
+    OutputKind { recipe: Recipe, output: Output },
     /// The network does not have as many outputs as the output parametrisation.
     #[error("the network gives {network} outputs where {output} has {expected}")]
     OutputCount {
-        /// Outputs of the last layer.
         network: usize,
-        /// The output parametrisation.
         output: Output,
-        /// Its number of values.
         expected: usize,
     },
 }

@@ -1,16 +1,14 @@
 //! The model as safetensors bytes, and files of them.
 
 use std::collections::HashMap;
-use std::path::Path;
 
 use peelnet_core::mlp::{Activation, Layer, Mlp};
 use peelnet_files::Kind;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
-use crate::error::{ModelError, Problem};
+use crate::error::Problem;
 use crate::metadata::{FORMAT_VERSION, Metadata};
 use crate::model::Model;
 
@@ -65,12 +63,10 @@ pub(crate) fn encode(model: &Model) -> Result<Vec<u8>, Problem> {
         tensors.push((weight(i), shape, to_bytes(&layer.weights)));
         tensors.push((bias(i), vec![layer.outputs], to_bytes(&layer.bias)));
     }
-    let views = tensors
-        .iter()
-        .map(|(name, shape, bytes)| {
-            TensorView::new(Dtype::F32, shape.clone(), bytes).map(|view| (name.as_str(), view))
-        })
-        .collect::<Result<Vec<_>, _>>();
+    let views = tensors.iter().map(|(name, shape, bytes)| {
+        TensorView::new(Dtype::F32, shape.clone(), bytes).map(|view| (name.as_str(), view))
+    });
+    let views = views.collect::<Result<Vec<_>, _>>();
     let metadata = HashMap::from([(KEY.to_owned(), json)]);
     views
         .and_then(|views| safetensors::serialize(views, Some(metadata)))
@@ -170,19 +166,15 @@ fn read_tensor(
         return Err(Problem::Tensor {
             name: name.to_owned(),
             found: format!("{:?} {shape:?}", tensor.dtype()),
-            expected: if dimensions == 2 {
-                "F32 [outputs, inputs]".to_owned()
-            } else {
-                "F32 [outputs]".to_owned()
+            expected: match dimensions {
+                2 => "F32 [outputs, inputs]".to_owned(),
+                _ => "F32 [outputs]".to_owned(),
             },
         });
     }
-    let values = tensor
-        .data()
-        .chunks_exact(4)
-        .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect();
-    Ok((shape, values))
+    let (words, _) = tensor.data().as_chunks();
+    let values = words.iter().map(|&word| f32::from_le_bytes(word));
+    Ok((shape, values.collect()))
 }
 
 fn weight(layer: usize) -> String {
@@ -195,31 +187,4 @@ fn bias(layer: usize) -> String {
 
 fn to_bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
-}
-
-/// Hexadecimal sha256.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
-    peelnet_files::hex(&Sha256::digest(bytes))
-}
-
-pub(crate) fn load(path: &Path) -> Result<Model, ModelError> {
-    let bytes = peelnet_files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
-        path: path.to_owned(),
-        action: "read the model",
-        source,
-    })?;
-    Model::from_bytes(&bytes, path)
-}
-
-pub(crate) fn save(model: &Model, path: &Path) -> Result<(), ModelError> {
-    let bytes = encode(model).map_err(|problem| ModelError::Invalid {
-        path: path.to_owned(),
-        problem,
-    })?;
-    let io = |source| ModelError::Io {
-        path: path.to_owned(),
-        action: "write the model",
-        source,
-    };
-    peelnet_files::write_whole(path, &bytes).map_err(io)
 }

@@ -197,36 +197,33 @@ impl Metadata {
         if self.format_version != FORMAT_VERSION {
             return Err(Problem::Version(self.format_version.into()));
         }
-        let finite = |field: String, value: f64| {
-            if value.is_finite() {
-                return Ok(());
-            }
-            Err(Problem::Value {
+        let require = |is_good: bool, field: String, value: &dyn fmt::Display, allowed| {
+            let value = value.to_string();
+            let problem = Problem::Value {
                 field,
-                value: value.to_string(),
-                allowed: "a finite number",
-            })
+                value,
+                allowed,
+            };
+            if is_good { Ok(()) } else { Err(problem) }
+        };
+        let finite = |field: String, value: f64| {
+            require(value.is_finite(), field, &value, "a finite number")
         };
         for input in &self.inputs {
             let field = |name: &str| format!("{name} of input {:?}", input.name);
-            finite(field("offset"), input.offset.into())?;
-            finite(field("scale"), input.scale.into())?;
-            finite(field("min"), input.min.into())?;
-            finite(field("max"), input.max.into())?;
-            if input.scale == 0.0 {
-                return Err(Problem::Value {
-                    field: field("scale"),
-                    value: "0".to_owned(),
-                    allowed: "other than 0",
-                });
+            for (name, value) in [
+                ("offset", input.offset),
+                ("scale", input.scale),
+                ("min", input.min),
+                ("max", input.max),
+            ] {
+                finite(field(name), value.into())?;
             }
-            if input.min > input.max {
-                return Err(Problem::Value {
-                    field: field("min"),
-                    value: input.min.to_string(),
-                    allowed: "at most max",
-                });
-            }
+            let Input {
+                scale, min, max, ..
+            } = input;
+            require(*scale != 0.0, field("scale"), scale, "other than 0")?;
+            require(min <= max, field("min"), min, "at most max")?;
         }
         for (name, loss) in [
             ("train", self.losses.train),
@@ -238,26 +235,20 @@ impl Metadata {
         for (scene, &error) in &self.held_out {
             finite(format!("the held-out error of {scene:?}"), error)?;
         }
-        self.check_features()?;
+        let found: Vec<_> = self.inputs.iter().map(|i| i.name.clone()).collect();
+        let expected = self.recipe.input_names();
+        if found != expected {
+            return Err(Problem::Features {
+                recipe: self.recipe,
+                expected: format!("({})", expected.join(", ")),
+                found,
+            });
+        }
         if self.output != self.recipe.output {
             return Err(Problem::OutputKind {
                 recipe: self.recipe,
                 output: self.output,
             });
-        }
-        Ok(())
-    }
-
-    fn check_features(&self) -> Result<(), Problem> {
-        let found: Vec<&str> = self.inputs.iter().map(|i| i.name.as_str()).collect();
-        let wrong = |expected: String| Problem::Features {
-            recipe: self.recipe,
-            expected,
-            found: found.iter().map(|&n| n.to_owned()).collect(),
-        };
-        let expected = self.recipe.input_names();
-        if found != expected {
-            return Err(wrong(format!("({})", expected.join(", "))));
         }
         Ok(())
     }

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use peelnet_core::mlp::{Layer, Mlp};
+use sha2::{Digest, Sha256};
 
 use crate::error::{ModelError, Problem};
-use crate::file;
+use crate::file::{self, MAX_BYTES};
 use crate::metadata::Metadata;
 use crate::recipe::Recipe;
 
@@ -24,7 +25,13 @@ impl Model {
     /// # Errors
     /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
-        file::load(path.as_ref())
+        let path = path.as_ref();
+        let bytes = peelnet_files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
+            path: path.to_owned(),
+            action: "read the model",
+            source,
+        })?;
+        Self::from_bytes(&bytes, path)
     }
 
     /// The network that ships for a recipe.
@@ -50,10 +57,7 @@ impl Model {
     /// # Errors
     /// As [`Model::load`].
     pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self, ModelError> {
-        file::decode(bytes).map_err(|problem| ModelError::Invalid {
-            path: path.as_ref().to_owned(),
-            problem,
-        })
+        file::decode(bytes).map_err(ModelError::invalid(path.as_ref()))
     }
 
     /// Writes the model to a file, which holds the whole model afterwards or is as it was before.
@@ -61,7 +65,13 @@ impl Model {
     /// # Errors
     /// If [`Model::check`] refuses the model or the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ModelError> {
-        file::save(self, path.as_ref())
+        let path = path.as_ref();
+        let bytes = self.to_bytes().map_err(ModelError::invalid(path))?;
+        peelnet_files::write_whole(path, &bytes).map_err(|source| ModelError::Io {
+            path: path.to_owned(),
+            action: "write the model",
+            source,
+        })
     }
 
     /// The bytes of the model's file: the same for the same model.
@@ -77,7 +87,7 @@ impl Model {
     /// # Errors
     /// If [`Model::check`] refuses the model.
     pub fn hash(&self) -> Result<String, Problem> {
-        Ok(file::sha256(&self.to_bytes()?))
+        Ok(peelnet_files::hex(&Sha256::digest(self.to_bytes()?)))
     }
 
     /// Whether the model can be used: its layers fit one another, the metadata and the recipe, and all numbers are
@@ -123,38 +133,24 @@ impl Model {
     /// If the number of features is not that of the model's inputs.
     pub fn forward_raw(&self, raw_inputs: &[f32]) -> Vec<f32> {
         assert_eq!(raw_inputs.len(), self.meta.inputs.len(), "model inputs");
-        let normalised: Vec<f32> = self
-            .meta
-            .inputs
-            .iter()
-            .zip(raw_inputs)
-            .map(|(input, &raw)| input.normalise(raw))
-            .collect();
-        let mut outputs = self.mlp.forward(&normalised);
-        for value in &mut outputs {
-            *value = self.meta.output.guard(*value);
-        }
-        outputs
+        let inputs = self.meta.inputs.iter().zip(raw_inputs);
+        let normalised: Vec<f32> = inputs.map(|(i, &raw)| i.normalise(raw)).collect();
+        let outputs = self.mlp.forward(&normalised).into_iter();
+        outputs.map(|value| self.meta.output.guard(value)).collect()
     }
 
-    /// As [`Model::forward_raw`], in 64 bits: the judge of every other evaluation.
+    /// As [`Model::forward_raw`], in 64 bits: what every other evaluation is compared with.
     ///
     /// # Panics
     /// If the number of features is not that of the model's inputs.
     pub fn forward_raw_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
         assert_eq!(raw_inputs.len(), self.meta.inputs.len(), "model inputs");
-        let normalised: Vec<f64> = self
-            .meta
-            .inputs
-            .iter()
-            .zip(raw_inputs)
-            .map(|(input, &raw)| input.normalise_f64(raw))
-            .collect();
-        let mut outputs = self.mlp.forward(&normalised);
-        for value in &mut outputs {
-            *value = self.meta.output.guard_f64(*value);
-        }
+        let inputs = self.meta.inputs.iter().zip(raw_inputs);
+        let normalised: Vec<f64> = inputs.map(|(i, &raw)| i.normalise_f64(raw)).collect();
+        let outputs = self.mlp.forward(&normalised).into_iter();
         outputs
+            .map(|value| self.meta.output.guard_f64(value))
+            .collect()
     }
 
     /// What the exported function answers: [`Model::forward_raw`], made a transmittance where the network predicts a share

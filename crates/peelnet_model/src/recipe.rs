@@ -3,13 +3,7 @@
 //! What trains, exports, draws and documents networks reads these declarations. It distinguishes recipes by what their
 //! networks read ([`Inputs`]) and answer ([`Output`]), never by name. To add one, see `CONTRIBUTING.md`.
 
-use std::{
-    cmp::Ordering,
-    fmt,
-    hash::{Hash, Hasher},
-    ops::Deref,
-    str::FromStr,
-};
+use std::{fmt, ops::Deref, str::FromStr};
 
 use peelnet_core::{
     features::{About, FEATURES, Feature, Rest},
@@ -129,12 +123,8 @@ impl FromStr for PixelLoss {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|l| l.name() == name);
-        found.ok_or_else(|| {
-            format!(
-                "no such loss; there are {}",
-                Self::ALL.map(Self::name).join(", ")
-            )
-        })
+        let names = || Self::ALL.map(Self::name).join(", ");
+        found.ok_or_else(|| format!("no such loss; there are {}", names()))
     }
 }
 
@@ -192,6 +182,28 @@ const fn relu(hidden: &'static [usize], output_activation: Activation) -> Networ
     }
 }
 
+/// What the networks of shares have in common; the inputs are those of the anchored ones.
+const SHARES: Declaration = Declaration {
+    name: "",
+    method: "",
+    inputs: Inputs::Rest(&FEATURES),
+    output: Output::BoundedShare,
+    sums: SumPrecision::Half,
+    network: relu(&[12], Activation::Sigmoid),
+    budget: PIXELS,
+    loss: Some(PixelLoss::Image),
+};
+
+/// What the competitors' networks have in common.
+const COMPETITOR: Declaration = Declaration {
+    output: Output::Transmittance,
+    sums: SumPrecision::Exact,
+    network: relu(&[32, 16], Activation::Sigmoid),
+    budget: ROWS,
+    loss: None,
+    ..SHARES
+};
+
 impl Recipe {
     /// Papakostas 2022, with the published network and settings.
     pub const THESIS: Self = Self(&Declaration {
@@ -219,11 +231,8 @@ impl Recipe {
         name: "small",
         method: "deep-small",
         inputs: Inputs::Slabs(Design::SMALL, &slabs::FIVE),
-        output: Output::BoundedShare,
-        sums: SumPrecision::Half,
         network: relu(&[], Activation::Sigmoid),
-        budget: PIXELS,
-        loss: Some(PixelLoss::Image),
+        ..SHARES
     });
 
     /// Three slabs in 34 bytes a pixel: the default.
@@ -231,11 +240,8 @@ impl Recipe {
         name: "medium",
         method: "deep-medium",
         inputs: Inputs::Slabs(Design::MEDIUM, &slabs::NINE),
-        output: Output::BoundedShare,
-        sums: SumPrecision::Half,
         network: relu(&[13], Activation::Sigmoid),
-        budget: PIXELS,
-        loss: Some(PixelLoss::Image),
+        ..SHARES
     });
 
     /// Four slabs in 42 bytes a pixel: the best image.
@@ -243,35 +249,24 @@ impl Recipe {
         name: "large",
         method: "deep-large",
         inputs: Inputs::Slabs(Design::LARGE, &slabs::NINE),
-        output: Output::BoundedShare,
-        sums: SumPrecision::Half,
-        network: relu(&[12], Activation::Sigmoid),
-        budget: PIXELS,
-        loss: Some(PixelLoss::Image),
+        ..SHARES
     });
 
     /// The pixel's moments and its two ends: the cheapest network that beats moments.
     pub const ANCHORED_SMALL: Self = Self(&Declaration {
         name: "anchored-small",
         method: "deep-anchored-small",
-        inputs: Inputs::Rest(&FEATURES),
         output: Output::AnchoredShare,
-        sums: SumPrecision::Half,
         network: relu(&[8], Activation::Sigmoid),
-        budget: PIXELS,
-        loss: Some(PixelLoss::Image),
+        ..SHARES
     });
 
     /// The same inputs, separate ends.
     pub const ANCHORED_MEDIUM: Self = Self(&Declaration {
         name: "anchored-medium",
         method: "deep-anchored-medium",
-        inputs: Inputs::Rest(&FEATURES),
         output: Output::AnchoredShareSeparateEnds,
-        sums: SumPrecision::Half,
-        network: relu(&[12], Activation::Sigmoid),
-        budget: PIXELS,
-        loss: Some(PixelLoss::Image),
+        ..SHARES
     });
 
     /// Tsopouridis et al. 2024, "Neural Moment Transparency": transmittance from four moments.
@@ -279,11 +274,7 @@ impl Recipe {
         name: "nmt",
         method: "nmt",
         inputs: Inputs::Moments(&nmt::INPUTS),
-        output: Output::Transmittance,
-        sums: SumPrecision::Exact,
-        network: relu(&[32, 16], Activation::Sigmoid),
-        budget: ROWS,
-        loss: None,
+        ..COMPETITOR
     });
 
     /// Tsopouridis et al. 2024, "Deep and Fast Approximate Order Independent Transparency": the colour of a pixel.
@@ -292,13 +283,11 @@ impl Recipe {
         method: "dfaoit",
         inputs: Inputs::Layers(&dfaoit::INPUTS),
         output: Output::Color,
-        sums: SumPrecision::Exact,
-        network: relu(&[32, 16], Activation::Sigmoid),
         budget: Budget {
             batch: 1024,
             ..ROWS
         },
-        loss: None,
+        ..COMPETITOR
     });
 
     /// All recipes.
@@ -346,27 +335,6 @@ impl PartialEq for Recipe {
 
 impl Eq for Recipe {}
 
-impl PartialOrd for Recipe {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Recipe {
-    /// In the order of [`Recipe::ALL`], then by name.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let place = |recipe: &Self| Self::ALL.iter().position(|r| r == recipe);
-        let key = |recipe: &Self| (place(recipe).unwrap_or(Self::ALL.len()), recipe.name);
-        key(self).cmp(&key(other))
-    }
-}
-
-impl Hash for Recipe {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.name.hash(state);
-    }
-}
-
 impl fmt::Debug for Recipe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name)
@@ -383,15 +351,11 @@ impl FromStr for Recipe {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|r| r.name == text)
-            .ok_or_else(|| {
-                format!(
-                    "recipe {text:?}: expected one of {}",
-                    Self::ALL.map(|r| r.name).join(", ")
-                )
-            })
+        let found = Self::ALL.into_iter().find(|r| r.name == text);
+        found.ok_or_else(|| {
+            let names = Self::ALL.map(|r| r.name).join(", ");
+            format!("recipe {text:?}: expected one of {names}")
+        })
     }
 }
 
@@ -403,31 +367,14 @@ impl Serialize for Recipe {
 
 impl<'de> Deserialize<'de> for Recipe {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?
-            .parse()
-            .map_err(de::Error::custom)
+        let name = String::deserialize(deserializer)?;
+        name.parse().map_err(de::Error::custom)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Two recipes of one's own are distinguished, and stand behind those that ship.
-    #[test]
-    fn recipes_of_ones_own_have_an_order() {
-        let of = |name| {
-            Recipe::new(Box::leak(Box::new(Declaration {
-                name,
-                inputs: Inputs::Slabs(Design::LARGE, &slabs::FIVE),
-                ..*Recipe::LARGE
-            })))
-        };
-        let (a, b) = (of("a"), of("b"));
-        assert_ne!(a, b);
-        assert!(a < b && Recipe::DFAOIT < a);
-        assert_eq!("a".parse::<Recipe>().ok(), None);
-    }
 
     /// What everything that reads the declarations relies on.
     #[test]

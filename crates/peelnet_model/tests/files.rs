@@ -5,62 +5,23 @@ use std::collections::{BTreeMap, HashMap};
 
 use peelnet_core::guards::WEIGHT_FLOOR;
 use peelnet_core::mlp::{Activation, Layer, Mlp};
-use peelnet_core::random::Random;
 use peelnet_model::*;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 
-/// The thesis's topology with weights that have all bits in use.
+/// The thesis's network with metadata of all kinds.
 fn model() -> Model {
-    let mut stream = Random::new(1, &[]);
-    let mut random = || stream.between(-0.5, 0.5);
-    let sizes = [3, 10, 8, 1];
-    let layers = sizes
-        .windows(2)
-        .map(|s| Layer {
-            inputs: s[0],
-            outputs: s[1],
-            weights: (0..s[0] * s[1]).map(|_| random()).collect(),
-            bias: (0..s[1]).map(|_| random()).collect(),
-        })
-        .collect();
-    let input = |name: &str, unit: &str, offset, scale, max| Input {
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        offset,
-        scale,
-        min: 0.1,
-        max,
+    let mut model = Model::shipped(Recipe::THESIS).unwrap();
+    let meta = &mut model.meta;
+    meta.seed = u64::MAX;
+    meta.losses = Losses {
+        train: Some(0.1 + 0.2),
+        validation: None,
+        test: Some(1.0 / 3.0),
     };
-    Model {
-        mlp: Mlp::new(layers, Activation::Relu, Activation::Identity).unwrap(),
-        meta: Metadata {
-            format_version: FORMAT_VERSION,
-            tool_version: "0.1.0".to_owned(),
-            recipe: Recipe::THESIS,
-            inputs: vec![
-                input("linear_depth", "scene units", 5.7, 1.0 / 3.0, 9.3),
-                input("alpha_sum", "1", 4.1, 0.3, 11.0),
-                input("fragment_count", "1", 8.0, 0.123_456_79, 34.0),
-            ],
-            output: Output::Transmittance,
-            seed: u64::MAX,
-            dataset: Some(DatasetRef {
-                hash: "cd".repeat(32),
-                rows: 1_544_955,
-                set_aside: Vec::new(),
-                scenes: vec!["sixteen-050".to_owned()],
-            }),
-            epochs: 150,
-            losses: Losses {
-                train: Some(0.1 + 0.2),
-                validation: None,
-                test: Some(1.0 / 3.0),
-            },
-            held_out: BTreeMap::from([("cups".to_owned(), 2.0 / 3.0e5)]),
-            config: serde_json::json!({ "lr": 1e-4, "batch": 128, "a": null }),
-        },
-    }
+    meta.held_out = BTreeMap::from([("cups".to_owned(), 2.0 / 3.0e5)]);
+    meta.config = serde_json::json!({ "lr": 1e-4, "batch": 128, "a": null });
+    model
 }
 
 #[test]
@@ -151,6 +112,13 @@ fn message(bytes: &[u8]) -> String {
     text
 }
 
+fn assert_message(bytes: &[u8], words: &[&str]) {
+    let text = message(bytes);
+    for word in words {
+        assert!(text.contains(word), "{word:?} is not in: {text}");
+    }
+}
+
 type Tensors = BTreeMap<String, (Dtype, Vec<usize>, Vec<u8>)>;
 
 /// The good model's file with some tensors and the metadata's JSON changed.
@@ -176,87 +144,71 @@ fn spoilt(tensors: impl Fn(&mut Tensors), json: impl Fn(&mut serde_json::Value))
     safetensors::serialize(views, Some(metadata)).unwrap()
 }
 
+fn zeros(tensors: &mut Tensors, name: &str, shape: &[usize]) {
+    let bytes = vec![0u8; 4 * shape.iter().product::<usize>()];
+    tensors.insert(name.to_owned(), (Dtype::F32, shape.to_vec(), bytes));
+}
+
 #[test]
 fn bad_tensors() {
-    let f32s = |n: usize| vec![0u8; 4 * n];
-    type Spoil = Box<dyn Fn(&mut Tensors)>;
-    let spoils: Vec<(Spoil, &[&str])> = vec![
+    type Spoil = fn(&mut Tensors);
+    let spoils: [(Spoil, &[&str]); 12] = [
         (
-            Box::new(|t| {
-                t.remove("layers.1.bias");
-            }),
+            |t| t.retain(|name, _| name != "layers.1.bias"),
             &["layers.1.bias", "missing"],
         ),
         (
-            Box::new(|t| {
-                t.retain(|name, _| !name.starts_with("layers.1"));
-            }),
+            |t| t.retain(|name, _| !name.starts_with("layers.1")),
             &["layers.1.weight", "missing"],
         ),
-        (Box::new(Tensors::clear), &["layers.0.weight", "missing"]),
+        (Tensors::clear, &["layers.0.weight", "missing"]),
+        (|t| zeros(t, "extra", &[1]), &["extra", "no layer"]),
         (
-            Box::new(move |t| {
-                t.insert("extra".into(), (Dtype::F32, vec![1], f32s(1)));
-            }),
-            &["extra", "no layer"],
-        ),
-        (
-            Box::new(move |t| {
-                t.insert(
-                    "layers.99999999999.bias".into(),
-                    (Dtype::F32, vec![1], f32s(1)),
-                );
-            }),
+            |t| zeros(t, "layers.99999999999.bias", &[1]),
             &["layers.99999999999.bias", "no layer"],
         ),
         (
-            Box::new(|t| t.get_mut("layers.0.weight").unwrap().1 = vec![3, 10]),
+            |t| zeros(t, "layers.0.weight", &[3, 10]),
             &["layers.0.bias", "F32 [10]", "F32 [3]"],
         ),
         (
-            Box::new(|t| t.get_mut("layers.0.weight").unwrap().1 = vec![30]),
+            |t| zeros(t, "layers.0.weight", &[30]),
             &["layers.0.weight", "F32 [30]", "[outputs, inputs]"],
         ),
         (
-            Box::new(|t| t.get_mut("layers.2.bias").unwrap().0 = Dtype::I32),
+            |t| t.get_mut("layers.2.bias").unwrap().0 = Dtype::I32,
             &["layers.2.bias", "I32", "F32"],
         ),
         (
-            Box::new(move |t| {
-                t.insert("layers.1.weight".into(), (Dtype::F32, vec![8, 9], f32s(72)));
-            }),
+            |t| zeros(t, "layers.1.weight", &[8, 9]),
             &["layer 1 takes 9 inputs", "gives 10"],
         ),
         (
-            Box::new(move |t| {
-                t.insert(
-                    "layers.0.weight".into(),
-                    (Dtype::F32, vec![10, 4], f32s(40)),
-                );
-            }),
+            |t| zeros(t, "layers.0.weight", &[10, 4]),
             &["takes 4 inputs", "lists 3"],
         ),
         (
-            Box::new(move |t| {
-                t.insert("layers.2.weight".into(), (Dtype::F32, vec![2, 8], f32s(16)));
-                t.insert("layers.2.bias".into(), (Dtype::F32, vec![2], f32s(2)));
-            }),
+            |t| {
+                zeros(t, "layers.2.weight", &[2, 8]);
+                zeros(t, "layers.2.bias", &[2]);
+            },
             &["gives 2 outputs", "transmittance has 1"],
         ),
         (
-            Box::new(|t| {
-                t.get_mut("layers.1.weight").unwrap().2[12..16]
-                    .copy_from_slice(&f32::NAN.to_le_bytes());
-            }),
+            |t| {
+                let weights = &mut t.get_mut("layers.1.weight").unwrap().2;
+                weights[12..16].copy_from_slice(&f32::NAN.to_le_bytes());
+            },
             &["layers.1.weight", "value 3 is NaN", "finite"],
         ),
     ];
     for (spoil, words) in spoils {
-        let text = message(&spoilt(spoil, |_| ()));
-        for word in words {
-            assert!(text.contains(word), "{word:?} is not in: {text}");
-        }
+        assert_message(&spoilt(spoil, |_| ()), words);
     }
+}
+
+fn remove(value: &mut serde_json::Value, key: &str) {
+    value.as_object_mut().unwrap().remove(key);
 }
 
 #[test]
@@ -268,23 +220,11 @@ fn bad_metadata() {
             &["format 2", "format 1"],
         ),
         (
-            |v| {
-                v.as_object_mut().unwrap().remove("format_version");
-            },
+            |v| remove(v, "format_version"),
             &["missing field `format_version`"],
         ),
-        (
-            |v| {
-                v.as_object_mut().unwrap().remove("seed");
-            },
-            &["missing field `seed`"],
-        ),
-        (
-            |v| {
-                v.as_object_mut().unwrap().remove("mlp");
-            },
-            &["missing field `mlp`"],
-        ),
+        (|v| remove(v, "seed"), &["missing field `seed`"]),
+        (|v| remove(v, "mlp"), &["missing field `mlp`"]),
         (|v| v["recipe"] = "tiny".into(), &["tiny", "thesis"]),
         (|v| v["mlp"]["hidden"] = "tanh".into(), &["tanh", "relu"]),
         (
@@ -309,10 +249,7 @@ fn bad_metadata() {
         ),
     ];
     for (spoil, words) in spoils {
-        let text = message(&spoilt(|_| (), spoil));
-        for word in words {
-            assert!(text.contains(word), "{word:?} is not in: {text}");
-        }
+        assert_message(&spoilt(|_| (), spoil), words);
     }
 }
 
@@ -340,22 +277,18 @@ fn files_that_are_no_models() {
 fn nothing_is_written_that_could_not_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.safetensors");
-    let mut bad = model();
-    bad.mlp.layers[0].weights[0] = f32::INFINITY;
-    let text = bad.save(&path).unwrap_err().to_string();
-    assert!(text.contains("layers.0.weight"), "{text}");
-    let mut bad = model();
-    bad.meta.losses.test = Some(f64::NAN);
-    let text = bad.save(&path).unwrap_err().to_string();
-    assert!(text.contains("test loss is NaN"), "{text}");
-    let mut bad = model();
-    bad.meta.inputs[0].min = 10.0;
-    assert!(
-        bad.save(&path)
-            .unwrap_err()
-            .to_string()
-            .contains("at most max")
+    let refuse = |spoil: fn(&mut Model), word: &str| {
+        let mut bad = model();
+        spoil(&mut bad);
+        let text = bad.save(&path).unwrap_err().to_string();
+        assert!(text.contains(word), "{text}");
+    };
+    refuse(
+        |m| m.mlp.layers[0].weights[0] = f32::INFINITY,
+        "layers.0.weight",
     );
+    refuse(|m| m.meta.losses.test = Some(f64::NAN), "test loss is NaN");
+    refuse(|m| m.meta.inputs[0].min = 1e9, "at most max");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 
     // An unwritable place, for every user: a file where a folder should be, a folder where the file should be.
