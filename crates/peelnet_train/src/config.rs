@@ -58,10 +58,8 @@ pub struct Config {
         skip_serializing_if = "is_default_max_rows"
     )]
     pub max_rows: u64,
-    /// Rows in memory at once where the examples are streamed ([`StreamedData`]), beside those that are made into tensors; none where
+    /// Rows in memory at once where the examples are streamed, beside those that are made into tensors; none where
     /// all are in memory. A training that streams uses all rows.
-    ///
-    /// [`StreamedData`]: crate::StreamedData
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buffer_rows: Option<u64>,
     /// What recipes that learn from whole pixels minimise.
@@ -139,6 +137,10 @@ const MAX_ROWS: u64 = i32::MAX as u64;
 /// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
 const MAX_PARAMETERS: u64 = 1 << 22;
 
+const POSITIVE: &str = "give a positive number";
+const BELOW_1: &str = "give a number from 0 to below 1";
+const BETWEEN: &str = "give a share between 0 and 1";
+
 impl Config {
     /// The settings that a recipe declares, and the defaults of Adam.
     pub fn for_recipe(recipe: Recipe) -> Self {
@@ -153,9 +155,10 @@ impl Config {
             batch: budget.batch,
             chunk: budget.chunk,
             learning_rate: budget.learning_rate,
-            schedule: budget
-                .warmup
-                .map_or(Schedule::Constant, |warmup| Schedule::OneCycle { warmup }),
+            schedule: match budget.warmup {
+                Some(warmup) => Schedule::OneCycle { warmup },
+                None => Schedule::Constant,
+            },
             beta1: 0.9,
             beta2: 0.999,
             epsilon: 1e-8,
@@ -182,18 +185,14 @@ impl Config {
         let (epochs, batch) = (self.epochs.into(), self.batch as u64);
         let rows = [self.max_rows, self.buffer_rows.unwrap_or(1)];
         let patience = self.patience.unwrap_or(1).into();
+        let or_none = "give at least 1, or leave it out";
         for (setting, value, most, hint) in [
             ("epochs", epochs, MAX_EPOCHS.into(), "give 1 to 1,000,000"),
             ("batch", batch, MAX_BATCH, "give 1 to 16,777,216"),
             ("chunk", self.chunk as u64, u64::MAX, "give at least 1"),
             ("max_rows", rows[0], MAX_ROWS, "give 1 to 2147483647"),
             ("buffer_rows", rows[1], MAX_ROWS, "give 1 to 2147483647"),
-            (
-                "patience",
-                patience,
-                u64::MAX,
-                "give at least 1, or leave it out",
-            ),
+            ("patience", patience, u64::MAX, or_none),
         ] {
             if !(1..=most).contains(&value) {
                 return bad(setting, value.to_string(), hint);
@@ -211,47 +210,27 @@ impl Config {
             let hint = "give less for this network: every chunk of a batch has a gradient, 1 GiB in all at most";
             return bad("batch", batch.to_string(), hint);
         }
-        let is_positive = |x: f64| x.is_finite() && x > 0.0;
-        let is_fraction = |x: f64| (0.0..1.0).contains(&x);
-        let both = is_fraction(self.held_out + self.validation);
         let warmup = match self.schedule {
             Schedule::OneCycle { warmup } => warmup,
             Schedule::Constant => 0.5,
         };
-        let positive = "give a positive number";
-        let below_1 = "give a number from 0 to below 1";
-        let shares = "give a share from 0 to below 1, both together below 1";
-        for (setting, value, is_good, hint) in [
-            (
-                "learning_rate",
-                self.learning_rate,
-                is_positive(self.learning_rate),
-                positive,
-            ),
-            ("beta1", self.beta1, is_fraction(self.beta1), below_1),
-            ("beta2", self.beta2, is_fraction(self.beta2), below_1),
-            ("epsilon", self.epsilon, is_positive(self.epsilon), positive),
-            (
-                "held_out",
-                self.held_out,
-                is_fraction(self.held_out) && both,
-                shares,
-            ),
-            (
-                "validation",
-                self.validation,
-                is_fraction(self.validation) && both,
-                shares,
-            ),
-            (
-                "schedule.warmup",
-                warmup,
-                warmup > 0.0 && warmup < 1.0,
-                "give a share between 0 and 1",
-            ),
+        let positive = f64::from_bits(1)..f64::INFINITY;
+        let between = f64::from_bits(1)..1.0;
+        for (setting, value, range, hint) in [
+            ("learning_rate", self.learning_rate, &positive, POSITIVE),
+            ("beta1", self.beta1, &(0.0..1.0), BELOW_1),
+            ("beta2", self.beta2, &(0.0..1.0), BELOW_1),
+            ("epsilon", self.epsilon, &positive, POSITIVE),
+            ("schedule.warmup", warmup, &between, BETWEEN),
         ] {
-            if !is_good {
+            if !range.contains(&value) {
                 return bad(setting, value.to_string(), hint);
+            }
+        }
+        for (setting, share) in [("held_out", self.held_out), ("validation", self.validation)] {
+            if !(0.0..1.0).contains(&share) || self.held_out + self.validation >= 1.0 {
+                let hint = "give a share from 0 to below 1, both together below 1";
+                return bad(setting, share.to_string(), hint);
             }
         }
         if self.recipe.loss.is_none() && self.loss != PixelLoss::default() {

@@ -3,38 +3,27 @@
 use std::path::{Path, PathBuf};
 
 /// Why training did not start or did not finish.
+#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum TrainError {
     /// A hyper-parameter is out of its range.
     #[error("setting `{setting}` is {value}: {hint}")]
     Config {
-        /// Name of the field.
         setting: &'static str,
-        /// What it was.
         value: String,
-        /// What to do.
         hint: &'static str,
     },
     /// The columns do not fit one another or the recipe.
     #[error("{data}: {problem}")]
-    Columns {
-        /// Where the rows are from.
-        data: String,
-        /// What does not fit and what to do.
-        problem: String,
-    },
+    Columns { data: String, problem: String },
     /// A value is not a number that training can use.
     #[error(
         "{data}: row {row}, column `{column}` is {value}; extract the dataset again or leave the row out"
     )]
     Value {
-        /// Where the rows are from.
         data: String,
-        /// From 0, in the order of the columns.
         row: u64,
-        /// The column.
         column: String,
-        /// The value.
         value: f32,
     },
     /// The dataset could not be read.
@@ -46,17 +35,13 @@ pub enum TrainError {
     /// A file could not be read or written.
     #[error("{}: {error}", path.display())]
     Io {
-        /// The file.
         path: PathBuf,
-        /// What the system says.
         error: std::io::Error,
     },
     /// The examples of a streamed training could not be written or read.
     #[error("the scratch file of streamed training in {}: {error}; it needs room for all examples", folder.display())]
     Scratch {
-        /// Where the file lies.
         folder: PathBuf,
-        /// What the system says.
         error: std::io::Error,
     },
     /// Asked to stop before the first epoch.
@@ -64,42 +49,25 @@ pub enum TrainError {
     Stopped,
     /// Another training has the lock of the same model file.
     #[error("{}: another training writes to this file and its checkpoint; wait for it to end, or write to another file", out.display())]
-    Busy {
-        /// The model file.
-        out: PathBuf,
-    },
+    Busy { out: PathBuf },
     /// Threads could not be started.
     #[error("threads could not be started: {0}")]
     Threads(String),
     /// A checkpoint cannot be continued.
     #[error("{}: {problem}", path.display())]
-    Checkpoint {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        problem: String,
-    },
-    /// The model file could not be made or written.
-    #[error("{}: {error}", path.display())]
-    Model {
-        /// The file.
-        path: PathBuf,
-        /// What the model crate says.
-        error: Box<dyn std::error::Error + Send + Sync>,
-    },
+    Checkpoint { path: PathBuf, problem: String },
+    /// The model file could not be written.
+    #[error(transparent)]
+    Model(#[from] peelnet_model::ModelError),
     /// The loss or a weight became infinite or not a number.
     #[error(
         "training diverged in epoch {epoch}: {what} is not finite; a lower learning rate than {learning_rate} may help{}",
         kept.as_ref().map_or(String::new(), |p| format!("; the weights before it are in {}", p.display()))
     )]
     Diverged {
-        /// The epoch, from 1.
         epoch: u32,
-        /// What was not finite.
         what: &'static str,
-        /// The rate of the run.
         learning_rate: f64,
-        /// The model file with the last good weights, where an epoch had been finished.
         kept: Option<PathBuf>,
     },
 }

@@ -2,7 +2,7 @@
 
 use burn::tensor::activation::{relu, sigmoid};
 use burn::tensor::{Gradients, Tensor};
-use peelnet_core::mlp::{Activation, Layer, Mlp, ShapeError};
+use peelnet_core::mlp::{Activation, Layer, Mlp};
 
 use crate::config::Config;
 use crate::sampler::Stream;
@@ -60,7 +60,7 @@ impl Shape {
     }
 
     /// The network of the mathematics crate with these parameters.
-    pub(crate) fn to_mlp(&self, parameters: &[f32]) -> Result<Mlp, ShapeError> {
+    pub(crate) fn to_mlp(&self, parameters: &[f32]) -> Mlp {
         let mut rest = parameters;
         let layers = self
             .layers()
@@ -76,7 +76,7 @@ impl Shape {
                 }
             })
             .collect();
-        Mlp::new(layers, self.hidden, self.output)
+        Mlp::new(layers, self.hidden, self.output).expect("layers of a shape fit one another")
     }
 }
 
@@ -189,22 +189,16 @@ mod tests {
             (2, Activation::Sigmoid, Activation::Sigmoid),
             (3, Activation::Relu, Activation::Relu),
         ] {
-            let shape = Shape {
-                hidden,
-                output,
-                ..thesis()
-            };
+            let mut shape = thesis();
+            (shape.hidden, shape.output) = (hidden, output);
             let parameters = shape.initial(seed);
-            let mlp = shape.to_mlp(&parameters).unwrap();
+            let mlp = shape.to_mlp(&parameters);
             let flat = Tensor::from_data(TensorData::new(parameters, [137]), &device);
             let n = 4096;
             let inputs = random_inputs(n, seed);
             let x = Tensor::from_data(TensorData::new(inputs.clone(), [3, n]), &device);
-            let y: Vec<f32> = Network::new(&shape, &flat)
-                .forward(x)
-                .into_data()
-                .try_into_vec()
-                .unwrap();
+            let y = Network::new(&shape, &flat).forward(x).into_data();
+            let y: Vec<f32> = y.try_into_vec().unwrap();
             for row in 0..n {
                 let input = [inputs[row], inputs[n + row], inputs[2 * n + row]];
                 let expected = mlp.forward(&input)[0];
@@ -219,10 +213,8 @@ mod tests {
     #[test]
     fn the_gradient_is_the_difference_quotient() {
         let device = Device::flex();
-        let shape = Shape {
-            hidden: Activation::Sigmoid,
-            ..thesis()
-        };
+        let mut shape = thesis();
+        shape.hidden = Activation::Sigmoid;
         let parameters = shape.initial(4);
         let rows = 5;
         let inputs = random_inputs(rows, 9);
@@ -232,24 +224,14 @@ mod tests {
         let loss = network.forward(x).square().sum();
         let gradient: Vec<f32> = network.gradient(loss).into_data().try_into_vec().unwrap();
         let loss_f64 = |index: usize, step: f64| -> f64 {
-            let mut mlp = shape.to_mlp(&parameters).unwrap();
-            let mut at = index;
-            for layer in &mut mlp.layers {
-                for values in [&mut layer.weights, &mut layer.bias] {
-                    if at < values.len() {
-                        values[at] = (f64::from(values[at]) + step) as f32;
-                        at = usize::MAX;
-                    } else if at != usize::MAX {
-                        at -= values.len();
-                    }
-                }
-            }
-            (0..rows)
-                .map(|r| {
-                    let input = [0, 1, 2].map(|i| f64::from(inputs[i * rows + r]));
-                    mlp.forward(&input)[0].powi(2)
-                })
-                .sum()
+            let mut parameters = parameters.clone();
+            parameters[index] = (f64::from(parameters[index]) + step) as f32;
+            let mlp = shape.to_mlp(&parameters);
+            let answers = (0..rows).map(|r| {
+                let input = [0, 1, 2].map(|i| f64::from(inputs[i * rows + r]));
+                mlp.forward(&input)[0].powi(2)
+            });
+            answers.sum()
         };
         assert!((f64::from(gradient[137]) - loss_f64(0, 0.0)).abs() < 1e-5);
         for (index, &found) in gradient[..137].iter().enumerate() {
@@ -263,17 +245,10 @@ mod tests {
 
     #[test]
     fn a_network_without_hidden_layers_is_an_affine_map() {
-        let shape = Shape {
-            widths: vec![2, 1],
-            ..thesis()
-        };
+        let mut shape = thesis();
+        shape.widths = vec![2, 1];
         assert_eq!(shape.parameters(), 3);
-        assert_eq!(
-            shape
-                .to_mlp(&[1.0, 2.0, 3.0])
-                .unwrap()
-                .forward(&[10.0, 100.0]),
-            [213.0]
-        );
+        let mlp = shape.to_mlp(&[1.0, 2.0, 3.0]);
+        assert_eq!(mlp.forward(&[10.0, 100.0]), [213.0]);
     }
 }

@@ -104,56 +104,41 @@ impl Normalisation {
             to.extend(rows.iter().map(normalised));
         }
     }
-
-    /// The values at `rows`, normalised.
-    #[cfg(test)]
-    fn apply(self, values: &[f32], rows: &[u32]) -> Vec<f32> {
-        let mut to = Vec::new();
-        self.append(values, rows, &mut to);
-        to
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn two_values_become_minus_one_and_one() {
-        let n = Normalisation::over(&[2.0, 100.0, 6.0], &[0, 2]);
-        assert_eq!((n.offset, n.scale, n.min, n.max), (4.0, 0.5, 2.0, 6.0));
-        assert_eq!(n.apply(&[2.0, 100.0, 6.0], &[0, 2]), [-1.0, 1.0]);
+    /// The normalisation of all values, and what it makes of values.
+    fn normalised(values: &[f32], raw: &[f32]) -> (Normalisation, Vec<f32>) {
+        let all = |values: &[f32]| (0..values.len() as u32).collect::<Vec<_>>();
+        let n = Normalisation::over(values, &all(values));
+        let mut to = Vec::new();
+        n.append(raw, &all(raw), &mut to);
+        (n, to)
     }
 
+    #[test]
+    fn values_get_mean_0_and_deviation_1() {
+        let (n, to) = normalised(&[2.0, 6.0], &[2.0, 100.0]);
+        assert_eq!((n.offset, n.scale, n.min, n.max), (4.0, 0.5, 2.0, 6.0));
+        assert_eq!(to, [-1.0, 48.0]);
+        // Around 1e9 neighbouring floats are 64 apart, and a sum of squares in 32 bits would hold nothing of that.
+        let values: Vec<f32> = (0..1000).map(|i| 1e9 + 64.0 * (i % 2) as f32).collect();
+        let (n, to) = normalised(&values, &values);
+        assert_eq!(n.scale, 1.0 / 32.0);
+        assert!(to.iter().all(|v| v.abs() <= 2.0));
+    }
+
+    /// One value, or values so large that 1 / 3e38 is below the normal range.
     #[test]
     fn a_constant_column_is_ignored() {
-        let n = Normalisation::over(&[0.1; 7], &[0, 1, 2, 3, 4, 5, 6]);
-        assert!(n.constant);
-        assert_eq!((n.offset, n.scale), (0.1, 1.0));
-        assert_eq!(n.apply(&[0.1, 1e30], &[0, 1]), [0.0, 0.0]);
-    }
-
-    /// Around 1e9 neighbouring floats are 64 apart, and a sum of squares in 32 bits would hold nothing of that.
-    #[test]
-    fn depths_of_a_thousand_million_keep_their_deviation() {
-        let values: Vec<f32> = (0..1000).map(|i| 1e9 + 64.0 * (i % 2) as f32).collect();
-        let rows: Vec<u32> = (0..1000).collect();
-        let n = Normalisation::over(&values, &rows);
-        assert_eq!(n.scale, 1.0 / 32.0);
-        assert!(n.apply(&values, &rows).iter().all(|v| v.abs() <= 2.0));
-    }
-
-    #[test]
-    fn the_largest_floats_do_not_overflow() {
-        let n = Normalisation::over(&[-3e38, 3e38], &[0, 1]);
-        assert_eq!(n.offset, 0.0);
-        // 1 / 3e38 is below the normal range.
-        assert!(n.constant);
-        assert!(
-            n.apply(&[-3e38, 3e38], &[0, 1])
-                .iter()
-                .all(|v| v.is_finite())
-        );
+        for (values, offset) in [([0.1; 2], 0.1), ([-3e38, 3e38], 0.0)] {
+            let (n, to) = normalised(&values, &[0.1, 3e38]);
+            assert_eq!((n.constant, n.offset, n.scale), (true, offset, 1.0));
+            assert_eq!(to, [0.0, 0.0]);
+        }
     }
 
     /// Merging blocks of any size gives the moments of all values. Both ways round each of n sums of terms of one sign in 64 bits: the
@@ -166,10 +151,8 @@ mod tests {
             let rows: Vec<u32> = (0..n).collect();
             let all = Moments::over(&values, &rows);
             for size in [1, 3, 1024] {
-                let merged = rows
-                    .chunks(size)
-                    .map(|block| Moments::over(&values, block))
-                    .fold(Moments::NONE, Moments::merge);
+                let blocks = rows.chunks(size).map(|block| Moments::over(&values, block));
+                let merged = blocks.fold(Moments::NONE, Moments::merge);
                 let rounding = f64::from(n) * f64::EPSILON;
                 let magnitude = f64::from(offset.abs()) + 8.0;
                 assert!((merged.mean - all.mean).abs() <= rounding * magnitude);

@@ -138,7 +138,7 @@ impl Sample {
 
 /// Indices of the examples in memory, ascending, by subset. Where the data have no split, `⌊n · held_out⌋` are drawn for testing; at least one is
 /// left for training.
-fn by_subset(data: &TrainingData, config: &Config) -> [Vec<u32>; 3] {
+pub(crate) fn by_subset(data: &TrainingData, config: &Config) -> [Vec<u32>; 3] {
     let drawn = || {
         let n = data.examples_held();
         let held_out = ((n as f64 * config.held_out) as usize).min(n.saturating_sub(1));
@@ -161,7 +161,7 @@ pub(crate) struct Feed<'a> {
     config: &'a Config,
     data: &'a TrainingData,
     device: &'a Device,
-    pub(crate) normalisation: Vec<Normalisation>,
+    normalisation: &'a [Normalisation],
     /// Those in memory.
     examples: [Vec<u32>; 3],
     /// Of subsets in memory whose order never changes.
@@ -169,13 +169,18 @@ pub(crate) struct Feed<'a> {
 }
 
 impl<'a> Feed<'a> {
-    pub(crate) fn new(config: &'a Config, data: &'a TrainingData, device: &'a Device) -> Self {
-        let examples = by_subset(data, config);
+    pub(crate) fn new(
+        config: &'a Config,
+        data: &'a TrainingData,
+        examples: [Vec<u32>; 3],
+        normalisation: &'a [Normalisation],
+        device: &'a Device,
+    ) -> Self {
         Self {
             config,
             data,
             device,
-            normalisation: data.normalisation(&examples[Subset::Train as usize]),
+            normalisation,
             examples,
             loaded: [const { None }; 3],
         }
@@ -197,7 +202,7 @@ impl<'a> Feed<'a> {
         mut each: impl FnMut(&Window) -> Result<(), TrainError>,
     ) -> Result<(), TrainError> {
         let window = |data: &TrainingData, order: &[u32]| {
-            Window::new(data, order, &self.normalisation, self.device)
+            Window::new(data, order, self.normalisation, self.device)
         };
         if let Some(scratch) = &self.data.scratch {
             let pass = (subset, epoch);

@@ -26,7 +26,7 @@ pub(crate) const SUBSETS: [Subset; 3] = [Subset::Train, Subset::Validation, Subs
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Block {
     offset: u64,
-    bytes: usize,
+    bytes: u32,
     pub(crate) examples: u32,
     pub(crate) rows: u32,
     view: u32,
@@ -81,10 +81,6 @@ impl Scratch {
     pub(crate) fn write(&mut self, view: usize, data: &TrainingData) -> Result<(), TrainError> {
         let mut bytes = Vec::new();
         self.rows += data.rows_held() as u64;
-        let rows_of = |examples: &[u32]| -> Vec<u32> {
-            let rows = examples.iter().flat_map(|&e| data.rows_of(e));
-            rows.collect()
-        };
         for subset in SUBSETS {
             let examples = (0u32..).zip(data.subsets.iter().flatten());
             let examples = examples.filter(|(_, s)| **s == subset);
@@ -103,10 +99,10 @@ impl Scratch {
                 let file = self.file.get_mut().unwrap_or_else(|e| e.into_inner());
                 let written = file.write_all(&bytes);
                 written.map_err(self.failed())?;
-                let rows = rows_of(block);
+                let rows: Vec<u32> = block.iter().flat_map(|&e| data.rows_of(e)).collect();
                 self.blocks[subset as usize].push(Block {
                     offset: self.bytes,
-                    bytes: bytes.len(),
+                    bytes: bytes.len() as u32,
                     examples: block.len() as u32,
                     rows: rows.len() as u32,
                     view: view as u32,
@@ -129,7 +125,7 @@ impl Scratch {
         bytes: &mut Vec<u8>,
         to: &mut TrainingData,
     ) -> Result<(), TrainError> {
-        bytes.resize(block.bytes, 0);
+        bytes.resize(block.bytes as usize, 0);
         let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
         file.seek(SeekFrom::Start(block.offset))
             .and_then(|_| file.read_exact(bytes))

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -18,9 +18,10 @@ use crate::error::{TrainError, io};
 use crate::lock::OutputLock;
 use crate::loss::Window;
 use crate::network::{Network, Shape};
+use crate::normalise::Normalisation;
 use crate::optimizer::Adam;
 use crate::report::{End, EpochReport, Outcome};
-use crate::sampler::Feed;
+use crate::sampler::{Feed, by_subset};
 use crate::table::TrainingData;
 
 /// What a run needs besides its configuration and data, without an effect on the weights.
@@ -92,9 +93,11 @@ pub fn train(
     let threads = options.threads.or_else(cores);
     let threads = threads.map_or(1, |n| n.get().min(MAX_THREADS));
     let device = Device::flex();
+    let examples = by_subset(data, config);
     let run = Run {
         config,
         data,
+        normalisation: data.normalisation(&examples[Subset::Train as usize]),
         fingerprint: data.fingerprint(),
         options,
         device: &device,
@@ -105,13 +108,15 @@ pub fn train(
         shape: Shape::new(config),
         folder: checkpoint::folder(&options.out),
     };
-    run.go(&mut Feed::new(config, data, &device), on_epoch)
+    let mut feed = Feed::new(config, data, examples, &run.normalisation, &device);
+    run.go(&mut feed, on_epoch)
 }
 
 /// What does not change during a run.
 struct Run<'a> {
     config: &'a Config,
     data: &'a TrainingData,
+    normalisation: Vec<Normalisation>,
     fingerprint: String,
     options: &'a RunOptions<'a>,
     device: &'a Device,
@@ -126,7 +131,7 @@ impl Run<'_> {
         feed: &mut Feed<'_>,
         mut on_epoch: impl FnMut(&EpochReport),
     ) -> Result<Outcome, TrainError> {
-        let mut progress = self.start(feed)?;
+        let mut progress = self.start()?;
         let epochs = |progress: &Progress| progress.history.len() as u32;
         let resumed_from = self.options.resume.then(|| epochs(&progress));
         let mut saved = Instant::now();
@@ -146,7 +151,7 @@ impl Run<'_> {
                 epoch => epoch?,
             };
             if let Some(what) = not_finite(&report, &adam) {
-                return Err(self.diverged(feed, what, &progress));
+                return Err(self.diverged(what, &progress));
             }
             if report.best {
                 progress.best = Some((report.epoch, adam.parameters.clone()));
@@ -155,11 +160,11 @@ impl Run<'_> {
             on_epoch(&report);
             progress.history.push(report);
             if saved.elapsed() >= SAVE_EVERY {
-                self.save(feed, &progress)?;
+                self.save(&progress)?;
                 saved = Instant::now();
             }
         };
-        self.save(feed, &progress)?;
+        self.save(&progress)?;
         for path in &self.options.loss_curve {
             write_curve(path, &progress.history)?;
         }
@@ -168,8 +173,7 @@ impl Run<'_> {
             Some((epoch, parameters)) if self.config.patience.is_some() => (*epoch, parameters),
             _ => (epochs(&progress), &progress.adam.parameters),
         };
-        let out = &self.options.out;
-        let mut model = self.model(feed, model_epoch, parameters, &progress.history, out)?;
+        let mut model = self.model(model_epoch, parameters, &progress.history);
         if feed.examples(Subset::Validation) > 0 {
             let losses = &mut model.meta.losses;
             losses.validation = losses.validation.or(losses.test);
@@ -177,7 +181,7 @@ impl Run<'_> {
             losses.test = self.threads.install(test)?;
         }
         if end != End::Interrupted {
-            save_model(&model, out)?;
+            model.save(&self.options.out)?;
         }
         Ok(Outcome {
             model,
@@ -190,7 +194,7 @@ impl Run<'_> {
     }
 
     /// The state that a run starts from: the checkpoint's, or a new one.
-    fn start(&self, feed: &Feed<'_>) -> Result<Progress, TrainError> {
+    fn start(&self) -> Result<Progress, TrainError> {
         if self.options.resume {
             return Progress::load(
                 &self.folder,
@@ -210,7 +214,7 @@ impl Run<'_> {
         }
         let progress = Progress::new(self.shape.initial(self.config.seed), self.device);
         // Reports now, and not after the last epoch, that the folder cannot be written.
-        self.save(feed, &progress)?;
+        self.save(&progress)?;
         Ok(progress)
     }
 
@@ -323,8 +327,8 @@ impl Run<'_> {
 
     /// Keeps what there is, then says what happened. The divergence is what the user must hear of, so a failure to save
     /// only means that nothing is said to be kept.
-    fn diverged(&self, feed: &Feed<'_>, what: &'static str, progress: &Progress) -> TrainError {
-        let saved = self.save(feed, progress).is_ok();
+    fn diverged(&self, what: &'static str, progress: &Progress) -> TrainError {
+        let saved = self.save(progress).is_ok();
         for path in &self.options.loss_curve {
             let _ = write_curve(path, &progress.history);
         }
@@ -338,68 +342,50 @@ impl Run<'_> {
     }
 
     /// Saves the state and the two model files made from it.
-    fn save(&self, feed: &Feed<'_>, progress: &Progress) -> Result<(), TrainError> {
+    fn save(&self, progress: &Progress) -> Result<(), TrainError> {
         let Progress {
             adam,
             best,
             history,
         } = progress;
         progress.save(&self.folder, self.config, &self.fingerprint)?;
-        let last = (history.len() as u32, &adam.parameters);
-        let best = best
-            .as_ref()
-            .map(|(epoch, parameters)| (*epoch, parameters));
-        let models = [("last", Some(last)), ("best", best)];
-        for (name, model) in models.into_iter().filter(|_| !history.is_empty()) {
-            if let Some((epoch, parameters)) = model {
-                let path = self.folder.join(name).with_extension("safetensors");
-                save_model(&self.model(feed, epoch, parameters, history, &path)?, &path)?;
-            }
+        let last = ("last", history.len() as u32, &adam.parameters);
+        let best = best.iter().map(|(epoch, best)| ("best", *epoch, best));
+        let models = best.chain([last]).filter(|_| !history.is_empty());
+        for (name, epoch, parameters) in models {
+            let path = self.folder.join(name).with_extension("safetensors");
+            self.model(epoch, parameters, history).save(path)?;
         }
         Ok(())
     }
 
     /// The model with the parameters of `epoch`.
-    fn model(
-        &self,
-        feed: &Feed<'_>,
-        epoch: u32,
-        parameters: &Tensor<1>,
-        history: &[EpochReport],
-        path: &Path,
-    ) -> Result<Model, TrainError> {
-        let failed = |error: Box<dyn std::error::Error + Send + Sync>| TrainError::Model {
-            path: path.to_owned(),
-            error,
-        };
+    fn model(&self, epoch: u32, parameters: &Tensor<1>, history: &[EpochReport]) -> Model {
         let row = (epoch as usize).checked_sub(1).and_then(|i| history.get(i));
         let held_out = row.and_then(|r| r.held_out_loss);
         let chosen_by_it = self.config.patience.is_some();
         let recipe = self.config.recipe;
         let about = recipe.inputs.about();
-        let inputs = about
-            .iter()
-            .zip(&feed.normalisation)
-            .map(|(about, n)| Input {
-                name: about.name.to_owned(),
-                unit: about.unit.to_owned(),
-                offset: n.offset,
-                scale: n.scale,
-                min: n.min,
-                max: n.max,
-            });
-        let mlp = self.shape.to_mlp(&download(parameters));
-        let mut mlp = mlp.map_err(|e| failed(Box::new(e)))?;
+        let inputs = about.iter().zip(&self.normalisation);
+        let inputs = inputs.map(|(about, n)| Input {
+            name: about.name.to_owned(),
+            unit: about.unit.to_owned(),
+            offset: n.offset,
+            scale: n.scale,
+            min: n.min,
+            max: n.max,
+        });
+        let mut mlp = self.shape.to_mlp(&download(parameters));
         // See `Normalisation::of`: an input that never varied must not matter.
         let first = &mut mlp.layers[0];
         for row in first.weights.chunks_exact_mut(first.inputs) {
-            for (weight, n) in row.iter_mut().zip(&feed.normalisation) {
+            for (weight, n) in row.iter_mut().zip(&self.normalisation) {
                 if n.constant {
                     *weight = 0.0;
                 }
             }
         }
-        Ok(Model {
+        Model {
             mlp,
             meta: Metadata {
                 format_version: peelnet_model::FORMAT_VERSION,
@@ -416,29 +402,22 @@ impl Run<'_> {
                     test: held_out.filter(|_| !chosen_by_it),
                 },
                 held_out: Default::default(),
-                config: serde_json::to_value(self.config).map_err(|e| failed(Box::new(e)))?,
+                config: serde_json::json!(self.config),
             },
-        })
+        }
     }
-}
-
-fn save_model(model: &Model, path: &Path) -> Result<(), TrainError> {
-    model.save(path).map_err(|e| TrainError::Model {
-        path: path.to_owned(),
-        error: Box::new(e),
-    })
 }
 
 /// What of an epoch is not finite.
 fn not_finite(report: &EpochReport, adam: &Adam) -> Option<&'static str> {
-    let weights = || download(&adam.parameters);
-    if !report.train_loss.is_finite() {
+    let is_bad = |loss: f64| !loss.is_finite();
+    if is_bad(report.train_loss) {
         Some("the training loss")
-    } else if report.held_out_loss.is_some_and(|loss| !loss.is_finite()) {
+    } else if report.held_out_loss.is_some_and(is_bad) {
         Some("the held-out loss")
     } else {
-        let is_bad = weights().iter().any(|v| !v.is_finite());
-        is_bad.then_some("a weight")
+        let mut weights = download(&adam.parameters).into_iter();
+        weights.any(|v| !v.is_finite()).then_some("a weight")
     }
 }
 

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use peelnet_dataset::{Dataset, FragmentBatch, SceneEntry, SplitBy, Subset};
 use peelnet_model::Recipe;
-use peelnet_train::{Config, DataSplit, TrainError, TrainingData, held_out_errors};
+use peelnet_train::{Config, DataSplit, TrainingData, held_out_errors};
 
-use super::{run, scene, write_views};
+use super::{push_pixel, run, scene, write_views};
 
 const SIDE: u32 = 30;
 
@@ -19,23 +19,9 @@ fn view(index: u32) -> FragmentBatch {
 fn stacks(index: u32, layers: u32) -> FragmentBatch {
     let mut batch = FragmentBatch::default();
     for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
-        for layer in 0..layers {
-            let depth = 1.0 + layer as f32 + x as f32 / 64.0;
-            batch.one_minus_alpha.push(0.5);
-            batch.linear_depth.push(depth);
-            batch.alpha_sum.push(0.5 * layers as f32);
-            batch.fragment_count.push(layers);
-            batch.transmittance.push(0.5f32.powi(layer as i32));
-            batch.view.push(index);
-            batch.x.push(x);
-            batch.y.push(y);
-            batch.layer.push(layer);
-            for channel in [&mut batch.r, &mut batch.g, &mut batch.b] {
-                channel.push(0.5);
-            }
-            batch.near.push(0.1);
-            batch.far.push(100.0);
-        }
+        let depths = (0..layers).map(|layer| 1.0 + layer as f32 + x as f32 / 64.0);
+        let points: Vec<_> = depths.map(|depth| (depth, 0.5)).collect();
+        push_pixel(&mut batch, [index, x, y], &points, || [0.5; 3]);
     }
     batch
 }
@@ -47,10 +33,8 @@ fn write(folder: &Path, scenes: Vec<SceneEntry>) -> Dataset {
 #[test]
 fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let folder = tempfile::tempdir().unwrap();
-    let a = write(
-        &folder.path().join("a"),
-        vec![scene("cups", false), scene("panes", true)],
-    );
+    let scenes = vec![scene("cups", false), scene("panes", true)];
+    let a = write(&folder.path().join("a"), scenes);
     let b = write(&folder.path().join("b"), vec![scene("smoke", false)]);
     let config = Config {
         epochs: 2,
@@ -62,26 +46,20 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let rows = 2 * 3 * (SIDE * SIDE) as usize;
     assert_eq!(data.rows(), rows as u64);
     assert_eq!(data.inputs[0][..3], [1.0, 2.0, 3.0]);
-    assert!(
-        data.inputs[1].iter().all(|&sum| sum == 1.5) && data.inputs[2].iter().all(|&n| n == 3.0)
-    );
+    assert_eq!(data.inputs[1], vec![1.5; rows]);
+    assert_eq!(data.inputs[2], vec![3.0; rows]);
     assert_eq!(data.targets[0][..4], [1.0, 0.5, 0.25, 1.0]);
     let reference = data.dataset.clone().unwrap();
     assert_eq!(reference.scenes, ["cups", "smoke"]);
     assert_eq!(reference.rows, rows as u64);
-    assert_eq!(
-        reference.hash,
-        format!("{}+{}", datasets[0].hash(), datasets[1].hash())
-    );
+    let hashes = datasets.each_ref().map(Dataset::hash);
+    assert_eq!(reference.hash, hashes.join("+"));
 
     let held_out: Vec<bool> = (data.subsets.as_ref().unwrap().iter())
         .map(|&s| s == Subset::Test)
         .collect();
-    assert!(
-        held_out
-            .chunks_exact(3)
-            .all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2])
-    );
+    let mut pixels = held_out.chunks_exact(3);
+    assert!(pixels.all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]));
     // 900 pixels, the same in both parts because both are view 0: a third of them, within five standard deviations
     // √(p(1−p)/900).
     let share = held_out.iter().filter(|&&h| h).count() as f64 / rows as f64;
@@ -93,13 +71,12 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let errors = held_out_errors(&model, &datasets).unwrap();
     assert_eq!(errors.keys().collect::<Vec<_>>(), ["panes"]);
     let batch = view(1);
-    let expected = (0..batch.len())
-        .map(|i| {
-            let answer = model.forward_raw(&[batch.linear_depth[i], 1.5, 3.0])[0];
-            (f64::from(answer) - f64::from(batch.transmittance[i])).abs()
-        })
-        .sum::<f64>()
-        / batch.len() as f64;
+    let rows = batch.linear_depth.iter().zip(&batch.transmittance);
+    let differences = rows.map(|(&depth, &t)| {
+        let answer = model.forward_raw(&[depth, 1.5, 3.0])[0];
+        (f64::from(answer) - f64::from(t)).abs()
+    });
+    let expected = differences.sum::<f64>() / batch.len() as f64;
     assert_eq!(errors["panes"], expected);
 }
 
@@ -110,13 +87,8 @@ fn a_dataset_of_held_out_scenes_only_is_refused() {
     let config = Config::for_recipe(Recipe::THESIS);
     let data = TrainingData::from_datasets(&config, &datasets).unwrap();
     let error = run(&config, &data, &folder.path().join("net")).unwrap_err();
-    let TrainError::Columns { data, problem } = &error else {
-        panic!("{error}");
-    };
-    assert!(
-        data.ends_with('a') && problem.contains("held out"),
-        "{error}"
-    );
+    let text = error.to_string();
+    assert!(text.contains("/a: ") && text.contains("held out"), "{text}");
 }
 
 /// Of more rows than may be held, whole pixels are drawn: of every view its share, and the same ones for the same seed.

@@ -171,3 +171,31 @@ fn write_views(
     writer.finish().unwrap();
     Dataset::open(folder).unwrap()
 }
+
+/// Appends a pixel (view, x, y) with these depths and opacities, nearest first.
+fn push_pixel(
+    batch: &mut FragmentBatch,
+    [view, x, y]: [u32; 3],
+    points: &[(f32, f32)],
+    mut color: impl FnMut() -> [f32; 3],
+) {
+    let mut through = 1.0;
+    for (layer, &(depth, alpha)) in points.iter().enumerate() {
+        let [r, g, b] = color();
+        batch.one_minus_alpha.push(1.0 - alpha);
+        batch.linear_depth.push(depth);
+        batch.alpha_sum.push(points.iter().map(|p| p.1).sum());
+        batch.fragment_count.push(points.len() as u32);
+        batch.transmittance.push(through);
+        batch.view.push(view);
+        batch.x.push(x);
+        batch.y.push(y);
+        batch.layer.push(layer as u32);
+        batch.r.push(r);
+        batch.g.push(g);
+        batch.b.push(b);
+        batch.near.push(0.1);
+        batch.far.push(100.0);
+        through *= 1.0 - alpha;
+    }
+}

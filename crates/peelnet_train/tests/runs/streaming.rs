@@ -8,7 +8,7 @@ use peelnet_dataset::{Dataset, FragmentBatch, SplitBy, Subset};
 use peelnet_model::Recipe;
 use peelnet_train::{Config, DataSplit, Outcome, TrainError, TrainingData, train};
 
-use super::{NEVER, assert_repeats, assert_resumes, resuming, run, scene, write_views};
+use super::{NEVER, assert_repeats, assert_resumes, push_pixel, resuming, run, scene, write_views};
 
 const SIDE: u32 = 40;
 
@@ -24,25 +24,8 @@ fn view(index: u32) -> FragmentBatch {
         let alphas: Vec<f32> = (0..count)
             .map(|_| random.between(0.1, 0.3 + 0.08 * index as f32))
             .collect();
-        let mut through = 1.0;
-        for (layer, (&depth, &alpha)) in depths.iter().zip(&alphas).enumerate() {
-            batch.one_minus_alpha.push(1.0 - alpha);
-            batch.linear_depth.push(depth);
-            batch.alpha_sum.push(alphas.iter().sum());
-            batch.fragment_count.push(count as u32);
-            batch.transmittance.push(through);
-            batch.view.push(index);
-            batch.x.push(x);
-            batch.y.push(y);
-            batch.layer.push(layer as u32);
-            let [r, g, b] = random.color();
-            batch.r.push(r);
-            batch.g.push(g);
-            batch.b.push(b);
-            batch.near.push(0.1);
-            batch.far.push(100.0);
-            through *= 1.0 - alpha;
-        }
+        let points: Vec<_> = depths.into_iter().zip(alphas).collect();
+        push_pixel(&mut batch, [index, x, y], &points, || random.color());
     }
     batch
 }
@@ -99,10 +82,8 @@ fn a_checkpoint_of_another_dataset_or_buffer_is_refused() {
     let error = train(&config, &of("b", 3), &resuming(&out), |_| {}).unwrap_err();
     assert!(error.to_string().contains("other rows"), "{error}");
     for buffer_rows in [Some(3001), None] {
-        let other = Config {
-            buffer_rows,
-            ..config.clone()
-        };
+        let mut other = config.clone();
+        other.buffer_rows = buffer_rows;
         let error = train(&other, &data, &resuming(&out), |_| {}).unwrap_err();
         assert!(error.to_string().contains("`buffer_rows`"), "{error}");
     }
@@ -119,10 +100,8 @@ fn the_pass_can_be_stopped_and_too_few_pixels_are_refused() {
         TrainingData::streamed(config, datasets, folder.path(), &stop, |_, _| {})
     };
     assert!(matches!(begin(&good, true), Err(TrainError::Stopped)));
-    let few = Config {
-        held_out: 1e-9,
-        ..good.clone()
-    };
+    let mut few = good.clone();
+    few.held_out = 1e-9;
     let error = begin(&few, false).unwrap_err().to_string();
     assert!(
         error.contains("testing") && error.contains("without streaming"),
@@ -155,17 +134,13 @@ fn examples_and_normalisation_are_those_of_memory() {
         let b = run(&config, &held, &out).unwrap().model.meta;
         assert_eq!(a.dataset, b.dataset);
         for (a, b) in a.inputs.iter().zip(&b.inputs) {
-            assert_eq!((a.min, a.max), (b.min, b.max), "{recipe}, {}", a.name);
             let largest = a.min.abs().max(a.max.abs());
+            let is_near = |a: f32, b: f32, size: f32| (a - b).abs() <= f32::EPSILON * size;
             assert!(
-                (a.offset - b.offset).abs() <= f32::EPSILON * largest,
-                "{recipe}, {}",
-                a.name
-            );
-            assert!(
-                (a.scale - b.scale).abs() <= f32::EPSILON * b.scale,
-                "{recipe}, {}",
-                a.name
+                (a.min, a.max) == (b.min, b.max)
+                    && is_near(a.offset, b.offset, largest)
+                    && is_near(a.scale, b.scale, b.scale),
+                "{recipe}: {a:?}, {b:?}"
             );
         }
     }

@@ -39,16 +39,18 @@ fn config() -> Config {
     }
 }
 
+fn with(change: impl FnOnce(&mut Config)) -> Config {
+    let mut config = config();
+    change(&mut config);
+    config
+}
+
 #[test]
 fn a_network_learns_and_its_file_answers_in_raw_units() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("deep/net.safetensors");
     let data = rows(6000);
-    let config = Config {
-        epochs: 30,
-        learning_rate: 3e-3,
-        ..config()
-    };
+    let config = with(|c| (c.epochs, c.learning_rate) = (30, 3e-3));
     let options = RunOptions {
         loss_curve: ["loss.csv", "loss.svg"]
             .map(|name| folder.path().join(name))
@@ -93,11 +95,8 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
 
     let table = std::fs::read_to_string(folder.path().join("loss.csv")).unwrap();
     assert_eq!(table.lines().count(), 31);
-    assert!(
-        std::fs::read_to_string(folder.path().join("loss.svg"))
-            .unwrap()
-            .starts_with("<svg")
-    );
+    let chart = std::fs::read_to_string(folder.path().join("loss.svg")).unwrap();
+    assert!(chart.starts_with("<svg"));
     for name in ["last", "best"] {
         Model::load(outcome.checkpoint.join(name).with_extension("safetensors")).unwrap();
     }
@@ -105,11 +104,6 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
 
 #[test]
 fn runs_repeat_and_resume() {
-    let with = |change: fn(&mut Config)| {
-        let mut config = config();
-        change(&mut config);
-        config
-    };
     // Batches of 13 chunks, the last of them short.
     let chunks = with(|c| (c.batch, c.chunk) = (1600, 128));
     assert_repeats(&chunks, &|_| rows(5000));
@@ -128,10 +122,7 @@ fn a_run_interrupted_within_an_epoch_resumes_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let data = rows(20_000);
     let whole = folder.path().join("whole.safetensors");
-    let config = Config {
-        batch: 32,
-        ..config()
-    };
+    let config = with(|c| c.batch = 32);
     run(&config, &data, &whole).unwrap();
     let out = folder.path().join("parts.safetensors");
     for attempt in 0..1000 {
@@ -158,13 +149,7 @@ fn a_run_interrupted_within_an_epoch_resumes_to_the_same_bytes() {
 fn epochs_can_be_added_to_a_finished_run() {
     let folder = tempfile::tempdir().unwrap();
     let data = rows(1000);
-    let (short, long) = (
-        config(),
-        Config {
-            epochs: 9,
-            ..config()
-        },
-    );
+    let (short, long) = (config(), with(|c| c.epochs = 9));
     let straight = folder.path().join("straight.safetensors");
     run(&long, &data, &straight).unwrap();
     let out = folder.path().join("extended.safetensors");
@@ -233,32 +218,19 @@ fn divergence_is_an_error_that_keeps_the_last_good_weights() {
     let out = folder.path().join("net.safetensors");
     // One step an epoch: it sends the weights to about 1e9, so the next loss, of the size of their sixth power,
     // is beyond 32 bits.
-    let config = Config {
-        learning_rate: 1e9,
-        batch: 100,
-        held_out: 0.0,
-        ..config()
-    };
-    let error = run(&config, &rows(100), &out).unwrap_err();
-    let TrainError::Diverged {
-        epoch: 2,
-        kept: Some(kept),
-        ..
-    } = &error
-    else {
-        panic!("{error}");
-    };
-    let model = Model::load(kept).unwrap();
-    assert_eq!(model.meta.epochs, 1);
-    assert!(error.to_string().contains("learning rate"), "{error}");
+    let diverging =
+        |held_out| with(|c| (c.learning_rate, c.batch, c.held_out) = (1e9, 100, held_out));
+    let error = run(&diverging(0.0), &rows(100), &out).unwrap_err();
+    let text = error.to_string();
+    assert!(text.contains("in epoch 2:"), "{text}");
+    assert!(text.contains("learning rate"), "{text}");
+    let kept = checkpoint_folder(&out).join("last.safetensors");
+    assert!(text.contains(&kept.display().to_string()), "{text}");
+    assert_eq!(Model::load(kept).unwrap().meta.epochs, 1);
     assert!(!out.exists());
 
     // With held-out rows the first epoch is found out already, and there is nothing to keep.
-    let config = Config {
-        held_out: 0.5,
-        ..config
-    };
-    let error = run(&config, &rows(100), &out).unwrap_err();
+    let error = run(&diverging(0.5), &rows(100), &out).unwrap_err();
     assert!(error.to_string().contains("in epoch 1:"), "{error}");
     assert!(matches!(error, TrainError::Diverged { kept: None, .. }));
 }
@@ -271,20 +243,12 @@ fn patience_stops_and_takes_the_best_epoch() {
     for (i, target) in data.targets[0].iter_mut().enumerate() {
         *target = (i * 37 % 11) as f32 / 10.0;
     }
-    let config = Config {
-        epochs: 5000,
-        learning_rate: 1e-2,
-        patience: Some(5),
-        ..config()
-    };
+    let config = with(|c| (c.epochs, c.learning_rate, c.patience) = (5000, 1e-2, Some(5)));
     let outcome = run(&config, &data, &folder.path().join("net.safetensors")).unwrap();
     assert_eq!(outcome.end, End::StoppedEarly);
     assert_eq!(outcome.history.len(), outcome.model_epoch as usize + 5);
-    let lowest = outcome
-        .history
-        .iter()
-        .filter_map(|r| r.held_out_loss)
-        .fold(f64::INFINITY, f64::min);
+    let losses = outcome.history.iter().filter_map(|r| r.held_out_loss);
+    let lowest = losses.fold(f64::INFINITY, f64::min);
     assert_eq!(outcome.model.meta.losses.validation, Some(lowest));
     assert_eq!(outcome.model.meta.losses.test, None);
 }
@@ -340,20 +304,9 @@ fn few_equal_and_constant_rows_train_to_something_finite() {
     for column in same.inputs.iter_mut().chain(&mut same.targets) {
         column.resize(500, column[0]);
     }
-    let same_rows = run(
-        &Config {
-            epochs: 200,
-            learning_rate: 1e-2,
-            ..config()
-        },
-        &same,
-        &out,
-    )
-    .unwrap();
-    assert!(
-        same_rows.history[199].train_loss < 1e-4,
-        "one answer is learnt"
-    );
+    let long = with(|c| (c.epochs, c.learning_rate) = (200, 1e-2));
+    let history = run(&long, &same, &out).unwrap().history;
+    assert!(history[199].train_loss < 1e-4, "one answer is learnt");
 
     // A column that never varies must not matter afterwards, and the others must still be learnt from.
     let mut constant = rows(2000);
@@ -371,11 +324,8 @@ fn few_equal_and_constant_rows_train_to_something_finite() {
     for depth in &mut far.inputs[0] {
         *depth *= 1e8;
     }
-    let (near, far) = (
-        run(&config(), &rows(2000), &out).unwrap(),
-        run(&config(), &far, &out).unwrap(),
-    );
-    let (near, far) = (near.history[5].train_loss, far.history[5].train_loss);
+    let [near, far] =
+        [&rows(2000), &far].map(|data| run(&config(), data, &out).unwrap().history[5].train_loss);
     assert!((near - far).abs() < 1e-4 * near, "{near} against {far}");
 }
 
@@ -449,5 +399,5 @@ fn places_that_cannot_be_written_are_refused_before_training() {
         loss_curve: vec![folder.path().join("loss.png")],
         ..RunOptions::new(folder.path().join("net.safetensors"), &NEVER)
     };
-    refuse(curve, "loss.png");
+    refuse(curve, "loss.png: a loss curve ends in .csv or .svg");
 }
