@@ -157,7 +157,6 @@ impl Split {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
     use peelnet_core::hash::sample_threshold;
 

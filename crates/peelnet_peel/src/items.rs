@@ -75,7 +75,6 @@ pub fn items(scenes: &[Scene], views: Views, augment: u32) -> Result<Vec<Item>, 
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     /// The old code took memory for 4,294,967,296 items, or wrapped their number around.

@@ -269,7 +269,6 @@ fn fill(tile: &mut RawTile, world: &World, lists: u64, random: &mut Random) -> [
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     #[test]

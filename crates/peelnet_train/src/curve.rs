@@ -105,7 +105,6 @@ pub fn curve_chart(history: &[EpochReport]) -> Svg {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn row(epoch: u32, train_loss: f64, held_out_loss: Option<f64>) -> EpochReport {

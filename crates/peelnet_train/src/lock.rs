@@ -92,7 +92,6 @@ fn is_at(_: &File, path: &Path) -> io::Result<bool> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     #[test]

@@ -53,7 +53,6 @@ impl Adam {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use burn::tensor::{Device, TensorData};
     use peelnet_model::Recipe;

@@ -288,7 +288,6 @@ fn windows(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use std::collections::BTreeSet;
 
     use peelnet_model::Recipe;

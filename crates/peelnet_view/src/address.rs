@@ -116,7 +116,6 @@ pub(crate) fn read(query: &str, start: &mut Start) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     #[test]

@@ -1,7 +1,5 @@
 //! The window's controls, pressed one by one, without a window.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
 use crate::{
     Mode, Start, address,
     app::{App, configuration},

@@ -17,7 +17,7 @@ use peelnet_eval::{
 use peelnet_files::{Outputs, error_line, shown};
 use peelnet_gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodSpec, role};
-use peelnet_report::Results;
+use peelnet_report::{Measurement, Results};
 use peelnet_scene::{Scene, suite};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -68,6 +68,17 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         .result(|| results.table().plain(), || json!(results))
 }
 
+/// Writes results of any kind into a folder, and shows them.
+pub(super) fn report<T: Measurement>(
+    context: &Context<'_>,
+    out: &Path,
+    results: &Results<T>,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    results.write(out)?;
+    context.console.result(text, || json!(results))
+}
+
 /// The files and the pictures that a bench of any kind writes.
 fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Outputs, Failure> {
     let mut outputs = context.outputs(args.scenes.iter().chain(&args.models));
@@ -108,10 +119,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let scaling = scaling::measure(&gpu, &plan, context.stop, &mut show(context, &bar))?;
     drop(bar);
     let results = Results::new(Machine::of(&gpu), command_line(), scaling);
-    results.write(&args.out)?;
-    context
-        .console
-        .result(|| results.table().plain(), || json!(results))
+    report(context, &args.out, &results, || results.table().plain())
 }
 
 /// What effects cost.
@@ -141,12 +149,10 @@ fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failur
     )?;
     drop(bar);
     let results = Results::new(Machine::of(&gpu), command_line(), found);
-    results.write(&args.out)?;
-    let text = || {
+    report(context, &args.out, &results, || {
         let tables: Vec<String> = results.tables().iter().map(|(.., t)| t.plain()).collect();
         tables.join("\n")
-    };
-    context.console.result(text, || json!(results))
+    })
 }
 
 /// Methods along a camera path, with moving objects.
@@ -176,10 +182,7 @@ fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     drop(bar);
     context.warn_of_memory(&gpu);
     let results = Results::new(Machine::of(&gpu), command_line(), found);
-    results.write(&args.out)?;
-    context
-        .console
-        .result(|| results.table().plain(), || json!(results))
+    report(context, &args.out, &results, || results.table().plain())
 }
 
 /// What is compared, and how.

@@ -1,6 +1,6 @@
 //! `peelnet bench --designs`: what designs of slabs are worth.
 
-use super::{Context, command_line, json_path};
+use super::{Context, bench::report, command_line, json_path};
 use crate::cli::BenchArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
@@ -17,7 +17,6 @@ use peelnet_model::{Model, Recipe};
 use peelnet_report::Results;
 use peelnet_scene::Scene;
 use peelnet_train::{Config, End, RunOptions, TrainingData, train};
-use serde_json::json;
 use std::collections::BTreeSet;
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
@@ -90,10 +89,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         rows,
     };
     let results = Results::new(Machine::of(&gpu), command_line(), found);
-    results.write(&args.out)?;
-    context
-        .console
-        .result(|| results.table().plain(), || json!(results))
+    report(context, &args.out, &results, || results.table().plain())
 }
 
 fn config(entry: &Entry, args: &BenchArgs) -> Config {

@@ -301,7 +301,6 @@ fn fault(path: &Path, action: &'static str, error: &object_store::Error) -> Data
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::*;
 
     #[test]

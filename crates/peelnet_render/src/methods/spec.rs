@@ -237,7 +237,6 @@ impl fmt::Display for MethodSpec {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
     use super::{super::Parameter, *};
 
     #[test]
