@@ -32,7 +32,7 @@ pub fn decode(stored: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Every byte comes back, and white, black and the two branches meet.
+    /// Every byte comes back, white, black and middle grey are known, and the two branches meet.
     #[test]
     fn bytes_come_back() {
         for byte in 0..=255u8 {
@@ -41,6 +41,7 @@ mod tests {
         }
         assert_eq!((encode(f32::NAN), encode(2.0)), (0.0, encode(1.0)));
         assert!((encode(1.0) - 1.0).abs() < 1e-6 && (decode(1.0) - 1.0).abs() < 1e-6);
+        assert!((encode(0.18) - 0.461_36).abs() < 1e-5);
         assert!((encode(0.003_130_8) - encode(0.003_130_9)).abs() < 1e-5);
     }
 }
