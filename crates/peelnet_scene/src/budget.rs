@@ -1,6 +1,6 @@
 //! What a scene may take in all, so that a small file cannot ask for endless memory. It is counted before the memory is taken.
 
-use crate::{Camera, Object, mesh::Mesh};
+use crate::{Camera, Object};
 use glam::Vec3;
 
 /// Most triangles of the meshes that are generated, copied, instanced, or read from files whose headers count them.
@@ -9,8 +9,11 @@ pub(crate) const MAX_TRIANGLES: u64 = 50_000_000;
 /// Most vertices of these meshes.
 const MAX_VERTICES: u64 = 2 * MAX_TRIANGLES;
 
+/// Most triangles of all objects, which share meshes: they are numbered by their vertices, in 32 bits.
+pub(crate) const MAX_INSTANCED: u64 = u32::MAX as u64 / 3;
+
 /// Most parts of all objects: each has a material, and is a draw.
-const MAX_PARTS: u64 = 1_000_000;
+pub(crate) const MAX_PARTS: u64 = 1_000_000;
 
 /// Most texels of all textures: 4 GiB.
 const MAX_TEXELS: u64 = 1 << 30;
@@ -25,33 +28,18 @@ pub(crate) const MAX_COORDINATE: f32 = 1e16;
 /// what the camera sees. Rasterisers lose larger triangles, or halves of quads, without an error.
 const MAX_REACH: f32 = 65_536.0;
 
-/// Checks the number of lights.
-pub(crate) fn check_lights(lights: usize) -> Result<(), String> {
-    if lights <= MAX_LIGHTS {
-        return Ok(());
-    }
-    Err(format!(
-        "has {lights} lights: a scene has at most {MAX_LIGHTS}; give it fewer, brighter ones"
-    ))
-}
-
 /// Checks that the coordinates of an object in the world can be drawn.
 pub(crate) fn check_reach(object: &Object, views: &[Camera]) -> Result<(), String> {
     let Some((low, high)) = object.mesh.bounds() else {
         return Ok(());
     };
     let vertex = |i: usize| Vec3::from_array([0, 1, 2].map(|k| [low, high][i >> k & 1][k]));
-    let farthest = (0..8)
-        .map(|i| object.world_from_object.transform_point3(vertex(i)))
-        .fold(0.0f32, |m, p| {
-            // A maximum skips NaN.
-            let farthest = p.abs().max_element();
-            if p.is_finite() {
-                m.max(farthest)
-            } else {
-                f32::INFINITY
-            }
-        });
+    let vertices = (0..8).map(|i| object.world_from_object.transform_point3(vertex(i)));
+    let distances = vertices.map(|p| match p.is_finite() {
+        true => p.abs().max_element(),
+        false => f32::INFINITY,
+    });
+    let farthest = distances.fold(0.0, f32::max);
     let far = views.iter().fold(0.0f32, |m, view| m.max(view.far));
     let limit = (MAX_REACH * far).min(MAX_COORDINATE);
     if farthest <= limit {
@@ -60,17 +48,6 @@ pub(crate) fn check_reach(object: &Object, views: &[Camera]) -> Result<(), Strin
     Err(format!(
         "reaches {farthest:e} from the origin: at most {limit:e}, which is {MAX_REACH} times the camera's far or what 32-bit numbers hold; \
          make it smaller, or far larger"
-    ))
-}
-
-/// Checks the triangles of all objects, which share meshes: they are numbered by their vertices, in 32 bits.
-pub(crate) fn check_instances(triangles: u64) -> Result<(), String> {
-    const MOST: u64 = u32::MAX as u64 / 3;
-    if triangles <= MOST {
-        return Ok(());
-    }
-    Err(format!(
-        "all objects together have {triangles} triangles: a scene has at most {MOST}; give it fewer or smaller ones"
     ))
 }
 
@@ -90,11 +67,6 @@ impl Budget {
         take(&mut self.vertices, vertices, MAX_VERTICES, "vertices")
     }
 
-    /// Takes a copy of a mesh.
-    pub fn take_copy(&mut self, mesh: &Mesh) -> Result<(), String> {
-        self.take_mesh(mesh.triangles.len() as u64, mesh.positions.len() as u64)
-    }
-
     /// Takes `parts` of each of so many objects.
     pub fn take_parts(&mut self, objects: usize, parts: usize) -> Result<(), String> {
         let parts = (objects as u64).saturating_mul(parts as u64);
@@ -108,9 +80,9 @@ impl Budget {
     }
 }
 
-/// Checks the number of parts of one mesh.
-pub(crate) fn check_parts(parts: u64) -> Result<(), String> {
-    take(&mut 0, parts, MAX_PARTS, "parts")
+/// Checks a number that is not summed.
+pub(crate) fn check(count: u64, limit: u64, what: &str) -> Result<(), String> {
+    take(&mut 0, count, limit, what)
 }
 
 fn take(taken: &mut u64, more: u64, limit: u64, what: &str) -> Result<(), String> {
@@ -121,7 +93,7 @@ fn take(taken: &mut u64, more: u64, limit: u64, what: &str) -> Result<(), String
             n => format!(" beside {n} before"),
         };
         return Err(format!(
-            "{more} {what}{before}: a scene has at most {limit}; make it smaller"
+            "{more} {what}{before}: a scene has at most {limit}; give it fewer or smaller ones"
         ));
     }
     *taken = all;

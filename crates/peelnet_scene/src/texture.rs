@@ -6,7 +6,7 @@ mod decode;
 use crate::{budget::Budget, displacement::Displacement};
 use rayon::prelude::*;
 use serde::Deserialize;
-use std::{borrow::Cow, collections::HashMap, sync::Arc};
+use std::{borrow::Cow, sync::Arc};
 
 /// A texture of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
@@ -107,14 +107,7 @@ impl Maps {
     }
 }
 
-impl Default for Maps {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
 impl Texture {
-    /// A texture of `size[0] * size[1]` texels.
     fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
         Self {
             name: name.to_owned(),
@@ -125,27 +118,15 @@ impl Texture {
         }
     }
 
-    /// Reads a PNG or JPEG image from memory.
-    ///
-    /// # Errors
-    /// What is wrong, and a fix. Without the feature `images` nothing is read.
-    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, String> {
-        Self::decode_within(name, bytes, &mut Budget::default())
-    }
-
-    /// The same for a scene that has taken other textures.
+    /// Reads a PNG or JPEG image for a scene that has taken other textures. Without the feature `images` nothing is read.
     #[cfg(not(feature = "images"))]
-    pub(crate) fn decode_within(_: &str, _: &[u8], _: &mut Budget) -> Result<Self, String> {
+    pub(crate) fn decode(_: &str, _: &[u8], _: &mut Budget) -> Result<Self, String> {
         Err("cannot be read by this build; build peelnet_scene with its feature `images`".into())
     }
 
-    /// The same for a scene that has taken other textures.
+    /// Reads a PNG or JPEG image for a scene that has taken other textures.
     #[cfg(feature = "images")]
-    pub(crate) fn decode_within(
-        name: &str,
-        bytes: &[u8],
-        budget: &mut Budget,
-    ) -> Result<Self, String> {
+    pub(crate) fn decode(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Self, String> {
         let (size, texels) = decode::decode(bytes, budget)?;
         Ok(Self::new(name, size, texels))
     }
@@ -172,10 +153,6 @@ impl Texture {
     }
 
     /// The same texture at another size: of the nearest texels without the feature `images`.
-    pub fn resized(&self, size: [u32; 2]) -> Self {
-        self.at_size(size).into_owned()
-    }
-
     fn at_size(&self, size: [u32; 2]) -> Cow<'_, Self> {
         if size == self.size {
             Cow::Borrowed(self)
@@ -207,7 +184,11 @@ impl Texture {
     }
 
     /// Two textures joined texel by texel, at the larger size of each side.
-    pub fn joined(a: &Self, b: &Self, texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync) -> Self {
+    pub(crate) fn joined(
+        a: &Self,
+        b: &Self,
+        texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync,
+    ) -> Self {
         let size = [a.size[0].max(b.size[0]), a.size[1].max(b.size[1])];
         let (left, right) = (a.at_size(size), b.at_size(size));
         let pairs = left.texels.par_iter().zip(&right.texels);
@@ -216,7 +197,7 @@ impl Texture {
     }
 
     /// Tangent-space normals of a height field that repeats: `slope` is the rise of white over black in widths of a texel.
-    pub fn normals_of_heights(&self, slope: f32) -> Self {
+    pub(crate) fn normals_of_heights(&self, slope: f32) -> Self {
         let [width, height] = self.size;
         let heights: Vec<f32> = self
             .texels
@@ -242,53 +223,6 @@ pub(crate) fn fill<T: Clone + Default + Send>(
         }
     });
     all
-}
-
-/// Textures that are made of others, each once.
-#[derive(Default)]
-pub(crate) struct Made {
-    /// By what is made, and the addresses of what of: that is held, so that its addresses stay its own.
-    known: HashMap<String, (Sources, Arc<Texture>)>,
-}
-
-type Sources = [Option<Arc<Texture>>; 2];
-
-impl Made {
-    /// A texture of two others or fewer, whose size is the largest of each side.
-    pub fn of(
-        &mut self,
-        what: &str,
-        sources: [Option<&Arc<Texture>>; 2],
-        budget: &mut Budget,
-        make: impl FnOnce() -> Texture,
-    ) -> Result<Arc<Texture>, String> {
-        let [a, b] = sources.map(|t| t.map(Arc::as_ptr));
-        let key = format!("{what} of {a:?} and {b:?}");
-        if let Some((_, known)) = self.known.get(&key) {
-            return Ok(Arc::clone(known));
-        }
-        let sizes = sources.map(|t| t.map_or([1, 1], |t| t.size));
-        budget.take_texels([0, 1].map(|k| sizes[0][k].max(sizes[1][k])))?;
-        let made = Arc::new(make());
-        let sources = sources.map(Option::<&Arc<Texture>>::cloned);
-        self.known.insert(key, (sources, Arc::clone(&made)));
-        Ok(made)
-    }
-
-    /// Two textures joined texel by texel. White stands for a missing one.
-    pub fn joined(
-        &mut self,
-        what: &str,
-        sources: [Option<&Arc<Texture>>; 2],
-        budget: &mut Budget,
-        texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync,
-    ) -> Result<Arc<Texture>, String> {
-        self.of(what, sources, budget, || {
-            let white = Texture::of("white", [1, 1], |_, _| [255; 4]);
-            let [a, b] = sources.map(|t| t.map_or(&white, |t| t.as_ref()));
-            Texture::joined(a, b, texel)
-        })
-    }
 }
 
 /// Tangent-space normals of heights that repeat, by central differences; `slope` is the rise of 1 in widths of a texel.
@@ -348,33 +282,8 @@ mod tests {
             (b"RIFF....WEBP", "PNG"),
             (b"\x89PNG\r\n\x1a\n\0\0", "save it again"),
         ] {
-            let e = Texture::decode("x", bytes).expect_err("is not read");
+            let e = Texture::decode("x", bytes, &mut Budget::default()).expect_err("is not read");
             assert!(e.contains(word) && !e.contains(['{', '(', ':']), "{e}");
-        }
-    }
-
-    /// Every kind of pixel becomes the same texels as by the decoder's own conversion.
-    #[cfg(feature = "images")]
-    #[test]
-    fn all_kinds_of_pixels_are_decoded() {
-        use image::DynamicImage as D;
-        let rgba = image::RgbaImage::from_fn(5, 3, |x, y| {
-            image::Rgba([50 * x as u8, 80 * y as u8, 7, 255 - x as u8])
-        });
-        let rgba = D::ImageRgba8(rgba);
-        for image in [
-            D::ImageLuma8(rgba.to_luma8()),
-            D::ImageLumaA8(rgba.to_luma_alpha8()),
-            D::ImageRgb8(rgba.to_rgb8()),
-            D::ImageRgba16(rgba.to_rgba16()),
-            rgba,
-        ] {
-            let mut bytes = std::io::Cursor::new(Vec::new());
-            let written = image.write_to(&mut bytes, image::ImageFormat::Png);
-            let bytes = written.map(|()| bytes.into_inner()).expect("encodes");
-            let texture = Texture::decode("x", &bytes).expect("decodes");
-            assert_eq!(texture.texels.as_flattened(), image.to_rgba8().as_raw());
-            assert!(!texture.opaque().has_alpha());
         }
     }
 }

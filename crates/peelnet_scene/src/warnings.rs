@@ -1,6 +1,5 @@
 //! Warnings, one for each kind of problem: twenty thousand materials with the same one are one line.
 
-use peelnet_files::printable_lines;
 use std::collections::{HashMap, HashSet};
 
 /// Names that a warning lists.
@@ -9,17 +8,13 @@ const LISTED: usize = 3;
 /// Characters of an error or warning that are shown: more than the longest path of most systems.
 const LONGEST: usize = 5000;
 
-/// Warnings in the order in which their kinds are met first.
+/// Warnings by the text around the names in which they differ.
 #[derive(Default)]
-pub(crate) struct Warnings {
-    kinds: Vec<Kind>,
-    /// Numbers of the kinds by the text around their names.
-    numbers: HashMap<[String; 2], usize>,
-}
+pub(crate) struct Warnings(HashMap<[String; 2], Kind>);
 
-/// Warnings that differ in a name alone.
 struct Kind {
-    text: [String; 2],
+    /// Which kind it was, in the order in which they are met.
+    number: usize,
     listed: Vec<String>,
     all: HashSet<String>,
 }
@@ -32,43 +27,38 @@ impl Warnings {
 
     /// Adds a warning about a name, which stands between two texts.
     pub fn about(&mut self, before: impl Into<String>, name: &str, after: impl Into<String>) {
-        let text = [before.into(), after.into()];
-        let number = *self.numbers.entry(text).or_insert_with_key(|text| {
-            self.kinds.push(Kind {
-                text: text.clone(),
-                listed: Vec::new(),
-                all: HashSet::new(),
-            });
-            self.kinds.len() - 1
+        let number = self.0.len();
+        let kind = self.0.entry([before.into(), after.into()]);
+        let kind = kind.or_insert_with(|| Kind {
+            number,
+            listed: Vec::new(),
+            all: HashSet::new(),
         });
-        let kind = &mut self.kinds[number];
-        if !kind.all.insert(name.to_owned()) {
-            return;
-        }
-        if kind.listed.len() < LISTED {
+        if kind.all.insert(name.to_owned()) && kind.listed.len() < LISTED {
             kind.listed.push(name.to_owned());
         }
     }
 
     /// The warnings, each on one line and printable.
     pub fn texts(&self) -> Vec<String> {
-        let text = |kind: &Kind| {
-            let [before, after] = &kind.text;
+        let mut kinds: Vec<_> = self.0.iter().collect();
+        kinds.sort_by_key(|(_, kind)| kind.number);
+        let text = |([before, after], kind): (&[String; 2], &Kind)| {
             let more = match kind.all.len() - kind.listed.len() {
                 0 => String::new(),
                 n => format!(" and {n} more"),
             };
             one_line(&format!("{before}{}{more}{after}", kind.listed.join(", ")))
         };
-        self.kinds.iter().map(text).collect()
+        kinds.into_iter().map(text).collect()
     }
 }
 
 /// Text with foreign names in it, fit for one line of a terminal.
 pub(crate) fn one_line(text: &str) -> String {
     let end = text.char_indices().nth(LONGEST).map(|(end, _)| end);
-    let shown = printable_lines(&text[..end.unwrap_or(text.len())]).replace('\n', "\\u{a}");
-    if end.is_some() { shown + "…" } else { shown }
+    let shown = peelnet_files::one_line(&text[..end.unwrap_or(text.len())]);
+    shown.into_owned() + if end.is_some() { "…" } else { "" }
 }
 
 #[cfg(test)]

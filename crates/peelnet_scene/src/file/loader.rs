@@ -4,10 +4,10 @@ use super::raw::{MapRef, MeshRef, Reference};
 use crate::{
     error::{Fault, SceneError, shown},
     files::Files,
-    import::Format,
-    material::{Lighting, Material},
+    import,
+    material::Material,
     mesh::Mesh,
-    texture::{Made, Texture},
+    texture::Texture,
 };
 use std::{
     collections::HashMap,
@@ -19,42 +19,31 @@ use std::{
 pub(super) struct Loader<'a> {
     /// The scene file.
     pub path: &'a Path,
-    /// How materials are lit that do not say it.
-    pub lighting: Lighting,
     pub files: Files<'a>,
-    pub warnings: Vec<String>,
     /// By file, or shape and whether it has UVs.
     meshes: HashMap<String, Arc<Mesh>>,
     /// By file, or pattern and key of a material.
     textures: HashMap<String, Arc<Texture>>,
-    /// Of materials of the specular–glossiness workflow.
-    pub made: Made,
 }
 
 impl<'a> Loader<'a> {
-    pub fn new(path: &'a Path, lighting: Lighting, files: Files<'a>) -> Self {
+    pub fn new(path: &'a Path, files: Files<'a>) -> Self {
         Self {
             path,
-            lighting,
             files,
-            warnings: Vec::new(),
             meshes: HashMap::new(),
             textures: HashMap::new(),
-            made: Made::default(),
         }
     }
 
-    /// The error for a value of a field.
     pub fn value(&self, field: &str, message: impl Into<String>) -> SceneError {
         SceneError::value(self.path, field, message)
     }
 
-    /// The error for a fault in a table.
     pub fn fault(&self, table: &str, (key, message): Fault) -> SceneError {
         self.value(&format!("{table}.{key}"), message)
     }
 
-    /// The path of a file that the scene file names.
     fn beside(&self, name: &Path) -> PathBuf {
         self.path.parent().unwrap_or(Path::new(".")).join(name)
     }
@@ -79,7 +68,7 @@ impl<'a> Loader<'a> {
                     .files
                     .budget
                     .take_mesh(triangles, triangles.saturating_mul(2));
-                let material = Material::default_with(self.lighting);
+                let material = Material::default_with(self.files.lighting);
                 let made = taken.and_then(|()| shape.build(&material, has_uvs));
                 Arc::new(made.map_err(|e| self.value(field, e))?)
             }
@@ -95,7 +84,7 @@ impl<'a> Loader<'a> {
 
     fn mesh_file(&mut self, name: &Path, field: &str) -> Result<Mesh, SceneError> {
         let file = self.beside(name);
-        let Some(format) = Format::of(&file) else {
+        let Some(load) = import::loader(&file) else {
             let message = format!(
                 "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
                 shown(&file)
@@ -103,9 +92,7 @@ impl<'a> Loader<'a> {
             return Err(self.value(field, message));
         };
         // The scene file's lights and cameras replace those of the mesh.
-        let loaded = (format.load)(&file, self.lighting, &mut self.files)?;
-        self.warnings.extend(loaded.warnings);
-        Ok(loaded.mesh)
+        Ok(load(&file, &mut self.files)?.mesh)
     }
 
     /// The texture of a key of a table: of a file, read once, or of a pattern, made once for each key.

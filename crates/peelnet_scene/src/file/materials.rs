@@ -218,17 +218,15 @@ impl Loader<'_> {
                 let colors = map(colors, "specular_color_map")?;
                 let glossiness = map(glossiness, "glossiness_map")?;
                 let both = [colors.as_ref(), glossiness.as_ref()];
-                let budget = &mut self.files.budget;
                 let packed = (both != [None, None]).then(|| {
                     let texel = |s: [u8; 4], g: [u8; 4]| [s[0], s[1], s[2], g[0]];
-                    self.made.joined("gloss", both, budget, texel)
+                    self.files.joined("gloss", both, texel)
                 });
                 packed.transpose()
             }
         };
         let converted = specular.and_then(|specular| {
-            let (made, budget) = (&mut self.made, &mut self.files.budget);
-            convert(values, &mut material, specular.as_ref(), made, budget)
+            convert(values, &mut material, specular.as_ref(), &mut self.files)
         });
         converted.map_err(|e| self.value(&format!("{table}.{key}"), e))?;
         Ok(material)

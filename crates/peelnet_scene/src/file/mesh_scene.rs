@@ -1,12 +1,12 @@
 //! A mesh file as a whole scene.
 
 use crate::{
-    budget::{MAX_COORDINATE, check_lights},
+    budget::{self, MAX_COORDINATE, MAX_LIGHTS},
     camera::{Camera, FOV_Y},
     displacement::displaced,
-    error::{SceneError, shown},
+    error::SceneError,
     files::Files,
-    import::{FileCamera, Format, Imported},
+    import::{Imported, Load},
     material::{Lighting, Material},
     mesh::Mesh,
     scene::{Light, Object, Scene, Source},
@@ -18,24 +18,20 @@ use std::{path::Path, sync::Arc};
 const VIEWS: u32 = 3;
 
 /// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
-pub(super) fn load(
-    path: &Path,
-    format: &Format,
-    mut files: Files<'_>,
-) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scene, SceneError> {
     let Imported {
         mesh,
         mut lights,
         cameras,
-        mut warnings,
-    } = (format.load)(path, Lighting::Phong, &mut files)?;
+        is_scene,
+    } = load(path, &mut files)?;
     let fail = |message: String| SceneError::file(path, None, message);
     let materials = mesh.parts.iter().map(|p| p.material.clone());
     let mut materials: Vec<Material> = materials.collect();
     let mesh = displaced(Arc::new(mesh), &mut materials, &mut files.budget).map_err(&fail)?;
     let bounds = Bounds::of(&mesh).map_err(&fail)?;
-    check_lights(lights.len()).map_err(&fail)?;
-    let cameras = cameras.iter().filter_map(|c| camera(c, bounds));
+    budget::check(lights.len() as u64, MAX_LIGHTS as u64, "lights").map_err(&fail)?;
+    let cameras = cameras.into_iter().filter_map(|c| sound(c, bounds));
     let mut views: Vec<Camera> = cameras.collect();
     if views.is_empty() {
         views = fitting_camera(bounds).orbit(VIEWS);
@@ -44,19 +40,15 @@ pub(super) fn load(
         && let Some(lighting) = one_lighting(&mut materials)
     {
         // Other formats have no lights: that is no news.
-        if format.is_scene {
-            warnings.push(format!(
-                "{}: has no point light: two are added; put it into a scene file with lights of your own, or none",
-                shown(path)
-            ));
+        if is_scene {
+            let message = "has no point light: two are added; put it into a scene file with lights of your own, or none";
+            files.warn(path, message);
         }
         lights.extend(default_lights(bounds, lighting));
     }
-    if !format.is_scene && materials.iter().all(Material::is_opaque) {
-        warnings.push(format!(
-            "{}: is opaque; to look through it, name it in a scene file, with material = {{ alpha = 0.5 }}",
-            shown(path)
-        ));
+    if !is_scene && materials.iter().all(Material::is_opaque) {
+        let message = "is opaque; to look through it, name it in a scene file, with material = { alpha = 0.5 }";
+        files.warn(path, message);
     }
     let first = views[0];
     let name = super::name_of(path);
@@ -69,11 +61,11 @@ pub(super) fn load(
     };
     Ok(Scene {
         source: path.to_owned(),
-        files: files.used().to_vec(),
         hash: files.hash(),
+        warnings: files.warnings.texts(),
+        files: files.used,
         views,
         lights,
-        warnings,
         ..Scene::generated(&name, "its file", [1.0; 3], first, vec![object])
     })
 }
@@ -117,25 +109,17 @@ impl Bounds {
 }
 
 /// A camera of the file; `None` where its numbers make no sense.
-fn camera(c: &FileCamera, bounds: Bounds) -> Option<Camera> {
-    let position = c.file_from_camera.transform_point3(Vec3::ZERO);
-    let direction = |v: Vec3| c.file_from_camera.transform_vector3(v).try_normalize();
-    let distance = (position - bounds.middle).length();
-    let far = c.far.unwrap_or(distance + 4.0 * bounds.radius);
-    let camera = Camera {
-        position,
-        target: position + direction(Vec3::NEG_Z)?,
-        up: direction(Vec3::Y)?,
-        fov_y_degrees: c.fov_y.to_degrees(),
-        near: c.near,
-        far,
-    };
-    let is_sound =
-        c.near > 0.0 && c.near < far && far.is_finite() && FOV_Y.contains(&camera.fov_y_degrees);
+fn sound(mut camera: Camera, bounds: Bounds) -> Option<Camera> {
+    if camera.far == f32::INFINITY {
+        let distance = (camera.position - bounds.middle).length();
+        camera.far = distance + 4.0 * bounds.radius;
+    }
+    let Camera { near, far, .. } = camera;
+    let is_sound = near > 0.0 && near < far && far.is_finite();
+    let is_sound = is_sound && FOV_Y.contains(&camera.fov_y_degrees);
     (is_sound && camera.view_from_world().is_finite()).then_some(camera)
 }
 
-/// A camera that sees all of a file.
 fn fitting_camera(bounds: Bounds) -> Camera {
     let towards = Vec3::new(0.5, 0.35, 1.0).normalize();
     Camera {

@@ -33,7 +33,9 @@ pub(super) fn place(
             let message = "must be two of [red, green, blue, alpha], each 0 … 1";
             return Err(loader.value(&at, message));
         }
-        let copied = loader.files.budget.take_copy(&mesh);
+        let [triangles, vertices] = [mesh.triangles.len(), mesh.positions.len()];
+        let budget = &mut loader.files.budget;
+        let copied = budget.take_mesh(triangles as u64, vertices as u64);
         copied.map_err(|e| loader.value(&at, e))?;
         mesh = Arc::new(mesh.colored_by_height(ends));
     }
@@ -71,7 +73,6 @@ impl RawObject {
     }
 }
 
-/// An object's transform.
 fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, Fault> {
     let fail = |key, message: &str| Err((key, message.to_owned()));
     let turns = raw.rotate.iter().chain(&raw.translate);

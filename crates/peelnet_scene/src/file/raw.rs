@@ -100,13 +100,11 @@ macro_rules! material_keys {
                 Self { $($key: self.$key.clone().or_else(|| earlier.$key.clone()),)* }
             }
 
-            /// The keys that are given.
             pub fn given(&self) -> Vec<&'static str> {
                 let all = [$((self.$key.is_some(), stringify!($key)),)*].into_iter();
                 all.filter_map(|(given, key)| given.then_some(key)).collect()
             }
 
-            /// Checks that numbers lie within their bounds.
             pub fn check_bounds(&self) -> Result<(), Fault> {
                 let check = |key, numbers: &[f32], low, high| {
                     numbers.iter().try_for_each(|x| within(key, *x, low, high))
@@ -175,7 +173,6 @@ pub(super) struct RawState {
     pub object: Vec<RawChange>,
 }
 
-/// What changes of an object.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawChange {

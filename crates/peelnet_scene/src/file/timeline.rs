@@ -64,7 +64,7 @@ impl Snapshot {
                 numbers.entry(name.clone()).or_default().push(i);
             }
         }
-        let any = Material::default_with(loader.lighting);
+        let any = Material::default_with(loader.files.lighting);
         for (i, state) in states.iter().enumerate() {
             let field = format!("timeline {}", i + 1);
             for change in &state.object {

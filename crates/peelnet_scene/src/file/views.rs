@@ -5,7 +5,7 @@ use super::{
     raw::{RawLight, RawScene},
 };
 use crate::{
-    budget::check_lights,
+    budget::{self, MAX_LIGHTS},
     camera::Camera,
     error::{SceneError, check_color},
     scene::{Light, Source},
@@ -42,9 +42,9 @@ pub(super) fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, 
     Ok(views[0].orbit(n))
 }
 
-/// The lights of a scene.
 pub(super) fn lights(loader: &Loader<'_>, raw: &[RawLight]) -> Result<Vec<Light>, SceneError> {
-    check_lights(raw.len()).map_err(|e| loader.value("light", e))?;
+    budget::check(raw.len() as u64, MAX_LIGHTS as u64, "lights")
+        .map_err(|e| loader.value("light", e))?;
     let lights = raw
         .iter()
         .zip(1..)

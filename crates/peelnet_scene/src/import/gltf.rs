@@ -10,9 +10,8 @@ mod repair;
 
 use super::Imported;
 use crate::{
-    error::{SceneError, shown},
-    files::{FileKind, Files},
-    material::Lighting,
+    error::SceneError,
+    files::{Files, MAX_MESH},
 };
 use nodes::Reader;
 use peelnet_files::{counted, printable};
@@ -78,13 +77,9 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
 }
 
 /// Reads a glTF or GLB file and the buffers and images that it names: a part of the mesh for each primitive. All materials say how they are lit.
-pub(super) fn load(
-    path: &Path,
-    _: Lighting,
-    files: &mut Files<'_>,
-) -> Result<Imported, SceneError> {
+pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
     let fail = |message: String| SceneError::file(path, None, message);
-    let bytes = files.read(path, FileKind::Mesh)?;
+    let bytes = files.read(path, MAX_MESH)?;
     let (document, blob) = parse(&bytes).map_err(&fail)?;
     drop(bytes);
     let folder = path.parent().unwrap_or(Path::new("."));
@@ -98,37 +93,28 @@ pub(super) fn load(
     if document.scenes().len() > 1 {
         let drawn = scene.index();
         let all = document.scenes().len();
-        let others = format!("scenes other than number {drawn} of {all}");
-        reader.missing.add(others);
+        reader.missing(
+            &format!("scenes other than number {drawn} of {all}"),
+            "",
+            "",
+        );
     }
     reader.scene(&scene)?;
     if document.animations().len() > 0 {
-        reader.missing.add("animations (the first pose is drawn)");
+        reader.missing("animations (the first pose is drawn)", "", "");
     }
     if document.skins().len() > 0 {
-        reader.missing.add("skins (the bind pose is drawn)");
+        reader.missing("skins (the bind pose is drawn)", "", "");
     }
     for extension in document.extensions_used().filter(|e| !KNOWN.contains(e)) {
-        reader
-            .missing
-            .about("extensions: ", &printable(extension), "");
+        reader.missing("extensions: ", &printable(extension), "");
     }
-    let Reader {
-        mut loaded,
-        missing,
-        ..
-    } = reader;
-    let missing = missing.texts();
-    let missing = missing.iter();
-    let warnings = missing.map(|what| format!("{}: not drawn: {what}", shown(path)));
-    loaded.warnings.extend(warnings);
-    if loaded.mesh.triangles.is_empty() {
-        let instead: Vec<&str> = loaded.warnings.iter().map(String::as_str).collect();
+    if reader.loaded.mesh.triangles.is_empty() {
+        let instead = reader.files.warnings.texts().join("; ");
         return Err(fail(format!(
-            "holds no triangles; export a mesh{}{}",
+            "holds no triangles; export a mesh{}{instead}",
             if instead.is_empty() { "" } else { ". " },
-            instead.join("; ")
         )));
     }
-    Ok(loaded)
+    Ok(reader.loaded)
 }

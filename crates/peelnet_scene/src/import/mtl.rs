@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::{SceneError, shown},
-    files::{FileKind, Files},
+    files::{Files, MAX_TEXT},
     material::{Lighting, Material},
     warnings::Warnings,
 };
@@ -21,7 +21,6 @@ use std::{
 pub(super) struct Libraries<'a, 'f> {
     /// The OBJ file.
     path: &'a Path,
-    lighting: Lighting,
     textures: Textures<'a, 'f>,
     /// Numbers of materials by their names, for each library.
     numbers: HashMap<PathBuf, HashMap<String, usize>>,
@@ -31,16 +30,10 @@ pub(super) struct Libraries<'a, 'f> {
 }
 
 impl<'a, 'f> Libraries<'a, 'f> {
-    pub fn new(
-        path: &'a Path,
-        lighting: Lighting,
-        files: &'a mut Files<'f>,
-        warnings: &'a mut Warnings,
-    ) -> Self {
+    pub fn new(path: &'a Path, files: &'a mut Files<'f>) -> Self {
         Self {
             path,
-            lighting,
-            textures: Textures::new(files, warnings),
+            textures: Textures::new(files),
             numbers: HashMap::new(),
             materials: Vec::new(),
             is_incomplete: false,
@@ -66,13 +59,11 @@ impl<'a, 'f> Libraries<'a, 'f> {
         if self.numbers.contains_key(&file) {
             return Ok(false);
         }
-        let Textures {
-            files, warnings, ..
-        } = &mut self.textures;
-        let bytes = match files.read(&file, FileKind::Materials) {
+        let files = &mut *self.textures.files;
+        let bytes = match files.read(&file, MAX_TEXT) {
             Err(SceneError::Read { source, .. }) => {
                 self.is_incomplete = true;
-                warnings.about(
+                files.warnings.about(
                     format!("{}: cannot read material file ", shown(self.path)),
                     &shown(&file),
                     format!(" ({source}); default material used"),
@@ -82,6 +73,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
             }
             bytes => bytes?,
         };
+        let (lighting, warnings) = (files.lighting, &mut files.warnings);
         let text = check(&file, &statements(&file, &bytes, warnings)?, warnings)?;
         let (materials, mut numbers) = tobj::load_mtl_buf(&mut text.as_bytes())
             .map_err(|e| SceneError::file(&file, None, format!("{e}; repair it")))?;
@@ -92,9 +84,9 @@ impl<'a, 'f> Libraries<'a, 'f> {
             if colors.iter().flatten().flatten().any(|x| *x > 1.0) {
                 let name = format!("'{}'", printable(&m.name));
                 let before = format!("{}: colours above 1 are taken as 1: ", shown(&file));
-                self.textures.warnings.about(before, &name, "");
+                self.textures.files.warnings.about(before, &name, "");
             }
-            let material = self.textures.put_on(&file, m, material(m, self.lighting));
+            let material = self.textures.put_on(&file, m, material(m, lighting));
             self.materials.push(material);
         }
         self.numbers.insert(file, numbers);
@@ -105,7 +97,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
     pub fn finish<'n>(self, named: impl Iterator<Item = &'n str>) -> Vec<Material> {
         let known: HashSet<&String> = self.numbers.values().flat_map(HashMap::keys).collect();
         for name in named.filter(|name| !self.is_incomplete && !known.contains(&name.to_string())) {
-            self.textures.warnings.about(
+            self.textures.files.warnings.about(
                 format!("{}: no material ", shown(self.path)),
                 &format!("'{}'", printable(name)),
                 " in its MTL files; default material used",

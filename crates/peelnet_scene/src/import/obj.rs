@@ -3,8 +3,8 @@
 use super::{Imported, mtl::Libraries, polygons::Triangulator, surface::assemble};
 use crate::{
     error::{SceneError, shown},
-    files::{FileKind, Files},
-    material::{Lighting, Material},
+    files::{Files, MAX_MESH},
+    material::Material,
     mesh::Mesh,
     warnings::Warnings,
 };
@@ -12,25 +12,16 @@ use glam::{DVec3, Vec2, Vec3};
 use peelnet_files::printable;
 use std::{borrow::Cow, fmt::Write, path::Path};
 
-#[cfg(test)]
-#[path = "obj_tests.rs"]
-mod tests;
-
 /// Reads an OBJ file and the MTL files and textures that it names.
 ///
 /// Polygons are triangulated, missing or unusable normals computed, triangles without area left out with a warning. A missing MTL, or a name
 /// that no MTL has, is a warning and a default material.
-pub(super) fn load(
-    path: &Path,
-    lighting: Lighting,
-    files: &mut Files<'_>,
-) -> Result<Imported, SceneError> {
-    let bytes = files.read(path, FileKind::Mesh)?;
-    let mut warnings = Warnings::default();
-    let text = statements(path, &bytes, &mut warnings)?;
+pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
+    let bytes = files.read(path, MAX_MESH)?;
+    let text = statements(path, &bytes, &mut files.warnings)?;
     drop(bytes);
     let fail = |message: String| SceneError::file(path, None, message);
-    let mut libraries = Libraries::new(path, lighting, files, &mut warnings);
+    let mut libraries = Libraries::new(path, files);
     let text = check(path, &text, &mut libraries)?;
     let options = tobj::LoadOptions {
         single_index: true,
@@ -50,12 +41,15 @@ pub(super) fn load(
         let material = mesh.material_id.map(|i| materials[i].clone());
         let surface = surface(&mesh, &mut triangulator);
         let surface = surface.map_err(|e| fail(format!("'{}' holds {e}", printable(&name))))?;
-        let default = || Material::default_with(lighting);
+        let default = || Material::default_with(files.lighting);
         Ok((name, material.unwrap_or_else(default), surface))
     });
     let parts = parts.collect::<Result<_, SceneError>>()?;
-    let mesh = assemble(parts, &format!("{}: ", shown(path)), &mut warnings).map_err(fail)?;
-    Ok(Imported::mesh(mesh, warnings.texts()))
+    let mesh = assemble(parts, path, &mut files.warnings).map_err(fail)?;
+    Ok(Imported {
+        mesh,
+        ..Imported::default()
+    })
 }
 
 /// The text of an OBJ or MTL file: UTF-8, else Latin-1 as old exporters write it, with a warning. Without comments, with continued lines joined

@@ -7,12 +7,9 @@ use super::{
     Imported,
     ply_elements::{Face, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
-    surface::{self, Fault, fault_of},
+    surface::{self, Fault, fault_of, in_file},
 };
-use crate::{
-    budget::Budget, error::SceneError, files::Files, material::Lighting, mesh::Mesh,
-    warnings::Warnings,
-};
+use crate::{budget::Budget, error::SceneError, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_files::{counted, printable};
 use ply_rs_bw::{
@@ -21,27 +18,17 @@ use ply_rs_bw::{
 };
 use std::{borrow::Cow, io::ErrorKind, path::Path};
 
-#[cfg(test)]
-#[path = "ply_tests.rs"]
-mod tests;
-
-/// Most bytes of a header.
 const MAX_HEADER: usize = 1 << 20;
 
 /// Reads a PLY file: positions, normals, colours with opacity, texture coordinates (of vertices or of the vertices of faces), polygons and
 /// triangle strips.
 ///
 /// Colours in bytes are sRGB, as programs show them, colours in floating-point numbers linear. Missing normals are computed.
-pub(super) fn load(
-    path: &Path,
-    lighting: Lighting,
-    files: &mut Files<'_>,
-) -> Result<Imported, SceneError> {
-    surface::load(path, lighting, files, read)
+pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
+    surface::load(path, files, read)
 }
 
-/// The triangles of a file.
-fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
+fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
     let head = head_length(bytes)?;
     let is_text = String::from_utf8_lossy(&bytes[..head]).contains("format ascii");
     let bytes = if is_text {
@@ -57,7 +44,7 @@ fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Me
     let count = |name: &str| header.elements.get(name).map_or(0, |e| e.count as u64);
     let (vertices, faces) = (count("vertex"), count("face") + count("tristrips"));
     if faces == 0 {
-        return Err(Fault::new(match vertices {
+        return Err(in_file(match vertices {
             0 => "holds no faces; is the file empty or cut off?".into(),
             n => format!(
                 "holds {} and no faces: it is a point cloud; reconstruct a surface of it first, and export that",
@@ -66,15 +53,16 @@ fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Me
         }));
     }
     // Polygons of more than three vertices are counted when they are met.
-    budget.take_mesh(faces, vertices).map_err(Fault::new)?;
+    let taken = files.budget.take_mesh(faces, vertices);
+    taken.map_err(in_file)?;
     let is_texture = |c: &String| c.trim_start().starts_with("TextureFile");
     if header.comments.iter().any(is_texture) {
         let message = "not drawn: its texture; name it as color_map in a scene file";
-        warnings.add(message);
+        files.warn(path, message);
     }
     let mut reader = Faces {
         surface: Mesh::default(),
-        budget,
+        budget: &mut files.budget,
         triangulator: Triangulator::new(),
         vertex_uvs: Vec::new(),
         short_faces: 0,
@@ -90,26 +78,22 @@ fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Me
             _ => drop(elements::<Skipped>(&mut input, element, &header)?),
         }
     }
-    if reader.short_faces > 0 {
-        let count = counted(reader.short_faces, "face");
-        warnings.add(format!("{count} of fewer than 3 vertices left out"));
+    let (surface, short_faces) = (reader.surface, reader.short_faces);
+    if short_faces > 0 {
+        let count = counted(short_faces, "face");
+        files.warn(path, &(count + " of fewer than 3 vertices left out"));
     }
-    Ok(reader.surface)
+    Ok(surface)
 }
 
-/// The error of the crate as ours.
 fn fault(what: &str, e: &ParseError, has_lines: bool) -> Fault {
     let message = match e.kind() {
         ErrorKind::UnexpectedEof => format!("ends inside of '{what}'; is the file cut off?"),
         _ => format!("'{what}' cannot be read; repair it, or export the mesh again"),
     };
-    Fault {
-        line: e.line().filter(|_| has_lines),
-        message,
-    }
+    (e.line().filter(|_| has_lines), message)
 }
 
-/// All elements of a kind.
 fn elements<E: PropertyAccess>(
     input: &mut Reader<&[u8]>,
     element: &ElementDef,
@@ -125,7 +109,7 @@ fn head_length(bytes: &[u8]) -> Result<usize, Fault> {
     const END: &[u8] = b"end_header";
     if !bytes.starts_with(b"ply") {
         let message = "does not begin with 'ply': is it a PLY file? Export it again";
-        return Err(Fault::at(1, message));
+        return Err((Some(1), message.into()));
     }
     let start = &bytes[..bytes.len().min(MAX_HEADER)];
     let is_end = |w: &[u8]| matches!(w[0], b'\n' | b'\r') && &w[1..] == END;
@@ -135,7 +119,7 @@ fn head_length(bytes: &[u8]) -> Result<usize, Fault> {
             "has no 'end_header' in its first {}; is the file cut off?",
             counted(start.len() as u64, "byte")
         );
-        Fault::new(message)
+        in_file(message)
     })
 }
 
@@ -171,7 +155,7 @@ fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
     let properties = header.elements.values().map(|e| e.properties.len());
     if lines("element") != header.elements.len() || lines("property") != properties.sum::<usize>() {
         let message = "its header names an element or a property twice; export it again";
-        return Err(Fault::new(message));
+        return Err(in_file(message));
     }
     let mut needed = 0u64;
     for element in header.elements.values() {
@@ -180,7 +164,7 @@ fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
         needed = needed.saturating_add(least.saturating_mul(element.count as u64));
         // The last number needs no space behind it.
         if needed > held + 1 {
-            return Err(Fault::new(format!(
+            return Err(in_file(format!(
                 "its header says that it has {} of '{}', which take {} at least, and {held} follow it; is the file cut off?",
                 element.count,
                 printable(&element.name),
@@ -206,7 +190,6 @@ fn least_bytes(property: &PropertyType, encoding: Encoding) -> u64 {
     }
 }
 
-/// Makes a surface of elements.
 struct Faces<'a> {
     surface: Mesh,
     budget: &'a mut Budget,
@@ -222,13 +205,13 @@ impl Faces<'_> {
         for axis in ["x", "y", "z"] {
             if !has(&[axis]) {
                 let message = format!("its vertices have no '{axis}'; export the mesh again");
-                return Err(Fault::new(message));
+                return Err(in_file(message));
             }
         }
         for (i, vertex) in vertices.iter().enumerate() {
             let position = Vec3::from(vertex.position);
             if let Some(what) = fault_of(position) {
-                return Err(Fault::new(format!("vertex {i} {what}; repair the mesh")));
+                return Err(in_file(format!("vertex {i} {what}; repair the mesh")));
             }
             self.surface.positions.push(position);
         }
@@ -254,7 +237,7 @@ impl Faces<'_> {
                 "its elements '{}' have no vertex_indices; export the mesh again",
                 printable(&element.name)
             );
-            return Err(Fault::new(message));
+            return Err(in_file(message));
         }
         let has_uvs =
             has("texcoord") || !self.vertex_uvs.is_empty() || !self.surface.uvs.is_empty();
@@ -265,68 +248,52 @@ impl Faces<'_> {
         }
         let is_strip = element.name == "tristrips";
         for (i, face) in faces.iter().enumerate() {
-            let (corners, indices) = self
-                .face(face, is_strip)
-                .map_err(|e| Fault::new(format!("{} {i}: {e}", element.name)))?;
-            let uv = |corner: usize| match face.uvs.get(2 * corner..2 * corner + 2) {
-                Some(uv) => Vec2::new(uv[0], 1.0 - uv[1]),
-                None => {
-                    let uv = self.vertex_uvs.get(indices[corner] as usize);
-                    uv.copied().unwrap_or_default()
-                }
-            };
-            if has_uvs {
-                let uvs = corners.iter().map(|t| t.map(uv));
-                self.surface.uvs.extend(uvs);
+            let mut first = 0;
+            // In strips, −1 begins a new one.
+            for indices in face.indices.split(|index| is_strip && *index == -1) {
+                let corners = self.corners(indices, is_strip);
+                let corners = corners.map_err(|e| in_file(format!("{} {i}: {e}", element.name)))?;
+                let uv = |k: usize| match face.uvs.get(2 * (first + k)..2 * (first + k) + 2) {
+                    Some(uv) => Vec2::new(uv[0], 1.0 - uv[1]),
+                    None => {
+                        let uv = self.vertex_uvs.get(indices[k] as usize);
+                        uv.copied().unwrap_or_default()
+                    }
+                };
+                let uvs = corners.iter().filter(|_| has_uvs);
+                self.surface.uvs.extend(uvs.map(|t| t.map(uv)));
+                let triangles = corners.iter().map(|t| t.map(|k| indices[k] as u32));
+                self.surface.triangles.extend(triangles);
+                first += indices.len() + 1;
             }
-            let triangles = corners.iter().map(|t| t.map(|k| indices[k]));
-            self.surface.triangles.extend(triangles);
         }
         Ok(())
     }
 
-    /// The triangles of a face, as numbers of its vertices, and its vertices.
-    fn face(&mut self, face: &Face, is_strip: bool) -> Result<(Vec<[usize; 3]>, Vec<u32>), String> {
-        let n = self.surface.positions.len();
-        let mut indices = Vec::with_capacity(face.indices.len());
-        for &index in &face.indices {
-            // In strips, −1 begins a new one.
-            let is_gap = is_strip && index == -1;
-            if !is_gap && usize::try_from(index).ok().is_none_or(|index| index >= n) {
-                return Err(format!(
-                    "index {index} points at none of the {n} vertices before it; repair the mesh"
-                ));
-            }
-            indices.push(if is_gap { GAP } else { index as u32 });
+    /// The triangles of a polygon or a strip, as numbers of its vertices.
+    fn corners(&mut self, indices: &[i64], is_strip: bool) -> Result<Vec<[usize; 3]>, String> {
+        let positions = &self.surface.positions;
+        let n = positions.len();
+        let is_none = |index: &&i64| usize::try_from(**index).ok().is_none_or(|index| index >= n);
+        if let Some(index) = indices.iter().find(is_none) {
+            return Err(format!(
+                "index {index} points at none of the {n} vertices before it; repair the mesh"
+            ));
         }
         let more = (indices.len() as u64).saturating_sub(3);
         self.budget.take_mesh(more, 0)?;
-        let corners = if is_strip {
-            strips(&indices)
-        } else if indices.len() < 3 {
-            self.short_faces += 1;
-            Vec::new()
-        } else if indices.len() == 3 {
-            vec![[0, 1, 2]]
-        } else {
-            let position = |&i: &u32| self.surface.positions[i as usize].as_dvec3();
-            let vertices: Vec<DVec3> = indices.iter().map(position).collect();
-            self.triangulator.triangulate(&vertices)?
-        };
-        Ok((corners, indices))
+        Ok(match indices.len() {
+            vertices if is_strip => strip(vertices).collect(),
+            0..3 => {
+                self.short_faces += 1;
+                Vec::new()
+            }
+            3 => vec![[0, 1, 2]],
+            _ => {
+                let position = |&i: &i64| positions[i as usize].as_dvec3();
+                let vertices: Vec<DVec3> = indices.iter().map(position).collect();
+                self.triangulator.triangulate(&vertices)?
+            }
+        })
     }
-}
-
-/// Stands in a strip where another one begins.
-const GAP: u32 = u32::MAX;
-
-/// The triangles of strips, as numbers of their vertices.
-fn strips(indices: &[u32]) -> Vec<[usize; 3]> {
-    let mut triangles = Vec::new();
-    let mut first = 0;
-    for vertices in indices.split(|&i| i == GAP) {
-        triangles.extend(strip(vertices.len()).map(|t| t.map(|k| first + k)));
-        first += vertices.len() + 1;
-    }
-    triangles
 }

@@ -5,33 +5,22 @@
 
 use super::{
     Imported,
-    surface::{self, Fault, fault_of},
+    surface::{self, Fault, fault_of, in_file},
 };
 use crate::{
-    budget::Budget,
     error::SceneError,
     files::Files,
-    material::Lighting,
     mesh::{Mesh, area_of, key_of},
-    warnings::Warnings,
 };
 use glam::Vec3;
 use peelnet_files::{counted, printable};
 use rayon::prelude::*;
 use std::{collections::HashMap, path::Path};
 
-#[cfg(test)]
-#[path = "stl_tests.rs"]
-mod tests;
-
 /// Reads an STL file. Vertices at equal positions are one; normals are computed: smooth, but for edges of more than 30 degrees. All solids of a file
 /// are one part. Colours, which each program writes in another way, are not read.
-pub(super) fn load(
-    path: &Path,
-    lighting: Lighting,
-    files: &mut Files<'_>,
-) -> Result<Imported, SceneError> {
-    surface::load(path, lighting, files, read)
+pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
+    surface::load(path, files, read)
 }
 
 /// Bytes of a binary file's header, and of its count.
@@ -41,24 +30,23 @@ const COUNT: usize = 4;
 /// Bytes of a triangle of a binary file: a normal, three vertices, and two that each program uses in another way.
 const TRIANGLE: usize = 50;
 
-/// The triangles of a file.
-fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
+fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
     let number = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
     let count = number(HEADER).map(|count| u64::from(u32::from_le_bytes(count)));
     let needed = count.map(|n| (HEADER + COUNT) as u64 + n * TRIANGLE as u64);
     let held = bytes.len() as u64;
     if needed != Some(held) && is_text(bytes) {
-        return read_text(bytes, budget, warnings);
+        return read_text(path, bytes, files);
     }
     let (Some(count), Some(needed)) = (count, needed) else {
-        return Err(Fault::new(format!(
+        return Err(in_file(format!(
             "has {}, and a binary STL file at least {}; is the file empty or cut off?",
             counted(held, "byte"),
             HEADER + COUNT
         )));
     };
     if needed > held {
-        return Err(Fault::new(format!(
+        return Err(in_file(format!(
             "its header says that it has {}, which take {}, and it has {held}; is it an STL file, and is it cut off?",
             counted(count, "triangle"),
             counted(needed, "byte"),
@@ -66,9 +54,10 @@ fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Me
     }
     if needed < held {
         let more = counted(held - needed, "byte");
-        warnings.add(format!("{more} behind its last triangle are not read"));
+        files.warn(path, &(more + " behind its last triangle are not read"));
     }
-    budget.take_mesh(count, 0).map_err(Fault::new)?;
+    let taken = files.budget.take_mesh(count, 0);
+    taken.map_err(in_file)?;
     let mut soup = Soup::default();
     let facets = &bytes[HEADER + COUNT..needed as usize];
     for (i, facet) in facets.chunks_exact(TRIANGLE).enumerate() {
@@ -77,11 +66,11 @@ fn read(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Me
         let triangle = [0, 3, 6].map(|k| Vec3::new(number(k), number(k + 1), number(k + 2)));
         if let Some(what) = triangle.into_iter().find_map(fault_of) {
             let message = format!("a vertex of triangle {i} {what}; repair the mesh");
-            return Err(Fault::new(message));
+            return Err(in_file(message));
         }
         soup.push(triangle);
     }
-    soup.into_surface(budget, warnings)
+    soup.into_surface(path, files)
 }
 
 /// Whether a file is text: its first word is `solid`, as that of many binary files is, and a facet or the end follows it soon.
@@ -92,7 +81,7 @@ fn is_text(bytes: &[u8]) -> bool {
 }
 
 /// Reads a file of text, a statement a line. Normals are not used: many files have wrong ones.
-fn read_text(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
+fn read_text(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
     // Names may be of any encoding; all other words are ASCII.
     let text = String::from_utf8_lossy(bytes).replace('\r', "\n");
     let mut soup = Soup::default();
@@ -110,33 +99,33 @@ fn read_text(bytes: &[u8], budget: &mut Budget, warnings: &mut Warnings) -> Resu
                 let number = |k: usize| words[k].parse().unwrap_or(f32::NAN);
                 let vertex = Vec3::new(number(1), number(2), number(3));
                 if let Some(what) = fault_of(vertex) {
-                    return Err(Fault::at(i, format!("a vertex {what}; repair the mesh")));
+                    return Err((Some(i), format!("a vertex {what}; repair the mesh")));
                 }
                 vertices.push(vertex);
             }
             Some("endloop") => {
                 let &[a, b, c] = &vertices[..] else {
                     let message = format!("a facet of {} vertices", vertices.len());
-                    return Err(Fault::at(i, message + "; triangulate the mesh"));
+                    return Err((Some(i), message + "; triangulate the mesh"));
                 };
-                budget.take_mesh(1, 0).map_err(Fault::new)?;
+                files.budget.take_mesh(1, 0).map_err(in_file)?;
                 soup.push([a, b, c]);
                 vertices.clear();
             }
             _ => {
                 let line = printable(line.trim());
                 let message = format!("'{line}' is no statement of STL; repair the line");
-                return Err(Fault::at(i, message));
+                return Err((Some(i), message.into()));
             }
         }
     }
     if !vertices.is_empty() {
         let message = "ends inside of a facet; is the file cut off?";
-        return Err(Fault::new(message));
+        return Err(in_file(message));
     }
-    let surface = soup.into_surface(budget, warnings)?;
+    let surface = soup.into_surface(path, files)?;
     if is_open {
-        warnings.add("has no 'endsolid' at its end: it may be cut off");
+        files.warn(path, "has no 'endsolid' at its end: it may be cut off");
     }
     Ok(surface)
 }
@@ -160,10 +149,9 @@ impl Soup {
         self.triangles.push(triangle);
     }
 
-    /// The surface, with normals.
-    fn into_surface(self, budget: &mut Budget, warnings: &mut Warnings) -> Result<Mesh, Fault> {
+    fn into_surface(self, path: &Path, files: &mut Files<'_>) -> Result<Mesh, Fault> {
         if self.triangles.is_empty() {
-            return Err(Fault::new("holds no facets; is the file empty or cut off?"));
+            return Err(in_file("holds no facets; is the file empty or cut off?"));
         }
         let mut surface = Mesh {
             positions: self.positions,
@@ -173,11 +161,12 @@ impl Soup {
         let lost = surface.drop_degenerate() as u64;
         if lost > 0 {
             let count = counted(lost, "triangle");
-            warnings.add(format!("{count} without area left out"));
+            files.warn(path, &(count + " without area left out"));
         }
         let surface = creased(&surface);
         let vertices = surface.positions.len() as u64;
-        budget.take_mesh(0, vertices).map_err(Fault::new)?;
+        let taken = files.budget.take_mesh(0, vertices);
+        taken.map_err(in_file)?;
         Ok(surface)
     }
 }

@@ -2,10 +2,9 @@
 
 use super::Imported;
 use crate::{
-    budget::Budget,
     error::{SceneError, shown},
-    files::{FileKind, Files},
-    material::{Lighting, Material},
+    files::{Files, MAX_MESH},
+    material::Material,
     mesh::{Mesh, area_of, key_of, normals_by_position},
     warnings::Warnings,
 };
@@ -19,46 +18,28 @@ const FARTHEST: f32 = 1e15;
 /// Reads a file without materials, whose triangles `surface` finds.
 pub(super) fn load(
     path: &Path,
-    lighting: Lighting,
     files: &mut Files<'_>,
-    surface: impl FnOnce(&[u8], &mut Budget, &mut Warnings) -> Result<Mesh, Fault>,
+    surface: impl FnOnce(&Path, &[u8], &mut Files<'_>) -> Result<Mesh, Fault>,
 ) -> Result<Imported, SceneError> {
-    let bytes = files.read(path, FileKind::Mesh)?;
-    let mut warnings = Warnings::default();
-    let mesh = surface(&bytes, &mut files.budget, &mut warnings).and_then(|mut surface| {
+    let bytes = files.read(path, MAX_MESH)?;
+    let mesh = surface(path, &bytes, files).and_then(|mut surface| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let material = surface.material(lighting, &mut warnings);
+        let material = surface.material(path, files);
         let part = (name.into_owned(), material, surface);
-        assemble(vec![part], "", &mut warnings).map_err(Fault::new)
+        assemble(vec![part], path, &mut files.warnings).map_err(in_file)
     });
-    let mesh = mesh.map_err(|Fault { line, message }| SceneError::file(path, line, message))?;
-    let texts = warnings.texts().into_iter();
-    let texts = texts.map(|text| format!("{}: {text}", shown(path)));
-    Ok(Imported::mesh(mesh, texts.collect()))
+    let mesh = mesh.map_err(|(line, message)| SceneError::file(path, line, message))?;
+    Ok(Imported {
+        mesh,
+        ..Imported::default()
+    })
 }
 
-/// What is wrong in a file, and where.
-#[derive(Debug, PartialEq)]
-pub(super) struct Fault {
-    /// The line, from 1, in a file that has lines.
-    pub line: Option<usize>,
-    pub message: String,
-}
+/// The line, from 1, in a file that has lines, and what is wrong there.
+pub(super) type Fault = (Option<usize>, String);
 
-impl Fault {
-    pub fn new(message: impl Into<String>) -> Self {
-        Self {
-            line: None,
-            message: message.into(),
-        }
-    }
-
-    pub fn at(line: usize, message: impl Into<String>) -> Self {
-        Self {
-            line: Some(line),
-            message: message.into(),
-        }
-    }
+pub(super) fn in_file(message: impl Into<String>) -> Fault {
+    (None, message.into())
 }
 
 /// What is wrong with a position.
@@ -72,14 +53,17 @@ pub(super) fn fault_of(position: Vec3) -> Option<String> {
 
 impl Mesh {
     /// An opaque light grey material, which is white under vertex colours.
-    fn material(&mut self, lighting: Lighting, warnings: &mut Warnings) -> Material {
-        let mut material = Material::default_with(lighting);
+    fn material(&mut self, path: &Path, files: &mut Files<'_>) -> Material {
+        let mut material = Material::default_with(files.lighting);
         if self.colors.is_empty() {
             return material;
         }
         material.color = [1.0; 3];
         if self.colors.iter().all(|c| c[3] == 0.0) {
-            warnings.add("every vertex has an opacity of 0, which is taken as 1");
+            files.warn(
+                path,
+                "every vertex has an opacity of 0, which is taken as 1",
+            );
             self.colors.iter_mut().for_each(|c| c[3] = 1.0);
         }
         material.blend = self.colors.iter().any(|c| c[3] < 1.0);
@@ -105,9 +89,10 @@ impl Mesh {
 /// vertices, but not the surface: computed normals are those of all triangles around a position.
 pub(super) fn assemble(
     mut parts: Vec<(String, Material, Mesh)>,
-    file: &str,
+    path: &Path,
     warnings: &mut Warnings,
 ) -> Result<Mesh, String> {
+    let file = format!("{}: ", shown(path));
     let [mut lost_triangles, mut lost_normals, mut lost_uvs] = [0; 3];
     for (_, _, surface) in &mut parts {
         lost_triangles += surface.drop_degenerate();
@@ -115,12 +100,8 @@ pub(super) fn assemble(
             *normal = normal.try_normalize().unwrap_or_default();
             lost_normals += usize::from(*normal == Vec3::ZERO);
         }
-        for uv in surface
-            .uvs
-            .iter_mut()
-            .flatten()
-            .filter(|uv| !uv.is_finite())
-        {
+        let uvs = surface.uvs.iter_mut().flatten();
+        for uv in uvs.filter(|uv| !uv.is_finite()) {
             *uv = Vec2::ZERO;
             lost_uvs += 1;
         }
@@ -141,7 +122,7 @@ pub(super) fn assemble(
                 *normal = smooth.get(&key_of(*position)).copied().unwrap_or(Vec3::Z);
             }
         }
-        mesh.append(surface.into_part(name, material), file, warnings);
+        mesh.append(surface.into_part(name, material), &file, warnings);
     }
     for (count, what, why) in [
         (lost_uvs, "UV", "that is not finite is taken as 0"),

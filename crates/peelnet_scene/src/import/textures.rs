@@ -5,8 +5,7 @@ use crate::{
     error::{SceneError, shown},
     files::Files,
     material::{Lighting, Material},
-    texture::{Made, Maps, Texture, Wrap},
-    warnings::Warnings,
+    texture::{Maps, Texture, Wrap},
 };
 use peelnet_files::printable;
 use std::{
@@ -15,32 +14,22 @@ use std::{
     sync::Arc,
 };
 
-/// What a texture of an MTL file is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Use {
-    Color,
-    Alpha,
-    /// A height field, or normals where it is not grey.
-    Bump,
-    Normal,
-    Roughness,
-    Metallic,
-    Emission,
-    Displacement,
-}
+/// Keys of the textures that are drawn, as exporters write them: the first of each stands for all.
+const DRAWN: [&[&str]; 8] = [
+    &["map_Kd"],
+    &["map_d"],
+    // A height field, or normals where it is not grey.
+    &["map_Bump", "map_bump", "bump"],
+    &["norm", "map_Norm", "map_Kn"],
+    &["map_Pr"],
+    &["map_Pm"],
+    &["map_Ke"],
+    &["disp", "map_disp", "map_Disp"],
+];
 
-pub(super) fn drawn_as(key: &str) -> Option<Use> {
-    Some(match key {
-        "map_Kd" => Use::Color,
-        "map_d" => Use::Alpha,
-        "map_Bump" | "map_bump" | "bump" => Use::Bump,
-        "norm" | "map_Norm" | "map_Kn" => Use::Normal,
-        "map_Pr" => Use::Roughness,
-        "map_Pm" => Use::Metallic,
-        "map_Ke" => Use::Emission,
-        "disp" | "map_disp" | "map_Disp" => Use::Displacement,
-        _ => return None,
-    })
+pub(super) fn drawn_as(key: &str) -> Option<&'static str> {
+    let keys = DRAWN.into_iter().find(|keys| keys.contains(&key))?;
+    Some(keys[0])
 }
 
 /// The arguments of a statement such as `map_Bump -bm 0.5 -clamp on bricks.png`.
@@ -57,18 +46,14 @@ struct Statement {
 /// The textures of all materials, each file read once and each pair of them joined once.
 pub(super) struct Textures<'a, 'f> {
     pub files: &'a mut Files<'f>,
-    pub warnings: &'a mut Warnings,
     read: HashMap<PathBuf, Option<Arc<Texture>>>,
-    made: Made,
 }
 
 impl<'a, 'f> Textures<'a, 'f> {
-    pub fn new(files: &'a mut Files<'f>, warnings: &'a mut Warnings) -> Self {
+    pub fn new(files: &'a mut Files<'f>) -> Self {
         Self {
             files,
-            warnings,
             read: HashMap::new(),
-            made: Made::default(),
         }
     }
 
@@ -76,7 +61,9 @@ impl<'a, 'f> Textures<'a, 'f> {
     fn drawn(&mut self, made: Result<Arc<Texture>, String>, what: &str) -> Option<Arc<Texture>> {
         made.map_err(|e| {
             let after = format!(" is not drawn: {e}");
-            self.warnings.about("texture ", &printable(what), after);
+            self.files
+                .warnings
+                .about("texture ", &printable(what), after);
         })
         .ok()
     }
@@ -102,13 +89,13 @@ impl<'a, 'f> Textures<'a, 'f> {
             };
             match (*option, after.first()) {
                 ("-bm", Some(value)) => statement.strength = value.parse().unwrap_or(1.0),
-                ("-mm", Some(base)) if drawn_as(key) == Some(Use::Displacement) => {
+                ("-mm", Some(base)) if drawn_as(key) == Some("disp") => {
                     let number = |w: Option<&&str>| w.and_then(|w| w.parse::<f32>().ok());
                     let gain = number(after.get(1)).unwrap_or(1.0);
                     statement.range = [number(Some(base)).unwrap_or(0.0), gain];
                 }
                 ("-clamp", Some(value)) => statement.clamp = *value == "on",
-                _ => self.warnings.about(
+                _ => self.files.warnings.about(
                     format!("{}: not drawn: ", shown(library)),
                     &format!("option {} of {key}", printable(option)),
                     "",
@@ -117,8 +104,7 @@ impl<'a, 'f> Textures<'a, 'f> {
             rest = &after[taken.min(after.len())..];
         }
         if rest.is_empty() {
-            self.warnings
-                .add(format!("{}: {key} names no file", shown(library)));
+            self.files.warn(library, &format!("{key} names no file"));
             return None;
         }
         // Windows writes backslashes, which other systems do not read.
@@ -139,7 +125,7 @@ impl<'a, 'f> Textures<'a, 'f> {
                 e => e.to_string(),
             };
             let after = format!(" {why}; drawn without it");
-            self.warnings.about("", &shown(file), after);
+            self.files.warnings.about("", &shown(file), after);
         });
         let texture = texture.ok();
         self.read.insert(file.to_owned(), texture.clone());
@@ -159,7 +145,7 @@ impl<'a, 'f> Textures<'a, 'f> {
             .filter_map(|(key, text)| Some((key, text.as_ref()?)));
         let others = m.unknown_param.iter().map(|(key, text)| (&**key, text));
         let statements: BTreeMap<&str, &String> = known.chain(others).collect();
-        let mut found: BTreeMap<Use, (Statement, Arc<Texture>)> = BTreeMap::new();
+        let mut found: BTreeMap<&str, (Statement, Arc<Texture>)> = BTreeMap::new();
         for (key, text) in statements {
             if let Some(kind) = drawn_as(key)
                 && let Some(statement) = self.statement(library, key, text)
@@ -173,32 +159,27 @@ impl<'a, 'f> Textures<'a, 'f> {
         if found.values().any(|(statement, _)| statement.clamp) {
             maps.wrap = [Wrap::Clamp; 2];
         }
-        maps.color = self.color_map(map(Use::Color), map(Use::Alpha));
-        if map(Use::Alpha).is_some() {
+        maps.color = self.color_map(map("map_Kd"), map("map_d"));
+        if map("map_d").is_some() {
             material.blend = true;
         }
-        maps.normal = match (map(Use::Normal), found.get(&Use::Bump)) {
+        maps.normal = match (map("norm"), found.get("map_Bump")) {
             (Some(normals), _) => Some(Arc::clone(normals)),
             (None, Some((statement, bump))) if bump.is_grey() => {
                 // White rises over black by an eightieth of the texture's width.
                 let slope = statement.strength * bump.size[0] as f32 / 80.0;
                 let what = format!("normals by {slope}");
-                let (sources, budget) = ([Some(bump), None], &mut self.files.budget);
                 let normals = || bump.normals_of_heights(slope);
-                let made = self.made.of(&what, sources, budget, normals);
+                let made = self.files.made(&what, [Some(bump), None], normals);
                 self.drawn(made, &format!("{what} of {}", bump.name))
             }
-            (None, _) => map(Use::Bump).cloned(),
+            (None, _) => map("map_Bump").cloned(),
         };
-        let (rough, metal) = (map(Use::Roughness), map(Use::Metallic));
+        let (rough, metal) = (map("map_Pr"), map("map_Pm"));
         if rough.is_some() || metal.is_some() {
-            let budget = &mut self.files.budget;
             let what = "roughness and metallic";
-            let made = self
-                .made
-                .joined(what, [rough, metal], budget, |rough, metal| {
-                    [255, rough[0], metal[0], 255]
-                });
+            let texel = |rough: [u8; 4], metal: [u8; 4]| [255, rough[0], metal[0], 255];
+            let made = self.files.joined(what, [rough, metal], texel);
             maps.metallic_roughness = self.drawn(made, what);
             if material.lighting != Lighting::Unlit {
                 material.lighting = Lighting::Pbr;
@@ -210,7 +191,7 @@ impl<'a, 'f> Textures<'a, 'f> {
                 material.metallic = 1.0;
             }
         }
-        maps.displacement = found.get(&Use::Displacement).and_then(|(statement, map)| {
+        maps.displacement = found.get("disp").and_then(|(statement, map)| {
             let [base, gain] = statement.range;
             // Heights are base + gain × luminance, in the file's own lengths.
             let scale = gain * statement.strength;
@@ -222,7 +203,7 @@ impl<'a, 'f> Textures<'a, 'f> {
                 level: None,
             })
         });
-        maps.emissive = map(Use::Emission).cloned();
+        maps.emissive = map("map_Ke").cloned();
         if maps.emissive.is_some() && m.emissive.is_none() {
             material.emission = [1.0; 3];
         }
@@ -235,24 +216,20 @@ impl<'a, 'f> Textures<'a, 'f> {
         color: Option<&Arc<Texture>>,
         alpha: Option<&Arc<Texture>>,
     ) -> Option<Arc<Texture>> {
-        let budget = &mut self.files.budget;
         let Some(alpha) = alpha else {
             let color = color?;
             if !color.has_alpha() {
                 return Some(Arc::clone(color));
             }
-            let both = [Some(color), None];
-            let made = self.made.of("colours", both, budget, || color.opaque());
+            let opaque = || color.opaque();
+            let made = self.files.made("colours", [Some(color), None], opaque);
             return self.drawn(made, &format!("colours of {}", color.name));
         };
         let by_alpha = alpha.has_alpha();
         let value = |t: [u8; 4]| if by_alpha { t[3] } else { t[0] };
+        let texel = |c: [u8; 4], a: [u8; 4]| [c[0], c[1], c[2], value(a)];
         let both = [color, Some(alpha)];
-        let made = self
-            .made
-            .joined("colours and opacity", both, budget, |c, a| {
-                [c[0], c[1], c[2], value(a)]
-            });
+        let made = self.files.joined("colours and opacity", both, texel);
         self.drawn(made, &format!("opacity of {}", alpha.name))
     }
 }

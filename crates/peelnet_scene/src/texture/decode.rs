@@ -9,10 +9,8 @@ use std::io::Cursor;
 /// Longest side of a texture that is read: WebGPU guarantees no longer one.
 const LONGEST: u32 = 8192;
 
-/// An image's size and texels.
 type Decoded = ([u32; 2], Vec<[u8; 4]>);
 
-/// Decodes a PNG or JPEG image.
 pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Decoded, String> {
     let format = image::guess_format(bytes).ok();
     let Some(format) = format.filter(|f| [ImageFormat::Png, ImageFormat::Jpeg].contains(f)) else {

@@ -2,7 +2,7 @@
 
 use crate::{
     error::SceneError,
-    files::{FileKind, Files},
+    files::{Files, MAX_MESH},
 };
 use base64::{
     Engine as _,
@@ -22,11 +22,11 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 pub(super) fn read_uri(
     uri: &str,
     folder: &Path,
-    kind: FileKind,
+    limit: u64,
     files: &mut Files<'_>,
 ) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
-        return read_data(data, kind);
+        return read_data(data, limit);
     }
     let fail = |what: &dyn std::fmt::Display| format!("'{}' {what}", printable(uri));
     let absolute = uri
@@ -37,7 +37,7 @@ pub(super) fn read_uri(
     }
     let name = absolute.unwrap_or(uri);
     let decoded = urlencoding::decode(name);
-    let mut read = |name: &str| files.read(&folder.join(name), kind);
+    let mut read = |name: &str| files.read(&folder.join(name), limit);
     // Some exporters write names as they are, with percent signs that encode nothing.
     let found = match decoded {
         Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
@@ -50,14 +50,14 @@ pub(super) fn read_uri(
 }
 
 /// The bytes of a data URI, behind its scheme.
-fn read_data(data: &str, kind: FileKind) -> Result<Vec<u8>, String> {
+fn read_data(data: &str, limit: u64) -> Result<Vec<u8>, String> {
     let (head, text) = data.split_once(',').ok_or("a data URI holds no data")?;
     let Some(_) = head.strip_suffix(";base64") else {
         return Ok(urlencoding::decode_binary(text.as_bytes()).into_owned());
     };
     // Four letters are three bytes.
     let bytes = text.len() as u64 / 4 * 3;
-    peelnet_files::check_size(bytes, kind.max_bytes()).map_err(|e| e.to_string())?;
+    peelnet_files::check_size(bytes, limit).map_err(|e| e.to_string())?;
     BASE64.decode(text).map_err(|e| e.to_string())
 }
 
@@ -72,7 +72,7 @@ pub(super) fn read_buffers(
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
             gltf::buffer::Source::Bin => blob.take().ok_or("there is no binary chunk")?,
-            gltf::buffer::Source::Uri(uri) => read_uri(uri, folder, FileKind::Mesh, files)?,
+            gltf::buffer::Source::Uri(uri) => read_uri(uri, folder, MAX_MESH, files)?,
         };
         if bytes.len() < buffer.length() {
             return Err(format!(

@@ -1,7 +1,7 @@
 //! Checks that the `gltf` crate does not do: it panics on an index out of range, and on an accessor of the wrong type.
 
 use super::KNOWN;
-use crate::{budget::MAX_TRIANGLES, files::MAX_FILE_BYTES};
+use crate::{budget::MAX_TRIANGLES, files::MAX_MESH};
 use gltf::{
     Semantic,
     accessor::{DataType, Dimensions},
@@ -170,5 +170,5 @@ fn is_addressable(view: &gltf::buffer::View<'_>, offset: usize, size: usize, cou
     let elements = (stride as u64).saturating_mul(count as u64);
     let bytes = all.into_iter().fold(elements, u64::saturating_add);
     // Each of the four is at most the size of a file.
-    stride >= size && bytes <= (4 * MAX_FILE_BYTES).min(isize::MAX as u64)
+    stride >= size && bytes <= (4 * MAX_MESH).min(isize::MAX as u64)
 }

@@ -5,8 +5,7 @@ use super::{
     nodes::{Reader, finite},
 };
 use crate::{
-    budget::Budget,
-    files::FileKind,
+    files::MAX_IMAGE,
     material::{Lighting, Material},
     specular_glossiness::{Values, convert},
     texture::{Maps, Texture, Wrap},
@@ -84,40 +83,49 @@ fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Pl
 }
 
 impl Reader<'_, '_> {
-    /// A texture, read once; `None`, with a warning, where it cannot be drawn.
-    fn image(&mut self, image: &gltf::Image<'_>) -> Option<Arc<Texture>> {
-        if let Some(known) = self.images.get(&image.index()) {
+    /// A texture, read once, `opaque` without its opacity; `None`, with a warning, where it cannot be drawn.
+    fn image(&mut self, image: &gltf::Image<'_>, opaque: bool) -> Option<Arc<Texture>> {
+        let key = (image.index(), opaque);
+        if let Some(known) = self.images.get(&key) {
             return known.clone();
         }
-        let name = image
-            .name()
-            .map_or_else(|| format!("image {}", image.index()), str::to_owned);
-        let decoded = match image.source() {
+        let found = if opaque {
+            self.image(image, false)
+                .map(|found| match found.has_alpha() {
+                    true => Arc::new(found.opaque()),
+                    false => found,
+                })
+        } else {
+            let number = || format!("image {}", image.index());
+            let name = image.name().map_or_else(number, str::to_owned);
+            match self.decode(image, &name) {
+                Ok(texture) => Some(Arc::new(texture)),
+                Err(why) => {
+                    self.missing("", &printable(&name), &format!(", which {why}"));
+                    None
+                }
+            }
+        };
+        self.images.insert(key, found.clone());
+        found
+    }
+
+    fn decode(&mut self, image: &gltf::Image<'_>, name: &str) -> Result<Texture, String> {
+        let read;
+        let bytes = match image.source() {
             gltf::image::Source::View { view, .. } => {
-                let budget = &mut self.files.budget;
                 let bytes = self.buffers.get(view.buffer().index());
                 let end = view.offset().saturating_add(view.length());
-                bytes
-                    .and_then(|b| b.get(view.offset()..end))
-                    .ok_or_else(|| "lies beyond its buffer".to_owned())
-                    .and_then(|bytes| Texture::decode_within(&name, bytes, budget))
+                let bytes = bytes.and_then(|b| b.get(view.offset()..end));
+                bytes.ok_or("lies beyond its buffer")?
             }
             gltf::image::Source::Uri { uri, .. } => {
                 let folder = self.path.parent().unwrap_or(Path::new("."));
-                read_uri(uri, folder, FileKind::Image, self.files)
-                    .and_then(|bytes| Texture::decode_within(&name, &bytes, &mut self.files.budget))
+                read = read_uri(uri, folder, MAX_IMAGE, self.files)?;
+                &read
             }
         };
-        let found = match decoded {
-            Ok(texture) => Some(Arc::new(texture)),
-            Err(why) => {
-                let name = printable(&name);
-                self.missing.about("", &name, format!(", which {why}"));
-                None
-            }
-        };
-        self.images.insert(image.index(), found.clone());
-        found
+        Texture::decode(name, bytes, &mut self.files.budget)
     }
 
     /// A material's maps, and their common placement.
@@ -131,8 +139,8 @@ impl Reader<'_, '_> {
         });
         let samplers: Vec<_> = samplers.collect();
         if samplers.windows(2).any(|w| w[0] != w[1]) {
-            self.missing
-                .add("a map with its own sampler (the first map's is used)");
+            let what = "a map with its own sampler (the first map's is used)";
+            self.missing(what, "", "");
         }
         // The first is the base colour, whose file may hold an opacity.
         let mut opaque = m.alpha_mode() == AlphaMode::Opaque;
@@ -140,22 +148,15 @@ impl Reader<'_, '_> {
             let opaque = std::mem::take(&mut opaque);
             let (texture, own) = texture?;
             if own.transform != placement.transform {
-                self.missing
-                    .add("a map with its own texture transform (the first map's is used)");
+                let what = "a map with its own texture transform (the first map's is used)";
+                self.missing(what, "", "");
             }
             if own.set != placement.set {
-                self.missing
-                    .add("a map on other texture coordinates than the first map's");
+                let what = "a map on other texture coordinates than the first map's";
+                self.missing(what, "", "");
                 return None;
             }
-            let found = self.image(&texture.source())?;
-            if !(opaque && found.has_alpha()) {
-                return Some(found);
-            }
-            // It takes the place of the one with an opacity.
-            let (sources, room) = ([Some(&found), None], &mut Budget::default());
-            let made = self.made.of("colours", sources, room, || found.opaque());
-            made.ok()
+            self.image(&texture.source(), opaque)
         });
         let repeat = (WrappingMode::Repeat, WrappingMode::Repeat, None);
         let (wrap_s, wrap_t, filter) = samplers.first().copied().unwrap_or(repeat);
@@ -194,19 +195,12 @@ impl Reader<'_, '_> {
             glossiness: unit(pbr.glossiness_factor()),
         };
         let specular = material.maps.metallic_roughness.take();
-        let (made, budget) = (&mut self.made, &mut self.files.budget);
-        if let Err(why) = convert(values, material, specular.as_ref(), made, budget) {
+        if let Err(why) = convert(values, material, specular.as_ref(), self.files) {
             let what = format!("maps of the specular–glossiness workflow, which take {why}");
-            self.missing.add(what);
+            self.missing(&what, "", "");
             material.maps.color = None;
             // Without maps it takes nothing.
-            let _ = convert(
-                values,
-                material,
-                None,
-                &mut self.made,
-                &mut self.files.budget,
-            );
+            let _ = convert(values, material, None, self.files);
         }
     }
 
@@ -249,8 +243,7 @@ impl Reader<'_, '_> {
         // What passes is not scattered: glTF's mix of both, as opacity and colour (McGuire and Mara 2016).
         if let Some(t) = m.transmission() {
             if t.transmission_texture().is_some() {
-                let what = "transmission maps (the factor alone is drawn)";
-                self.missing.add(what);
+                self.missing("transmission maps (the factor alone is drawn)", "", "");
             }
             let passing = finite(t.transmission_factor(), 0.0, 1.0);
             material.transmission = material.color.map(|c| c * passing);

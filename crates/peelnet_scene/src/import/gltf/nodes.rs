@@ -1,14 +1,13 @@
 //! Nodes, lights and cameras.
 
-use crate::import::{FileCamera, Imported};
 use crate::{
-    budget::check_parts,
-    error::SceneError,
+    budget::{self, MAX_PARTS},
+    camera::Camera,
+    error::{SceneError, shown},
     files::Files,
-    mesh::Mesh,
+    import::Imported,
     scene::{Light, Source},
-    texture::{Made, Texture},
-    warnings::Warnings,
+    texture::Texture,
 };
 use glam::{Mat4, Vec3};
 use gltf::{Semantic, camera::Projection, khr_lights_punctual::Kind, mesh::Mode};
@@ -19,12 +18,10 @@ pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
     pub buffers: Vec<Vec<u8>>,
-    /// Of the specular–glossiness workflow, and without opacity.
-    pub made: Made,
-    /// By number; `None` for those that cannot be drawn.
-    pub images: HashMap<usize, Option<Arc<Texture>>>,
-    /// What the file uses and is not drawn.
-    pub missing: Warnings,
+    /// By number, and whether opacity is left out; `None` for those that cannot be drawn.
+    pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
+    /// What stands before what the file uses and is not drawn.
+    pub not_drawn: String,
     pub loaded: Imported,
 }
 
@@ -64,11 +61,19 @@ impl<'a, 'f> Reader<'a, 'f> {
             path,
             files,
             buffers,
-            made: Made::default(),
             images: HashMap::new(),
-            missing: Warnings::default(),
-            loaded: Imported::mesh(Mesh::default(), Vec::new()),
+            not_drawn: format!("{}: not drawn: ", shown(path)),
+            loaded: Imported {
+                is_scene: true,
+                ..Imported::default()
+            },
         }
+    }
+
+    /// Warns of something that the file uses and is not drawn, which has a name between two texts.
+    pub fn missing(&mut self, before: &str, name: &str, after: &str) {
+        let before = format!("{}{before}", self.not_drawn);
+        self.files.warnings.about(before, name, after);
     }
 
     pub fn fail(&self, message: String) -> SceneError {
@@ -87,7 +92,7 @@ impl<'a, 'f> Reader<'a, 'f> {
         });
         let [primitives, triangles, vertices] = all;
         let budget = &mut self.files.budget;
-        check_parts(primitives)
+        budget::check(primitives, MAX_PARTS, "parts")
             .and_then(|()| budget.take_mesh(triangles, vertices))
             .map_err(|e| self.fail(format!("its nodes show {primitives} primitives with {e}")))?;
         nodes
@@ -145,7 +150,7 @@ impl<'a, 'f> Reader<'a, 'f> {
                     Some(Source::Toward(toward.normalize_or(Vec3::Y)))
                 }
                 Kind::Spot { .. } => {
-                    self.missing.add("spot lights");
+                    self.missing("spot lights", "", "");
                     None
                 }
             };
@@ -157,15 +162,24 @@ impl<'a, 'f> Reader<'a, 'f> {
         }
         if let Some(camera) = node.camera() {
             match camera.projection() {
-                Projection::Perspective(p) => self.loaded.cameras.push(FileCamera {
-                    file_from_camera: world,
-                    fov_y: p.yfov(),
-                    near: p.znear(),
-                    far: p.zfar(),
-                }),
-                Projection::Orthographic(_) => self.missing.add("orthographic cameras"),
+                Projection::Perspective(p) => self.loaded.cameras.extend(view(&p, world)),
+                Projection::Orthographic(_) => self.missing("orthographic cameras", "", ""),
             }
         }
         Ok(())
     }
+}
+
+/// A camera that looks along −z; `None` where its place makes no sense.
+fn view(p: &gltf::camera::Perspective<'_>, world: Mat4) -> Option<Camera> {
+    let direction = |v: Vec3| world.transform_vector3(v).try_normalize();
+    let position = world.transform_point3(Vec3::ZERO);
+    Some(Camera {
+        position,
+        target: position + direction(Vec3::NEG_Z)?,
+        up: direction(Vec3::Y)?,
+        fov_y_degrees: p.yfov().to_degrees(),
+        near: p.znear(),
+        far: p.zfar().unwrap_or(f32::INFINITY),
+    })
 }

@@ -26,10 +26,13 @@ impl Reader<'_, '_> {
             mode,
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
         ) {
-            self.missing.about(format!("{mode:?} ("), &place, ")");
+            self.missing(&format!("{mode:?} ("), &place, ")");
             return Ok(());
         }
         let (material, placement) = self.material(&primitive.material());
+        if primitive.morph_targets().len() > 0 {
+            self.missing("morph targets", "", "");
+        }
         let fail = |message: String| self.fail(format!("{place}{message}"));
         check_accessors(primitive).map_err(fail)?;
         let buffers = &self.buffers;
@@ -76,9 +79,6 @@ impl Reader<'_, '_> {
             });
             colors.collect::<Vec<_>>()
         });
-        if primitive.morph_targets().len() > 0 {
-            self.missing.add("morph targets");
-        }
         let uvs: Vec<Vec2> = reader
             .read_tex_coords(placement.set)
             .map_or_else(Vec::new, |uvs| {
@@ -98,7 +98,8 @@ impl Reader<'_, '_> {
             ..Mesh::default()
         };
         let part = part.into_part(mesh.name().unwrap_or(&place), material);
-        self.loaded.mesh.append(part, "", &mut self.missing);
+        let warnings = &mut self.files.warnings;
+        self.loaded.mesh.append(part, &self.not_drawn, warnings);
         Ok(())
     }
 }

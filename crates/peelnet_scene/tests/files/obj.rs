@@ -1,14 +1,13 @@
 //! OBJ and MTL files as exporters write them, and as they should not.
 
-use super::*;
-use crate::import::area;
+use crate::{Loaded, area, load_mesh};
+use glam::{Vec2, Vec3};
+use peelnet_scene::{Lighting, Wrap};
 
-fn load_counted(files: &[(&str, &[u8])]) -> (Result<Imported, SceneError>, usize) {
-    crate::import::load_from_memory(files, Lighting::Unlit)
-}
-
-fn load(files: &[(&str, &[u8])]) -> Result<Imported, SceneError> {
-    load_counted(files).0
+/// An OBJ file and its library.
+fn load(obj: &str, mtl: &str) -> Loaded {
+    let files = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
+    load_mesh(&files).unwrap()
 }
 
 const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -18,10 +17,9 @@ fn polygons_negative_indices_groups_and_materials() {
     let obj = format!(
         "mtllib a.mtl\n{QUAD}g left\nusemtl glass\nf 1 2 3 4\ng right\nusemtl fog\nf -4 -3 -2\n"
     );
-    let mtl = b"newmtl glass\nKd 0.25 0.5 1\nd 0.3\nnewmtl fog\nKd 1 1 1\nTr 0.9\n";
-    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
-    let m = &loaded.mesh;
-    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let mtl = "newmtl glass\nKd 0.25 0.5 1\nd 0.3\nnewmtl fog\nKd 1 1 1\nTr 0.9\n";
+    let (m, warnings, _) = load(&obj, mtl);
+    assert!(warnings.is_empty(), "{warnings:?}");
     assert_eq!(m.triangles.len(), 3);
     assert_eq!(m.parts.len(), 2);
     assert_eq!(
@@ -38,17 +36,11 @@ fn polygons_negative_indices_groups_and_materials() {
 fn what_exporters_write() {
     let obj = "mtllib\ta.mtl # library\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\nl 1 2 3\np 1\n\
         v 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
-    let mtl = b"newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n";
-    let loaded = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]).expect("loads");
-    let m = &loaded.mesh;
-    assert_eq!((m.triangles.len(), area(m)), (4, 3.0));
+    let (m, warnings, _) = load(obj, "newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n");
+    assert_eq!((m.triangles.len(), area(&m)), (4, 3.0));
     assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
-    assert_eq!(loaded.warnings.len(), 1);
-    assert!(
-        loaded.warnings[0].contains("brass.png"),
-        "{:?}",
-        loaded.warnings
-    );
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("brass.png"), "{warnings:?}");
 }
 
 /// Lines of a library, where ` ; ` ends one, and the error; the same of what follows the vertices of a square.
@@ -80,11 +72,8 @@ f 1 1 1 => a.obj: holds no triangle with an area
 /// Each bad file gives one error that names the file, the line where that is known, and a fix.
 #[test]
 fn bad_files() {
-    for row in BAD_MATERIALS
-        .trim()
-        .lines()
-        .chain(BAD_STATEMENTS.trim().lines())
-    {
+    let rows = BAD_MATERIALS.trim().lines();
+    for row in rows.chain(BAD_STATEMENTS.trim().lines()) {
         let (text, expected) = row.split_once(" => ").expect("two columns");
         let text = text.replace(" ; ", "\n");
         let (obj, mtl) = if expected.starts_with("a.mtl") {
@@ -93,13 +82,13 @@ fn bad_files() {
             (format!("{QUAD}{text}\n"), String::new())
         };
         let files = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
-        let e = load(&files).expect_err(row).to_string();
+        let e = load_mesh(&files).expect_err(row);
         assert!(e.starts_with(expected), "{row}: {e}");
         let has_fix = ["repair", "xport", "?"].iter().any(|fix| e.contains(fix));
         assert!(has_fix, "no fix: {e}");
     }
     let utf16 = [b'v', 0, b'\n', 0, 0xff, 0xfe];
-    let e = load(&[("a.obj", &utf16)]).expect_err("UTF-16").to_string();
+    let e = load_mesh(&[("a.obj", &utf16)]).expect_err("UTF-16");
     assert!(e.contains("a.obj:2: is not UTF-8"), "{e}");
 }
 
@@ -107,8 +96,7 @@ fn bad_files() {
 #[test]
 fn seams_do_not_split_normals() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 4/2 2/2\n";
-    let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
-    let m = &loaded.mesh;
+    let (m, ..) = load(&obj, "");
     let at_origin: Vec<Vec3> = (0..m.positions.len())
         .filter(|&i| m.positions[i] == Vec3::ZERO)
         .map(|i| m.normals[i])
@@ -136,14 +124,12 @@ fn images_of_materials() {
         ("a b.png", &color),
         ("leaf.png", &leaf),
     ];
-    let (loaded, used) = load_counted(&files);
-    let loaded = loaded.expect("loads");
-    let mesh = &loaded.mesh;
+    let (mesh, warnings, used) = load_mesh(&files).unwrap();
     let m = &mesh.parts[0].material;
     // Opacity comes of map_d alone, whatever the colour's file holds.
     let color = m.maps.color.as_ref().expect("a map");
     assert_eq!(color.texels, [[200, 0, 0, 0], [0, 100, 0, 255]]);
-    assert!(m.blend && m.maps.wrap == [crate::Wrap::Clamp; 2]);
+    assert!(m.blend && m.maps.wrap == [Wrap::Clamp; 2]);
     assert_eq!(m.maps.normal.as_ref().map(|n| n.size), Some([2, 1]));
     let values = m.maps.metallic_roughness.as_ref().expect("a map");
     assert_eq!((values.texels[1], m.roughness), ([255, 255, 255, 255], 1.0));
@@ -154,39 +140,36 @@ fn images_of_materials() {
         mesh.colors[..3],
         [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]]
     );
-    let warnings = loaded.warnings.join("\n");
+    assert_eq!((warnings.len(), used), (2, 4), "{warnings:?}");
+    let warnings = warnings.join("\n");
     for word in ["option -s of map_Bump", "map_Ks", "Latin-1"] {
         assert!(warnings.contains(word), "{word}: {warnings}");
     }
-    assert_eq!((loaded.warnings.len(), used), (2, 4), "{warnings}");
 }
 
 /// A library that is missing is a warning; one that a file names a thousand times is read once.
 #[test]
 fn libraries_are_read_once() {
     let obj = format!("mtllib gone.mtl\n{QUAD}usemtl glass\nf 1 2 3 4\n");
-    let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
-    assert_eq!(loaded.warnings.len(), 1);
-    assert!(
-        loaded.warnings[0].contains("gone.mtl"),
-        "{:?}",
-        loaded.warnings
-    );
-    assert_eq!(loaded.mesh.parts[0].material.color, [0.8; 3]);
+    let (mesh, warnings, _) = load(&obj, "");
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("gone.mtl"), "{warnings:?}");
+    assert_eq!(mesh.parts[0].material.color, [0.8; 3]);
     let obj = format!("{}{QUAD}usemtl m\nf 1 2 3\n", "mtllib a.mtl\n".repeat(1000));
-    let mtl = b"newmtl m\nKd 0.25 0.5 1\n";
-    let (loaded, used) = load_counted(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)]);
-    let part = &loaded.expect("loads").mesh.parts[0];
-    assert_eq!((used, part.material.color), (2, [0.25, 0.5, 1.0]));
+    let (mesh, _, used) = load(&obj, "newmtl m\nKd 0.25 0.5 1\n");
+    assert_eq!((used, mesh.parts[0].material.color), (2, [0.25, 0.5, 1.0]));
 }
 
 #[test]
 fn bad_normals_are_computed_and_flat_triangles_left_out() {
     let obj = format!("{QUAD}vn 0 0 0\nvn 0 0 -0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
-    let loaded = load(&[("a.obj", obj.as_bytes())]).expect("loads");
-    assert_eq!(loaded.mesh.triangles.len(), 1);
-    assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
-    for n in &loaded.mesh.normals {
+    let (mesh, warnings, _) = load(&obj, "");
+    assert_eq!(
+        (mesh.triangles.len(), warnings.len()),
+        (1, 2),
+        "{warnings:?}"
+    );
+    for n in &mesh.normals {
         assert!((n.length() - 1.0).abs() < 1e-6);
     }
 }
@@ -196,9 +179,8 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
 fn materials_as_old_exporters_write_them() {
     let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
     let obj = format!("\u{feff}mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n");
-    let files: [(&str, &[u8]); 2] = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
-    let loaded = load(&files).expect("loads");
-    let [m, n] = [0, 1].map(|i| &loaded.mesh.parts[i].material);
+    let (mesh, warnings, _) = load(&obj, mtl);
+    let [m, n] = [0, 1].map(|i| &mesh.parts[i].material);
     assert_eq!((m.color, m.specular, m.alpha), ([0.5; 3], 0.0, 0.25));
     assert_eq!((n.color, n.shininess, n.alpha), ([1.0, 1.0, 0.0], 9.0, 1.0));
     assert!((n.specular - 0.8).abs() < 1e-6);
@@ -206,7 +188,7 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!(values, (0.3, 0.8, [2.0, 0.0, 1.0]));
     // Unlit scenes stay unlit.
     assert_eq!(n.lighting, Lighting::Unlit);
-    let warnings = loaded.warnings.join("\n");
+    let warnings = warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
     assert!(
         warnings.contains("above 1 are taken as 1: 'n'"),
@@ -214,31 +196,8 @@ fn materials_as_old_exporters_write_them() {
     );
     // The same where the text is not UTF-8: the first line is a vertex still.
     let latin = [b"\xef\xbb\xbf", QUAD.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
-    let loaded = load(&[("a.obj", &latin)]).expect("loads");
-    assert_eq!(loaded.mesh.positions[0], Vec3::ZERO);
-}
-
-/// Twenty thousand materials with one problem are one warning, and names cannot act on a terminal.
-#[test]
-fn warnings_are_grouped_and_printable() {
-    let faces: Vec<String> = (0..20_000)
-        .map(|i| format!("usemtl no\u{1b}[2J{i}\nf 1 2 3\n"))
-        .collect();
-    let mtl: Vec<String> = (0..20_000)
-        .map(|i| format!("newmtl m{i}\nmap_Kd gone{i}.png\n"))
-        .collect();
-    let obj = format!("mtllib a.mtl\n{QUAD}{}", faces.concat());
-    let mtl = mtl.concat();
-    let files: [(&str, &[u8]); 2] = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
-    let loaded = load(&files).expect("loads");
     assert_eq!(
-        loaded.warnings.len(),
-        2,
-        "{:?}",
-        &loaded.warnings[..3.min(loaded.warnings.len())]
+        load_mesh(&[("a.obj", &latin)]).unwrap().0.positions[0],
+        Vec3::ZERO
     );
-    for warning in &loaded.warnings {
-        assert!(warning.contains("and 19997 more"), "{warning}");
-        assert!(!warning.contains(char::is_control), "{warning:?}");
-    }
 }

@@ -1,10 +1,10 @@
 //! STL files as CAD programs write them, and as they should not.
 
-use super::*;
-use crate::import::{assert_refused, load_mesh};
+use crate::{CAMERA, Loaded, assert_refused, load_files, load_mesh};
+use glam::Vec3;
 
-fn load(bytes: &[u8]) -> Result<Imported, String> {
-    load_mesh("a.stl", bytes)
+fn load(bytes: &[u8]) -> Result<Loaded, String> {
+    load_mesh(&[("a.stl", bytes)])
 }
 
 /// The twelve triangles of a unit cube.
@@ -24,7 +24,7 @@ fn cube() -> Vec<[Vec3; 3]> {
 
 fn binary(triangles: &[[Vec3; 3]], header: &[u8]) -> Vec<u8> {
     let mut bytes = header.to_vec();
-    bytes.resize(HEADER, 0);
+    bytes.resize(80, 0);
     bytes.extend((triangles.len() as u32).to_le_bytes());
     for t in triangles {
         let vertices = t.iter().flat_map(|v| v.to_array());
@@ -67,8 +67,7 @@ fn binary_and_text() {
             .replacen("endfacet\n", "endfacet\nendsolid\nsolid b\n", 1)
             .into_bytes(),
     ] {
-        let loaded = load(&bytes).expect("loads");
-        let m = &loaded.mesh;
+        let (m, warnings, _) = load(&bytes).unwrap();
         assert_eq!((m.triangles.len(), m.positions.len()), (12, 24));
         for (i, t) in m.triangles.iter().enumerate() {
             assert_eq!(t.map(|v| m.positions[v as usize]), cube()[i]);
@@ -77,24 +76,26 @@ fn binary_and_text() {
             assert!(t.iter().all(|&v| m.normals[v as usize] == flat));
         }
         assert!(m.parts[0].material.is_opaque() && m.colors.is_empty());
-        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+        assert!(warnings.is_empty(), "{warnings:?}");
     }
 }
 
 /// A round surface has one vertex at each position, with a normal along its radius.
 #[test]
 fn round_surfaces_are_smooth() {
-    let material = crate::Material::unlit([1.0; 3], 1.0);
-    let sphere = crate::shapes::Shape::Sphere(Default::default())
-        .build(&material, false)
-        .expect("builds");
+    let text = format!("{CAMERA}[[object]]\nmesh = {{ shape = 'sphere' }}\n");
+    let scene = load_files(&[("s.toml", text.as_bytes())]).unwrap();
+    let sphere = &scene.objects[0].mesh;
     let soup = sphere.triangles.iter();
     let soup: Vec<_> = soup
         .map(|t| t.map(|i| sphere.positions[i as usize]))
         .collect();
-    let loaded = load(&binary(&soup, b"")).expect("loads");
-    let m = &loaded.mesh;
-    let distinct: std::collections::HashSet<_> = m.positions.iter().map(|p| key_of(*p)).collect();
+    let (m, ..) = load(&binary(&soup, b"")).unwrap();
+    let distinct: std::collections::HashSet<_> = m
+        .positions
+        .iter()
+        .map(|p| p.to_array().map(|x| (x + 0.0).to_bits()))
+        .collect();
     assert_eq!(m.positions.len(), distinct.len());
     for (p, n) in m.positions.iter().zip(&m.normals) {
         assert!(p.normalize().dot(*n) > 0.99, "{p} {n}");
@@ -126,7 +127,7 @@ fn bad_files() {
         (good[..good.len() - 60].into(), "cut off"),
     ];
     for (text, words) in BAD.trim_matches('\n').lines().map(row).chain(others) {
-        assert_refused(load(text.as_bytes()), "a.stl", words);
+        assert_refused(load(text.as_bytes()), &text, &format!("a.stl & {words}"));
     }
 }
 
@@ -135,30 +136,17 @@ fn bad_files() {
 fn bad_binary_files() {
     let good = binary(&cube(), b"");
     for length in 0..good.len() {
-        assert_refused(load(&good[..length]), "a.stl", "cut off");
+        assert_refused(load(&good[..length]), "", "a.stl & cut off");
     }
     let mut many = good.clone();
     many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert_refused(load(&many), "a.stl", "4,294,967,295 triangles");
+    assert_refused(load(&many), "", "a.stl & 4,294,967,295 triangles");
     let mut nan = good.clone();
     nan[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    assert_refused(load(&nan), "a.stl", "triangle 1 & not finite");
+    assert_refused(load(&nan), "", "a.stl & triangle 1 & not finite");
     let mut more = good;
     more.extend([0; 7]);
-    let warnings = load(&more).expect("loads").warnings;
+    let (_, warnings, _) = load(&more).unwrap();
     assert!(warnings[0].contains("7 bytes"), "{warnings:?}");
-    assert_refused(load(&binary(&[], b"")), "a.stl", "no facets");
-}
-
-#[test]
-fn large_files_are_refused() {
-    let count = crate::budget::MAX_TRIANGLES as usize / 4 + 1;
-    let mut budget = Budget::default();
-    let taken = budget.take_mesh(crate::budget::MAX_TRIANGLES - count as u64 + 1, 0);
-    taken.expect("fits");
-    let mut bytes = vec![0; HEADER + COUNT + TRIANGLE * count];
-    bytes[HEADER..HEADER + COUNT].copy_from_slice(&(count as u32).to_le_bytes());
-    let e = read(&bytes, &mut budget, &mut Warnings::default());
-    let Err(e) = e else { panic!("loads") };
-    assert!(e.message.contains("50000000"), "{e:?}");
+    assert_refused(load(&binary(&[], b"")), "", "a.stl & no facets");
 }

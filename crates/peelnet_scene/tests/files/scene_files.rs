@@ -1,11 +1,7 @@
 //! Scene files and mesh files as scenes, sound and bad, from files in memory.
 
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
-
-mod common;
-
-use common::{assert_refused, image, load_at, load_files};
-use glam::{Vec3, Vec4};
+use crate::{CAMERA, assert_framed, assert_refused, image, load_at, load_files};
+use glam::Vec3;
 use peelnet_scene::{Lighting, Material, Scene, SceneError};
 use std::{
     cell::RefCell,
@@ -13,8 +9,6 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-
-const CAMERA: &str = "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100\n";
 
 /// A square of four units in the plane z = 0.
 const SQUARE: &str = "mtllib a.mtl\nv -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
@@ -54,6 +48,17 @@ fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [[object]] ; mesh = { shape = 'sphere', radius = 3e38 } => object 1.mesh & radius
 [[object]] ; mesh = { shape = 'sphere', radius = 1e-30 } => object 1.mesh & radius
 [[object]] ; mesh = { shape = 'sphere', radius = -2 } => object 1.mesh & positive
+[[object]] ; mesh = { shape = 'sphere', triangles = 3 } => object 1.mesh & triangles
+[[object]] ; mesh = { shape = 'torus', tube = 2.0 } => object 1.mesh & tube
+[[object]] ; mesh = { shape = 'sphere', tube = 2.0 } => s.toml:7 & tube
+[[object]] ; mesh = { shape = 'cow' } => s.toml:7 & cow
+[[object]] ; mesh = { shape = 'bumpy', amplitude = 0.9 } => object 1.mesh & amplitude
+[[object]] ; mesh = { shape = 'lathe', profile = [[0, 0], [1, 1]] } => object 1.mesh & profile
+[[object]] ; mesh = { shape = 'lathe', profile = [[0, 0], [-1, 1], [0, 2]] } => object 1.mesh & profile
+[[object]] ; mesh = { shape = 'strands', segments = 0 } => object 1.mesh & segments
+[[object]] ; mesh = { shape = 'strands', count = 20000000 } => object 1.mesh & 50000000
+[[object]] ; mesh = { shape = 'strands', roots = 2.0 } => object 1.mesh & roots
+[[object]] ; mesh = { shape = 'terrain', height = 0.0 } => object 1.mesh & height
 [[object]] ; mesh = { shape = 'quad', size = [1e9, 1e9] } => object 1 & 65536 times
 [[object]] ; mesh = { shape = 'quad' } ; translate = [0, 1e30, 0] => object 1 & reaches 1e30
 [[object]] ; mesh = { shape = 'lathe', profile = [[0, -1e38], [1e38, 0], [0, 1e38]] } => object 1 & reaches
@@ -318,18 +323,12 @@ fn pbr(text: &str) -> Material {
     load(&text).unwrap().objects[0].materials[0].clone()
 }
 
-/// Specular colour and glossiness: the gold of the extension's description, a dielectric, whose colour stays, and an unlit surface.
+/// Specular colour and glossiness: a dielectric, whose colour stays, and an unlit surface.
 #[test]
 fn specular_and_glossiness() {
-    let m = pbr("color = [0, 0, 0]\nspecular_color = [1, 0.766, 0.336]\nglossiness = 0.75");
-    for (x, gold) in m.color.into_iter().zip([1.0, 0.766, 0.336]) {
-        assert!((x - gold).abs() < 1e-3, "{:?}", m.color);
-    }
-    assert!((m.metallic - 1.0).abs() < 1e-4 && (m.roughness - 0.25).abs() < 1e-4);
-    assert!(m.maps.metallic_roughness.is_none());
     let m = pbr("color = [0.2, 0.4, 0.6]\nglossiness = 0.9");
     assert!((m.color[1] - 0.4).abs() < 1e-3 && m.metallic < 1e-3);
-    assert!((m.roughness - 0.1).abs() < 1e-6);
+    assert!((m.roughness - 0.1).abs() < 1e-6 && m.maps.metallic_roughness.is_none());
     let unlit = "[[object]]\nmesh = { shape = 'box' }\nmaterial = { color = [0.2, 0.4, 0.6], specular_color = [1, 1, 1] }";
     let scene = load(unlit).unwrap();
     assert_eq!(scene.objects[0].materials[0].color, [0.2, 0.4, 0.6]);
@@ -373,20 +372,6 @@ fn states_of_glossiness() {
     let last = at(4.0);
     assert_eq!((last.roughness, last.metallic), (1.0, 1.0));
     assert!(last.maps.metallic_roughness.is_some());
-}
-
-/// Whether every vertex is inside every view.
-fn assert_framed(scene: &Scene) {
-    assert_eq!(scene.views.len(), 3);
-    for camera in &scene.views {
-        let clip = camera.clip_from_view(1.0) * camera.view_from_world();
-        for p in &scene.objects[0].mesh.positions {
-            let p: Vec4 = clip * p.extend(1.0);
-            let is_seen = p.x.abs() < p.w && p.y.abs() < p.w && (0.0..p.w).contains(&p.z);
-            assert!(is_seen, "{p}");
-        }
-        assert!(camera.view_from_world().is_finite());
-    }
 }
 
 const CUBE: &str = "mtllib cube.mtl\nv 1 1 1\nv 2 1 1\nv 2 2 1\nv 1 2 1\nv 1 1 2\nv 2 1 2\nv 2 2 2\nv 1 2 2\nusemtl m\n\
@@ -436,23 +421,17 @@ fn any_size_is_framed_or_refused() {
         let obj = format!("{}{}{}f 1 2 3\n", v(0.0, 0.0), v(1.0, 0.0), v(0.0, 1.0));
         assert_framed(&load_files(&[("a.obj", obj.as_bytes())]).unwrap());
     }
-    for (name, text, words) in [
-        (
-            "a.obj",
-            "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n",
-            "a.obj & scale it down",
-        ),
-        ("a.obj", "f 1 2 3\n", "a.obj"),
-        ("a.ply", "ply", "a.ply"),
-        ("a.stl", "", "a.stl"),
-    ] {
-        assert_refused(load_files(&[(name, text.as_bytes())]), text, words);
-    }
+    let huge = b"v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert_refused(
+        load_files(&[("a.obj", huge)]),
+        "a.obj",
+        "a.obj & scale it down",
+    );
 }
 
-/// A triangle of either format, alone and as a mesh of a scene file.
+/// A triangle of either format.
 #[test]
-fn scans_are_scenes_and_meshes() {
+fn scans_are_scenes() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
         property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         0 0 0 255 0 0 128\n1 0 0 255 0 0 128\n0 1 0 255 0 0 128\n3 0 1 2\n";
@@ -466,46 +445,26 @@ fn scans_are_scenes_and_meshes() {
     assert_framed(&scene);
     assert!(scene.objects[0].materials[0].is_opaque());
     assert!(scene.warnings[0].contains("opaque"));
-    let text = format!(
-        "{CAMERA}[[light]]\nposition = [1, 1, 1]\n[[object]]\nmesh = 'scan.ply'\nmaterial = {{ color = [0.5, 1, 1] }}\n\
-         [[object]]\nmesh = 'part.stl'\nfit = 2.0\nmaterial = {{ alpha = 0.5 }}\n"
-    );
-    let files = [("s.toml", &*text), ("scan.ply", ply), ("part.stl", stl)];
-    let scene = load_files(&files.map(|(name, text)| (name, text.as_bytes()))).unwrap();
-    assert_eq!((scene.triangles(), scene.files.len()), (2, 3));
-    let [scan, part] = [0, 1].map(|k: usize| &scene.objects[k].materials[0]);
-    assert_eq!(
-        (scan.color, scan.lighting),
-        ([0.5, 1.0, 1.0], Lighting::Phong)
-    );
-    assert!(!scan.is_opaque() && !part.is_opaque());
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
 /// A scene file that names an OBJ file with a library, a glTF file with a buffer, and images, each in more than one place.
 fn room() -> Vec<(&'static str, Vec<u8>)> {
-    let objects = "[[object]]\nmesh = 'meshes/a.obj'\n[[object]]\nmesh = 'meshes/b.gltf'\nmaterial = { color_map = 'image.png' }\n\
+    let objects = "[[object]]\nmesh = 'meshes/a.obj'\n[[object]]\nmesh = 'meshes/b.gltf'\n\
         [[object]]\nmesh = { shape = 'sphere' }\nmaterial = { color_map = 'image.png', emissive_map = 'image.png' }\n";
-    // Three positions, and as many UVs.
-    let numbers: [f32; 15] = [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 1.];
-    let buffer = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let positions: [f32; 9] = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
     let gltf = serde_json::json!({
         "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
-        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
-        "textures": [{"source": 0}],
-        "images": [{"uri": "../image%20two.png"}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
-            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
-        ],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
-        "buffers": [{"byteLength": 60, "uri": "a%20buffer.bin"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "../a%20buffer.bin"}],
     });
     vec![
         ("room/image.png", image(1, [9; 4])),
-        ("room/meshes/../image two.png", image(1, [9; 4])),
-        ("room/meshes/a buffer.bin", buffer),
+        (
+            "room/meshes/../a buffer.bin",
+            positions.iter().flat_map(|x| x.to_le_bytes()).collect(),
+        ),
         (
             "room/meshes/a.mtl",
             "newmtl m\nmap_Kd a.png\nmap_Ke a.png\n".into(),
@@ -548,13 +507,6 @@ fn files_come_from_a_function() {
     }
     let loaded = Scene::load(folder.path().join("room/scene.toml")).unwrap();
     assert_eq!(loaded.hash, scene.hash);
-    let all_maps = |scene: &Scene| -> Vec<bool> {
-        let materials = scene.objects.iter().flat_map(|o| &o.materials);
-        let maps = materials.flat_map(|m| m.maps.all().map(|map| map.is_some()));
-        maps.collect()
-    };
-    assert_eq!(all_maps(&loaded), all_maps(&scene));
-    assert!(all_maps(&scene).contains(&true));
     for missing in [
         "room/scene.toml",
         "room/meshes/a.obj",
@@ -567,15 +519,8 @@ fn files_come_from_a_function() {
     }
 }
 
-/// A renderer on another thread can own a scene and change it.
-#[test]
-fn scenes_can_be_sent_cloned_and_changed() {
-    fn is_open<T: Clone + Send + Sync + 'static>() {}
+/// A renderer on another thread can own a scene.
+const _: () = {
+    const fn is_open<T: Clone + Send + Sync + 'static>() {}
     is_open::<Scene>();
-    let mut scene = load_room("").0.unwrap();
-    let before = scene.clone();
-    scene.objects[1].world_from_object = glam::Mat4::from_scale(Vec3::splat(2.0));
-    scene.objects[2].materials[0] = Material::unlit([1.0, 0.0, 0.0], 0.5);
-    assert!(Arc::ptr_eq(&scene.objects[1].mesh, &before.objects[1].mesh));
-    assert_ne!(scene.objects[2].materials, before.objects[2].materials);
-}
+};
