@@ -1,4 +1,4 @@
-use crate::error::{Fault, within};
+use crate::error::{Fault, require, within};
 use glam::{Mat4, Quat, Vec3};
 use serde::{Deserialize, Deserializer};
 
@@ -47,26 +47,22 @@ impl Camera {
             ("target", self.target),
             ("up", self.up),
         ] {
-            if !v.is_finite() {
-                return Err((key, "must be finite".into()));
-            }
+            require(v.is_finite(), key, "must be finite")?;
         }
         let (near, far) = (self.near, self.far);
-        if !(near > 0.0 && near < far && far.is_finite()) {
-            let message = format!("near {near} must be positive and below far {far}");
-            return Err(("near", message));
-        }
+        let is_order = near > 0.0 && near < far && far.is_finite();
+        let message = format!("near {near} must be positive and below far {far}");
+        require(is_order, "near", &message)?;
         within("fov_y", self.fov_y_degrees, *FOV_Y.start(), *FOV_Y.end())?;
         let forward = self.target - self.position;
-        if forward.length() == 0.0 {
-            return Err(("target", "must differ from position".into()));
-        }
-        let up = self.up.normalize_or_zero();
-        if forward.normalize().cross(up).length() < 1e-4 {
-            let message = "must not be zero or along the line of sight";
-            return Err(("up", message.into()));
-        }
-        Ok(())
+        require(
+            forward.length() != 0.0,
+            "target",
+            "must differ from position",
+        )?;
+        let across = forward.normalize().cross(self.up.normalize_or_zero());
+        let message = "must not be zero or along the line of sight";
+        require(across.length() >= 1e-4, "up", message)
     }
 
     /// World to view space: right-handed, looking along −z.

@@ -1,5 +1,4 @@
 use crate::warnings::one_line;
-use peelnet_files::printable;
 use std::path::{Path, PathBuf};
 
 /// Why a scene cannot be loaded. Every message names the file, the place in it, and a fix.
@@ -33,12 +32,6 @@ pub enum SceneError {
         /// What is wrong, and the values that are allowed.
         message: String,
     },
-    /// A name that no shipped scene has.
-    #[error("there is no scene '{}'; name a file, or a shipped scene: {known}", printable(name), known = shipped())]
-    NotShipped {
-        /// The name.
-        name: String,
-    },
 }
 
 impl SceneError {
@@ -59,11 +52,6 @@ impl SceneError {
     }
 }
 
-fn shipped() -> String {
-    let all = peelnet_data::SCENES.iter().chain(peelnet_data::EFFECTS);
-    all.map(|s| s.name).collect::<Vec<_>>().join(", ")
-}
-
 /// A path in a message.
 pub(crate) fn shown(path: &Path) -> String {
     one_line(&path.display().to_string())
@@ -71,6 +59,14 @@ pub(crate) fn shown(path: &Path) -> String {
 
 /// A key of a scene file's table, and what is wrong with its value.
 pub(crate) type Fault = (&'static str, String);
+
+/// Checks what must hold of a key's value.
+pub(crate) fn require(holds: bool, key: &'static str, message: &str) -> Result<(), Fault> {
+    if holds {
+        return Ok(());
+    }
+    Err((key, message.to_owned()))
+}
 
 /// Checks that a number lies between two others, of which the higher may be the largest there is.
 pub(crate) fn within(key: &'static str, x: f32, low: f32, high: f32) -> Result<(), Fault> {
@@ -87,13 +83,7 @@ pub(crate) fn within(key: &'static str, x: f32, low: f32, high: f32) -> Result<(
 
 /// Checks the colour of a surface or a light.
 pub(crate) fn check_color(color: [f32; 3]) -> Result<(), Fault> {
-    match color.into_iter().find(|x| !(0.0..=1.0).contains(x)) {
-        None => Ok(()),
-        Some(x) => Err((
-            "color",
-            format!(
-                "{x} must lie in 0 … 1: divide numbers of 0 … 255 by 255; what is brighter than white has an emission or an intensity"
-            ),
-        )),
-    }
+    let outside = color.into_iter().find(|x| !(0.0..=1.0).contains(x));
+    let message = "must lie in 0 … 1: divide numbers of 0 … 255 by 255; what is brighter than white has an emission or an intensity";
+    outside.map_or(Ok(()), |x| Err(("color", format!("{x} {message}"))))
 }

@@ -1,7 +1,7 @@
 //! `[scatter]`: many objects at random places. Everything is drawn from the seed in a fixed order, so that a file always gives the same scene.
 
 use crate::{
-    error::{Fault, check_color, within},
+    error::{Fault, check_color, require, within},
     file::raw::{MapRef, MeshRef},
     material::Lighting,
 };
@@ -123,52 +123,30 @@ impl Scatter {
     /// Checks the values; an error holds the field and what is wrong.
     pub fn check(&self) -> Result<(), Fault> {
         let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
-        let is_above = (0..3).any(|k| self.min[k] > self.max[k]);
-        let degrees = match &self.rotate {
-            Rotate::Degrees(degrees) => degrees,
-            _ => &[0.0; 3],
-        };
-        let [low, high] = self.scale.ends();
-        let [clear, dense] = self.alpha.map_or([0.0; 2], NumberOrRange::ends);
+        let is_either = self.mesh.is_some() != self.meshes.is_some();
+        require(is_either, "mesh", "give either mesh or meshes")?;
+        let has_any = !self.mesh_list().is_empty();
+        require(
+            has_any,
+            "meshes",
+            "the list is empty; name at least one mesh",
+        )?;
+        let is_box = (0..3).all(|k| self.min[k] <= self.max[k]);
+        let is_box = is_box && finite(&self.min) && finite(&self.max);
+        require(is_box, "min", "must be finite and nowhere above max")?;
+        require(self.count <= MAX_COUNT, "count", "must be at most 1000000")?;
         let mut cells = self.grid.into_iter().flatten();
-        for (is_right, key, message) in [
-            (
-                self.mesh.is_some() != self.meshes.is_some(),
-                "mesh",
-                "give either mesh or meshes",
-            ),
-            (
-                self.meshes.as_ref().is_none_or(|list| !list.is_empty()),
-                "meshes",
-                "the list is empty; name at least one mesh",
-            ),
-            (
-                finite(&self.min) && finite(&self.max) && !is_above,
-                "min",
-                "must be finite and nowhere above max",
-            ),
-            (self.count <= MAX_COUNT, "count", "must be at most 1000000"),
-            (
-                cells.all(|n| (1..=MAX_CELLS).contains(&n)),
-                "grid",
-                "needs 1 … 65535 cells along each axis",
-            ),
-            (finite(degrees), "rotate", "must be finite"),
-            (
-                low > 0.0 && low <= high && high.is_finite(),
-                "scale",
-                "must be positive, the lower end first",
-            ),
-            (
-                0.0 <= clear && clear <= dense && dense <= 1.0,
-                "alpha",
-                "must lie in 0 … 1, the lower end first",
-            ),
-        ] {
-            if !is_right {
-                return Err((key, message.into()));
-            }
+        let is_grid = cells.all(|n| (1..=MAX_CELLS).contains(&n));
+        require(is_grid, "grid", "needs 1 … 65535 cells along each axis")?;
+        if let Rotate::Degrees(degrees) = &self.rotate {
+            require(finite(degrees), "rotate", "must be finite")?;
         }
+        let [low, high] = self.scale.ends();
+        let is_scale = low > 0.0 && low <= high && high.is_finite();
+        require(is_scale, "scale", "must be positive, the lower end first")?;
+        let [low, high] = self.alpha.map_or([0.0; 2], NumberOrRange::ends);
+        let is_alpha = 0.0 <= low && low <= high && high <= 1.0;
+        require(is_alpha, "alpha", "must lie in 0 … 1, the lower end first")?;
         within("jitter", self.jitter, 0.0, 1.0)?;
         match self.color {
             Some(ColorChoice::Color(color)) => check_color(color),

@@ -14,13 +14,16 @@ pub use peelnet_data::{EFFECTS, SCENES, SceneFile, find};
 /// ```
 ///
 /// # Errors
-/// [`SceneError::NotShipped`] for an unknown name; see also [`Scene::load`].
+/// An unknown name; see also [`Scene::load`].
 pub fn load(name: &str) -> Result<Scene, SceneError> {
     match find(name) {
         Some(file) => load_file(file, None),
-        None => Err(SceneError::NotShipped {
-            name: name.to_owned(),
-        }),
+        None => {
+            let all: Vec<&str> = SCENES.iter().chain(EFFECTS).map(|s| s.name).collect();
+            let message = "is no file and no shipped scene; name a file, or a shipped scene: ";
+            let message = message.to_owned() + &all.join(", ");
+            Err(SceneError::file(Path::new(name), None, message))
+        }
     }
 }
 

@@ -50,7 +50,7 @@ impl Scene {
             for key in ["camera", "view", "orbit"] {
                 table.remove(key);
             }
-            table.insert("camera".into(), camera_table(camera));
+            table.insert("camera".into(), camera_table(camera).into());
         }
         if self.lights != loaded.lights {
             // An empty list is the same as none.
@@ -89,25 +89,22 @@ impl Scene {
 fn mesh_scene(scene: &Scene) -> Table {
     let file = scene.source.file_name().unwrap_or_default();
     let object = table([("mesh", file.to_string_lossy().into_owned().into())]);
-    let all = [
+    table([
         ("name", scene.name.clone().into()),
         ("background", numbers(scene.background)),
         ("view", list(&scene.views, camera_table)),
         ("light", list(&scene.lights, light_table)),
-        ("object", Value::Array(vec![object])),
-    ];
-    all.map(|(key, value)| (key.to_owned(), value))
-        .into_iter()
-        .collect()
+        ("object", Value::Array(vec![object.into()])),
+    ])
 }
 
-fn table<const N: usize>(values: [(&str, Value); N]) -> Value {
+fn table<const N: usize>(values: [(&str, Value); N]) -> Table {
     let values = values.map(|(key, value)| (key.to_owned(), value));
-    Value::Table(values.into_iter().collect())
+    values.into_iter().collect()
 }
 
-fn list<T>(all: &[T], table: impl Fn(&T) -> Value) -> Value {
-    Value::Array(all.iter().map(table).collect())
+fn list<T>(all: &[T], table: impl Fn(&T) -> Table) -> Value {
+    Value::Array(all.iter().map(table).map(Value::Table).collect())
 }
 
 /// The shortest decimal number that is this one in 32 bits.
@@ -120,7 +117,7 @@ fn numbers(x: impl Into<[f32; 3]>) -> Value {
     Value::Array(x.into().map(number).to_vec())
 }
 
-fn camera_table(camera: &Camera) -> Value {
+fn camera_table(camera: &Camera) -> Table {
     table([
         ("position", numbers(camera.position)),
         ("target", numbers(camera.target)),
@@ -131,7 +128,7 @@ fn camera_table(camera: &Camera) -> Value {
     ])
 }
 
-fn light_table(light: &Light) -> Value {
+fn light_table(light: &Light) -> Table {
     let source = match light.source {
         Source::Point(position) => ("position", numbers(position)),
         // A scene file says where the light goes, not where it comes from.

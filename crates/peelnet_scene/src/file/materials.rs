@@ -64,29 +64,21 @@ impl RawMaterial {
         let is_metallic = self.first(&METALLIC).is_some();
         let is_separate = has("specular_color_map") || has("glossiness_map");
         let specular = self.first(&SPECULAR);
-        let faults = [
-            (!has("displacement_map"), self.first(&DISPLACED), ADD_MAP),
-            (
-                !has("displacement_scale"),
-                self.first(&["displacement_map"]),
-                ADD_SCALE,
-            ),
-            (!is_masked, self.first(&["alpha_cutoff"]), ADD_MASK),
-            (has("alpha_mode"), self.first(&["blend"]), ONE_MODE),
-            (is_metallic, specular, ONE_WORKFLOW),
-            (
-                is_separate && has("specular_glossiness_map"),
-                specular,
-                ONE_MAP,
-            ),
-            (is_phong, self.first(&["metallic_roughness_map"]), ADD_PBR),
-            (is_phong, specular, ADD_PBR),
-        ];
-        let mut faults = faults.into_iter().filter(|(is_wrong, ..)| *is_wrong);
-        match faults.find_map(|(_, key, message)| Some((key?, message.into()))) {
-            Some(fault) => Err(fault),
-            None => Ok(()),
-        }
+        let refuse = |is_wrong: bool, key: Option<&'static str>, message: &str| match key {
+            Some(key) if is_wrong => Err((key, message.to_owned())),
+            _ => Ok(()),
+        };
+        let is_double = is_separate && has("specular_glossiness_map");
+        refuse(!has("displacement_map"), self.first(&DISPLACED), ADD_MAP)?;
+        let map = self.first(&["displacement_map"]);
+        refuse(!has("displacement_scale"), map, ADD_SCALE)?;
+        refuse(!is_masked, self.first(&["alpha_cutoff"]), ADD_MASK)?;
+        refuse(has("alpha_mode"), self.first(&["blend"]), ONE_MODE)?;
+        refuse(is_metallic, specular, ONE_WORKFLOW)?;
+        refuse(is_double, specular, ONE_MAP)?;
+        let metal = self.first(&["metallic_roughness_map"]);
+        refuse(is_phong, metal, ADD_PBR)?;
+        refuse(is_phong, specular, ADD_PBR)
     }
 
     /// The cutoff of a material's opacity, and whether it blends.

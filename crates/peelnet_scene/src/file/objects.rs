@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     displacement::displaced,
-    error::{Fault, SceneError},
+    error::{Fault, SceneError, require},
     material::Material,
     mesh::Mesh,
     scatter::{Scatter, fixed_axes},
@@ -74,21 +74,17 @@ impl RawObject {
 }
 
 fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, Fault> {
-    let fail = |key, message: &str| Err((key, message.to_owned()));
-    let turns = raw.rotate.iter().chain(&raw.translate);
-    if !(raw.scale.is_finite() && raw.scale != 0.0) {
-        return fail("scale", "must be finite and not 0");
-    }
-    if turns.into_iter().any(|x| !x.is_finite()) {
-        return fail("translate", "and rotate must be finite");
-    }
+    let is_scale = raw.scale.is_finite() && raw.scale != 0.0;
+    require(is_scale, "scale", "must be finite and not 0")?;
+    let mut turns = raw.rotate.iter().chain(&raw.translate);
+    let is_finite = turns.all(|x| x.is_finite());
+    require(is_finite, "translate", "and rotate must be finite")?;
     let world_from_object = raw.placed();
     let Some(fit) = raw.fit else {
         return Ok(world_from_object);
     };
-    if !(fit.is_finite() && fit > 0.0) {
-        return fail("fit", "must be a positive length");
-    }
+    let is_length = fit.is_finite() && fit > 0.0;
+    require(is_length, "fit", "must be a positive length")?;
     let (lo, hi) = mesh.bounds().unwrap_or_default();
     let longest = (hi - lo).max_element();
     if longest <= 0.0 {
