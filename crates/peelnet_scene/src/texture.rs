@@ -1,6 +1,5 @@
 //! Textures: read from PNG and JPEG files, or generated ([`crate::pattern`]).
 
-#[cfg(feature = "images")]
 mod decode;
 
 use crate::{budget::Budget, displacement::Displacement};
@@ -118,14 +117,7 @@ impl Texture {
         }
     }
 
-    /// Reads a PNG or JPEG image for a scene that has taken other textures. Without the feature `images` nothing is read.
-    #[cfg(not(feature = "images"))]
-    pub(crate) fn decode(_: &str, _: &[u8], _: &mut Budget) -> Result<Self, String> {
-        Err("cannot be read by this build; build peelnet_scene with its feature `images`".into())
-    }
-
     /// Reads a PNG or JPEG image for a scene that has taken other textures.
-    #[cfg(feature = "images")]
     pub(crate) fn decode(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Self, String> {
         let (size, texels) = decode::decode(bytes, budget)?;
         Ok(Self::new(name, size, texels))
@@ -152,35 +144,19 @@ impl Texture {
         self.grey
     }
 
-    /// The same texture at another size: of the nearest texels without the feature `images`.
     fn at_size(&self, size: [u32; 2]) -> Cow<'_, Self> {
-        if size == self.size {
-            Cow::Borrowed(self)
-        } else {
-            Cow::Owned(self.resampled(size))
+        let [width, height] = self.size;
+        let texels = self.texels.as_flattened();
+        let image = image::ImageBuffer::<image::Rgba<u8>, _>::from_raw(width, height, texels);
+        match image.filter(|_| size != self.size) {
+            None => Cow::Borrowed(self),
+            Some(image) => {
+                let filter = image::imageops::FilterType::Triangle;
+                let image = image::imageops::resize(&image, size[0], size[1], filter);
+                let texels = image.pixels().map(|p| p.0).collect();
+                Cow::Owned(Self::new(&self.name, size, texels))
+            }
         }
-    }
-
-    #[cfg(feature = "images")]
-    fn resampled(&self, size: [u32; 2]) -> Self {
-        let [width, height] = self.size;
-        let flat = self.texels.concat();
-        let Some(image) = image::RgbaImage::from_raw(width, height, flat) else {
-            return self.clone();
-        };
-        let filter = image::imageops::FilterType::Triangle;
-        let image = image::imageops::resize(&image, size[0], size[1], filter);
-        Self::new(&self.name, size, image.pixels().map(|p| p.0).collect())
-    }
-
-    #[cfg(not(feature = "images"))]
-    fn resampled(&self, size: [u32; 2]) -> Self {
-        let [width, height] = self.size;
-        Self::of(&self.name, size, |x, y| {
-            let column = u64::from(x) * u64::from(width) / u64::from(size[0]);
-            let row = u64::from(y) * u64::from(height) / u64::from(size[1]);
-            self.texels[(row * u64::from(width) + column) as usize]
-        })
     }
 
     /// Two textures joined texel by texel, at the larger size of each side.
@@ -199,14 +175,9 @@ impl Texture {
     /// Tangent-space normals of a height field that repeats: `slope` is the rise of white over black in widths of a texel.
     pub(crate) fn normals_of_heights(&self, slope: f32) -> Self {
         let [width, height] = self.size;
-        let heights: Vec<f32> = self
-            .texels
-            .iter()
-            .map(|t| f32::from(t[0]) / 255.0)
-            .collect();
-        normals_of(&self.name, self.size, slope, |x, y| {
-            heights[((y % height) * width + x % width) as usize]
-        })
+        let at = |x: u32, y: u32| self.texels[(y % height * width + x % width) as usize][0];
+        let height = |x, y| f32::from(at(x, y)) / 255.0;
+        normals_of(&self.name, self.size, slope, height)
     }
 }
 
@@ -267,7 +238,6 @@ mod tests {
     }
 
     /// Decoders' errors show their inner state; ours are sentences. Sides beyond the limit, a damaged chunk, another format, and a file cut off.
-    #[cfg(feature = "images")]
     #[test]
     fn errors_of_images_are_sentences() {
         let mut bytes = std::io::Cursor::new(Vec::new());
