@@ -29,7 +29,7 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
     let materials = mesh.parts.iter().map(|p| p.material.clone());
     let mut materials: Vec<Material> = materials.collect();
     let mesh = displaced(Arc::new(mesh), &mut materials, &mut files.budget).map_err(&fail)?;
-    let bounds = Bounds::of(&mesh).map_err(&fail)?;
+    let bounds = sphere(&mesh).map_err(&fail)?;
     budget::check(lights.len() as u64, MAX_LIGHTS as u64, "lights").map_err(&fail)?;
     let cameras = cameras.into_iter().filter_map(|c| sound(c, bounds));
     let mut views: Vec<Camera> = cameras.collect();
@@ -83,36 +83,27 @@ fn one_lighting(materials: &mut [Material]) -> Option<Lighting> {
     Some(Lighting::Pbr)
 }
 
-/// A sphere around all of a file.
-#[derive(Clone, Copy)]
-struct Bounds {
-    middle: Vec3,
-    radius: f32,
-}
+/// The middle and the radius of a sphere around all of a file.
+type Sphere = (Vec3, f32);
 
-impl Bounds {
-    fn of(mesh: &Mesh) -> Result<Self, String> {
-        let (low, high) = mesh.bounds().unwrap_or_default();
-        let farthest = low.abs().max(high.abs()).max_element();
-        if farthest > MAX_COORDINATE {
-            return Err(format!(
-                "reaches {farthest:e} from the origin, and a scene at most {MAX_COORDINATE:e}; scale it down"
-            ));
-        }
-        let middle = (low + high) / 2.0;
-        Ok(Self {
-            middle,
-            // Far from the origin a camera that is closer would be at the same place as its target.
-            radius: ((high - low).length() / 2.0).max(1e-6).max(1e-5 * farthest),
-        })
+fn sphere(mesh: &Mesh) -> Result<Sphere, String> {
+    let (low, high) = mesh.bounds().unwrap_or_default();
+    let farthest = low.abs().max(high.abs()).max_element();
+    if farthest > MAX_COORDINATE {
+        return Err(format!(
+            "reaches {farthest:e} from the origin, and a scene at most {MAX_COORDINATE:e}; scale it down"
+        ));
     }
+    // Far from the origin a camera that is closer would be at the same place as its target.
+    let radius = ((high - low).length() / 2.0).max(1e-6).max(1e-5 * farthest);
+    Ok(((low + high) / 2.0, radius))
 }
 
 /// A camera of the file; `None` where its numbers make no sense.
-fn sound(mut camera: Camera, bounds: Bounds) -> Option<Camera> {
+fn sound(mut camera: Camera, (middle, radius): Sphere) -> Option<Camera> {
     if camera.far == f32::INFINITY {
-        let distance = (camera.position - bounds.middle).length();
-        camera.far = distance + 4.0 * bounds.radius;
+        let distance = (camera.position - middle).length();
+        camera.far = distance + 4.0 * radius;
     }
     let Camera { near, far, .. } = camera;
     let is_sound = near > 0.0 && near < far && far.is_finite();
@@ -120,24 +111,24 @@ fn sound(mut camera: Camera, bounds: Bounds) -> Option<Camera> {
     (is_sound && camera.view_from_world().is_finite()).then_some(camera)
 }
 
-fn fitting_camera(bounds: Bounds) -> Camera {
+fn fitting_camera((middle, radius): Sphere) -> Camera {
     let towards = Vec3::new(0.5, 0.35, 1.0).normalize();
     Camera {
-        position: bounds.middle + towards * bounds.radius * 2.8,
-        target: bounds.middle,
+        position: middle + towards * radius * 2.8,
+        target: middle,
         up: Vec3::Y,
         fov_y_degrees: 45.0,
-        near: bounds.radius * 0.5,
-        far: bounds.radius * 8.0,
+        near: radius * 0.5,
+        far: radius * 8.0,
     }
 }
 
 /// Lights so bright that a white surface facing them is nearly white.
-fn default_lights(bounds: Bounds, lighting: Lighting) -> [Light; 2] {
+fn default_lights((middle, radius): Sphere, lighting: Lighting) -> [Light; 2] {
     [([0.6, 0.9, 1.0], 0.8), ([-1.0, 0.1, 0.7], 0.4)].map(|(towards, share)| {
-        let distance = 4.0 * bounds.radius;
+        let distance = 4.0 * radius;
         Light {
-            source: Source::Point(bounds.middle + Vec3::from(towards).normalize() * distance),
+            source: Source::Point(middle + Vec3::from(towards).normalize() * distance),
             color: [1.0; 3],
             intensity: if lighting == Lighting::Pbr {
                 share * std::f32::consts::PI * distance * distance

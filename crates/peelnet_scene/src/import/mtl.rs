@@ -1,13 +1,11 @@
 //! MTL files: material libraries, read by `tobj` behind a check.
 
-use super::{
-    obj::statements,
-    textures::{Textures, drawn_as},
-};
+use super::{obj::statements, textures::drawn_as};
 use crate::{
     error::{SceneError, shown},
     files::{Files, MAX_TEXT},
     material::{Lighting, Material},
+    texture::Texture,
     warnings::Warnings,
 };
 use peelnet_files::printable;
@@ -15,13 +13,16 @@ use std::{
     collections::{HashMap, HashSet},
     fmt::Write,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 /// The material libraries of an OBJ file.
 pub(super) struct Libraries<'a, 'f> {
     /// The OBJ file.
     path: &'a Path,
-    textures: Textures<'a, 'f>,
+    pub files: &'a mut Files<'f>,
+    /// Textures by their files; `None` for those that cannot be drawn.
+    pub textures: HashMap<PathBuf, Option<Arc<Texture>>>,
     /// Numbers of materials by their names, for each library.
     numbers: HashMap<PathBuf, HashMap<String, usize>>,
     materials: Vec<Material>,
@@ -33,7 +34,8 @@ impl<'a, 'f> Libraries<'a, 'f> {
     pub fn new(path: &'a Path, files: &'a mut Files<'f>) -> Self {
         Self {
             path,
-            textures: Textures::new(files),
+            files,
+            textures: HashMap::new(),
             numbers: HashMap::new(),
             materials: Vec::new(),
             is_incomplete: false,
@@ -59,7 +61,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
         if self.numbers.contains_key(&file) {
             return Ok(false);
         }
-        let files = &mut *self.textures.files;
+        let files = &mut *self.files;
         let bytes = match files.read(&file, MAX_TEXT) {
             Err(SceneError::Read { source, .. }) => {
                 self.is_incomplete = true;
@@ -84,9 +86,9 @@ impl<'a, 'f> Libraries<'a, 'f> {
             if colors.iter().flatten().flatten().any(|x| *x > 1.0) {
                 let name = format!("'{}'", printable(&m.name));
                 let before = format!("{}: colours above 1 are taken as 1: ", shown(&file));
-                self.textures.files.warnings.about(before, &name, "");
+                self.files.warnings.about(before, &name, "");
             }
-            let material = self.textures.put_on(&file, m, material(m, lighting));
+            let material = self.put_on(&file, m, material(m, lighting));
             self.materials.push(material);
         }
         self.numbers.insert(file, numbers);
@@ -97,7 +99,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
     pub fn finish<'n>(self, named: impl Iterator<Item = &'n str>) -> Vec<Material> {
         let known: HashSet<&String> = self.numbers.values().flat_map(HashMap::keys).collect();
         for name in named.filter(|name| !self.is_incomplete && !known.contains(&name.to_string())) {
-            self.textures.files.warnings.about(
+            self.files.warnings.about(
                 format!("{}: no material ", shown(self.path)),
                 &format!("'{}'", printable(name)),
                 " in its MTL files; default material used",

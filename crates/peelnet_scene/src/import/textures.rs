@@ -1,15 +1,15 @@
 //! Textures that MTL files name.
 
+use super::mtl::Libraries;
 use crate::{
     displacement::Displacement,
     error::{SceneError, shown},
-    files::Files,
     material::{Lighting, Material},
     texture::{Maps, Texture, Wrap},
 };
 use peelnet_files::printable;
 use std::{
-    collections::{BTreeMap, HashMap},
+    collections::BTreeMap,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -43,27 +43,13 @@ struct Statement {
     clamp: bool,
 }
 
-/// The textures of all materials, each file read once and each pair of them joined once.
-pub(super) struct Textures<'a, 'f> {
-    pub files: &'a mut Files<'f>,
-    read: HashMap<PathBuf, Option<Arc<Texture>>>,
-}
-
-impl<'a, 'f> Textures<'a, 'f> {
-    pub fn new(files: &'a mut Files<'f>) -> Self {
-        Self {
-            files,
-            read: HashMap::new(),
-        }
-    }
-
+impl Libraries<'_, '_> {
     /// A texture that was made; `None`, with a warning, where the scene has no room for it.
     fn drawn(&mut self, made: Result<Arc<Texture>, String>, what: &str) -> Option<Arc<Texture>> {
         made.map_err(|e| {
             let after = format!(" is not drawn: {e}");
-            self.files
-                .warnings
-                .about("texture ", &printable(what), after);
+            let warnings = &mut self.files.warnings;
+            warnings.about("texture ", &printable(what), after);
         })
         .ok()
     }
@@ -115,7 +101,7 @@ impl<'a, 'f> Textures<'a, 'f> {
 
     /// A texture; `None`, and a warning, where it cannot be drawn.
     fn texture(&mut self, file: &Path) -> Option<Arc<Texture>> {
-        if let Some(known) = self.read.get(file) {
+        if let Some(known) = self.textures.get(file) {
             return known.clone();
         }
         let texture = self.files.texture(file).map(Arc::new).map_err(|e| {
@@ -128,7 +114,7 @@ impl<'a, 'f> Textures<'a, 'f> {
             self.files.warnings.about("", &shown(file), after);
         });
         let texture = texture.ok();
-        self.read.insert(file.to_owned(), texture.clone());
+        self.textures.insert(file.to_owned(), texture.clone());
         texture
     }
 

@@ -62,13 +62,21 @@ impl Reader<'_, '_> {
         let is_mirrored = Mat3::from_mat4(world).determinant() < 0.0;
         let triangles = triangles(mode, &indices, is_mirrored);
         let normal_matrix = Mat3::from_mat4(world).inverse().transpose();
+        // Computed where the file has none, or zeros.
         let given = reader.read_normals();
         let given = given.filter(|given| given.len() == positions.len());
-        let normals = given.map(|given| {
-            let turned = given.map(|n| normal_matrix * Vec3::from(n));
-            turned.map(Vec3::normalize_or_zero).collect()
-        });
-        let normals = complete(normals, &positions, &triangles);
+        let given = given.into_iter().flatten();
+        let given = given.map(|n| (normal_matrix * Vec3::from(n)).normalize_or_zero());
+        let mut normals: Vec<Vec3> = given.collect();
+        normals.resize(positions.len(), Vec3::ZERO);
+        if normals.contains(&Vec3::ZERO) {
+            let smooth = smooth_normals(&positions, &triangles);
+            for (normal, smooth) in normals.iter_mut().zip(smooth) {
+                if *normal == Vec3::ZERO {
+                    *normal = smooth;
+                }
+            }
+        }
         // Opaque materials ignore the opacity of vertices.
         let is_opaque = primitive.material().alpha_mode() == AlphaMode::Opaque;
         let n = positions.len();
@@ -102,20 +110,6 @@ impl Reader<'_, '_> {
         self.loaded.mesh.append(part, &self.not_drawn, warnings);
         Ok(())
     }
-}
-
-/// The normals of a file, and computed ones where it has none or zeros.
-fn complete(given: Option<Vec<Vec3>>, positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let smooth = || smooth_normals(positions, triangles);
-    let mut normals = given.unwrap_or_else(smooth);
-    if normals.contains(&Vec3::ZERO) {
-        for (normal, smooth) in normals.iter_mut().zip(smooth()) {
-            if *normal == Vec3::ZERO {
-                *normal = smooth;
-            }
-        }
-    }
-    normals
 }
 
 /// What is wrong with the first accessor of a primitive that cannot be read.
