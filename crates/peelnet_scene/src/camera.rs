@@ -55,11 +55,8 @@ impl Camera {
         require(is_order, "near", &message)?;
         within("fov_y", self.fov_y_degrees, *FOV_Y.start(), *FOV_Y.end())?;
         let forward = self.target - self.position;
-        require(
-            forward.length() != 0.0,
-            "target",
-            "must differ from position",
-        )?;
+        let is_apart = forward.length() != 0.0;
+        require(is_apart, "target", "must differ from position")?;
         let across = forward.normalize().cross(self.up.normalize_or_zero());
         let message = "must not be zero or along the line of sight";
         require(across.length() >= 1e-4, "up", message)

@@ -147,10 +147,9 @@ pub(crate) fn displaced(
         return Ok(mesh);
     }
     let is_large = |d: &&Displacement| !(d.scale.abs() <= LONGEST && d.middle.abs() <= LONGEST);
-    if let Some(d) = displacements().find(is_large) {
+    if let Some(Displacement { scale, middle, .. }) = displacements().find(is_large) {
         return Err(format!(
-            "a displacement of {} about {} is too large",
-            d.scale, d.middle
+            "a displacement of {scale} about {middle} is too large"
         ));
     }
     let level = level(&mesh, materials);

@@ -116,11 +116,9 @@ impl Pattern {
                     let down = place.y / self.cells as f32;
                     let wave = 0.012 * (std::f32::consts::TAU * place.x).sin();
                     let bands = [0.22, 0.3, 0.62, 0.68f32];
-                    let near = bands
-                        .iter()
-                        .map(|b| (down + wave - b).abs())
-                        .fold(1.0, f32::min);
-                    1.0 - smoothstep(0.012, 0.016, near)
+                    let near = bands.map(|b| (down + wave - b).abs());
+                    let nearest = near.into_iter().fold(1.0, f32::min);
+                    1.0 - smoothstep(0.012, 0.016, nearest)
                 }
             };
             ((raw - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0)
@@ -156,12 +154,9 @@ impl Pattern {
                 normals_of("a pattern of heights", [n, n], slope, at)
             }
             "metallic_roughness_map" => of("a pattern of metal", &|t| {
-                [
-                    255,
-                    between(self.roughness, t),
-                    between(self.metallic, t),
-                    255,
-                ]
+                let ends = [self.roughness, self.metallic];
+                let [roughness, metallic] = ends.map(|ends| between(ends, t));
+                [255, roughness, metallic, 255]
             }),
             "occlusion_map" => of("a pattern of occlusion", &|t| {
                 let share = between(self.occlusion, t);
@@ -309,15 +304,11 @@ mod tests {
             "pattern = 'checker'\ncells = 2\nsize = 4\ncolors = [[0, 0, 0, 0.2], [1, 0.5, 0]]\nroughness = [0.4, 1]\nmetallic = [1, 0]",
         );
         let color = p.texture("color_map").expect("in range");
-        assert_eq!(
-            (color.texels[0], color.texels[2]),
-            ([0, 0, 0, 51], [255, 188, 0, 255])
-        );
+        assert_eq!(color.texels[0], [0, 0, 0, 51]);
+        assert_eq!(color.texels[2], [255, 188, 0, 255]);
         let values = p.texture("metallic_roughness_map").expect("in range");
-        assert_eq!(
-            (values.texels[0], values.texels[2]),
-            ([255, 102, 255, 255], [255, 255, 0, 255])
-        );
+        assert_eq!(values.texels[0], [255, 102, 255, 255]);
+        assert_eq!(values.texels[2], [255, 255, 0, 255]);
         let e = pattern("pattern = 'noise'\nroughness = [0, 2]").texture("color_map");
         assert!(e.is_err_and(|e| e.contains('2')));
     }

@@ -126,11 +126,8 @@ impl Scatter {
         let is_either = self.mesh.is_some() != self.meshes.is_some();
         require(is_either, "mesh", "give either mesh or meshes")?;
         let has_any = !self.mesh_list().is_empty();
-        require(
-            has_any,
-            "meshes",
-            "the list is empty; name at least one mesh",
-        )?;
+        let message = "the list is empty; name at least one mesh";
+        require(has_any, "meshes", message)?;
         let is_box = (0..3).all(|k| self.min[k] <= self.max[k]);
         let is_box = is_box && finite(&self.min) && finite(&self.max);
         require(is_box, "min", "must be finite and nowhere above max")?;
@@ -168,20 +165,18 @@ impl Scatter {
         let mut random = Random::new(self.seed, &[0x5ca7]);
         let (min, max) = (Vec3::from_array(self.min), Vec3::from_array(self.max));
         let meshes = self.mesh_list().len().max(1);
+        let range = self.alpha.map(NumberOrRange::ends);
         (0..self.count)
             .map(|i| {
                 let free = Vec3::new(random.unit(), random.unit(), random.unit());
                 let place = self.grid.map_or(free, |[nx, ny, nz]| {
-                    let cell = Vec3::new(
-                        (i % nx) as f32,
-                        (i / nx % ny) as f32,
-                        (i / (nx * ny) % nz) as f32,
-                    );
+                    let cell = [i % nx, i / nx % ny, i / (nx * ny) % nz];
+                    let cell = Vec3::from(cell.map(|n| n as f32));
                     let cells = Vec3::new(nx as f32, ny as f32, nz as f32);
                     (cell + Vec3::splat(0.5) + (free - 0.5) * self.jitter) / cells
                 });
                 let position = min + place * (max - min);
-                let scale = self.scale.draw(&mut random);
+                let scale = Vec3::splat(self.scale.draw(&mut random));
                 // Drawn whether it is used or not, so that the rest of the scene does not depend on `rotate`.
                 let turn = random_rotation(&mut random);
                 let rotation = match &self.rotate {
@@ -191,23 +186,18 @@ impl Scatter {
                     }
                     Rotate::Degrees(d) => fixed_axes(*d),
                 };
+                let world_from_object =
+                    Mat4::from_scale_rotation_translation(scale, rotation, position);
                 let color = random.color();
                 let alpha = random.unit();
                 Placed {
                     mesh: i % meshes,
-                    world_from_object: Mat4::from_scale_rotation_translation(
-                        Vec3::splat(scale),
-                        rotation,
-                        position,
-                    ),
+                    world_from_object,
                     color: self.color.map(|c| match c {
                         ColorChoice::Random => color,
                         ColorChoice::Color(c) => c,
                     }),
-                    alpha: self
-                        .alpha
-                        .map(NumberOrRange::ends)
-                        .map(|[low, high]| low + alpha * (high - low)),
+                    alpha: range.map(|[low, high]| low + alpha * (high - low)),
                 }
             })
             .collect()

@@ -47,12 +47,11 @@ impl Object {
     /// An object of triangles in world space, each with its own vertices and normal.
     pub fn of_triangles(name: &str, triangles: &[[Vec3; 3]], material: Material) -> Self {
         let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).normalize_or(Vec3::Z);
+        let firsts = (0..triangles.len() as u32).map(|i| 3 * i);
         let mesh = Mesh {
             positions: triangles.iter().flatten().copied().collect(),
             normals: triangles.iter().flat_map(|t| [normal(t); 3]).collect(),
-            triangles: (0..triangles.len() as u32)
-                .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-                .collect(),
+            triangles: firsts.map(|i| [i, i + 1, i + 2]).collect(),
             ..Mesh::default()
         };
         Self {

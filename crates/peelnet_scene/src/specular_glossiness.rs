@@ -45,11 +45,8 @@ fn converted(values: Values) -> ([f32; 3], f32, f32) {
         diffuse, specular, ..
     } = values;
     let one_minus_strength = 1.0 - specular.into_iter().fold(0.0, f32::max);
-    let m = metallic(
-        brightness(diffuse),
-        brightness(specular),
-        one_minus_strength,
-    );
+    let [d, s] = [diffuse, specular].map(brightness);
+    let m = metallic(d, s, one_minus_strength);
     let color = [0, 1, 2].map(|k| {
         let by_diffuse =
             diffuse[k] * one_minus_strength / (1.0 - DIELECTRIC) / (1.0 - m).max(LEAST);

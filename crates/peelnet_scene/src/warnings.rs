@@ -12,6 +12,7 @@ const LONGEST: usize = 5000;
 #[derive(Default)]
 pub(crate) struct Warnings(HashMap<[String; 2], Kind>);
 
+#[derive(Default)]
 struct Kind {
     /// Which kind it was, in the order in which they are met.
     number: usize,
@@ -31,8 +32,7 @@ impl Warnings {
         let kind = self.0.entry([before.into(), after.into()]);
         let kind = kind.or_insert_with(|| Kind {
             number,
-            listed: Vec::new(),
-            all: HashSet::new(),
+            ..Kind::default()
         });
         if kind.all.insert(name.to_owned()) && kind.listed.len() < LISTED {
             kind.listed.push(name.to_owned());

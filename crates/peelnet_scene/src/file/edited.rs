@@ -183,6 +183,11 @@ fn placed(own: &Table) -> Mat4 {
     raw.map_or(Mat4::IDENTITY, |raw| raw.placed())
 }
 
+fn largest(matrix: Mat4) -> f32 {
+    let entries = matrix.to_cols_array().map(f32::abs);
+    entries.into_iter().fold(0.0, f32::max)
+}
+
 /// A transform as one scale for all axes, a rotation and a translation.
 fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
     let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
@@ -197,9 +202,7 @@ fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
     let again = Mat4::from_translation(translation)
         * Mat4::from_quat(rotation)
         * Mat4::from_scale(Vec3::splat(scale.x));
-    let columns = matrix.to_cols_array().map(f32::abs);
-    let largest = columns.into_iter().fold(0.0, f32::max);
-    let close = again.abs_diff_eq(matrix, CLOSE * largest);
+    let close = again.abs_diff_eq(matrix, CLOSE * largest(matrix));
     (close && scale.x != 0.0 && matrix.is_finite()).then_some((scale.x, rotation, translation))
 }
 
@@ -297,12 +300,7 @@ mod tests {
         for (a, b) in back.objects.iter().zip(&scene.objects) {
             assert_eq!(a.materials, b.materials, "{}", a.name);
             let [x, y] = [a, b].map(|o| o.world_from_object);
-            let largest = y
-                .to_cols_array()
-                .map(f32::abs)
-                .into_iter()
-                .fold(0.0, f32::max);
-            assert!(x.abs_diff_eq(y, CLOSE * largest), "{}: {x} {y}", a.name);
+            assert!(x.abs_diff_eq(y, CLOSE * largest(y)), "{}: {x} {y}", a.name);
         }
     }
 

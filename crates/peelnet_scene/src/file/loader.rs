@@ -64,10 +64,8 @@ impl<'a> Loader<'a> {
             (None, Reference::Made(shape)) => {
                 let triangles = shape.triangles() as u64;
                 // No shape has more than two vertices for each triangle.
-                let taken = self
-                    .files
-                    .budget
-                    .take_mesh(triangles, triangles.saturating_mul(2));
+                let budget = &mut self.files.budget;
+                let taken = budget.take_mesh(triangles, triangles.saturating_mul(2));
                 let material = Material::default_with(self.files.lighting);
                 let made = taken.and_then(|()| shape.build(&material, has_uvs));
                 Arc::new(made.map_err(|e| self.value(field, e))?)

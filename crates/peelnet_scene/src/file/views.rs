@@ -31,10 +31,8 @@ pub(super) fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, 
     };
     let n = orbit.views;
     if views.len() > 1 {
-        return fail(
-            "orbit",
-            "turns one camera: give [camera], not several [[view]]",
-        );
+        let message = "turns one camera: give [camera], not several [[view]]";
+        return fail("orbit", message);
     }
     if !(1..=10_000).contains(&n) {
         return fail("orbit.views", &format!("{n} must lie in 1 … 10000"));
@@ -45,11 +43,10 @@ pub(super) fn views(loader: &Loader<'_>, raw: &RawScene) -> Result<Vec<Camera>, 
 pub(super) fn lights(loader: &Loader<'_>, raw: &[RawLight]) -> Result<Vec<Light>, SceneError> {
     budget::check(raw.len() as u64, MAX_LIGHTS as u64, "lights")
         .map_err(|e| loader.value("light", e))?;
-    let lights = raw
-        .iter()
-        .zip(1..)
-        .map(|(raw, i)| light(raw).map_err(|message| loader.value(&format!("light {i}"), message)));
-    lights.collect()
+    let lights = raw.iter().map(light).zip(1..);
+    lights
+        .map(|(light, i)| light.map_err(|e| loader.value(&format!("light {i}"), e)))
+        .collect()
 }
 
 fn light(raw: &RawLight) -> Result<Light, String> {

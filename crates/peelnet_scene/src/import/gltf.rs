@@ -91,13 +91,9 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
         .or_else(|| document.scenes().next())
         .ok_or_else(|| fail("holds no scene; export one".into()))?;
     if document.scenes().len() > 1 {
-        let drawn = scene.index();
-        let all = document.scenes().len();
-        reader.missing(
-            &format!("scenes other than number {drawn} of {all}"),
-            "",
-            "",
-        );
+        let (drawn, all) = (scene.index(), document.scenes().len());
+        let others = format!("scenes other than number {drawn} of {all}");
+        reader.missing(&others, "", "");
     }
     reader.scene(&scene)?;
     if document.animations().len() > 0 {

@@ -36,7 +36,7 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     }
     let named = text.lines().filter_map(|line| line.strip_prefix("usemtl "));
     let materials = libraries.finish(named);
-    let mut triangulator = Triangulator::new();
+    let mut triangulator = Triangulator::default();
     let parts = models.into_iter().map(|tobj::Model { name, mesh }| {
         let material = mesh.material_id.map(|i| materials[i].clone());
         let surface = surface(&mesh, &mut triangulator);
@@ -238,12 +238,9 @@ fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Mesh, S
     let colors = vectors(&mesh.vertex_color).into_iter();
     let colors = colors.map(|c| c.clamp(Vec3::ZERO, Vec3::ONE).extend(1.0).to_array());
     let normals = Some(vectors(&mesh.normals)).filter(|all| all.len() == n);
+    let with_uvs = triangles.iter().filter(|_| has_uvs);
     Ok(Mesh {
-        uvs: triangles
-            .iter()
-            .filter(|_| has_uvs)
-            .map(|t| t.map(uv))
-            .collect(),
+        uvs: with_uvs.map(|t| t.map(uv)).collect(),
         normals: normals.unwrap_or_default(),
         colors: colors.collect(),
         positions,

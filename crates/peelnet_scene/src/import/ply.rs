@@ -63,7 +63,7 @@ fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault>
     let mut reader = Faces {
         surface: Mesh::default(),
         budget: &mut files.budget,
-        triangulator: Triangulator::new(),
+        triangulator: Triangulator::default(),
         vertex_uvs: Vec::new(),
         short_faces: 0,
     };

@@ -79,6 +79,7 @@ fn linear(value: &Property, x: f32) -> f32 {
 }
 
 /// A polygon or a strip.
+#[derive(Default)]
 pub(super) struct Face {
     pub indices: Vec<i64>,
     /// Two for each vertex, or none.
@@ -87,10 +88,7 @@ pub(super) struct Face {
 
 impl PropertyAccess for Face {
     fn new() -> Self {
-        Self {
-            indices: Vec::new(),
-            uvs: Vec::new(),
-        }
+        Self::default()
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> Answer {

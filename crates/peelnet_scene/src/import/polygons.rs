@@ -7,19 +7,13 @@ use glam::DVec3;
 const MAX_CONCAVE: usize = 20_000;
 
 /// Cuts polygons into triangles; keeps its buffers from polygon to polygon.
+#[derive(Default)]
 pub(super) struct Triangulator {
     earcut: Earcut<f64>,
     flat: Vec<[f64; 2]>,
 }
 
 impl Triangulator {
-    pub fn new() -> Self {
-        Self {
-            earcut: Earcut::new(),
-            flat: Vec::new(),
-        }
-    }
-
     /// Triangles of a polygon, as indices of its vertices, in the polygon's orientation. A convex polygon becomes a fan around its first
     /// vertex, as most programs draw it (`earcut` would choose other diagonals). A polygon that cannot be triangulated (without area, or
     /// meeting itself) becomes a fan too, so that nothing is lost.
@@ -33,10 +27,8 @@ impl Triangulator {
             return Ok(fan());
         }
         // Far from the origin the projection would lose digits.
-        let near: Vec<[f64; 3]> = vertices
-            .iter()
-            .map(|&v| (v - vertices[0]).to_array())
-            .collect();
+        let near = vertices.iter().map(|&v| (v - vertices[0]).to_array());
+        let near: Vec<[f64; 3]> = near.collect();
         if !project3d_to_2d(&near, n, &mut self.flat) {
             return Ok(fan());
         }
@@ -84,7 +76,7 @@ mod tests {
 
     fn triangulate(points: &[[f64; 2]], z: f64) -> Result<Vec<[usize; 3]>, String> {
         let vertices: Vec<DVec3> = points.iter().map(|&[x, y]| DVec3::new(x, y, z)).collect();
-        Triangulator::new().triangulate(&vertices)
+        Triangulator::default().triangulate(&vertices)
     }
 
     /// A star: every second vertex is concave.

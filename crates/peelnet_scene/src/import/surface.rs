@@ -60,10 +60,8 @@ impl Mesh {
         }
         material.color = [1.0; 3];
         if self.colors.iter().all(|c| c[3] == 0.0) {
-            files.warn(
-                path,
-                "every vertex has an opacity of 0, which is taken as 1",
-            );
+            let message = "every vertex has an opacity of 0, which is taken as 1";
+            files.warn(path, message);
             self.colors.iter_mut().for_each(|c| c[3] = 1.0);
         }
         material.blend = self.colors.iter().any(|c| c[3] < 1.0);

@@ -133,12 +133,7 @@ impl Bumpy {
 
 impl Cup {
     pub(super) fn surface(&self) -> Result<Mesh, String> {
-        let &Self {
-            radius,
-            height,
-            thickness,
-            triangles,
-        } = self;
+        let (radius, height, thickness) = (self.radius, self.height, self.thickness);
         length("radius", radius)?;
         length("height", height)?;
         length("thickness", thickness)?;
@@ -157,11 +152,9 @@ impl Cup {
             [radius - thickness, thickness - h],
             [0.0, thickness - h],
         ];
-        let (rings, segments) = grid(triangles)?;
-        Ok(revolve(
-            &resample(&line.map(Vec2::from), rings.max(8)),
-            segments,
-        ))
+        let (rings, segments) = grid(self.triangles)?;
+        let profile = resample(&line.map(Vec2::from), rings.max(8));
+        Ok(revolve(&profile, segments))
     }
 }
 

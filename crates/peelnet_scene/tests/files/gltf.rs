@@ -27,11 +27,8 @@ fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
 /// Four vertices of a square in the plane z = 0, and the indices of two triangles.
 fn square() -> Vec<u8> {
     let vertices: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let mut bytes: Vec<u8> = vertices
-        .iter()
-        .flatten()
-        .flat_map(|x| x.to_le_bytes())
-        .collect();
+    let numbers = vertices.as_flattened().iter();
+    let mut bytes: Vec<u8> = numbers.flat_map(|x| x.to_le_bytes()).collect();
     bytes.extend([0u16, 1, 2, 0, 2, 3].iter().flat_map(|i| i.to_le_bytes()));
     bytes
 }
@@ -118,11 +115,8 @@ fn nodes_instances_materials_lights_and_cameras() {
     let scene = load(&document()).unwrap();
     assert_eq!((scene.objects.len(), scene.triangles()), (1, 16));
     let mesh = &scene.objects[0].mesh;
-    let (low, high) = mesh.bounds().unwrap();
-    assert_eq!(
-        (low, high),
-        (Vec3::new(-1.0, 0.0, -2.0), Vec3::new(1.0, 2.0, -1.0))
-    );
+    let bounds = (Vec3::new(-1.0, 0.0, -2.0), Vec3::new(1.0, 2.0, -1.0));
+    assert_eq!(mesh.bounds(), Some(bounds));
     // The mirrored instance faces the same way: +z, without normals in the file.
     for t in &mesh.triangles {
         let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
@@ -131,31 +125,20 @@ fn nodes_instances_materials_lights_and_cameras() {
     let [glass, leaf, sign, lamp] = &scene.objects[0].materials[..4] else {
         panic!("four materials of the first instance");
     };
-    assert_eq!(
-        (glass.color, glass.alpha, glass.blend),
-        ([0.2, 0.4, 0.6], 0.3, true)
-    );
-    assert_eq!(
-        (glass.metallic, glass.roughness, glass.double_sided),
-        (0.25, 0.75, true)
-    );
-    assert_eq!(glass.lighting, Lighting::Pbr);
+    assert_eq!((glass.color, glass.alpha), ([0.2, 0.4, 0.6], 0.3));
+    assert_eq!((glass.metallic, glass.roughness), (0.25, 0.75));
+    assert!(glass.blend && glass.double_sided && glass.lighting == Lighting::Pbr);
     assert_eq!((leaf.alpha_cutoff, leaf.is_opaque()), (Some(0.4), true));
     assert_eq!((sign.lighting, sign.alpha), (Lighting::Unlit, 1.0));
     assert_eq!(lamp.emission, [2.0, 1.0, 0.0]);
     let point = Source::Point(Vec3::new(0.0, 3.0, -2.0));
-    let sources: Vec<_> = scene
-        .lights
-        .iter()
-        .map(|l| (l.source, l.intensity))
-        .collect();
+    let lights = scene.lights.iter();
+    let sources: Vec<_> = lights.map(|l| (l.source, l.intensity)).collect();
     // A directional light shines along its −z: it comes from +z.
     assert_eq!(sources, [(point, 40.0), (Source::Toward(Vec3::Z), 1.0)]);
     let camera = &scene.views[0];
-    assert_eq!(
-        (camera.position, camera.target),
-        (Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, 4.0))
-    );
+    assert_eq!(camera.position, Vec3::new(0.0, 0.0, 5.0));
+    assert_eq!(camera.target, Vec3::new(0.0, 0.0, 4.0));
     assert!((camera.fov_y_degrees - 0.8f32.to_degrees()).abs() < 1e-4 && camera.far == 50.0);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
@@ -325,7 +308,7 @@ nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 2 is a
 fn bad_files() {
     for row in BAD.trim().lines() {
         let (changes, words) = row.split_once(" => ").unwrap();
-        assert_refused(load(&changed(changes)), row, words);
+        assert_refused(load(&changed(changes)), words);
     }
     load(&changed(r#"asset = {"version": "2.1"}"#)).expect("a file that 2.0 can read");
     let mut nan = square();
@@ -353,7 +336,7 @@ fn bad_files() {
             "mesh 0, primitive 0 & index 9 & 4 vertices",
         ),
     ] {
-        assert_refused(load_bytes(&bytes), words, words);
+        assert_refused(load_bytes(&bytes), words);
     }
 }
 
@@ -364,10 +347,10 @@ fn lengths_of_headers_are_checked() {
     for said in 0..12u8 {
         let mut short = good.clone();
         short[8..12].copy_from_slice(&[said, 0, 0, 0]);
-        assert_refused(load_bytes(&short), "too short", &format!("has {said} byte"));
+        assert_refused(load_bytes(&short), &format!("has {said} byte"));
     }
     for length in 0..good.len() {
-        assert_refused(load_bytes(&good[..length]), "cut off", "thing.glb");
+        assert_refused(load_bytes(&good[..length]), "thing.glb");
     }
 }
 
@@ -380,13 +363,13 @@ fn instances_are_counted_before_they_are_made() {
     many["meshes"][0]["primitives"] = vec![primitive; 2000].into();
     many["nodes"] = vec![json!({"mesh": 0}); 2000].into();
     many["scenes"][0]["nodes"] = (0..2000).collect();
-    assert_refused(load(&many), "too many", "4000000 primitives & 1000000");
+    assert_refused(load(&many), "4000000 primitives & 1000000");
     let mut strip = document();
     let zeros = json!({"componentType": 5125, "count": 70_000_000, "type": "SCALAR"});
     strip["accessors"].as_array_mut().unwrap().push(zeros);
     set(&mut strip, "meshes/0/primitives/0/indices", json!(2));
     set(&mut strip, "meshes/0/primitives/0/mode", json!(5));
-    assert_refused(load(&strip), "too many", "triangles & 50000000");
+    assert_refused(load(&strip), "triangles & 50000000");
     let mut long = document();
     let chain = (1..3000).map(|i| json!({"children": [i]}));
     long["nodes"] = chain.chain([json!({"mesh": 0})]).collect();
@@ -443,9 +426,7 @@ meshes/0/primitives = [{"attributes": {"POSITION": 3, "COLOR_0": 2}, "indices": 
     let mesh = &scene.objects[0].mesh;
     // Indices 1 and 2 become the square's second and third vertices.
     let at = |i: usize| mesh.positions[i] + Vec3::new(0.0, 0.0, 2.0);
-    assert_eq!(
-        [at(0), at(1), at(2), at(3)],
-        [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::ZERO]
-    );
+    let expected = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::ZERO];
+    assert_eq!([0, 1, 2, 3].map(at), expected);
     assert_eq!(mesh.colors[0], [0.0; 4]);
 }

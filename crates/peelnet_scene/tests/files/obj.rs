@@ -22,10 +22,8 @@ fn polygons_negative_indices_groups_and_materials() {
     assert!(warnings.is_empty(), "{warnings:?}");
     assert_eq!(m.triangles.len(), 3);
     assert_eq!(m.parts.len(), 2);
-    assert_eq!(
-        (m.parts[0].name.as_str(), m.parts[0].material.alpha),
-        ("left", 0.3)
-    );
+    assert_eq!(m.parts[0].name, "left");
+    assert_eq!(m.parts[0].material.alpha, 0.3);
     assert_eq!(m.parts[0].material.color, [0.25, 0.5, 1.0]);
     assert!((m.parts[1].material.alpha - 0.1).abs() < 1e-6);
     assert!(m.normals.iter().all(|n| *n == Vec3::Z));
@@ -97,12 +95,10 @@ fn bad_files() {
 fn seams_do_not_split_normals() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 4/2 2/2\n";
     let (m, ..) = load(&obj, "");
-    let at_origin: Vec<Vec3> = (0..m.positions.len())
-        .filter(|&i| m.positions[i] == Vec3::ZERO)
-        .map(|i| m.normals[i])
-        .collect();
-    assert_eq!(at_origin.len(), 2);
-    assert_eq!(at_origin[0], at_origin[1]);
+    let vertices = m.positions.iter().zip(&m.normals);
+    let at_origin = vertices.filter(|(p, _)| **p == Vec3::ZERO);
+    let normals: Vec<&Vec3> = at_origin.map(|(_, n)| n).collect();
+    assert!(normals.len() == 2 && normals[0] == normals[1]);
 }
 
 /// Textures of all kinds, options, opacity in a file of its own, heights as normals, vertex colours, Latin-1; what is not drawn is reported.
@@ -136,10 +132,8 @@ fn images_of_materials() {
     assert_eq!(m.emission, [1.0; 3]);
     // v runs down.
     assert_eq!(mesh.uvs[0][2], Vec2::new(1.0, 0.0));
-    assert_eq!(
-        mesh.colors[..3],
-        [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]]
-    );
+    let [red, green] = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]];
+    assert_eq!(mesh.colors, [red, green, [1.0; 4]]);
     assert_eq!((warnings.len(), used), (2, 4), "{warnings:?}");
     let warnings = warnings.join("\n");
     for word in ["option -s of map_Bump", "map_Ks", "Latin-1"] {
@@ -164,11 +158,8 @@ fn libraries_are_read_once() {
 fn bad_normals_are_computed_and_flat_triangles_left_out() {
     let obj = format!("{QUAD}vn 0 0 0\nvn 0 0 -0\nvn 0 0 -2\nf 1//1 2//2 3//3\nf 1//1 1//1 2//2\n");
     let (mesh, warnings, _) = load(&obj, "");
-    assert_eq!(
-        (mesh.triangles.len(), warnings.len()),
-        (1, 2),
-        "{warnings:?}"
-    );
+    assert_eq!(mesh.triangles.len(), 1);
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
     for n in &mesh.normals {
         assert!((n.length() - 1.0).abs() < 1e-6);
     }
@@ -190,14 +181,9 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!(n.lighting, Lighting::Unlit);
     let warnings = warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
-    assert!(
-        warnings.contains("above 1 are taken as 1: 'n'"),
-        "{warnings}"
-    );
+    assert!(warnings.contains("taken as 1: 'n'"), "{warnings}");
     // The same where the text is not UTF-8: the first line is a vertex still.
     let latin = [b"\xef\xbb\xbf", QUAD.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
-    assert_eq!(
-        load_mesh(&[("a.obj", &latin)]).unwrap().0.positions[0],
-        Vec3::ZERO
-    );
+    let (mesh, ..) = load_mesh(&[("a.obj", &latin)]).unwrap();
+    assert_eq!(mesh.positions[0], Vec3::ZERO);
 }

@@ -24,11 +24,8 @@ element face 1\nproperty list uchar int vertex_indices\n";
 const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 
 fn square_text() -> String {
-    let vertices: String = CORNERS
-        .iter()
-        .map(|[x, y, z]| format!("{x} {y} {z} 255 188 0 255\n"))
-        .collect();
-    format!("{}{vertices}4 0 1 2 3\n", header("ascii", SQUARE))
+    let vertices = CORNERS.map(|[x, y, z]| format!("{x} {y} {z} 255 188 0 255\n"));
+    header("ascii", SQUARE) + &vertices.concat() + "4 0 1 2 3\n"
 }
 
 /// The same square in binary: bytes of four numbers in either order.
@@ -179,7 +176,7 @@ fn bad_files() {
         let columns: Vec<&str> = row.split(" => ").collect();
         let text = square_text().replacen(columns[0], columns[1], 1);
         let words = format!("a.ply & {}", columns[2]);
-        assert_refused(load(text.as_bytes()), row, &words);
+        assert_refused(load(text.as_bytes()), &words);
     }
 }
 
@@ -188,7 +185,7 @@ fn bad_files() {
 fn truncated_files() {
     for whole in [square_binary(false), square_binary(true)] {
         for length in 0..whole.len() {
-            assert_refused(load(&whole[..length]), "", "a.ply");
+            assert_refused(load(&whole[..length]), "a.ply");
         }
     }
     // A list as long as 32 bits can say.
@@ -196,7 +193,7 @@ fn truncated_files() {
     let mut bytes = header("binary_little_endian", &lines).into_bytes();
     bytes.extend([0; 4 * 16]);
     bytes.extend([255; 16]);
-    assert_refused(load(&bytes), "", "a.ply & face & cut off");
+    assert_refused(load(&bytes), "a.ply & face & cut off");
     // Elements without properties take no bytes, however many there are.
     let none = format!("element nothing {}\n", u64::MAX);
     let text = square_text().replace("element vertex", &format!("{none}element vertex"));
