@@ -266,31 +266,31 @@ impl Census {
 /// Effects that no pipeline of a frame depends on: layers matter only where one of them is highlighted, states of a timeline are loaded
 /// one at a time, and the method decides which statistics are gathered.
 fn beyond_pixels(scene: &Scene) -> [Called; 3] {
-    let layered = scene.objects.iter().filter(|o| o.layer.is_some());
     let several = scene.layers().len() > 1;
-    let states = scene.timeline.iter().map(|s| s.label.clone());
+    let layered = scene
+        .objects
+        .iter()
+        .filter(|o| several && o.layer.is_some());
+    let ages = scene.timeline.len() > 1;
+    let states = scene.timeline.iter().filter(|_| ages);
+    let method = "up to the method: a learned or moment method adds a pass over the surfaces";
     [
         Called {
             name: "layers",
             on: several,
-            why: layered
-                .filter(|_| several)
-                .map(|o| o.name.clone())
-                .collect(),
+            why: layered.map(|o| o.name.clone()).collect(),
             adds: "nothing until one is highlighted; then every fragment and its layer are stored and sorted",
         },
         Called {
             name: "ageing",
-            on: scene.timeline.len() > 1,
-            why: states.filter(|_| scene.timeline.len() > 1).collect(),
+            on: ages,
+            why: states.map(|s| s.label.clone()).collect(),
             adds: "nothing: one state is loaded",
         },
         Called {
             name: "statistics",
             on: false,
-            why: vec![
-                "up to the method: a learned or moment method adds a pass over the surfaces".into(),
-            ],
+            why: vec![method.into()],
             adds: "a pass over the transparent surfaces and its targets",
         },
     ]
@@ -306,12 +306,10 @@ impl Scene {
             colors.into_iter().all(grey) && maps.into_iter().flatten().all(|map| map.is_grey())
         };
         let vertices = |o: &Object| o.mesh.colors.iter().all(|&[r, g, b, _]| grey([r, g, b]));
+        let object = |o: &Object| o.materials.iter().all(material) && vertices(o);
         grey(self.background)
             && self.lights.iter().all(|l| grey(l.color))
-            && self
-                .objects
-                .iter()
-                .all(|o| o.materials.iter().all(material) && vertices(o))
+            && self.objects.iter().all(object)
     }
 
     /// Whether transmitted light is coloured. Where all of it is grey, one channel holds the transmittance.

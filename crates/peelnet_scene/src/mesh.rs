@@ -1,4 +1,5 @@
 use crate::{material::Material, texture::Maps, warnings::Warnings};
+use bevy_mikktspace::TangentSpace;
 use glam::{Mat4, Vec2, Vec3};
 use peelnet_files::printable;
 use std::{collections::HashMap, ops::Range};
@@ -216,12 +217,7 @@ impl bevy_mikktspace::Geometry for Tangents<'_> {
         [uv.x, 1.0 - uv.y]
     }
 
-    fn set_tangent(
-        &mut self,
-        tangent: Option<bevy_mikktspace::TangentSpace>,
-        face: usize,
-        vertex: usize,
-    ) {
+    fn set_tangent(&mut self, tangent: Option<TangentSpace>, face: usize, vertex: usize) {
         // UVs that hardly differ, or whose area underflows, have no direction.
         let tangent = tangent.map(|t| t.tangent_encoded());
         if let Some(tangent) = tangent.filter(|t| t.iter().all(|x| x.is_finite())) {
@@ -254,25 +250,6 @@ pub(crate) fn key_of(p: Vec3) -> [u32; 3] {
     p.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// Smooth normals by position, of surfaces whose vertices may be split: those at one position have one normal.
-pub(crate) fn normals_by_position<'a>(
-    surfaces: impl Iterator<Item = (&'a [Vec3], &'a [[u32; 3]])>,
-) -> HashMap<[u32; 3], Vec3> {
-    let mut sums: HashMap<[u32; 3], Vec3> = HashMap::new();
-    for (positions, triangles) in surfaces {
-        for t in triangles {
-            let area = area_of(positions, *t);
-            for &i in t {
-                *sums.entry(key_of(positions[i as usize])).or_default() += area;
-            }
-        }
-    }
-    for sum in sums.values_mut() {
-        *sum = sum.normalize_or(Vec3::Z);
-    }
-    sums
-}
-
 /// How often each edge, by the positions of its ends, is one of a triangle.
 #[cfg(test)]
 pub(crate) fn edges_of(mesh: &Mesh) -> HashMap<[[u32; 3]; 2], usize> {
@@ -297,7 +274,7 @@ pub(crate) fn is_closed(mesh: &Mesh) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{Shape, Torus};
+    use crate::shapes::tests::build;
 
     /// An edge and a difference of UVs near the smallest number: MikkTSpace's own squares vanish. Found by fuzzing.
     #[test]
@@ -325,13 +302,7 @@ mod tests {
     /// Cut triangles cover the same area, keep parts, UVs and orientation, and share their middles.
     #[test]
     fn a_cut_surface_is_the_same() {
-        let material = Material::unlit([1.0; 3], 0.5);
-        let torus = Torus {
-            tube: 0.3,
-            triangles: 200,
-            ..Default::default()
-        };
-        let mesh = Shape::Torus(torus).build(&material, true).expect("builds");
+        let mesh = build("shape = 'torus'\ntube = 0.3\ntriangles = 200");
         let cut = mesh.colored_by_height([[0.0; 4], [1.0; 4]]).subdivided();
         assert_eq!(cut.triangles.len(), 4 * mesh.triangles.len());
         assert_eq!(cut.parts[0].triangles, 0..cut.triangles.len());
@@ -353,9 +324,7 @@ mod tests {
     #[test]
     fn tangents_of_a_rectangle() {
         for mirrored in [false, true] {
-            let mut mesh = Shape::Quad(Default::default())
-                .build(&Material::unlit([1.0; 3], 0.5), true)
-                .expect("builds");
+            let mut mesh = build("shape = 'quad'");
             for uv in mesh.uvs.iter_mut().flatten().filter(|_| mirrored) {
                 uv.x = 1.0 - uv.x;
             }

@@ -3,7 +3,7 @@
 mod revolution;
 mod strands;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod waves;
 
 use crate::{

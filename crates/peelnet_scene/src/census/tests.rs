@@ -1,19 +1,12 @@
 //! Each effect is needed by just the scenes that have its cause.
 
 use super::*;
-use crate::{camera::Camera, texture::Texture};
+use crate::{suite, texture::Texture};
 use glam::Vec3;
 
 fn scene(material: Material) -> Scene {
     let triangle = [[Vec3::ZERO, Vec3::X, Vec3::Y]];
-    let camera = Camera {
-        position: Vec3::Z,
-        target: Vec3::ZERO,
-        up: Vec3::Y,
-        fov_y_degrees: 45.0,
-        near: 0.1,
-        far: 10.0,
-    };
+    let camera = suite::load("boxes").expect("ships").views[0];
     let object = Object::of_triangles("thing", &triangle, material);
     Scene::generated("one", "a test", [0.0; 3], camera, vec![object])
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     mesh::{Part, is_closed},
-    shapes::Shape,
+    shapes::tests::build,
 };
 
 fn material(map: Texture, scale: f32, level: u32) -> Material {
@@ -39,15 +39,9 @@ fn moved(mesh: &Mesh, material: &Material) -> Mesh {
     try_moved(mesh, &vec![material.clone(); mesh.parts.len()]).expect("fits")
 }
 
-fn shape(text: &str) -> Mesh {
-    let shape: Shape = toml::from_str(text).expect("parses");
-    let material = Material::unlit([1.0; 3], 0.5);
-    shape.build(&material, true).expect("builds")
-}
-
 /// A square of two units whose texture coordinates are from a to b.
 fn square(a: f32, b: f32) -> Mesh {
-    let mut mesh = shape("shape = 'quad'");
+    let mut mesh = build("shape = 'quad'");
     for uv in mesh.uvs.iter_mut().flatten() {
         *uv = Vec2::new(a + (b - a) * uv.x, 0.25 + 0.5 * uv.y);
     }
@@ -94,7 +88,7 @@ fn ramps_have_their_slope() {
 /// A cube's faces have normals of their own; it stays closed, its corners move along its diagonals, and its edges stay sharp.
 #[test]
 fn closed_surfaces_stay_closed() {
-    let cube = shape("shape = 'box'");
+    let cube = build("shape = 'box'");
     assert!(is_closed(&cube));
     let large = moved(&cube, &material(white(), 0.3, 3));
     assert!(is_closed(&large));
@@ -108,7 +102,7 @@ fn closed_surfaces_stay_closed() {
     for p in at_corner {
         assert!((p.abs() - Vec3::splat(corner)).length() < 1e-6, "{p}");
     }
-    for mesh in [cube, shape("shape = 'sphere'\ntriangles = 500")] {
+    for mesh in [cube, build("shape = 'sphere'\ntriangles = 500")] {
         let bumpy = moved(&mesh, &material(noise(), 0.1, 2));
         assert!(is_closed(&bumpy) == is_closed(&mesh));
         let mut normals = bumpy.normals.iter();
@@ -120,7 +114,7 @@ fn closed_surfaces_stay_closed() {
 /// A sphere that grows keeps its round normals, though its triangles are flat.
 #[test]
 fn round_surfaces_stay_round() {
-    let sphere = shape("shape = 'sphere'");
+    let sphere = build("shape = 'sphere'");
     let large = moved(&sphere, &material(white(), 0.5, 1));
     for (p, n) in large.positions.iter().zip(&large.normals) {
         assert!((p.length() - 1.5).abs() < 0.01, "{p}");
@@ -155,7 +149,7 @@ fn levels_are_bounded() {
     // The diagonal spans 16 texels across and 8 down.
     let plane = moved(&square(0.0, 1.0), &automatic);
     assert_eq!(plane.triangles.len(), 2 << (2 * 4));
-    let mesh = shape("shape = 'sphere'\ntriangles = 100_000");
+    let mesh = build("shape = 'sphere'\ntriangles = 100_000");
     let fine = Texture::of("fine", [4096, 4096], |_, _| [0; 4]);
     if let Some(d) = &mut automatic.maps.displacement {
         d.map = Arc::new(fine);

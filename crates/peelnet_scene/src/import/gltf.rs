@@ -82,10 +82,9 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     let bytes = files.read(path, MAX_MESH)?;
     let (document, blob) = parse(&bytes).map_err(&fail)?;
     drop(bytes);
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let buffers = buffers::read_buffers(&document, folder, blob, files)
-        .map_err(|e| fail(format!("its buffer {e}; keep the .bin files beside it")))?;
-    let mut reader = Reader::new(path, files, buffers);
+    let mut reader = Reader::new(path, files);
+    let read = reader.read_buffers(&document, blob);
+    read.map_err(|e| fail(format!("its buffer {e}; keep the .bin files beside it")))?;
     let scene = document
         .default_scene()
         .or_else(|| document.scenes().next())

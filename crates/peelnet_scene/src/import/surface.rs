@@ -5,7 +5,7 @@ use crate::{
     error::{SceneError, shown},
     files::{Files, MAX_MESH},
     material::Material,
-    mesh::{Mesh, area_of, key_of, normals_by_position},
+    mesh::{Mesh, area_of, key_of},
     warnings::Warnings,
 };
 use glam::{Vec2, Vec3};
@@ -83,6 +83,25 @@ impl Mesh {
     }
 }
 
+/// Smooth normals by position: vertices that are split have one.
+fn normals_by_position(parts: &[(String, Material, Mesh)]) -> HashMap<[u32; 3], Vec3> {
+    let mut sums: HashMap<[u32; 3], Vec3> = HashMap::new();
+    for (_, _, surface) in parts {
+        for t in &surface.triangles {
+            let area = area_of(&surface.positions, *t);
+            for &i in t {
+                *sums
+                    .entry(key_of(surface.positions[i as usize]))
+                    .or_default() += area;
+            }
+        }
+    }
+    for sum in sums.values_mut() {
+        *sum = sum.normalize_or(Vec3::Z);
+    }
+    sums
+}
+
 /// The mesh of all parts, of which each may lack anything but positions: without triangles that have no area, and with computed normals where a part has none or zeros. Parts split
 /// vertices, but not the surface: computed normals are those of all triangles around a position.
 pub(super) fn assemble(
@@ -108,8 +127,7 @@ pub(super) fn assemble(
     let is_incomplete = |(_, _, s): &(_, _, Mesh)| s.normals.len() < s.positions.len();
     let mut smooth = HashMap::new();
     if lost_normals > 0 || parts.iter().any(is_incomplete) {
-        let surfaces = parts.iter().map(|(_, _, s)| (&*s.positions, &*s.triangles));
-        smooth = normals_by_position(surfaces);
+        smooth = normals_by_position(&parts);
     }
     let mut mesh = Mesh::default();
     for (name, material, mut surface) in parts {

@@ -7,7 +7,7 @@ use crate::{
 };
 use std::collections::HashSet;
 
-fn build(text: &str) -> Mesh {
+pub(crate) fn build(text: &str) -> Mesh {
     let shape: Shape = toml::from_str(text).expect(text);
     let built = shape.build(&Material::default_with(Lighting::Unlit), true);
     built.expect(text)

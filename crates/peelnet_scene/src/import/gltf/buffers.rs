@@ -1,9 +1,7 @@
 //! Buffers and URIs.
 
-use crate::{
-    error::SceneError,
-    files::{Files, MAX_MESH},
-};
+use super::nodes::Reader;
+use crate::{error::SceneError, files::MAX_MESH};
 use base64::{
     Engine as _,
     alphabet::STANDARD,
@@ -18,35 +16,55 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// The bytes that a URI names or holds. The `gltf` crate reads from the file system only, so it is not asked.
-pub(super) fn read_uri(
-    uri: &str,
-    folder: &Path,
-    limit: u64,
-    files: &mut Files<'_>,
-) -> Result<Vec<u8>, String> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return read_data(data, limit);
+impl Reader<'_, '_> {
+    /// The bytes that a URI names or holds. The `gltf` crate reads from the file system only, so it is not asked.
+    pub fn read_uri(&mut self, uri: &str, limit: u64) -> Result<Vec<u8>, String> {
+        if let Some(data) = uri.strip_prefix("data:") {
+            return read_data(data, limit);
+        }
+        let fail = |what: &dyn std::fmt::Display| format!("'{}' {what}", printable(uri));
+        let absolute = uri
+            .strip_prefix("file://")
+            .or_else(|| uri.strip_prefix("file:"));
+        if absolute.is_none() && uri.contains(':') {
+            return Err(fail(&"has a scheme that is not read"));
+        }
+        let name = absolute.unwrap_or(uri);
+        let decoded = urlencoding::decode(name);
+        let folder = self.path.parent().unwrap_or(Path::new("."));
+        let mut read = |name: &str| self.files.read(&folder.join(name), limit);
+        // Some exporters write names as they are, with percent signs that encode nothing.
+        let found = match decoded {
+            Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
+            _ => read(name),
+        };
+        found.map_err(|e| match e {
+            SceneError::Read { source, .. } => fail(&format!("cannot be read: {source}")),
+            e => e.to_string(),
+        })
     }
-    let fail = |what: &dyn std::fmt::Display| format!("'{}' {what}", printable(uri));
-    let absolute = uri
-        .strip_prefix("file://")
-        .or_else(|| uri.strip_prefix("file:"));
-    if absolute.is_none() && uri.contains(':') {
-        return Err(fail(&"has a scheme that is not read"));
+
+    /// Reads the buffers of a document; `blob` is the binary chunk of a GLB file.
+    pub fn read_buffers(
+        &mut self,
+        document: &gltf::Document,
+        mut blob: Option<Vec<u8>>,
+    ) -> Result<(), String> {
+        for buffer in document.buffers() {
+            let bytes = match buffer.source() {
+                gltf::buffer::Source::Bin => blob.take().ok_or("there is no binary chunk")?,
+                gltf::buffer::Source::Uri(uri) => self.read_uri(uri, MAX_MESH)?,
+            };
+            let (index, held, needed) = (buffer.index(), bytes.len(), buffer.length());
+            if held < needed {
+                return Err(format!(
+                    "buffer {index} has {held} bytes instead of {needed}"
+                ));
+            }
+            self.buffers.push(bytes);
+        }
+        Ok(())
     }
-    let name = absolute.unwrap_or(uri);
-    let decoded = urlencoding::decode(name);
-    let mut read = |name: &str| files.read(&folder.join(name), limit);
-    // Some exporters write names as they are, with percent signs that encode nothing.
-    let found = match decoded {
-        Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
-        _ => read(name),
-    };
-    found.map_err(|e| match e {
-        SceneError::Read { source, .. } => fail(&format!("cannot be read: {source}")),
-        e => e.to_string(),
-    })
 }
 
 /// The bytes of a data URI, behind its scheme.
@@ -59,30 +77,4 @@ fn read_data(data: &str, limit: u64) -> Result<Vec<u8>, String> {
     let bytes = text.len() as u64 / 4 * 3;
     peelnet_files::check_size(bytes, limit).map_err(|e| e.to_string())?;
     BASE64.decode(text).map_err(|e| e.to_string())
-}
-
-/// The buffers of a document; `blob` is the binary chunk of a GLB file.
-pub(super) fn read_buffers(
-    document: &gltf::Document,
-    folder: &Path,
-    mut blob: Option<Vec<u8>>,
-    files: &mut Files<'_>,
-) -> Result<Vec<Vec<u8>>, String> {
-    let mut buffers = Vec::new();
-    for buffer in document.buffers() {
-        let bytes = match buffer.source() {
-            gltf::buffer::Source::Bin => blob.take().ok_or("there is no binary chunk")?,
-            gltf::buffer::Source::Uri(uri) => read_uri(uri, folder, MAX_MESH, files)?,
-        };
-        if bytes.len() < buffer.length() {
-            return Err(format!(
-                "buffer {} has {} bytes instead of {}",
-                buffer.index(),
-                bytes.len(),
-                buffer.length()
-            ));
-        }
-        buffers.push(bytes);
-    }
-    Ok(buffers)
 }

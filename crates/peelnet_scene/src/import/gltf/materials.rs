@@ -1,9 +1,6 @@
 //! Materials, their textures, and the UV sets and transforms of these.
 
-use super::{
-    buffers::read_uri,
-    nodes::{Reader, finite},
-};
+use super::nodes::{Reader, finite};
 use crate::{
     files::MAX_IMAGE,
     material::{Lighting, Material},
@@ -12,11 +9,11 @@ use crate::{
 };
 use glam::{Mat2, Vec2};
 use gltf::{
-    material::AlphaMode,
+    material::{AlphaMode, PbrSpecularGlossiness},
     texture::{MagFilter, WrappingMode},
 };
 use peelnet_files::printable;
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 /// The UV set of a texture, and the transform of its UVs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,9 +47,7 @@ impl Placement {
 }
 
 /// The specular–glossiness workflow of a material that has it. An unlit one has neither workflow.
-fn specular_glossiness<'a>(
-    m: &gltf::Material<'a>,
-) -> Option<gltf::material::PbrSpecularGlossiness<'a>> {
+fn specular_glossiness<'a>(m: &gltf::Material<'a>) -> Option<PbrSpecularGlossiness<'a>> {
     m.pbr_specular_glossiness().filter(|_| !m.unlit())
 }
 
@@ -120,8 +115,7 @@ impl Reader<'_, '_> {
                 bytes.ok_or("lies beyond its buffer")?
             }
             gltf::image::Source::Uri { uri, .. } => {
-                let folder = self.path.parent().unwrap_or(Path::new("."));
-                read = read_uri(uri, folder, MAX_IMAGE, self.files)?;
+                read = self.read_uri(uri, MAX_IMAGE)?;
                 &read
             }
         };
@@ -183,11 +177,7 @@ impl Reader<'_, '_> {
     }
 
     /// Converts a material of the specular–glossiness workflow, whose second map is in the place of metallic and roughness.
-    fn convert(
-        &mut self,
-        material: &mut Material,
-        pbr: &gltf::material::PbrSpecularGlossiness<'_>,
-    ) {
+    fn convert(&mut self, material: &mut Material, pbr: &PbrSpecularGlossiness<'_>) {
         let unit = |x: f32| finite(x, 0.0, 1.0);
         let values = Values {
             diffuse: material.color,

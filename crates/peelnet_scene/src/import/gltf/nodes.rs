@@ -56,11 +56,11 @@ fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
 }
 
 impl<'a, 'f> Reader<'a, 'f> {
-    pub fn new(path: &'a Path, files: &'a mut Files<'f>, buffers: Vec<Vec<u8>>) -> Self {
+    pub fn new(path: &'a Path, files: &'a mut Files<'f>) -> Self {
         Self {
             path,
             files,
-            buffers,
+            buffers: Vec::new(),
             images: HashMap::new(),
             not_drawn: format!("{}: not drawn: ", shown(path)),
             loaded: Imported {
