@@ -29,9 +29,6 @@ pub(crate) const MAX_MESH: u64 = 4 << 30;
 /// Reads the file at a path, if it is not larger than so many bytes.
 type Read<'a> = dyn Fn(&Path, u64) -> io::Result<Vec<u8>> + 'a;
 
-/// Two textures that a third is made of, where they are there.
-pub(crate) type Sources<'a> = [Option<&'a Arc<Texture>>; 2];
-
 /// Reads files, hashes those that become part of a scene, and makes textures of theirs.
 pub(crate) struct Files<'a> {
     read: &'a Read<'a>,
@@ -42,8 +39,10 @@ pub(crate) struct Files<'a> {
     pub lighting: Lighting,
     pub budget: Budget,
     pub warnings: Warnings,
-    /// By what is made, and the addresses of what of: that is held, so that its addresses stay its own.
-    made: HashMap<String, ([Option<Arc<Texture>>; 2], Arc<Texture>)>,
+    /// By what is made, and the addresses of what of.
+    made: HashMap<String, Arc<Texture>>,
+    /// What is made of: held, so that its addresses stay its own.
+    sources: Vec<Arc<Texture>>,
 }
 
 impl<'a> Files<'a> {
@@ -57,6 +56,7 @@ impl<'a> Files<'a> {
             budget: Budget::default(),
             warnings: Warnings::default(),
             made: HashMap::new(),
+            sources: Vec::new(),
         }
     }
 
@@ -86,20 +86,20 @@ impl<'a> Files<'a> {
     pub fn made(
         &mut self,
         what: &str,
-        sources: Sources<'_>,
+        sources: [Option<&Arc<Texture>>; 2],
         make: impl FnOnce() -> Texture,
     ) -> Result<Arc<Texture>, String> {
         let [a, b] = sources.map(|t| t.map(Arc::as_ptr));
         let key = format!("{what} of {a:?} and {b:?}");
-        if let Some((_, known)) = self.made.get(&key) {
+        if let Some(known) = self.made.get(&key) {
             return Ok(Arc::clone(known));
         }
         let sizes = sources.map(|t| t.map_or([1, 1], |t| t.size));
         self.budget
             .take_texels([0, 1].map(|k| sizes[0][k].max(sizes[1][k])))?;
         let made = Arc::new(make());
-        let sources = sources.map(Option::<&Arc<Texture>>::cloned);
-        self.made.insert(key, (sources, Arc::clone(&made)));
+        self.sources.extend(sources.into_iter().flatten().cloned());
+        self.made.insert(key, Arc::clone(&made));
         Ok(made)
     }
 
@@ -107,7 +107,7 @@ impl<'a> Files<'a> {
     pub fn joined(
         &mut self,
         what: &str,
-        sources: Sources<'_>,
+        sources: [Option<&Arc<Texture>>; 2],
         texel: impl Fn([u8; 4], [u8; 4]) -> [u8; 4] + Sync,
     ) -> Result<Arc<Texture>, String> {
         self.made(what, sources, || {

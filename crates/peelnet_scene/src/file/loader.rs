@@ -111,8 +111,8 @@ impl<'a> Loader<'a> {
             Reference::Made(pattern) => {
                 let taken = pattern.check();
                 let taken = taken.and_then(|()| self.files.budget.take_texels([pattern.size; 2]));
-                let made = taken.and_then(|()| pattern.texture(key));
-                made.map_err(|e| self.value(&format!("{table}.{key}"), e))?
+                taken.map_err(|e| self.value(&format!("{table}.{key}"), e))?;
+                pattern.texture(key)
             }
             Reference::File(name) => {
                 let file = self.beside(name);

@@ -115,7 +115,7 @@ fn read_text(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, F
             _ => {
                 let line = printable(line.trim());
                 let message = format!("'{line}' is no statement of STL; repair the line");
-                return Err((Some(i), message.into()));
+                return Err((Some(i), message));
             }
         }
     }

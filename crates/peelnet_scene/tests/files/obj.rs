@@ -94,7 +94,7 @@ fn bad_files() {
 #[test]
 fn seams_do_not_split_normals() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 4/2 2/2\n";
-    let (m, ..) = load(&obj, "");
+    let (m, ..) = load(obj, "");
     let vertices = m.positions.iter().zip(&m.normals);
     let at_origin = vertices.filter(|(p, _)| **p == Vec3::ZERO);
     let normals: Vec<&Vec3> = at_origin.map(|(_, n)| n).collect();
