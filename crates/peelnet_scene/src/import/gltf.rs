@@ -72,7 +72,13 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     checks::check_kinds(&document)?;
     repair::repair(&mut document);
     let root = serde_json::from_value(document).map_err(|e| bad(&e))?;
-    let document = gltf::Document::from_json(root).map_err(|e| bad(&e))?;
+    let document = gltf::Document::from_json(root).map_err(|e| match e {
+        gltf::Error::Validation(all) if !all.is_empty() => {
+            let (at, e) = &all[0];
+            bad(&format!("{at}: {e}"))
+        }
+        e => bad(&e),
+    })?;
     Ok((document, blob))
 }
 

@@ -273,8 +273,8 @@ fn what_is_not_drawn_is_reported() {
 /// Changes of the document, and words of the error: what is wrong, its place and a fix. The `gltf` crate takes much of this for granted. Most
 /// were found by fuzzing. Files whose nodes are no tree may ask for a billion instances, or have no end.
 const BAD: &str = r#"
-meshes/0/primitives/0/attributes/POSITION = 7 => 'POSITION' is 7 & 2 accessors
-nodes/0/children/0 = 4294967295 => 'children' is 4294967295 & 6 nodes
+meshes/0/primitives/0/attributes/POSITION = 7 => 'POSITION' & 2 accessors & export
+nodes/0/children/0 = 4294967295 => nodes[0].children[0] & out of bounds & export
 scenes = [{"nodes": []}] => no triangles
 extensionsRequired = ["KHR_draco_mesh_compression"] => KHR_draco_mesh_compression
 meshes/0/primitives/0/attributes = {} => no glTF
@@ -294,7 +294,7 @@ accessors/0/count = 18446744073709551615 => vertices
 images = [{}] => image 0 lacks
 cameras = [{"type": "orthographic", "perspective": {"yfov": 1, "znear": 1}}] => camera 0 lacks
 extensions = {"KHR_lights_punctual": {"lights": [{"type": "spot"}]}} => light 0 lacks spot
-extensions = {} => node 3 shows light 0, but there are 0 lights
+extensions = {} => nodes[3].extensions & light & out of bounds
 nodes/1/children = [2] => node 2 is a child of node 1 and of node 0 & one parent
 nodes = [{"children": [1]}, {"children": [2]}, {"children": [1]}] => node 1 is a child of node 0 and of node 2 & one parent
 nodes/1/children = [1] => node 1 is & one parent

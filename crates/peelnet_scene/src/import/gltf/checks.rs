@@ -1,4 +1,4 @@
-//! Checks that the `gltf` crate does not do: it panics on an index out of range, and on an accessor of the wrong type.
+//! Checks that the `gltf` crate does not do: it panics on positions out of range, and on an accessor of the wrong type.
 
 use super::KNOWN;
 use crate::{budget::MAX_TRIANGLES, files::MAX_MESH};
@@ -9,9 +9,7 @@ use gltf::{
 use peelnet_files::printable;
 use serde_json::Value;
 
-const LIGHTS: &str = "KHR_lights_punctual";
-
-/// Checks that every index into a list of the file is within that list.
+/// Checks the extensions that the file needs, and that positions exist: the crate looks for these before it checks its numbers of them.
 pub(super) fn check_references(document: &Value) -> Result<(), String> {
     // The crate would look for elements that such an extension leaves out.
     let required = document["extensionsRequired"].as_array();
@@ -22,7 +20,19 @@ pub(super) fn check_references(document: &Value) -> Result<(), String> {
             printable(name)
         ));
     }
-    check_value(document, document, "", "")
+    let accessors = list(&document["accessors"]).len();
+    let primitives = list(&document["meshes"]).iter();
+    let mut primitives = primitives.flat_map(|mesh| list(&mesh["primitives"]));
+    let is_lost = |primitive: &Value| {
+        let number = primitive["attributes"]["POSITION"].as_u64();
+        number.is_some_and(|n| n >= accessors as u64)
+    };
+    if primitives.any(is_lost) {
+        return Err(format!(
+            "the 'POSITION' of a primitive is none of its {accessors} accessors; export the file again"
+        ));
+    }
+    Ok(())
 }
 
 /// Checks that the file is of glTF 2, and needs nothing newer than 2.0 of its reader.
@@ -43,7 +53,7 @@ pub(super) fn check_version(document: &Value) -> Result<(), String> {
     ))
 }
 
-/// Checks that images, cameras and lights hold what their kind needs, and that every light exists.
+/// Checks that images, cameras and lights hold what their kind needs.
 pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
     let lacks = |what: &str, i: usize, part: &str| {
         Err(format!("{what} {i} lacks {part}; export the file again"))
@@ -60,74 +70,16 @@ pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
             return lacks("camera", i, &printable(kind));
         }
     }
-    let lights = list(&document["extensions"][LIGHTS]["lights"]);
+    let lights = list(&document["extensions"]["KHR_lights_punctual"]["lights"]);
     let is_broken = |light: &Value| light["type"] == "spot" && !light["spot"].is_object();
     if let Some(i) = lights.iter().position(is_broken) {
         return lacks("light", i, "spot");
-    }
-    for (i, node) in list(&document["nodes"]).iter().enumerate() {
-        let light = &node["extensions"][LIGHTS]["light"];
-        if !light.is_null() && light.as_u64().is_none_or(|n| n >= lights.len() as u64) {
-            return Err(format!(
-                "node {i} shows light {light}, but there are {} lights; export the file again",
-                lights.len()
-            ));
-        }
     }
     Ok(())
 }
 
 pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
-}
-
-/// The list that a field's number points into.
-fn list_of(field: &str, parent: &str) -> Option<&'static str> {
-    Some(match field {
-        "mesh" => "meshes",
-        "camera" => "cameras",
-        "skin" => "skins",
-        "bufferView" => "bufferViews",
-        "buffer" => "buffers",
-        "material" => "materials",
-        "source" => "images",
-        "scene" => "scenes",
-        "node" | "children" | "joints" | "skeleton" => "nodes",
-        "nodes" if parent == "scenes" => "nodes",
-        "indices" | "input" | "output" | "inverseBindMatrices" => "accessors",
-        "index" => "textures",
-        "sampler" if parent == "textures" => "samplers",
-        _ if matches!(parent, "attributes" | "targets") => "accessors",
-        _ => return None,
-    })
-}
-
-/// Checks a value in `field` of an element of `parent`; the elements of a list are in the list's field.
-fn check_value(document: &Value, value: &Value, field: &str, parent: &str) -> Result<(), String> {
-    match value {
-        Value::Object(fields) => {
-            for (name, inner) in fields.iter().filter(|(name, _)| *name != "extras") {
-                check_value(document, inner, name, field)?;
-            }
-            Ok(())
-        }
-        Value::Array(all) => all
-            .iter()
-            .try_for_each(|inner| check_value(document, inner, field, parent)),
-        Value::Number(number) => {
-            let Some(list) = list_of(field, parent) else {
-                return Ok(());
-            };
-            let length = document[list].as_array().map_or(0, Vec::len) as u64;
-            if number.as_u64().is_some_and(|n| n < length) {
-                return Ok(());
-            }
-            Err(format!(
-                "'{field}' is {number}, but there are {length} {list}; export the file again"
-            ))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Whether an accessor has the type that its meaning needs, or that of indices, and can be addressed.
