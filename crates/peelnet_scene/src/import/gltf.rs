@@ -13,6 +13,7 @@ use crate::{
     error::SceneError,
     files::{Files, MAX_MESH},
 };
+use gltf::json::extensions::ENABLED_EXTENSIONS;
 use nodes::Reader;
 use peelnet_files::{counted, printable};
 use serde_json::Value;
@@ -20,16 +21,6 @@ use std::{borrow::Cow, path::Path};
 
 /// Size of the largest JSON that is read, bytes: in memory it takes up to 16 times as much. Buffers can lie outside of it.
 const MAX_JSON_BYTES: usize = 256 << 20;
-
-/// Extensions that are drawn.
-const KNOWN: [&str; 6] = [
-    "KHR_lights_punctual",
-    "KHR_materials_unlit",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_transmission",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_texture_transform",
-];
 
 /// Checks that the length in the header of a GLB file holds that header, which the crate subtracts from it unseen. Found by fuzzing.
 fn check_length(bytes: &[u8]) -> Result<(), String> {
@@ -107,7 +98,10 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     if document.skins().len() > 0 {
         reader.missing("skins (the bind pose is drawn)", "", "");
     }
-    for extension in document.extensions_used().filter(|e| !KNOWN.contains(e)) {
+    for extension in document
+        .extensions_used()
+        .filter(|e| !ENABLED_EXTENSIONS.contains(e))
+    {
         reader.missing("extensions: ", &printable(extension), "");
     }
     if reader.loaded.mesh.triangles.is_empty() {

@@ -273,7 +273,7 @@ fn what_is_not_drawn_is_reported() {
 /// Changes of the document, and words of the error: what is wrong, its place and a fix. The `gltf` crate takes much of this for granted. Most
 /// were found by fuzzing. Files whose nodes are no tree may ask for a billion instances, or have no end.
 const BAD: &str = r#"
-meshes/0/primitives/0/attributes/POSITION = 7 => 'POSITION' & 2 accessors & export
+meshes/0/primitives/0/attributes/POSITION = 7 => 'POSITION' is 7 & 2 accessors
 nodes/0/children/0 = 4294967295 => nodes[0].children[0] & out of bounds & export
 scenes = [{"nodes": []}] => no triangles
 extensionsRequired = ["KHR_draco_mesh_compression"] => KHR_draco_mesh_compression

@@ -1,38 +1,60 @@
 //! Checks that the `gltf` crate does not do: it panics on positions out of range, and on an accessor of the wrong type.
 
-use super::KNOWN;
 use crate::{budget::MAX_TRIANGLES, files::MAX_MESH};
 use gltf::{
     Semantic,
     accessor::{DataType, Dimensions},
+    json::extensions::ENABLED_EXTENSIONS,
 };
 use peelnet_files::printable;
 use serde_json::Value;
 
-/// Checks the extensions that the file needs, and that positions exist: the crate looks for these before it checks its numbers of them.
+/// Checks the extensions that the file needs, and numbers that the crate does not check.
 pub(super) fn check_references(document: &Value) -> Result<(), String> {
     // The crate would look for elements that such an extension leaves out.
     let required = document["extensionsRequired"].as_array();
     let unknown = required.into_iter().flatten().filter_map(Value::as_str);
-    if let Some(name) = unknown.into_iter().find(|name| !KNOWN.contains(name)) {
+    if let Some(name) = unknown
+        .into_iter()
+        .find(|name| !ENABLED_EXTENSIONS.contains(name))
+    {
         return Err(format!(
             "needs the extension {}, which is not read; export it without",
             printable(name)
         ));
     }
-    let accessors = list(&document["accessors"]).len();
-    let primitives = list(&document["meshes"]).iter();
-    let mut primitives = primitives.flat_map(|mesh| list(&mesh["primitives"]));
-    let is_lost = |primitive: &Value| {
-        let number = primitive["attributes"]["POSITION"].as_u64();
-        number.is_some_and(|n| n >= accessors as u64)
-    };
-    if primitives.any(is_lost) {
-        return Err(format!(
-            "the 'POSITION' of a primitive is none of its {accessors} accessors; export the file again"
-        ));
+    check_numbers(document, document, "")
+}
+
+/// Checks, in a value of a field, the numbers of positions, which the crate uses before it checks them, and of what is supplied to files
+/// that lack it.
+fn check_numbers(document: &Value, value: &Value, field: &str) -> Result<(), String> {
+    match value {
+        Value::Object(fields) => {
+            let mut fields = fields.iter().filter(|(name, _)| *name != "extras");
+            fields.try_for_each(|(name, inner)| check_numbers(document, inner, name))
+        }
+        Value::Array(all) => all
+            .iter()
+            .try_for_each(|inner| check_numbers(document, inner, field)),
+        Value::Number(number) => {
+            let name = match field {
+                "POSITION" => "accessors",
+                "bufferView" => "bufferViews",
+                "buffer" => "buffers",
+                "scene" => "scenes",
+                _ => return Ok(()),
+            };
+            let length = list(&document[name]).len() as u64;
+            if number.as_u64().is_some_and(|n| n < length) {
+                return Ok(());
+            }
+            Err(format!(
+                "'{field}' is {number}, but there are {length} {name}; export the file again"
+            ))
+        }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// Checks that the file is of glTF 2, and needs nothing newer than 2.0 of its reader.
