@@ -37,7 +37,6 @@ const BAD: &str = "
 [camera => s.toml:6
 colour = 1 => s.toml:6 & colour
 fov_y = 180.0 => camera.fov_y & 180
-fov_y = 179.9999 => camera.fov_y & 0.01 … 179
 fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [orbit] ; views = 0 => orbit.views & 1
 [[light]] ; position = [1, 1, 1] ; direction = [1, 0, 0] => light 1 & either
