@@ -12,16 +12,12 @@ use std::iter::Sum;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Activation {
-    /// `max(x, 0)`.
     Relu,
-    /// `1 / (1 + exp(−x))`.
     Sigmoid,
-    /// `x`.
     Identity,
 }
 
 impl Activation {
-    /// Applies the function to one value.
     pub fn apply<F: Float>(self, x: F) -> F {
         match self {
             Self::Relu => x.max(F::zero()),
@@ -31,12 +27,9 @@ impl Activation {
     }
 }
 
-/// One affine layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// Number of inputs.
     pub inputs: usize,
-    /// Number of outputs.
     pub outputs: usize,
     /// Row-major `[outputs][inputs]`.
     pub weights: Vec<f32>,
@@ -52,11 +45,8 @@ pub struct ShapeError(String);
 /// A fully connected network. Its inputs are *normalised* features.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mlp {
-    /// The affine layers, first to last.
     pub layers: Vec<Layer>,
-    /// Applied after every layer but the last.
     pub hidden: Activation,
-    /// Applied after the last layer.
     pub output: Activation,
 }
 
@@ -97,17 +87,14 @@ impl Mlp {
         })
     }
 
-    /// Number of inputs of the first layer.
     pub fn inputs(&self) -> usize {
         self.layers.first().map_or(0, |l| l.inputs)
     }
 
-    /// Number of outputs of the last layer.
     pub fn outputs(&self) -> usize {
         self.layers.last().map_or(0, |l| l.outputs)
     }
 
-    /// Weights and biases together.
     pub fn parameters(&self) -> usize {
         self.layers
             .iter()

@@ -106,7 +106,7 @@ impl TrainingData {
             let problem = format!(
                 "no example is left for {name}: so few rows are trained on in memory, without streaming"
             );
-            return Err(TrainError::columns(&plan.source, problem));
+            return Err(TrainError::rows(&plan.source, &problem));
         }
         data.split = Some(plan.split);
         (data.source, data.dataset) = (plan.source, Some(plan.dataset));

@@ -116,20 +116,4 @@ mod tests {
             transmittance *= 1.0 - f64::from(f.alpha);
         }
     }
-
-    /// Faint layers that no sample sees still have their average colour: nothing turns black.
-    #[test]
-    fn nothing_turns_black() {
-        let f: Vec<_> = (0..3)
-            .map(|i| Fragment {
-                triangle: i,
-                ..Fragment::new(1.0 + i as f32, 0.01, [0.5; 3])
-            })
-            .collect();
-        for p in 0..200 {
-            for c in composite(&f, [0.5; 3], 1, [p, 0]) {
-                assert!((c - 0.5).abs() < 1e-6);
-            }
-        }
-    }
 }
