@@ -216,21 +216,20 @@ proptest! {
     fn estimates_are_transmittances(of in lists(), zeta in -1.0f64..=1.0) {
         let f = list(of);
         let warp = warp(&f);
-        let (mut four, mut six, mut haar) =
-            (Moments::new(Settings::FOUR.basis), Moments::new(Settings::SIX.basis), wavelet::Averages::of_rank(3));
+        let trigonometric = [2, 3].map(Settings::trigonometric);
+        let mut all = [Settings::FOUR, Settings::SIX, Settings::EIGHT].to_vec();
+        all.extend(trigonometric);
+        let mut all: Vec<_> = all.into_iter().map(|s| (s, Moments::new(s.basis))).collect();
+        let mut haar = wavelet::Averages::of_rank(3);
         for f in &f {
             let (b, z) = (absorbance(f.alpha), warp.apply(f.depth.into()));
-            four.add(b, z);
-            six.add(b, z);
+            all.iter_mut().for_each(|(_, moments)| moments.add(b, z));
             haar.add(b, 0.5 + 0.5 * z);
         }
         let at = f.iter().map(|f| warp.apply(f.depth.into())).take(8).chain([zeta]);
         for z in at {
-            for t in [
-                four.transmittance(z, &Settings::FOUR),
-                six.transmittance(z, &Settings::SIX),
-                (-haar.in_front(0.5 + 0.5 * z)).exp(),
-            ] {
+            let moments = all.iter().map(|(settings, moments)| moments.transmittance(z, settings));
+            for t in moments.chain([(-haar.in_front(0.5 + 0.5 * z)).exp()]) {
                 prop_assert!((0.0..=1.0 + 1e-12).contains(&t), "{} at {}", t, z);
             }
         }

@@ -37,11 +37,6 @@ pub struct Layer {
     pub bias: Vec<f32>,
 }
 
-/// Why layers do not make a network: the first layer that does not fit.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct ShapeError(String);
-
 /// A fully connected network. Its inputs are *normalised* features.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mlp {
@@ -54,14 +49,10 @@ impl Mlp {
     /// Builds a network and checks that its layers fit one another.
     ///
     /// # Errors
-    /// [`ShapeError`] names the first layer that does not fit.
-    pub fn new(
-        layers: Vec<Layer>,
-        hidden: Activation,
-        output: Activation,
-    ) -> Result<Self, ShapeError> {
+    /// The first layer that does not fit.
+    pub fn new(layers: Vec<Layer>, hidden: Activation, output: Activation) -> Result<Self, String> {
         if layers.is_empty() {
-            return Err(ShapeError("the network has no layers".into()));
+            return Err("the network has no layers".into());
         }
         for (i, layer) in layers.iter().enumerate() {
             let Layer {
@@ -78,7 +69,7 @@ impl Mlp {
             } else {
                 continue;
             };
-            return Err(ShapeError(wrong));
+            return Err(wrong);
         }
         Ok(Self {
             layers,
@@ -96,20 +87,15 @@ impl Mlp {
     }
 
     pub fn parameters(&self) -> usize {
-        self.layers
-            .iter()
-            .map(|l| l.weights.len() + l.bias.len())
-            .sum()
+        let layers = self.layers.iter();
+        layers.map(|l| l.weights.len() + l.bias.len()).sum()
     }
 
     /// `3-10-8-1` and the like.
     pub fn topology(&self) -> String {
-        let mut text = self.inputs().to_string();
-        for layer in &self.layers {
-            text.push('-');
-            text.push_str(&layer.outputs.to_string());
-        }
-        text
+        let outputs = self.layers.iter().map(|layer| layer.outputs);
+        let widths = std::iter::once(self.inputs()).chain(outputs);
+        widths.map(|w| w.to_string()).collect::<Vec<_>>().join("-")
     }
 
     /// The forward pass: in 32 bits, or in 64 bits, which are the reference for every other one.
@@ -234,7 +220,7 @@ mod tests {
             ),
         ] {
             let error = Mlp::new(layers, Activation::Relu, Activation::Identity).err();
-            assert_eq!(error.map(|e| e.to_string()).as_deref(), Some(want));
+            assert_eq!(error.as_deref(), Some(want));
         }
     }
 }

@@ -3,8 +3,6 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use peelnet_core::mlp::ShapeError;
-
 use crate::recipe::Recipe;
 
 /// An error of loading or saving a model.
@@ -40,8 +38,8 @@ impl ModelError {
 #[error("{0}")]
 pub struct Problem(pub(crate) String);
 
-impl From<ShapeError> for Problem {
-    fn from(error: ShapeError) -> Self {
-        Self(format!("the network's shapes are wrong: {error}"))
+impl Problem {
+    pub(crate) fn shapes(fault: String) -> Self {
+        Self(format!("the network's shapes are wrong: {fault}"))
     }
 }

@@ -100,7 +100,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Model, Problem> {
         Problem(format!("{fault}; give one that `peelnet train` wrote"))
     })?;
     let (meta, Activations { hidden, output, .. }) = read_metadata(json)?;
-    let mlp = Mlp::new(read_layers(&tensors)?, hidden, output)?;
+    let mlp = Mlp::new(read_layers(&tensors)?, hidden, output).map_err(Problem::shapes)?;
     let model = Model { mlp, meta };
     model.check()?;
     Ok(model)

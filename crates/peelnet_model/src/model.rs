@@ -100,7 +100,8 @@ impl Model {
     pub fn check(&self) -> Result<(), Problem> {
         self.meta.check()?;
         // The fields are public: what `Mlp::new` checked once may have changed.
-        Mlp::new(self.mlp.layers.clone(), self.mlp.hidden, self.mlp.output)?;
+        let Mlp { hidden, output, .. } = self.mlp;
+        Mlp::new(self.mlp.layers.clone(), hidden, output).map_err(Problem::shapes)?;
         for (i, layer) in self.mlp.layers.iter().enumerate() {
             let Layer { weights, bias, .. } = layer;
             for (part, values) in [("weight", weights), ("bias", bias)] {

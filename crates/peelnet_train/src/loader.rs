@@ -207,15 +207,12 @@ fn scene_name<'a>(dataset: &'a Dataset, part: &Part) -> &'a str {
 /// The name that a part's rows are split by: its scene, or of a synthetic dataset its world.
 fn split_name(dataset: &Dataset, part: &Part) -> String {
     let name = scene_name(dataset, part);
-    if dataset.manifest().peel == SYNTHETIC {
+    if dataset.manifest().peel == "synthetic" {
         format!("{name} {}", part.index)
     } else {
         name.to_owned()
     }
 }
-
-/// How a dataset's manifest says that its lists were made up.
-const SYNTHETIC: &str = "synthetic";
 
 /// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records. Empty for a
 /// network that predicts no transmittance.

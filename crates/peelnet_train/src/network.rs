@@ -35,9 +35,8 @@ impl Shape {
     }
 
     pub(crate) fn parameters(&self) -> usize {
-        self.layers()
-            .map(|(inputs, outputs)| (inputs + 1) * outputs)
-            .sum()
+        let layers = self.layers();
+        layers.map(|(inputs, outputs)| (inputs + 1) * outputs).sum()
     }
 
     fn layers(&self) -> impl Iterator<Item = (usize, usize)> + '_ {

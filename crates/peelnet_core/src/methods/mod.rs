@@ -90,6 +90,7 @@ mod tests {
                 ("kbuffer", 4, kbuffer(None)),
                 ("hybrid", 4, kbuffer(Some(Weight::Eq9))),
                 ("mlab", 4, mlab::composite(&f, C0, 4)),
+                ("stochastic", 1, stochastic::composite(&f, C0, 8, [3, 5])),
             ] {
                 let is_near = (0..3).all(|k| (found[k] - exact[k]).abs() < 1e-6);
                 assert!(n > most || is_near, "{name}: {found:?} {exact:?}");

@@ -145,14 +145,12 @@ fn whole_scenes_are_set_aside() {
         assert_eq!((validation.len(), test.len()), (1, 2));
         // Examples of a scene are one run, in the order of the names.
         let subsets = data.subsets.as_ref().unwrap();
-        for (name, of) in names.iter().zip(subsets.chunks(subsets.len() / 6)) {
-            let name = (*name).to_owned();
-            let expected = if test.contains(&name) {
-                Subset::Test
-            } else if validation.contains(&name) {
-                Subset::Validation
-            } else {
-                Subset::Train
+        for (name, of) in names.into_iter().zip(subsets.chunks(subsets.len() / 6)) {
+            let is_in = |list: &[String]| list.iter().any(|n| n == name);
+            let expected = match (is_in(validation), is_in(test)) {
+                (true, _) => Subset::Validation,
+                (_, true) => Subset::Test,
+                _ => Subset::Train,
             };
             assert!(of.iter().all(|s| *s == expected), "{name}");
         }
