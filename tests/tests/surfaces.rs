@@ -1,6 +1,6 @@
 //! What surfaces look like, with every method: shading, images, light that takes a colour, emission, cut-outs.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use peelnet_core::{
     fragment::Fragment,
     guards::EMISSIVE_ALPHA,
@@ -49,9 +49,9 @@ fn shading_is_the_twin_of_the_core() {
 fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], mapped: bool) {
     let size = [24u32, 16];
     let byte = |b: u8| f64::from(b) / 255.0;
-    let mut color = material.color.map(f64::from);
+    let mut color = DVec3::from(material.color.map(f64::from));
     let mut factors = [material.metallic, material.roughness].map(f64::from);
-    let (mut normal, mut ambient) = ([0.0, 0.0, 1.0], 1.0);
+    let (mut normal, mut ambient) = (DVec3::Z, 1.0);
     let mut object = wall(3.0, material.clone());
     if mapped {
         material.maps = Maps {
@@ -67,12 +67,10 @@ fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], ma
         object = wall(3.0, material.clone());
         let mesh = Arc::make_mut(&mut object.mesh);
         mesh.colors = vec![[0.5, 1.0, 0.75, 0.8]; mesh.positions.len()];
-        color = [0.0, color[1], color[2] * 0.75];
+        color *= DVec3::new(0.0, 1.0, 0.75);
         factors = [factors[0] * byte(140), factors[1] * byte(230)];
         ambient = 1.0 + 0.75 * (byte(102) - 1.0);
-        let lean = [0.5 * 40.0 / 127.0, 0.5 * -30.0 / 127.0, 112.0 / 127.0f64];
-        let length = lean.iter().map(|x| x * x).sum::<f64>().sqrt();
-        normal = lean.map(|x| x / length);
+        normal = DVec3::new(0.5 * 40.0, 0.5 * -30.0, 112.0).normalize();
     }
     let alpha = if mapped { 0.5 * 0.8 } else { 0.5 };
     let mut scene = scene("lit", [0.0; 3], vec![object]);
@@ -86,9 +84,9 @@ fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], ma
         let ndc_x = (f64::from(x) + 0.5) / f64::from(size[0]) * 2.0 - 1.0;
         let ndc_y = 1.0 - (f64::from(y) + 0.5) / f64::from(size[1]) * 2.0;
         let at = Point {
-            position: [ndc_x * aspect * 3.0, ndc_y * 3.0, -3.0],
+            position: DVec3::new(ndc_x * aspect * 3.0, ndc_y * 3.0, -3.0),
             normal,
-            eye: [0.0; 3],
+            eye: DVec3::ZERO,
             ambient,
         };
         let (specular, shininess) = (material.specular.into(), material.shininess.into());

@@ -50,7 +50,6 @@ impl DepthWarp {
         }
     }
 
-    /// The near end of the range.
     pub const fn near(&self) -> f64 {
         self.near
     }
@@ -60,7 +59,6 @@ impl DepthWarp {
         self.scale
     }
 
-    /// The warped depth ζ.
     pub fn apply(&self, depth: f64) -> f64 {
         let from_near = if self.near > 0.0 {
             depth.ln() - self.log_near

@@ -5,21 +5,17 @@
 //! are known; the network is asked where the rest lies. What lies in front of a fragment does not depend on the fragment. All
 //! features of the rest are free of scene scale and unit. The inputs of other networks are declared beside their methods
 //! ([`methods::deep`](crate::methods::deep), [`methods::nmt`](crate::methods::nmt), [`methods::dfaoit`](crate::methods::dfaoit)).
-//!
-//! Written once for 32 and 64 bits: shaders compute in 32, training and tests in 64.
 
 use crate::{
     methods::moments::power::four_moment_bounds,
     statistics::{DEPTH_CODES, Statistics},
 };
-use num_traits::Float;
 
 /// What several features have in common, computed once in the shader.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Shared {
     /// The name that expressions refer to.
     pub name: &'static str,
-    /// Its value, a WGSL expression.
     pub wgsl: &'static str,
     /// The shader module with the function that it calls.
     pub module: Option<&'static str>,
@@ -30,25 +26,20 @@ pub struct Shared {
 pub struct About {
     /// Name in the model file, and of the parameter of the exported function.
     pub name: &'static str,
-    /// Unit, for readers of the model file.
     pub unit: &'static str,
     /// Its value, a WGSL expression of what [`Feature::value`] is a function of, and of [`About::shared`].
     pub wgsl: &'static str,
-    /// A value that the expression needs.
     pub shared: Option<&'static Shared>,
 }
 
 /// One input of a network, a function of `C`: what is known of a fragment or a pixel.
 #[derive(Debug)]
 pub struct Feature<C: 'static> {
-    /// Name, unit and WGSL.
     pub about: About,
-    /// Its value, in Rust.
     pub value: fn(&C) -> f64,
 }
 
 impl<C> Feature<C> {
-    /// A feature by name, unit, WGSL and value.
     pub const fn new(
         name: &'static str,
         unit: &'static str,
@@ -91,77 +82,50 @@ const BIAS_MAX: f64 = 0.25;
 /// The rest of a pixel, seen from one fragment: all fragments but that one and the pixel's ends. Depths are over the pixel's
 /// range, −1 at the nearest and 1 at the farthest fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest<F> {
-    /// Its absorbance, `m_0`.
-    pub absorbance: F,
-    /// Depth of the fragment, −1 … 1.
-    pub place: F,
+pub struct Rest {
+    pub absorbance: f64,
+    pub place: f64,
     /// Mean powers 1 to 4 of the rest's depth.
-    pub means: [F; 4],
+    pub means: [f64; 4],
     /// Pull of the moments towards a measure that can be inverted.
-    bias: F,
+    bias: f64,
 }
 
-/// Every constant here is exactly a 32-bit float.
-fn c<F: Float>(x: f64) -> F {
-    F::from(x).unwrap_or_else(F::zero)
-}
-
-impl<F: Float> Rest<F> {
+impl Rest {
     /// Of a fragment at depth `zeta`, given the pixel's statistics and the moments `m` of the rest.
-    pub fn new(s: &Statistics<F>, m: &[F; 5], zeta: F) -> Self {
-        let (one, two) = (F::one(), c::<F>(2.0));
-        let level = two / c(f64::from(DEPTH_CODES - 1));
+    pub fn new(s: &Statistics, m: &[f64; 5], zeta: f64) -> Self {
+        let level = 2.0 / f64::from(DEPTH_CODES - 1);
         let extent = (s.farthest - s.nearest).max(level);
-        let total = m[0].max(s.moments[0] * c(NOISE)).max(c(1e-6));
+        let total = m[0].max(s.moments[0] * NOISE).max(1e-6);
         // Moments over the pixel's range as −1 … 1: of (ζ − middle)·scale.
-        let middle = (s.nearest + s.farthest) / two;
-        let scale = two / extent;
+        let middle = (s.nearest + s.farthest) / 2.0;
+        let scale = 2.0 / extent;
         let [m1, m2, m3, m4] = [m[1] / total, m[2] / total, m[3] / total, m[4] / total];
-        let x1 = ((m1 - middle) * scale).max(-one).min(one);
-        let x2 = (m2 - middle * (two * m1 - middle)) * scale.powi(2);
-        let x3 = (m3 - middle * (c::<F>(3.0) * m2 - middle * (c::<F>(3.0) * m1 - middle)))
-            * scale.powi(3);
+        let x1 = ((m1 - middle) * scale).clamp(-1.0, 1.0);
+        let x2 = (m2 - middle * (2.0 * m1 - middle)) * scale.powi(2);
+        let x3 = (m3 - middle * (3.0 * m2 - middle * (3.0 * m1 - middle))) * scale.powi(3);
         let x4 = {
-            let inner = c::<F>(6.0) * m2 - middle * (c::<F>(4.0) * m1 - middle);
-            (m4 - middle * (c::<F>(4.0) * m3 - middle * inner)) * scale.powi(4)
+            let inner = 6.0 * m2 - middle * (4.0 * m1 - middle);
+            (m4 - middle * (4.0 * m3 - middle * inner)) * scale.powi(4)
         };
-        let power = |mean: F| mean.max(c(-POWER_MAX)).min(c(POWER_MAX));
+        let power = |mean: f64| mean.clamp(-POWER_MAX, POWER_MAX);
         Self {
             absorbance: m[0],
-            place: ((zeta - middle) * scale).max(-one).min(one),
+            place: ((zeta - middle) * scale).clamp(-1.0, 1.0),
             means: [x1, power(x2), power(x3), power(x4)],
-            bias: (c::<F>(BIAS) + c::<F>(BIAS_BY_SCALE) * scale.powi(4)).min(c(BIAS_MAX)),
+            bias: (BIAS + BIAS_BY_SCALE * scale.powi(4)).min(BIAS_MAX),
         }
     }
 
-    /// `√m_0`.
-    pub fn root_absorbance(&self) -> F {
-        self.absorbance.sqrt()
-    }
-
-    /// Where in the pixel's range the fragment lies, 0 … 1.
-    pub fn depth_fraction(&self) -> F {
-        (self.place + F::one()) / c(2.0)
-    }
-
-    /// Where the rest's mean lies, 0 … 1.
-    pub fn mean_fraction(&self) -> F {
-        (self.means[0] + F::one()) / c(2.0)
-    }
-
     /// The least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four moments
-    /// (Münstermann et al. 2018, §3.2; overestimation 0 and 1).
-    pub fn moment_bounds(&self) -> (F, F) {
-        clamped(four_moment_bounds(self.means, self.bias, self.place))
+    /// (Münstermann et al. 2018, §3.2; overestimation 0 and 1). NaN, where the points of a bound coincide, becomes 0.
+    pub fn moment_bounds(&self) -> [f64; 2] {
+        let (low, high) = four_moment_bounds(self.means, self.bias, self.place);
+        [low, high].map(|share| if share > 0.0 { share.min(1.0) } else { 0.0 })
     }
 }
 
-/// Both shares in 0 … 1; NaN, where the points of a bound coincide, becomes 0.
-fn clamped<F: Float>((low, high): (F, F)) -> (F, F) {
-    let clamp = |share: F| share.max(F::zero()).min(F::one());
-    (clamp(low), clamp(high))
-}
+const OF_REST: &str = "of the rest's absorbance";
 
 const MOMENT_BOUNDS: Shared = Shared {
     name: "bounds",
@@ -170,118 +134,31 @@ const MOMENT_BOUNDS: Shared = Shared {
 };
 
 /// All features of the rest, which the recipes of anchored networks read.
-pub static FEATURES: [&Feature<Rest<f64>>; 5] = [
+pub static FEATURES: [&Feature<Rest>; 5] = [
     &Feature::new(
         "root_absorbance",
         "root of the rest's absorbance",
         "rest.root_absorbance",
-        Rest::root_absorbance,
+        |rest| rest.absorbance.sqrt(),
     ),
     &Feature::new(
         "depth_fraction",
         "of the pixel's depth range",
         "0.5 * rest.place + 0.5",
-        Rest::depth_fraction,
+        |rest| (rest.place + 1.0) / 2.0,
     ),
     &Feature::new(
         "mean_fraction",
         "of the pixel's depth range",
         "0.5 * rest.means.x + 0.5",
-        Rest::mean_fraction,
+        |rest| (rest.means[0] + 1.0) / 2.0,
     ),
-    &Feature::new(
-        "share_low",
-        "of the rest's absorbance",
-        "bounds.x",
-        |rest: &Rest<f64>| rest.moment_bounds().0,
-    )
-    .sharing(&MOMENT_BOUNDS),
-    &Feature::new(
-        "share_high",
-        "of the rest's absorbance",
-        "bounds.y",
-        |rest: &Rest<f64>| rest.moment_bounds().1,
-    )
-    .sharing(&MOMENT_BOUNDS),
+    &Feature::<Rest>::new("share_low", OF_REST, "bounds.x", |r| r.moment_bounds()[0])
+        .sharing(&MOMENT_BOUNDS),
+    &Feature::<Rest>::new("share_high", OF_REST, "bounds.y", |r| r.moment_bounds()[1])
+        .sharing(&MOMENT_BOUNDS),
 ];
 
-/// The values of all [`FEATURES`].
-pub fn all(rest: &Rest<f64>) -> Vec<f64> {
-    FEATURES
-        .iter()
-        .map(|feature| (feature.value)(rest))
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Distributions of a few points on −1 … 1: the share in front of any x lies within both bounds.
-    #[test]
-    fn bounds_hold() {
-        let mut random = crate::random::Random::new(5, &[]);
-        for _ in 0..2000 {
-            let n = 3 + random.below(6);
-            let points: Vec<(f64, f64)> = (0..n)
-                .map(|_| {
-                    (
-                        f64::from(random.between(-1.0, 1.0)),
-                        0.05 + f64::from(random.unit()),
-                    )
-                })
-                .collect();
-            let total: f64 = points.iter().map(|p| p.1).sum();
-            let moment = |k: i32| points.iter().map(|p| p.1 * p.0.powi(k)).sum::<f64>() / total;
-            let m = [moment(1), moment(2), moment(3), moment(4)];
-            let x = f64::from(random.between(-0.96, 0.96));
-            let share = points.iter().filter(|p| p.0 < x).map(|p| p.1).sum::<f64>() / total;
-            // The bias gives way by up to its square root times a few.
-            let (low, high) = clamped(four_moment_bounds(m, BIAS, x));
-            let slack = 4.0 * BIAS.sqrt();
-            assert!(
-                low <= share + slack && share <= high + slack,
-                "{low} {share} {high}"
-            );
-        }
-    }
-
-    /// The 32-bit features follow the 64-bit ones. Mean powers err by a few roundings (2⁻²⁴) of values ≤ 1; moving them to the
-    /// pixel's range multiplies by up to its inverse (here 10, as the range is at least a tenth of the frame's).
-    #[test]
-    fn both_precisions_agree() {
-        let mut stream = crate::random::Random::new(9, &[]);
-        let mut random = move || f64::from(stream.unit());
-        for _ in 0..500 {
-            let n = 2 + (random() * 20.0) as usize;
-            let (centre, width) = (random() - 0.5, 0.1 + 0.4 * random());
-            let points: Vec<(f64, f64)> = (0..n)
-                .map(|_| {
-                    (
-                        0.02 + 3.0 * random(),
-                        centre + width * (2.0 * random() - 1.0),
-                    )
-                })
-                .collect();
-            let wide = Statistics::of(points.iter().copied());
-            let narrow = Statistics::of(points.iter().map(|&(b, z)| (b as f32, z as f32)));
-            for &(b, z) in &points {
-                let m = wide.without(&[(b, z)]);
-                let (b32, z32) = (b as f32, z as f32);
-                let a = Rest::new(&wide, &m, z);
-                let c = Rest::new(&narrow, &narrow.without(&[(b32, z32)]), z32);
-                for (a, c) in [
-                    (a.root_absorbance(), c.root_absorbance()),
-                    (a.depth_fraction(), c.depth_fraction()),
-                    (a.mean_fraction(), c.mean_fraction()),
-                ] {
-                    let roundings = 4.0 / f64::from(1 << 24);
-                    let width = f64::from(narrow.farthest - narrow.nearest) / 2.0;
-                    let tolerance = roundings / width * 8.0;
-                    let noisy = m[0] < 0.1 * wide.moments[0];
-                    assert!(noisy || (a - f64::from(c)).abs() < tolerance, "{a} {c}");
-                }
-            }
-        }
-    }
+pub fn all(rest: &Rest) -> [f64; 5] {
+    FEATURES.map(|feature| (feature.value)(rest))
 }

@@ -1,7 +1,5 @@
 //! One surface seen through one pixel, and the order of several.
 
-use std::cmp::Ordering;
-
 /// A transparent fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fragment {
@@ -34,19 +32,12 @@ impl Fragment {
     pub fn premultiplied(&self) -> [f32; 3] {
         self.color.map(|c| c * self.alpha)
     }
-
-    /// The one order of the project: by linear depth, ties by triangle, so that the same scene always gives the
-    /// same image.
-    pub fn cmp_front_to_back(&self, other: &Self) -> Ordering {
-        self.depth
-            .total_cmp(&other.depth)
-            .then(self.triangle.cmp(&other.triangle))
-    }
 }
 
-/// Sorts a pixel's fragments front to back.
+/// The one order of the project, front to back: by linear depth, ties by triangle, so that the same scene always gives the
+/// same image.
 pub fn sort_front_to_back(fragments: &mut [Fragment]) {
-    fragments.sort_by(Fragment::cmp_front_to_back);
+    fragments.sort_by(|a, b| (a.depth.total_cmp(&b.depth)).then(a.triangle.cmp(&b.triangle)));
 }
 
 /// Linear depth and opacity of each fragment, which is all that estimates of transmittance depend on.

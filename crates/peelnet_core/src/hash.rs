@@ -18,26 +18,3 @@ pub const fn pixel_hash(seed: u32, view: u32, x: u32, y: u32) -> u32 {
 pub fn sample_threshold(fraction: f64) -> u32 {
     (fraction.clamp(0.0, 1.0) * f64::from(u32::MAX)) as u32
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The kept fraction is binomial: five standard deviations of `n = 10⁶` draws are 5·√(p(1−p)/n).
-    #[test]
-    fn a_fraction_is_kept() {
-        for p in [0.01, 0.25, 0.9] {
-            let limit = sample_threshold(p);
-            let kept = (0..1000)
-                .flat_map(|y| (0..1000).map(move |x| pixel_hash(3, 1, x, y)))
-                .filter(|&h| h <= limit)
-                .count() as f64
-                / 1e6;
-            assert!(
-                (kept - p).abs() < 5.0 * (p * (1.0 - p) / 1e6f64).sqrt(),
-                "{p}: {kept}"
-            );
-        }
-        assert_eq!(sample_threshold(1.0), u32::MAX);
-    }
-}

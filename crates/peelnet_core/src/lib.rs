@@ -11,6 +11,8 @@
 //!
 //! The worked example of the whole project is four fragments, see [`fragment::worked_example`].
 
+#![allow(missing_docs)]
+
 pub mod absorbance;
 pub mod features;
 pub mod fragment;

@@ -12,16 +12,12 @@ use std::iter::Sum;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Activation {
-    /// `max(x, 0)`.
     Relu,
-    /// `1 / (1 + exp(−x))`.
     Sigmoid,
-    /// `x`.
     Identity,
 }
 
 impl Activation {
-    /// Applies the function to one value.
     pub fn apply<F: Float>(self, x: F) -> F {
         match self {
             Self::Relu => x.max(F::zero()),
@@ -31,12 +27,9 @@ impl Activation {
     }
 }
 
-/// One affine layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// Number of inputs.
     pub inputs: usize,
-    /// Number of outputs.
     pub outputs: usize,
     /// Row-major `[outputs][inputs]`.
     pub weights: Vec<f32>,
@@ -44,19 +37,11 @@ pub struct Layer {
     pub bias: Vec<f32>,
 }
 
-/// Why layers do not make a network: the first layer that does not fit.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct ShapeError(String);
-
 /// A fully connected network. Its inputs are *normalised* features.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mlp {
-    /// The affine layers, first to last.
     pub layers: Vec<Layer>,
-    /// Applied after every layer but the last.
     pub hidden: Activation,
-    /// Applied after the last layer.
     pub output: Activation,
 }
 
@@ -64,14 +49,10 @@ impl Mlp {
     /// Builds a network and checks that its layers fit one another.
     ///
     /// # Errors
-    /// [`ShapeError`] names the first layer that does not fit.
-    pub fn new(
-        layers: Vec<Layer>,
-        hidden: Activation,
-        output: Activation,
-    ) -> Result<Self, ShapeError> {
+    /// The first layer that does not fit.
+    pub fn new(layers: Vec<Layer>, hidden: Activation, output: Activation) -> Result<Self, String> {
         if layers.is_empty() {
-            return Err(ShapeError("the network has no layers".into()));
+            return Err("the network has no layers".into());
         }
         for (i, layer) in layers.iter().enumerate() {
             let Layer {
@@ -88,7 +69,7 @@ impl Mlp {
             } else {
                 continue;
             };
-            return Err(ShapeError(wrong));
+            return Err(wrong);
         }
         Ok(Self {
             layers,
@@ -97,32 +78,24 @@ impl Mlp {
         })
     }
 
-    /// Number of inputs of the first layer.
     pub fn inputs(&self) -> usize {
         self.layers.first().map_or(0, |l| l.inputs)
     }
 
-    /// Number of outputs of the last layer.
     pub fn outputs(&self) -> usize {
         self.layers.last().map_or(0, |l| l.outputs)
     }
 
-    /// Weights and biases together.
     pub fn parameters(&self) -> usize {
-        self.layers
-            .iter()
-            .map(|l| l.weights.len() + l.bias.len())
-            .sum()
+        let layers = self.layers.iter();
+        layers.map(|l| l.weights.len() + l.bias.len()).sum()
     }
 
     /// `3-10-8-1` and the like.
     pub fn topology(&self) -> String {
-        let mut text = self.inputs().to_string();
-        for layer in &self.layers {
-            text.push('-');
-            text.push_str(&layer.outputs.to_string());
-        }
-        text
+        let outputs = self.layers.iter().map(|layer| layer.outputs);
+        let widths = std::iter::once(self.inputs()).chain(outputs);
+        widths.map(|w| w.to_string()).collect::<Vec<_>>().join("-")
     }
 
     /// The forward pass: in 32 bits, or in 64 bits, which are the reference for every other one.
@@ -247,7 +220,7 @@ mod tests {
             ),
         ] {
             let error = Mlp::new(layers, Activation::Relu, Activation::Identity).err();
-            assert_eq!(error.map(|e| e.to_string()).as_deref(), Some(want));
+            assert_eq!(error.as_deref(), Some(want));
         }
     }
 }

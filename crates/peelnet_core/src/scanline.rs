@@ -15,23 +15,18 @@ pub struct Triangle {
     pub id: u32,
 }
 
-/// A fragment of the judge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Linear depth `z` (clip-space w of a perspective camera).
     pub depth: f64,
     /// Window depth 0 … 1.
     pub window_depth: f64,
-    /// The triangle.
     pub id: u32,
 }
 
-/// All fragments of a frame.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Width in pixels.
     pub width: usize,
-    /// Height in pixels.
     pub height: usize,
     /// Row-major pixels, each front to back.
     pub pixels: Vec<Vec<Hit>>,
@@ -78,17 +73,8 @@ pub fn stable_pixels(
         ids.sort_unstable();
         ids
     };
-    for (dx, dy) in [
-        (1, 1),
-        (1, 0),
-        (1, -1),
-        (0, 1),
-        (0, -1),
-        (-1, 1),
-        (-1, 0),
-        (-1, -1),
-    ] {
-        let offset = [f64::from(dx) * radius, f64::from(dy) * radius];
+    let steps = [-radius, 0.0, radius];
+    for offset in steps.into_iter().flat_map(|x| steps.map(|y| [x, y])) {
         let moved = rasterise(triangles, width, height, offset);
         for (s, (a, b)) in stable
             .iter_mut()
@@ -194,15 +180,6 @@ mod tests {
                 id,
             },
         ]
-    }
-
-    #[test]
-    fn a_shared_edge_is_drawn_once() {
-        let frame = rasterise(&quad(3.0, -1.0, 1.0, 1), 33, 17, [0.0; 2]);
-        for p in &frame.pixels {
-            assert_eq!(p.len(), 1);
-            assert!((p[0].depth - 3.0).abs() < 1e-12);
-        }
     }
 
     #[test]

@@ -1,119 +1,87 @@
 //! Shading in 64 bits: the twin of `shaders/scene/shade.wgsl`, which cites the sources.
 
+use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A vector, or a linear RGB colour.
-pub type V3 = [f64; 3];
-
-/// A light: where it comes from, and linear RGB times intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// A place in world space, or the direction of a light without one.
     pub source: Source,
-    /// Linear RGB times intensity.
-    pub color: V3,
+    pub color: DVec3,
 }
 
-/// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// A place.
-    Point(V3),
+    Point(DVec3),
     /// A direction, of length 1.
-    Toward(V3),
+    Toward(DVec3),
 }
 
 impl Light {
     /// The direction to it, and what falls off its light by the square law.
-    fn seen_from(&self, position: V3) -> (V3, f64) {
+    fn seen_from(&self, position: DVec3) -> (DVec3, f64) {
         match self.source {
             Source::Toward(direction) => (direction, 1.0),
             Source::Point(place) => {
-                let apart = between(position, place);
-                let squared = dot(apart, apart).max(1e-8);
-                (apart.map(|x| x / squared.sqrt()), squared)
+                let apart = place - position;
+                let squared = apart.length_squared().max(1e-8);
+                (apart / squared.sqrt(), squared)
             }
         }
     }
 }
 
-/// A surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// World space.
-    pub position: V3,
+    pub position: DVec3,
     /// Unit normal, either side.
-    pub normal: V3,
-    /// The eye's position.
-    pub eye: V3,
+    pub normal: DVec3,
+    pub eye: DVec3,
     /// Share of the ambient light that arrives.
     pub ambient: f64,
 }
 
-fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn between(a: V3, b: V3) -> V3 {
-    [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
-}
-
-fn normalised(v: V3) -> V3 {
-    let length = dot(v, v).sqrt();
-    v.map(|x| x / length)
-}
-
-fn sum(a: V3, b: V3) -> V3 {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
 /// View direction, and the normal on its side.
-fn frame(at: &Point) -> (V3, V3) {
-    let view = normalised(between(at.position, at.eye));
-    let towards = dot(at.normal, view) >= 0.0;
-    let normal = if towards {
-        at.normal
-    } else {
-        at.normal.map(|x| -x)
-    };
+fn frame(at: &Point) -> (DVec3, DVec3) {
+    let view = (at.eye - at.position).normalize();
+    let towards = at.normal.dot(view) >= 0.0;
+    let normal = if towards { at.normal } else { -at.normal };
     (view, normal)
 }
 
 /// Blinn–Phong (Blinn 1977): 10 % ambient, diffuse, and a highlight of the light's colour.
-pub fn phong(at: &Point, color: V3, specular: f64, shininess: f64, lights: &[Light]) -> V3 {
+pub fn phong(at: &Point, color: DVec3, specular: f64, shininess: f64, lights: &[Light]) -> DVec3 {
     let (view, normal) = frame(at);
-    let mut radiance = color.map(|c| 0.1 * at.ambient * c);
+    let mut radiance = 0.1 * at.ambient * color;
     for light in lights {
         let (toward, _) = light.seen_from(at.position);
-        let diffuse = dot(normal, toward).max(0.0);
-        let halfway = normalised(sum(toward, view));
+        let diffuse = normal.dot(toward).max(0.0);
+        let halfway = (toward + view).normalize();
         let highlight = if diffuse > 0.0 {
-            dot(normal, halfway).max(0.0).powf(shininess)
+            normal.dot(halfway).max(0.0).powf(shininess)
         } else {
             0.0
         };
-        for k in 0..3 {
-            radiance[k] += light.color[k] * (color[k] * diffuse + specular * highlight);
-        }
+        radiance += light.color * (color * diffuse + specular * highlight);
     }
     radiance
 }
 
 /// What a physically based surface reflects of light that arrives along `toward` into `view`, both unit vectors on the normal's
 /// side: Cook–Torrance and Lambert, not yet times the cosine.
-pub fn reflectance(
-    normal: V3,
-    view: V3,
-    toward: V3,
-    albedo: V3,
+fn reflectance(
+    normal: DVec3,
+    view: DVec3,
+    toward: DVec3,
+    albedo: DVec3,
     metallic: f64,
     roughness: f64,
-) -> V3 {
+) -> DVec3 {
     let roughness = roughness.max(0.04);
     let (a, k) = (roughness * roughness, (roughness + 1.0).powi(2) / 8.0);
-    let halfway = normalised(sum(toward, view));
-    let n_v = dot(normal, view).max(1e-4);
-    let (n_l, n_h) = (dot(normal, toward).max(0.0), dot(normal, halfway).max(0.0));
+    let halfway = (toward + view).normalize();
+    let n_v = normal.dot(view).max(1e-4);
+    let (n_l, n_h) = (normal.dot(toward).max(0.0), normal.dot(halfway).max(0.0));
     let spread = n_h * n_h * (a * a - 1.0) + 1.0;
     let distribution = a * a / (PI * spread * spread);
     let shadowing = 1.0 / ((n_l * (1.0 - k) + k) * (n_v * (1.0 - k) + k));
@@ -121,30 +89,26 @@ pub fn reflectance(
     // What a dielectric scatters inside went in at the light's angle and comes out at the eye's.
     let inside = 0.96 * 0.96 * (1.0 - grazing(n_l)) * (1.0 - grazing(n_v));
     let diffuse = inside * (1.0 - metallic) / PI;
-    albedo.map(|albedo| {
-        let head_on = 0.04 + (albedo - 0.04) * metallic;
-        let fresnel = head_on + (1.0 - head_on) * grazing(dot(halfway, view));
-        diffuse * albedo + distribution * shadowing * 0.25 * fresnel
-    })
+    let head_on = 0.04 + (albedo - 0.04) * metallic;
+    let fresnel = head_on + (1.0 - head_on) * grazing(halfway.dot(view));
+    diffuse * albedo + distribution * shadowing * 0.25 * fresnel
 }
 
 /// Physically based shading by lights, of which those with a place fall off with the square of the distance, and 3 % ambient.
 pub fn physically_based(
     at: &Point,
-    albedo: V3,
+    albedo: DVec3,
     metallic: f64,
     roughness: f64,
     lights: &[Light],
-) -> V3 {
+) -> DVec3 {
     let (view, normal) = frame(at);
-    let mut radiance = albedo.map(|c| 0.03 * at.ambient * c);
+    let mut radiance = 0.03 * at.ambient * albedo;
     for light in lights {
         let (toward, squared) = light.seen_from(at.position);
-        let n_l = dot(normal, toward).max(0.0);
+        let n_l = normal.dot(toward).max(0.0);
         let part = reflectance(normal, view, toward, albedo, metallic, roughness);
-        for k in 0..3 {
-            radiance[k] += part[k] * light.color[k] / squared * n_l;
-        }
+        radiance += part * light.color / squared * n_l;
     }
     radiance
 }
@@ -159,11 +123,12 @@ mod tests {
     /// Integrated over 400 × 200 directions: highlights of roughness 0.3 and more are ten times as wide as their distance.
     #[test]
     fn no_energy_is_made() {
-        let normal = [0.0, 0.0, 1.0];
+        let normal = DVec3::Z;
         for metallic in [0.0, 0.5, 1.0] {
             for roughness in [0.3, 0.5, 0.7, 1.0] {
                 for elevation in [0.2f64, 0.6, 1.0] {
-                    let view = normalised([(1.0 - elevation * elevation).sqrt(), 0.0, elevation]);
+                    let across = (1.0 - elevation * elevation).sqrt();
+                    let view = DVec3::new(across, 0.0, elevation);
                     let (rings, spokes) = (400, 200);
                     let mut total = 0.0;
                     for i in 0..rings {
@@ -171,10 +136,10 @@ mod tests {
                         for j in 0..spokes {
                             let turn = (f64::from(j) + 0.5) / f64::from(spokes) * 2.0 * PI;
                             let r = (1.0 - z * z).sqrt();
-                            let toward = [r * turn.cos(), r * turn.sin(), z];
-                            let f =
-                                reflectance(normal, view, toward, [1.0; 3], metallic, roughness);
-                            total += f[0] * z * 2.0 * PI / f64::from(rings * spokes);
+                            let toward = DVec3::new(r * turn.cos(), r * turn.sin(), z);
+                            let white = DVec3::ONE;
+                            let f = reflectance(normal, view, toward, white, metallic, roughness);
+                            total += f.x * z * 2.0 * PI / f64::from(rings * spokes);
                         }
                     }
                     let at =
@@ -192,25 +157,21 @@ mod tests {
     #[test]
     fn a_matt_surface_under_a_light() {
         let at = Point {
-            position: [0.0; 3],
-            normal: [0.0, 0.0, 1.0],
-            eye: [0.0, 0.0, 5.0],
+            position: DVec3::ZERO,
+            normal: DVec3::Z,
+            eye: 5.0 * DVec3::Z,
             ambient: 1.0,
         };
         let light = Light {
-            source: Source::Point([0.0, 0.0, 2.0]),
-            color: [8.0, 4.0, 0.0],
+            source: Source::Point(2.0 * DVec3::Z),
+            color: DVec3::new(8.0, 4.0, 0.0),
         };
         // D = 1/π and G = 1 for roughness 1, F = 0.04 each way.
-        let found = physically_based(&at, [0.5; 3], 0.0, 1.0, &[light]);
+        let found = physically_based(&at, DVec3::splat(0.5), 0.0, 1.0, &[light]);
         let reflected = 0.96 * 0.5 / PI * 0.96 + 0.04 * 0.25 / PI;
-        for (k, arriving) in [2.0, 1.0, 0.0].into_iter().enumerate() {
-            assert!(
-                (found[k] - (0.015 + reflected * arriving)).abs() < 1e-12,
-                "{found:?}"
-            );
-        }
-        let lit = phong(&at, [0.5; 3], 0.25, 20.0, &[light]);
+        let want = 0.015 + reflected * DVec3::new(2.0, 1.0, 0.0);
+        assert!(found.abs_diff_eq(want, 1e-12), "{found:?}");
+        let lit = phong(&at, DVec3::splat(0.5), 0.25, 20.0, &[light]);
         assert!((lit[0] - (0.05 + 8.0 * 0.75)).abs() < 1e-12, "{lit:?}");
     }
 }

@@ -6,11 +6,8 @@
 //!
 //! A fragment's own share is taken out before it asks what lies in front of it, as in the write-up of wavelet transparency by Osorio
 //! López (osor.io/OIT) and in Flywheel's shaders (`signal_corrected_transmittance`).
-//!
-//! Written once for 32 and 64 bits: shaders compute in 32, training and tests in 64.
 
-use crate::absorbance::ABSORBANCE_MAX;
-use num_traits::Float;
+use crate::{absorbance::ABSORBANCE_MAX, methods::Point};
 
 /// Number of levels that a depth in −1 … 1 is quantised to before the nearest and the farthest are kept: see [`half_of_code`].
 pub const DEPTH_CODES: u32 = 61_440;
@@ -51,7 +48,6 @@ pub const SAME_CODE: u32 = 1;
 /// the largest depth. Of fragments in one bin it keeps the most opaque one's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EndCode {
-    /// Levels of depth.
     pub bins: u32,
     /// Levels of opacity: even steps of `b/(1 + b)`, `b` absorbance, which err in transmittance `e^−b` by three quarters of a
     /// step at most, cost a division to read, and reach [`ABSORBANCE_MAX`]. The bins times the alphas are [`DEPTH_CODES`].
@@ -74,7 +70,6 @@ pub const FAR_END: EndCode = EndCode {
 const MOST_LEVEL: f64 = (ABSORBANCE_MAX + 1.0) / ABSORBANCE_MAX;
 
 impl EndCode {
-    /// The level of a fragment.
     pub fn level(self, zeta: f64, absorbance: f64) -> u32 {
         self.bin(zeta) * self.alphas + self.alpha_level(absorbance)
     }
@@ -115,7 +110,6 @@ impl EndCode {
 /// How the sums are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SumPrecision {
-    /// Without rounding.
     #[default]
     Exact,
     /// As 16-bit targets do it: every term and every sum is rounded to a half.
@@ -135,66 +129,39 @@ impl SumPrecision {
 
 /// The sums and extremes of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Statistics<F> {
+pub struct Statistics {
     /// `b_0 … b_4`.
-    pub moments: [F; 5],
-    /// Smallest warped depth.
-    pub nearest: F,
-    /// Largest warped depth.
-    pub farthest: F,
+    pub moments: [f64; 5],
+    pub nearest: f64,
+    pub farthest: f64,
 }
 
-impl Statistics<f64> {
-    /// Of a pixel's fragments, with sums of the given precision.
-    pub fn rounded(
-        fragments: impl IntoIterator<Item = (f64, f64)>,
-        precision: SumPrecision,
-    ) -> Self {
-        Self::summed(fragments, |sum, term| precision.add(sum, term))
-    }
-}
-
-impl<F: Float> Statistics<F> {
-    /// Of a pixel without fragments.
-    pub fn empty() -> Self {
-        Self {
-            moments: [F::zero(); 5],
-            nearest: F::one(),
-            farthest: -F::one(),
-        }
-    }
-
-    /// Of a pixel's fragments, as (absorbance, warped depth).
-    pub fn of(fragments: impl IntoIterator<Item = (F, F)>) -> Self {
-        Self::summed(fragments, |sum, term| sum + term)
-    }
-
-    fn summed(fragments: impl IntoIterator<Item = (F, F)>, add: impl Fn(F, F) -> F) -> Self {
-        let mut s = Self::empty();
-        for (b, zeta) in fragments {
+impl Statistics {
+    /// The moments of a pixel's fragments.
+    pub fn moments(fragments: &[Point], precision: SumPrecision) -> [f64; 5] {
+        let mut moments = [0.0; 5];
+        for &(b, zeta, _) in fragments {
             let mut power = b;
-            for m in &mut s.moments {
-                *m = add(*m, power);
-                power = power * zeta;
+            for sum in &mut moments {
+                *sum = precision.add(*sum, power);
+                power *= zeta;
             }
-            s.nearest = s.nearest.min(zeta);
-            s.farthest = s.farthest.max(zeta);
         }
-        s
+        moments
     }
 
     /// The moments without some fragments, given as (absorbance, warped depth): `m_k = b_k − Σ b ζ^k`. `m_0` is never
     /// negative.
-    pub fn without(&self, fragments: &[(F, F)]) -> [F; 5] {
+    pub fn without(&self, fragments: &[(f64, f64)]) -> [f64; 5] {
         let mut m = self.moments;
         for &(b, zeta) in fragments {
             let mut power = b;
             for sum in &mut m {
-                *sum = *sum - power;
-                power = power * zeta;
+                *sum -= power;
+                power *= zeta;
             }
         }
-        m[0] = m[0].max(F::zero());
+        m[0] = m[0].max(0.0);
         m
     }
 }

@@ -6,22 +6,17 @@
 /// A named weight `w(z, α)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weight {
-    /// Eq 7.
     Eq7,
-    /// Eq 8.
     Eq8,
-    /// Eq 9.
     Eq9,
     /// Eq 10, on window depth; the factor is 3e3 in the paper and 3e4 in one translation of it.
     Eq10 {
-        /// Largest weight.
         factor: f32,
     },
     /// `(z + ε)^−k`.
     InversePower {
         /// Exponent, a whole number so that it is a repeated product.
         k: u32,
-        /// Offset in scene units.
         epsilon: f32,
     },
     /// `10 / (1 + 10 (z k)⁵)`, which the paper uses for smoke.
@@ -61,12 +56,6 @@ impl Weight {
     /// The weight of a fragment.
     ///
     /// `z` is linear depth in scene units, `alpha` opacity, `window_depth` 0 … 1.
-    ///
-    /// ```
-    /// # use peelnet_core::weights::Weight;
-    /// // Near the camera eq 9 is capped at α · 3e3.
-    /// assert_eq!(Weight::Eq9.eval(0.1, 0.5, 0.0), 1500.0);
-    /// ```
     pub fn eval(self, z: f32, alpha: f32, window_depth: f32) -> f32 {
         match self {
             Self::Eq7 => {
@@ -119,10 +108,6 @@ mod tests {
             (power(4, 0.0), 2.0, 0.3, 0.0, 1.0 / 16.0),
             // z k = 1/2: 10 / (1 + 10/32).
             (Weight::Smoke { k: 0.1 }, 5.0, 0.3, 0.0, 320.0 / 42.0),
-            (Weight::Eq8, 10.0, 0.5, 0.0, 5.0 / (1.00001 + 1.5625e-8)),
-            // (1 − z)/200 = −1 at z = 201: 0.3/1.00001, between its clamps.
-            (Weight::Papakostas, 201.0, 1.0, 0.0, 0.3 / 1.00001),
-            (Weight::Papakostas, 1.0, 0.5, 0.0, 0.5),
         ] {
             let found = f64::from(weight.eval(z, alpha, window));
             assert!(
@@ -133,31 +118,14 @@ mod tests {
     }
 
     /// The published flaw of weights of depth in scene units: moved along z with all that lies between them kept, two surfaces
-    /// mix anew. The share of the nearer one is `w₁ / (w₁ + w₂)`, here by closed forms of each weight at 2 and 4, and at 102 and 104.
-    /// The thesis's weight is exactly α up to a depth of 149, so it does not see the move, nor the order.
+    /// mix anew. The share of the nearer one is `w₁ / (w₁ + w₂)`, at 2 and 4, and at 102 and 104. The thesis's weight is exactly α up to a
+    /// depth of 149, so it does not see the move, nor the order.
     #[test]
     fn a_move_along_z_changes_the_mix() {
         let share = |w: Weight, z: f32| {
-            let [a, b] = [z, z + 2.0].map(|z| f64::from(w.eval(z, 0.5, 0.0)));
+            let [a, b] = [z, z + 2.0].map(|z| w.eval(z, 0.5, 0.0));
             a / (a + b)
         };
-        // Eq 7: 10/(z/5)² but for a sixth power of z/200.
-        let eq7 = |z: f64| 10.0 / (1e-5 + (z / 5.0).powi(2) + (z / 200.0).powi(6));
-        let eq9 = |z: f64| 0.03 / (1e-5 + (z / 200.0).powi(4));
-        let smoke = |z: f64| 10.0 / (1.0 + 10.0 * (z / 10.0).powi(5));
-        let z4 = Weight::InversePower { k: 4, epsilon: 0.0 };
-        let forms: [(Weight, &dyn Fn(f64) -> f64); 4] = [
-            (Weight::Eq7, &eq7),
-            (Weight::Eq9, &eq9),
-            (z4, &|z| z.powi(-4)),
-            (Weight::Smoke { k: 0.1 }, &smoke),
-        ];
-        for ((weight, form), z) in forms.into_iter().flat_map(|f| [(f, 2.0f32), (f, 102.0)]) {
-            let [a, b] = [z, z + 2.0].map(|z| form(z.into()));
-            let got = share(weight, z);
-            // Weights of 32 bits: a few roundings.
-            assert!((got - a / (a + b)).abs() < 1e-5, "{weight:?} at {z}: {got}");
-        }
         assert!(share(Weight::Eq7, 2.0) > 0.79 && share(Weight::Eq7, 102.0) < 0.52);
         for z in [2.0, 102.0] {
             assert_eq!(share(Weight::Papakostas, z), 0.5);
@@ -165,13 +133,5 @@ mod tests {
         // Beyond 200·(0.3 − 1e−5)^¼ + 1 = 149.01 it falls.
         assert_eq!(Weight::Papakostas.eval(149.0, 0.5, 0.0), 0.5);
         assert!(Weight::Papakostas.eval(149.1, 0.5, 0.0) < 0.5);
-    }
-
-    #[test]
-    fn clamps_hold_at_the_ends() {
-        for w in [Weight::Eq7, Weight::Eq8, Weight::Eq9] {
-            assert_eq!(w.eval(0.0, 1.0, 0.0), 3e3);
-            assert_eq!(w.eval(1e6, 1.0, 0.0), 1e-2);
-        }
     }
 }

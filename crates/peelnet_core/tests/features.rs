@@ -1,6 +1,9 @@
 //! Features of the rest of a pixel in closed form: every constant of theirs, a tenth larger, moves a value here by more than a rounding.
 
-use peelnet_core::{features::Rest, statistics::Statistics};
+use peelnet_core::{
+    features::{Rest, all},
+    statistics::Statistics,
+};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -14,7 +17,7 @@ fn moments(layers: &[(f64, f64)]) -> [f64; 5] {
 }
 
 /// A rest seen from `zeta`, in a pixel of this much absorbance and this range.
-fn seen(layers: &[(f64, f64)], zeta: f64, absorbance: f64, range: [f64; 2]) -> Rest<f64> {
+fn seen(layers: &[(f64, f64)], zeta: f64, absorbance: f64, range: [f64; 2]) -> Rest {
     let s = Statistics {
         moments: [absorbance, 0.0, 0.0, 0.0, 0.0],
         nearest: range[0],
@@ -29,23 +32,25 @@ fn of_two_layers() {
     for shift in [0.0, 0.25, -0.4] {
         let layers = [(1.0, shift - 0.25), (3.0, shift + 0.25)];
         let rest = seen(&layers, shift + 0.1, 9.0, [shift - 0.5, shift + 0.5]);
-        near(rest.root_absorbance(), 2.0);
-        near(rest.depth_fraction(), 0.6);
-        near(rest.mean_fraction(), 0.625);
+        let [root, depth, mean, ..] = all(&rest);
+        let found = [root, depth, mean].into_iter().chain(rest.means);
         // Mean powers of −½ once and ½ three times.
-        for (found, want) in rest.means.into_iter().zip([0.25, 0.25, 0.0625, 0.0625]) {
-            near(found, want);
-        }
+        let wanted = [2.0, 0.6, 0.625, 0.25, 0.25, 0.0625, 0.0625];
+        found
+            .zip(wanted)
+            .for_each(|(found, want)| near(found, want));
     }
 }
 
 /// Less than a 1,024th of the pixel's absorbance, or than 1e-6, counts as that much.
 #[test]
 fn little_is_noise() {
-    let range = [-1.0, 1.0];
-    near(seen(&[(5e-4, 0.4)], 0.0, 1.024, range).mean_fraction(), 0.6);
-    near(seen(&[(5e-7, 0.4)], 0.0, 1e-5, range).mean_fraction(), 0.6);
-    near(seen(&[(2e-3, 0.4)], 0.0, 1.024, range).mean_fraction(), 0.7);
+    for (b, absorbance, mean) in [(5e-4, 1.024, 0.6), (5e-7, 1e-5, 0.6), (2e-3, 1.024, 0.7)] {
+        near(
+            all(&seen(&[(b, 0.4)], 0.0, absorbance, [-1.0, 1.0]))[2],
+            mean,
+        );
+    }
 }
 
 /// What the bound's measure has at `x` where all lies at 0: the Christoffel function of `(1 − ε) δ_0 + ε` times moments 0, ⅜, 0, ⅜, by hand.
@@ -62,14 +67,9 @@ fn narrow_pixels_have_more_bias() {
         (0.25, 1.0 / 1024.0 + 256.0 / 65_536.0),
         (0.0625, 0.25),
     ] {
-        let x = 0.02;
-        let rest = seen(
-            &[(1.0, 0.0)],
-            x * half_range,
-            2.0,
-            [-half_range, half_range],
-        );
-        let (low, high) = rest.moment_bounds();
+        let (x, range) = (0.02, [-half_range, half_range]);
+        let rest = seen(&[(1.0, 0.0)], x * half_range, 2.0, range);
+        let [low, high] = rest.moment_bounds();
         near(high - low, own(x, bias));
     }
 }

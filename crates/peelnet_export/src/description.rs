@@ -140,32 +140,30 @@ const fn most_and_sum(name: &'static str, write: &'static str) -> Target {
     target(name, HALF, blend, write)
 }
 
-const fn statistics(
+const fn pass(
+    name: &'static str,
     reads: &'static [&'static str],
-    call: &'static str,
+    compute: Option<Value>,
     targets: &'static [Target],
 ) -> Pass {
-    let (name, kind) = ("s", Kind::Statistics);
     Pass {
-        name: "statistics",
+        name,
         reads,
-        compute: Some(Value { name, kind, call }),
+        compute,
         targets,
     }
 }
 
-const fn weights(
-    reads: &'static [&'static str],
-    call: &'static str,
-    targets: &'static [Target],
-) -> Pass {
-    let (name, kind) = ("w", Kind::Number);
-    Pass {
-        name: "weights",
-        reads,
-        compute: Some(Value { name, kind, call }),
-        targets,
-    }
+const fn value(name: &'static str, kind: Kind, call: &'static str) -> Option<Value> {
+    Some(Value { name, kind, call })
+}
+
+const fn statistics(call: &'static str) -> Option<Value> {
+    value("s", Kind::Statistics, call)
+}
+
+const fn weight(call: &'static str) -> Option<Value> {
+    value("w", Kind::Number, call)
 }
 
 const HALF: &str = "rgba16float";
@@ -187,9 +185,10 @@ const RULES: &[&str] = &[
 
 const SUMS: &[Target] = &[sum("sums", HALF, WEIGHTED)];
 
-const ANCHORED_STATISTICS: Pass = statistics(
+const ANCHORED_STATISTICS: Pass = pass(
+    "statistics",
     &[],
-    "peelnet_statistics(alpha, zeta)",
+    statistics("peelnet_statistics(alpha, zeta)"),
     &[
         sum("moments", HALF, "s.moments"),
         most_and_sum("extent", "s.extent"),
@@ -198,9 +197,10 @@ const ANCHORED_STATISTICS: Pass = statistics(
 
 const ONE_SUM: &[Pass] = &[
     ANCHORED_STATISTICS,
-    weights(
+    pass(
+        "weights",
         &["moments", "extent"],
-        "peelnet_fragment(alpha, zeta, moments, extent).x",
+        weight("peelnet_fragment(alpha, zeta, moments, extent).x"),
         SUMS,
     ),
 ];
@@ -211,37 +211,32 @@ const ENDS: &str = "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))";
 
 const SEPARATE_ENDS: &[Pass] = &[
     ANCHORED_STATISTICS,
-    Pass {
-        name: "weights",
-        reads: &["moments", "extent"],
-        compute: Some(Value {
-            name: "f",
-            kind: Kind::Pair,
-            call: "peelnet_fragment(alpha, zeta, moments, extent)",
-        }),
-        targets: &[sum("sums", HALF, BETWEEN), sum("ends", HALF, ENDS)],
-    },
+    pass(
+        "weights",
+        &["moments", "extent"],
+        value(
+            "f",
+            Kind::Pair,
+            "peelnet_fragment(alpha, zeta, moments, extent)",
+        ),
+        &[sum("sums", HALF, BETWEEN), sum("ends", HALF, ENDS)],
+    ),
 ];
 
-const RANGE: Pass = Pass {
-    name: "range",
-    reads: &[],
-    compute: Some(Value {
-        name: "r",
-        kind: Kind::Pair,
-        call: "peelnet_pixel_range(zeta)",
-    }),
-    targets: &[most("range", "rg8unorm", 0.0, "r")],
-};
+const RANGE: &[Target] = &[most("range", "rg8unorm", 0.0, "r")];
 
 const fn slabs(
     targets: &'static [Target],
     reads: &'static [&'static str],
     call: &'static str,
 ) -> [Pass; 3] {
-    let in_range = "peelnet_statistics(alpha, zeta, range)";
-    let statistics = statistics(&["range"], in_range, targets);
-    [RANGE, statistics, weights(reads, call, SUMS)]
+    let range = value("r", Kind::Pair, "peelnet_pixel_range(zeta)");
+    let in_range = statistics("peelnet_statistics(alpha, zeta, range)");
+    [
+        pass("range", &[], range, RANGE),
+        pass("statistics", &["range"], in_range, targets),
+        pass("weights", reads, weight(call), SUMS),
+    ]
 }
 
 const ABSORBANCES: Target = sum("absorbances", HALF, "s.absorbances");
@@ -275,56 +270,54 @@ const LARGE_SLABS: &[Pass] = &slabs(
     "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x",
 );
 
+const LIGHT_LEFT: ([f32; 4], Blend, Blend) = ([1.0; 4], Blend::Transmit, Blend::Transmit);
+
 const THESIS: &[Pass] = &[
-    Pass {
-        name: "statistics",
-        reads: &[],
-        compute: None,
-        targets: &[sum("statistics", "rg16float", "peelnet_statistics(alpha)")],
-    },
-    weights(
+    pass(
+        "statistics",
+        &[],
+        None,
+        &[sum("statistics", "rg16float", "peelnet_statistics(alpha)")],
+    ),
+    pass(
+        "weights",
         &["statistics"],
-        "peelnet_fragment(z, statistics)",
+        weight("peelnet_fragment(z, statistics)"),
         &[
             sum("sums", HALF, WEIGHTED),
-            target(
-                "transmittance",
-                "r16float",
-                ([1.0; 4], Blend::Transmit, Blend::Transmit),
-                "alpha",
-            ),
+            target("transmittance", "r16float", LIGHT_LEFT, "alpha"),
         ],
     ),
 ];
 
 const NMT: &[Pass] = &[
-    statistics(
+    pass(
+        "statistics",
         &[],
-        "peelnet_statistics(alpha, zeta)",
+        statistics("peelnet_statistics(alpha, zeta)"),
         &[
             sum("totals", WHOLE, "s.totals"),
             sum("moments", WHOLE, "s.moments"),
             most("extent", "rg32float", LEAST, "s.extent"),
         ],
     ),
-    weights(
+    pass(
+        "weights",
         &["totals", "moments", "extent"],
-        "peelnet_fragment(zeta, totals, moments, extent)",
+        weight("peelnet_fragment(zeta, totals, moments, extent)"),
         &[sum("sums", WHOLE, WEIGHTED)],
     ),
 ];
 
-const DFAOIT: &[Pass] = &[statistics(
+const OVER: ([f32; 4], Blend, Blend) = ([0.0, 0.0, 0.0, 1.0], Blend::Add, Blend::Transmit);
+
+const DFAOIT: &[Pass] = &[pass(
+    "statistics",
     &["front"],
-    "peelnet_statistics(vec4f(rgb, alpha), front)",
+    statistics("peelnet_statistics(vec4f(rgb, alpha), front)"),
     &[
         sum("behind", HALF, "s.behind"),
-        target(
-            "all",
-            HALF,
-            ([0.0, 0.0, 0.0, 1.0], Blend::Add, Blend::Transmit),
-            "s.all",
-        ),
+        target("all", HALF, OVER, "s.all"),
         sum("count", "r16float", "s.count"),
     ],
 )];

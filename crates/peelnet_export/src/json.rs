@@ -48,6 +48,12 @@ struct Input<'a> {
 pub fn json(model: &Model) -> Result<String, ExportError> {
     model.check()?;
     let meta = &model.meta;
+    let inputs = meta.inputs.iter().map(|i| Input {
+        name: &i.name,
+        unit: &i.unit,
+        min: i.min,
+        max: i.max,
+    });
     let file = File {
         format: FORMAT,
         format_version: FORMAT_VERSION,
@@ -58,22 +64,15 @@ pub fn json(model: &Model) -> Result<String, ExportError> {
         parameters: model.mlp.parameters(),
         seed: meta.seed,
         epochs: meta.epochs,
-        inputs: meta
-            .inputs
-            .iter()
-            .map(|i| Input {
-                name: &i.name,
-                unit: &i.unit,
-                min: i.min,
-                max: i.max,
-            })
-            .collect(),
+        inputs: inputs.collect(),
         dataset: meta.dataset.as_ref(),
         held_out: &meta.held_out,
         description: Description::of(meta.recipe),
         multisampling: "by-sample",
         self_test: SelfTest::of(model),
     };
-    let text = serde_json::to_string_pretty(&file).map_err(|e| ExportError::Json(e.to_string()))?;
-    Ok(text + "\n")
+    let text = serde_json::to_string_pretty(&file);
+    let refused =
+        |e| ExportError::Refused(format!("the description cannot be written as JSON: {e}"));
+    Ok(text.map_err(refused)? + "\n")
 }

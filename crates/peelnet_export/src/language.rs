@@ -174,9 +174,10 @@ impl Language {
                     .map_err(|e| Box::new(e) as _)
             }
         };
-        written.map_err(|e| ExportError::Language {
-            language: self.name(),
-            reason: e.to_string(),
+        written.map_err(|e| {
+            ExportError::Refused(format!(
+                "the text cannot be translated to {self}: {e}; nothing was written"
+            ))
         })?;
         let mut text = text.as_str();
         if is_glsl {

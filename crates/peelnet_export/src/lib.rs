@@ -23,13 +23,11 @@ pub use description::{Blend, Description, Kind as ValueKind, Pass, Target, Value
 pub use json::json;
 pub use language::Language;
 pub use self_test::{Drawn, Pixel, Point, SelfTest};
-pub use text::{multiply_adds, text, wgsl};
+pub use text::{text, wgsl};
 #[cfg(not(target_arch = "wasm32"))]
 pub use verify::{Verification, description_path, evaluate, export, verify};
 
 use peelnet_files::Kind;
-use std::path::PathBuf;
-
 /// By what an exported text is known: its first lines.
 pub const KIND: Kind = Kind {
     name: "an exported shader",
@@ -69,7 +67,6 @@ pub enum Precision {
 }
 
 /// What can go wrong while exporting.
-#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// A model that does not hold together.
@@ -78,42 +75,10 @@ pub enum ExportError {
     /// The text is not valid or does not link: a bug here, or an edited text.
     #[error(transparent)]
     Shader(#[from] peelnet_shaders::ShaderError),
-    /// The text declares something else than the functions that are exported with the model: an edited text.
-    #[error(
-        "the exported text holds other declarations than the model's: {found}; nothing was written"
-    )]
-    Declares { found: String },
-    /// A text that another language cannot hold: a bug here.
-    #[error("the text cannot be translated to {language}: {reason}; nothing was written")]
-    Language {
-        language: &'static str,
-        reason: String,
-    },
-    /// A description that cannot be written: a bug here.
-    #[error("the description cannot be written as JSON: {0}")]
-    Json(String),
     /// The GPU.
     #[error("{0}")]
     Gpu(#[from] peelnet_gpu::GpuError),
-    /// A language in which half floats need more than a text of functions.
-    #[error(
-        "{0} has no portable 16-bit floats; choose wgsl, hlsl or msl, or 32 bits; nothing was written"
-    )]
-    NoHalves(&'static str),
-    /// The text computes something else than the model.
-    #[error(
-        "the exported function differs from the model: inputs {inputs:?} give {found} instead of {expected} (allowed difference {tolerance:e}); nothing was written"
-    )]
-    Differs {
-        inputs: Vec<f32>,
-        found: f32,
-        expected: f64,
-        tolerance: f64,
-    },
-    /// The file could not be written.
-    #[error("cannot write {path}: {source}")]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    /// A text that a language cannot hold, that is not the model's, or that cannot be written.
+    #[error("{0}")]
+    Refused(String),
 }

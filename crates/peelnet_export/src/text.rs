@@ -21,7 +21,7 @@ pub(crate) fn has_halves(wgsl: &str) -> bool {
 }
 
 /// Multiply–adds of one evaluation of the network, as published costs count them (padding not included).
-pub fn multiply_adds(mlp: &Mlp) -> usize {
+pub(crate) fn multiply_adds(mlp: &Mlp) -> usize {
     mlp.layers.iter().map(|l| l.inputs * l.outputs).sum()
 }
 
@@ -34,7 +34,9 @@ pub fn multiply_adds(mlp: &Mlp) -> usize {
 pub fn text(model: &Model, options: &Options) -> Result<String, ExportError> {
     let language = options.language;
     if options.precision == Precision::F16 && !language.spelling().has_halves {
-        return Err(ExportError::NoHalves(language.name()));
+        return Err(ExportError::Refused(format!(
+            "{language} has no portable 16-bit floats; choose wgsl, hlsl or msl, or 32 bits; nothing was written"
+        )));
     }
     Ok(header(model, options) + &language.translate(&code(model, options.precision)?)?)
 }

@@ -1,6 +1,7 @@
 //! The model as safetensors bytes, and files of them.
 
 use std::collections::HashMap;
+use std::fmt;
 
 use peelnet_core::mlp::{Activation, Layer, Mlp};
 use peelnet_files::Kind;
@@ -9,7 +10,7 @@ use safetensors::{Dtype, SafeTensors};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Problem;
-use crate::metadata::{FORMAT_VERSION, Metadata};
+use crate::metadata::{Metadata, check_version};
 use crate::model::Model;
 
 /// Bytes of a model file that are read: the largest network that training makes has 16 MiB of weights.
@@ -56,7 +57,7 @@ pub(crate) fn encode(model: &Model) -> Result<Vec<u8>, Problem> {
         },
         meta: &model.meta,
     };
-    let json = serde_json::to_string(&stored).map_err(|e| Problem::Metadata(e.to_string()))?;
+    let json = serde_json::to_string(&stored).map_err(metadata)?;
     let mut tensors: Vec<(String, Vec<usize>, Vec<u8>)> = Vec::new();
     for (i, layer) in model.mlp.layers.iter().enumerate() {
         let shape = vec![layer.outputs, layer.inputs];
@@ -70,44 +71,51 @@ pub(crate) fn encode(model: &Model) -> Result<Vec<u8>, Problem> {
     let metadata = HashMap::from([(KEY.to_owned(), json)]);
     views
         .and_then(|views| safetensors::serialize(views, Some(metadata)))
-        .map_err(|e| Problem::NotSafetensors(e.to_string()))
+        .map_err(broken)
+}
+
+fn broken(error: safetensors::SafeTensorError) -> Problem {
+    Problem(format!(
+        "not a readable safetensors file ({error}): it was cut off or is something else; train or copy the model again"
+    ))
+}
+
+fn metadata(error: impl fmt::Display) -> Problem {
+    Problem(format!("metadata: {error}; train again with this version"))
+}
+
+/// A tensor that is missing, or belongs to no layer.
+fn misnamed(name: &str, fault: &str) -> Problem {
+    Problem(format!(
+        "tensor {name:?} {fault}; the tensors must be layers.0.weight, layers.0.bias, layers.1.weight, …"
+    ))
 }
 
 pub(crate) fn decode(bytes: &[u8]) -> Result<Model, Problem> {
-    let broken = |e: safetensors::SafeTensorError| Problem::NotSafetensors(e.to_string());
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(broken)?;
     let tensors = SafeTensors::deserialize(bytes).map_err(broken)?;
-    let json = header
-        .metadata()
-        .as_ref()
-        .and_then(|m| m.get(KEY))
-        .ok_or(Problem::NotOurs)?;
-    let (meta, activations) = read_metadata(json)?;
-    let layers = read_layers(&tensors)?;
-    let mlp = Mlp::new(layers, activations.hidden, activations.output)?;
+    let json = header.metadata().as_ref().and_then(|m| m.get(KEY));
+    let json = json.ok_or_else(|| {
+        let fault = "no `peelnet` entry in the metadata: the file is not a peelnet model";
+        Problem(format!("{fault}; give one that `peelnet train` wrote"))
+    })?;
+    let (meta, Activations { hidden, output, .. }) = read_metadata(json)?;
+    let mlp = Mlp::new(read_layers(&tensors)?, hidden, output).map_err(Problem::shapes)?;
     let model = Model { mlp, meta };
     model.check()?;
     Ok(model)
 }
 
 fn read_metadata(json: &str) -> Result<(Metadata, Activations), Problem> {
-    let wrong = |e: serde_json::Error| Problem::Metadata(e.to_string());
-    let mut value: serde_json::Value = serde_json::from_str(json).map_err(wrong)?;
+    let mut value: serde_json::Value = serde_json::from_str(json).map_err(metadata)?;
+    let missing = |field| move || metadata(format!("missing field `{field}`"));
     // The version first: another version's fields are bound to look wrong.
-    match value
-        .get("format_version")
-        .and_then(serde_json::Value::as_u64)
-    {
-        Some(version) if version == u64::from(FORMAT_VERSION) => {}
-        Some(version) => return Err(Problem::Version(version)),
-        None => return Err(Problem::Metadata("missing field `format_version`".into())),
-    }
-    let activations = value
-        .get_mut("mlp")
-        .map(serde_json::Value::take)
-        .ok_or_else(|| Problem::Metadata("missing field `mlp`".into()))?;
-    let activations = serde_json::from_value(activations).map_err(wrong)?;
-    let meta = serde_json::from_value(value).map_err(wrong)?;
+    let version = value.get("format_version").and_then(|v| v.as_u64());
+    check_version(version.ok_or_else(missing("format_version"))?)?;
+    let activations = value.get_mut("mlp").map(serde_json::Value::take);
+    let activations = activations.ok_or_else(missing("mlp"))?;
+    let activations = serde_json::from_value(activations).map_err(metadata)?;
+    let meta = serde_json::from_value(value).map_err(metadata)?;
     Ok((meta, activations))
 }
 
@@ -126,21 +134,22 @@ fn read_layers(tensors: &SafeTensors<'_>) -> Result<Vec<Layer>, Problem> {
         .filter(|n| !(0..layers).any(|i| **n == weight(i) || **n == bias(i)))
         .min()
     {
-        return Err(Problem::UnknownTensor((*unknown).to_owned()));
+        return Err(misnamed(unknown, "belongs to no layer"));
     }
     if layers == 0 {
-        return Err(Problem::MissingTensor(weight(0)));
+        return Err(misnamed(&weight(0), "is missing"));
     }
     (0..layers)
         .map(|i| {
             let (shape, weights) = read_tensor(tensors, &weight(i), 2)?;
             let (bias_shape, bias_values) = read_tensor(tensors, &bias(i), 1)?;
             if bias_shape[0] != shape[0] {
-                return Err(Problem::Tensor {
-                    name: bias(i),
-                    found: format!("F32 {bias_shape:?}"),
-                    expected: format!("F32 [{}], one for each row of {}", shape[0], weight(i)),
-                });
+                return Err(Problem(format!(
+                    "tensor {:?} is F32 {bias_shape:?}, expected F32 [{}], one for each row of {}",
+                    bias(i),
+                    shape[0],
+                    weight(i)
+                )));
             }
             Ok(Layer {
                 outputs: shape[0],
@@ -158,19 +167,14 @@ fn read_tensor(
     name: &str,
     dimensions: usize,
 ) -> Result<(Vec<usize>, Vec<f32>), Problem> {
-    let tensor = tensors
-        .tensor(name)
-        .map_err(|_| Problem::MissingTensor(name.to_owned()))?;
-    let shape = tensor.shape().to_vec();
-    if tensor.dtype() != Dtype::F32 || shape.len() != dimensions || shape.contains(&0) {
-        return Err(Problem::Tensor {
-            name: name.to_owned(),
-            found: format!("{:?} {shape:?}", tensor.dtype()),
-            expected: match dimensions {
-                2 => "F32 [outputs, inputs]".to_owned(),
-                _ => "F32 [outputs]".to_owned(),
-            },
-        });
+    let tensor = tensors.tensor(name);
+    let tensor = tensor.map_err(|_| misnamed(name, "is missing"))?;
+    let (kind, shape) = (tensor.dtype(), tensor.shape().to_vec());
+    if kind != Dtype::F32 || shape.len() != dimensions || shape.contains(&0) {
+        let expected = ["[outputs]", "[outputs, inputs]"][dimensions - 1];
+        return Err(Problem(format!(
+            "tensor {name:?} is {kind:?} {shape:?}, expected F32 {expected}"
+        )));
     }
     let (words, _) = tensor.data().as_chunks();
     let values = words.iter().map(|&word| f32::from_le_bytes(word));

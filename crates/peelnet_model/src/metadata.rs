@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use num_traits::{Float, clamp};
 use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT, ROOT_ABSORBANCE_LIMIT, WEIGHT_FLOOR};
 use serde::{Deserialize, Serialize};
 
@@ -87,15 +88,9 @@ impl Output {
     }
 
     /// Keeps one value of the network in range; NaN becomes the smallest value.
-    pub fn guard(self, value: f32) -> f32 {
+    pub(crate) fn guard<F: Float + From<f32>>(self, value: F) -> F {
         let (low, high) = self.range();
-        value.max(low).min(high)
-    }
-
-    /// As [`Output::guard`], in 64 bits.
-    pub fn guard_f64(self, value: f64) -> f64 {
-        let (low, high) = self.range();
-        value.max(f64::from(low)).min(f64::from(high))
+        value.max(low.into()).min(high.into())
     }
 }
 
@@ -125,17 +120,11 @@ pub struct Input {
 }
 
 impl Input {
-    /// The normalised value of a raw one.
-    pub fn normalise(&self, raw: f32) -> f32 {
-        let raw = raw.clamp(-RAW_LIMIT, RAW_LIMIT);
-        ((raw - self.offset) * self.scale).clamp(-INPUT_LIMIT, INPUT_LIMIT)
-    }
-
-    /// As [`Input::normalise`], in 64 bits.
-    pub fn normalise_f64(&self, raw: f64) -> f64 {
-        let (raw_limit, limit) = (f64::from(RAW_LIMIT), f64::from(INPUT_LIMIT));
-        let raw = raw.clamp(-raw_limit, raw_limit);
-        ((raw - f64::from(self.offset)) * f64::from(self.scale)).clamp(-limit, limit)
+    /// The normalised value of a raw one, in 32 or 64 bits.
+    pub fn normalise<F: Float + From<f32>>(&self, raw: F) -> F {
+        let limited = |x: F, limit: f32| clamp(x, (-limit).into(), limit.into());
+        let from_offset = limited(raw, RAW_LIMIT) - self.offset.into();
+        limited(from_offset * self.scale.into(), INPUT_LIMIT)
     }
 }
 
@@ -191,23 +180,29 @@ pub struct Metadata {
     pub config: serde_json::Value,
 }
 
+/// Whether a file of this version can be read.
+pub(crate) fn check_version(version: u64) -> Result<(), Problem> {
+    if version == u64::from(FORMAT_VERSION) {
+        return Ok(());
+    }
+    Err(Problem(format!(
+        "model format {version}, but this program reads format {FORMAT_VERSION}; train again with this version"
+    )))
+}
+
 impl Metadata {
     /// Checks what the types cannot say.
     pub(crate) fn check(&self) -> Result<(), Problem> {
-        if self.format_version != FORMAT_VERSION {
-            return Err(Problem::Version(self.format_version.into()));
-        }
-        let require = |is_good: bool, field: String, value: &dyn fmt::Display, allowed| {
-            let value = value.to_string();
-            let problem = Problem::Value {
-                field,
-                value,
-                allowed,
+        check_version(self.format_version.into())?;
+        let require = |is_good: bool, field: &str, value: &dyn fmt::Display, allowed| {
+            let problem = || {
+                let fault = format!("{field} is {value}, it must be {allowed}");
+                Problem(format!("metadata: {fault}; train again"))
             };
-            if is_good { Ok(()) } else { Err(problem) }
+            if is_good { Ok(()) } else { Err(problem()) }
         };
         let finite = |field: String, value: f64| {
-            require(value.is_finite(), field, &value, "a finite number")
+            require(value.is_finite(), &field, &value, "a finite number")
         };
         for input in &self.inputs {
             let field = |name: &str| format!("{name} of input {:?}", input.name);
@@ -222,8 +217,8 @@ impl Metadata {
             let Input {
                 scale, min, max, ..
             } = input;
-            require(*scale != 0.0, field("scale"), scale, "other than 0")?;
-            require(min <= max, field("min"), min, "at most max")?;
+            require(*scale != 0.0, &field("scale"), scale, "other than 0")?;
+            require(min <= max, &field("min"), min, "at most max")?;
         }
         for (name, loss) in [
             ("train", self.losses.train),
@@ -235,20 +230,18 @@ impl Metadata {
         for (scene, &error) in &self.held_out {
             finite(format!("the held-out error of {scene:?}"), error)?;
         }
-        let found: Vec<_> = self.inputs.iter().map(|i| i.name.clone()).collect();
-        let expected = self.recipe.input_names();
+        let (recipe, output) = (self.recipe, self.output);
+        let found: Vec<_> = self.inputs.iter().map(|i| i.name.as_str()).collect();
+        let expected = recipe.input_names();
         if found != expected {
-            return Err(Problem::Features {
-                recipe: self.recipe,
-                expected: format!("({})", expected.join(", ")),
-                found,
-            });
+            let [expected, found] = [expected, found].map(|names| names.join(", "));
+            return Err(Problem(format!(
+                "made for other features: recipe {recipe} takes ({expected}), the model lists ({found}); train again with this version"
+            )));
         }
-        if self.output != self.recipe.output {
-            return Err(Problem::OutputKind {
-                recipe: self.recipe,
-                output: self.output,
-            });
+        if output != recipe.output {
+            let problem = format!("recipe {recipe} does not predict {output}");
+            return Err(Problem(problem));
         }
         Ok(())
     }

@@ -1,7 +1,9 @@
 //! A network and its metadata, and how it answers.
 
+use std::iter::Sum;
 use std::path::Path;
 
+use num_traits::{Float, cast};
 use peelnet_core::mlp::{Layer, Mlp};
 use sha2::{Digest, Sha256};
 
@@ -98,59 +100,46 @@ impl Model {
     pub fn check(&self) -> Result<(), Problem> {
         self.meta.check()?;
         // The fields are public: what `Mlp::new` checked once may have changed.
-        Mlp::new(self.mlp.layers.clone(), self.mlp.hidden, self.mlp.output)?;
+        let Mlp { hidden, output, .. } = self.mlp;
+        Mlp::new(self.mlp.layers.clone(), hidden, output).map_err(Problem::shapes)?;
         for (i, layer) in self.mlp.layers.iter().enumerate() {
             let Layer { weights, bias, .. } = layer;
             for (part, values) in [("weight", weights), ("bias", bias)] {
                 if let Some(index) = values.iter().position(|v| !v.is_finite()) {
-                    return Err(Problem::NotFinite {
-                        name: format!("layers.{i}.{part}"),
-                        index,
-                        value: values[index].to_string(),
-                    });
+                    let (name, value) = (format!("layers.{i}.{part}"), values[index]);
+                    return Err(Problem(format!(
+                        "tensor {name:?}: value {index} is {value}, all weights must be finite; the training diverged, train again with a lower rate"
+                    )));
                 }
             }
         }
-        if self.mlp.inputs() != self.meta.inputs.len() {
-            return Err(Problem::InputCount {
-                network: self.mlp.inputs(),
-                listed: self.meta.inputs.len(),
-            });
+        let (network, listed) = (self.mlp.inputs(), self.meta.inputs.len());
+        if network != listed {
+            return Err(Problem(format!(
+                "the network takes {network} inputs but the metadata lists {listed}"
+            )));
         }
-        if self.mlp.outputs() != self.meta.output.count() {
-            return Err(Problem::OutputCount {
-                network: self.mlp.outputs(),
-                output: self.meta.output,
-                expected: self.meta.output.count(),
-            });
+        let (network, output) = (self.mlp.outputs(), self.meta.output);
+        let expected = output.count();
+        if network != expected {
+            return Err(Problem(format!(
+                "the network gives {network} outputs where {output} has {expected}"
+            )));
         }
         Ok(())
     }
 
-    /// The prediction for raw features in scene units: normalises, runs the network, guards the outputs.
+    /// The prediction for raw features in scene units: normalises, runs the network, guards the outputs. In 32 bits, or in 64: what every
+    /// other evaluation is compared with.
     ///
     /// # Panics
     /// If the number of features is not that of the model's inputs.
-    pub fn forward_raw(&self, raw_inputs: &[f32]) -> Vec<f32> {
+    pub fn forward_raw<F: Float + From<f32> + Sum>(&self, raw_inputs: &[F]) -> Vec<F> {
         assert_eq!(raw_inputs.len(), self.meta.inputs.len(), "model inputs");
         let inputs = self.meta.inputs.iter().zip(raw_inputs);
-        let normalised: Vec<f32> = inputs.map(|(i, &raw)| i.normalise(raw)).collect();
+        let normalised: Vec<F> = inputs.map(|(i, &raw)| i.normalise(raw)).collect();
         let outputs = self.mlp.forward(&normalised).into_iter();
         outputs.map(|value| self.meta.output.guard(value)).collect()
-    }
-
-    /// As [`Model::forward_raw`], in 64 bits: what every other evaluation is compared with.
-    ///
-    /// # Panics
-    /// If the number of features is not that of the model's inputs.
-    pub fn forward_raw_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
-        assert_eq!(raw_inputs.len(), self.meta.inputs.len(), "model inputs");
-        let inputs = self.meta.inputs.iter().zip(raw_inputs);
-        let normalised: Vec<f64> = inputs.map(|(i, &raw)| i.normalise_f64(raw)).collect();
-        let outputs = self.mlp.forward(&normalised).into_iter();
-        outputs
-            .map(|value| self.meta.output.guard_f64(value))
-            .collect()
     }
 
     /// What the exported function answers: [`Model::forward_raw`], made a transmittance where the network predicts a share
@@ -158,28 +147,15 @@ impl Model {
     ///
     /// # Panics
     /// If the number of features is not that of the model's inputs.
-    pub fn shader_output(&self, raw_inputs: &[f32]) -> Vec<f32> {
+    pub fn shader_output<F: Float + From<f32> + Sum>(&self, raw_inputs: &[F]) -> Vec<F> {
         let mut outputs = self.forward_raw(raw_inputs);
         let output = self.meta.output;
         if output.is_share() {
-            let raw: Vec<f64> = raw_inputs.iter().map(|&x| x.into()).collect();
+            let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
+            let raw: Vec<f64> = raw_inputs.iter().map(|&x| wide(x)).collect();
             for share in &mut outputs {
-                *share = output.transmittance(&raw, (*share).into()) as f32;
-            }
-        }
-        outputs
-    }
-
-    /// As [`Model::shader_output`], in 64 bits.
-    ///
-    /// # Panics
-    /// If the number of features is not that of the model's inputs.
-    pub fn shader_output_f64(&self, raw_inputs: &[f64]) -> Vec<f64> {
-        let mut outputs = self.forward_raw_f64(raw_inputs);
-        let output = self.meta.output;
-        if output.is_share() {
-            for share in &mut outputs {
-                *share = output.transmittance(raw_inputs, *share);
+                let t = output.transmittance(&raw, wide(*share));
+                *share = cast(t).unwrap_or_else(F::nan);
             }
         }
         outputs

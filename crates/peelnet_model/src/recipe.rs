@@ -28,7 +28,7 @@ pub enum Inputs {
     /// The moments of a pixel and a depth: every row is an example.
     Moments(&'static [&'static Feature<nmt::Seen>]),
     /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be the root of its absorbance.
-    Rest(&'static [&'static Feature<Rest<f64>>]),
+    Rest(&'static [&'static Feature<Rest>]),
     /// What lies between the known ends of a fragment's slab, in a design of slabs: whole pixels are examples. The first input must be
     /// the root of its absorbance, the fourth and fifth the bounds of the share in front.
     Slabs(Design, &'static [&'static Feature<Between>]),

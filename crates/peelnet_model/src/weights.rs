@@ -20,30 +20,26 @@ impl Model {
                 .iter()
                 .map(|seen| seen.weight(|rest| self.answer(features, rest)))
                 .collect(),
-            Inputs::Slabs(design, features) => {
-                slabs::weights(points, warp, design, precision, |between| {
-                    self.answer(features, between)
-                })
-            }
+            Inputs::Slabs(design, features) => slabs::seen(points, warp, design, precision)
+                .iter()
+                .map(|seen| seen.weight(|between| self.answer(features, between)))
+                .collect(),
             Inputs::Moments(features) => {
                 let all = nmt::Seen::all(points, warp);
                 all.iter().map(|seen| self.answer(features, seen)).collect()
             }
             Inputs::Row(features) => {
                 let alpha_sum = points.iter().map(|(_, alpha)| alpha).sum();
-                let row = |&(linear_depth, _): &(f32, f32)| deep::Row {
-                    linear_depth,
-                    alpha_sum,
-                    fragment_count: points.len() as f32,
+                let weight = |&(linear_depth, _): &(f32, f32)| {
+                    let known = deep::Row {
+                        linear_depth,
+                        alpha_sum,
+                        fragment_count: points.len() as f32,
+                    };
+                    let inputs = features.iter().map(|f| (f.value)(&known) as f32);
+                    self.forward_raw(&inputs.collect::<Vec<_>>())[0].into()
                 };
-                points
-                    .iter()
-                    .map(|point| {
-                        let known = row(point);
-                        let inputs = features.iter().map(|f| (f.value)(&known) as f32);
-                        self.forward_raw(&inputs.collect::<Vec<_>>())[0].into()
-                    })
-                    .collect()
+                points.iter().map(weight).collect()
             }
             Inputs::Layers(_) => Vec::new(),
         }
@@ -52,7 +48,7 @@ impl Model {
     /// The network's outputs for what is known of a fragment or a pixel.
     pub fn answers<C>(&self, features: &[&Feature<C>], known: &C) -> Vec<f64> {
         let inputs: Vec<f64> = features.iter().map(|f| (f.value)(known)).collect();
-        self.forward_raw_f64(&inputs)
+        self.forward_raw(&inputs)
     }
 
     /// The first of [`Model::answers`].

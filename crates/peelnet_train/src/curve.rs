@@ -9,7 +9,6 @@ use peelnet_files::Kind;
 use crate::error::{TrainError, io};
 use crate::report::EpochReport;
 
-/// The columns of a curve as a table.
 const HEADINGS: [&str; 5] = [
     "epoch",
     "train_loss",

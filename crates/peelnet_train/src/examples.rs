@@ -1,14 +1,14 @@
 //! From views of a dataset to the examples of a recipe.
 
-use peelnet_core::absorbance::{DepthWarp, absorbance};
-use peelnet_core::features::{Feature, Rest};
+use peelnet_core::absorbance::DepthWarp;
+use peelnet_core::features::Feature;
 use peelnet_core::fragment::Fragment;
 use peelnet_core::methods::anchored::{self, Place};
 use peelnet_core::methods::deep::Row;
 use peelnet_core::methods::dfaoit::{FRONT, Layers};
-use peelnet_core::methods::moments::{Moments, Settings};
+use peelnet_core::methods::moments::{self, Settings};
 use peelnet_core::methods::nmt;
-use peelnet_core::methods::slabs::{self, Between};
+use peelnet_core::methods::slabs;
 use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset};
 use peelnet_model::{Inputs, Output, Recipe};
 
@@ -16,7 +16,6 @@ use crate::error::TrainError;
 use crate::sampler::Sample;
 use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, REST, SUM, TrainingData};
 
-/// Rows that are read at once.
 const ROWS_AT_A_TIME: usize = 1 << 16;
 
 /// A pixel, nearest fragment first.
@@ -199,18 +198,9 @@ fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
 
 /// The colour of a pixel over black that MBOIT-4 draws.
 fn by_moments(pixel: &Pixel<'_>, warp: &DepthWarp) -> [f64; 3] {
-    let mut moments = Moments::new(Settings::FOUR.basis);
-    let mut zetas = Vec::with_capacity(pixel.points.len());
-    for &(depth, alpha) in pixel.points {
-        let zeta = warp.apply(depth.into());
-        moments.add(absorbance(alpha), zeta);
-        zetas.push(zeta);
-    }
-    let seen = pixel.points.iter().zip(&zetas);
-    let seen = seen.map(|((_, alpha), &zeta)| {
-        f64::from(*alpha) * moments.transmittance(zeta, &Settings::FOUR)
-    });
-    let seen: Vec<f64> = seen.collect();
+    let t = moments::transmittances(pixel.points, warp, &Settings::FOUR);
+    let seen = pixel.points.iter().zip(t);
+    let seen: Vec<f64> = seen.map(|((_, alpha), t)| f64::from(*alpha) * t).collect();
     let scale = (1.0 - pixel.behind()) / seen.iter().sum::<f64>().max(1e-12);
     let mut sum = [0.0; 3];
     for (seen, color) in seen.iter().zip(pixel.colors) {
@@ -259,25 +249,29 @@ fn add(
         (Inputs::Rest(features), Some(warp)) => {
             let apart = recipe.output == Output::AnchoredShareSeparateEnds;
             let all = anchored::seen(pixel.points, warp, recipe.sums);
-            let all = all.iter().map(of_anchored);
-            share_pixel(features, data, pixel, subset, apart, all);
+            let known = all.iter().map(|seen| {
+                let is_between = seen.place == Place::Between;
+                let guessed = is_between.then_some((seen.rest.absorbance, &seen.rest));
+                (seen.weight(|_| 0.0), guessed)
+            });
+            share_pixel(features, data, pixel, subset, apart, known);
         }
         (Inputs::Slabs(design, features), Some(warp)) => {
             let all = slabs::seen(pixel.points, warp, design, recipe.sums);
-            let all = all.iter().map(of_slabs);
-            share_pixel(features, data, pixel, subset, design.apart, all);
+            let known = all.iter().map(|seen| {
+                let guessed = seen.between.as_ref();
+                let guessed = guessed.map(|b| (b.absorbance * (b.bounds[1] - b.bounds[0]), b));
+                (seen.weight(|_| 0.0), guessed)
+            });
+            share_pixel(features, data, pixel, subset, design.apart, known);
         }
         (_, None) => {}
     }
 }
 
-/// What is known of a fragment's weight without the network.
-struct Known<'s, C> {
-    weight: f64,
-    /// The absorbance that the network says a share of, which takes from that weight, and what the network reads; none where the weight is
-    /// known.
-    guessed: Option<(f64, &'s C)>,
-}
+/// What is known of a fragment's weight without the network; and the absorbance that the network says a share of, which takes from that
+/// weight, and what the network reads, or none where the weight is known.
+type Known<'s, C> = (f64, Option<(f64, &'s C)>);
 
 /// The fragments of a pixel whose share the network is asked for, with the inputs of each, and what the others contribute: those are `apart`
 /// where they are not normalised with the rest.
@@ -290,7 +284,7 @@ fn share_pixel<'s, C: 's>(
     all: impl Iterator<Item = Known<'s, C>>,
 ) {
     let all: Vec<_> = all.collect();
-    let guessed = all.iter().filter(|known| known.guessed.is_some()).count();
+    let guessed = all.iter().filter(|(_, guessed)| guessed.is_some()).count();
     // Exact whatever the network says: nothing to learn.
     if guessed == 0 || (apart && guessed == 1) {
         return;
@@ -299,10 +293,10 @@ fn share_pixel<'s, C: 's>(
     let mut left = 1.0 - pixel.behind();
     let mut fixed = [0.0f32; 8];
     for (i, exact) in pixel.contributions().enumerate() {
-        let (known, color) = (&all[i], pixel.colors[i]);
+        let ((weight, guessed), color) = (all[i], pixel.colors[i]);
         // What is known of its weight goes with its opacity.
-        let a = f64::from(pixel.points[i].1) * known.weight;
-        if let Some((guessed, inputs)) = known.guessed {
+        let a = f64::from(pixel.points[i].1) * weight;
+        if let Some((guessed, inputs)) = guessed {
             data.push_row(values(features, inputs), [exact]);
             if let Some(pixels) = &mut data.pixels {
                 pixels.rows[REST].push(guessed as f32);
@@ -329,22 +323,6 @@ fn share_pixel<'s, C: 's>(
         }
     }
     data.end_example(1.0, subset);
-}
-
-fn of_anchored(seen: &anchored::Seen) -> Known<'_, Rest<f64>> {
-    let is_between = seen.place == Place::Between;
-    Known {
-        weight: seen.weight(|_| 0.0),
-        guessed: is_between.then_some((seen.rest.absorbance, &seen.rest)),
-    }
-}
-
-fn of_slabs(seen: &slabs::Seen) -> Known<'_, Between> {
-    let between = seen.between.as_ref();
-    Known {
-        weight: seen.weight(|_| 0.0),
-        guessed: between.map(|b| (b.absorbance * (b.bounds[1] - b.bounds[0]), b)),
-    }
 }
 
 /// One row for a pixel that shows more fragments than are composited exactly.

@@ -106,7 +106,7 @@ impl TrainingData {
             let problem = format!(
                 "no example is left for {name}: so few rows are trained on in memory, without streaming"
             );
-            return Err(TrainError::columns(&plan.source, problem));
+            return Err(TrainError::rows(&plan.source, &problem));
         }
         data.split = Some(plan.split);
         (data.source, data.dataset) = (plan.source, Some(plan.dataset));
@@ -207,15 +207,12 @@ fn scene_name<'a>(dataset: &'a Dataset, part: &Part) -> &'a str {
 /// The name that a part's rows are split by: its scene, or of a synthetic dataset its world.
 fn split_name(dataset: &Dataset, part: &Part) -> String {
     let name = scene_name(dataset, part);
-    if dataset.manifest().peel == SYNTHETIC {
+    if dataset.manifest().peel == "synthetic" {
         format!("{name} {}", part.index)
     } else {
         name.to_owned()
     }
 }
-
-/// How a dataset's manifest says that its lists were made up.
-const SYNTHETIC: &str = "synthetic";
 
 /// Mean `|T̂ − T|` over the fragments of each held-out scene, by scene: what [`Metadata::held_out`] records. Empty for a
 /// network that predicts no transmittance.

@@ -23,7 +23,7 @@ impl OutputLock {
     /// Takes the lock of a model file.
     ///
     /// # Errors
-    /// [`TrainError::Busy`] where another training holds it, or a folder that cannot be written.
+    /// Another training holds it, or the folder cannot be written.
     pub fn take(out: &Path) -> Result<Self, TrainError> {
         let path = beside(out, "lock");
         let failed = io_error(&path);
@@ -47,9 +47,10 @@ impl OutputLock {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
-                    return Err(TrainError::Busy {
-                        out: out.to_owned(),
-                    });
+                    return Err(TrainError::Failed(format!(
+                        "{}: another training writes to this file and its checkpoint; wait for it to end, or write to another file",
+                        out.display()
+                    )));
                 }
                 Err(TryLockError::Error(error)) => return Err(failed(error)),
             }

@@ -15,9 +15,7 @@ use crate::sampler::Stream;
 pub(crate) struct Shape {
     /// Inputs, hidden layers, outputs.
     pub(crate) widths: Vec<usize>,
-    /// After each hidden layer.
     pub(crate) hidden: Activation,
-    /// After the last layer.
     pub(crate) output: Activation,
 }
 
@@ -36,11 +34,9 @@ impl Shape {
         }
     }
 
-    /// Number of weights and biases.
     pub(crate) fn parameters(&self) -> usize {
-        self.layers()
-            .map(|(inputs, outputs)| (inputs + 1) * outputs)
-            .sum()
+        let layers = self.layers();
+        layers.map(|(inputs, outputs)| (inputs + 1) * outputs).sum()
     }
 
     fn layers(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
@@ -80,7 +76,6 @@ impl Shape {
     }
 }
 
-/// A network on a device.
 pub(crate) struct Network {
     weights: Vec<Tensor<2>>,
     biases: Vec<Tensor<2>>,
@@ -240,14 +235,5 @@ mod tests {
             let error = (f64::from(found) - expected).abs();
             assert!(error < 1e-3, "{index}: {found} against {expected}");
         }
-    }
-
-    #[test]
-    fn a_network_without_hidden_layers_is_an_affine_map() {
-        let mut shape = thesis();
-        shape.widths = vec![2, 1];
-        assert_eq!(shape.parameters(), 3);
-        let mlp = shape.to_mlp(&[1.0, 2.0, 3.0]);
-        assert_eq!(mlp.forward(&[10.0, 100.0]), [213.0]);
     }
 }

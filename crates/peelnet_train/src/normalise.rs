@@ -23,7 +23,6 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Of no values.
     pub(crate) const NONE: Self = Self {
         count: 0,
         mean: 0.0,
@@ -70,11 +69,6 @@ impl Moments {
 }
 
 impl Normalisation {
-    /// From the values at `rows`.
-    pub(crate) fn over(values: &[f32], rows: &[u32]) -> Self {
-        Self::of(&Moments::over(values, rows))
-    }
-
     /// From the moments of the values.
     ///
     /// A column counts as constant when it has one value, or when its deviation is so small or large that the inverse is
@@ -113,7 +107,7 @@ mod tests {
     /// The normalisation of all values, and what it makes of values.
     fn normalised(values: &[f32], raw: &[f32]) -> (Normalisation, Vec<f32>) {
         let all = |values: &[f32]| (0..values.len() as u32).collect::<Vec<_>>();
-        let n = Normalisation::over(values, &all(values));
+        let n = Normalisation::of(&Moments::over(values, &all(values)));
         let mut to = Vec::new();
         n.append(raw, &all(raw), &mut to);
         (n, to)

@@ -26,7 +26,6 @@ impl Adam {
         }
     }
 
-    /// One step with the given rate.
     pub(crate) fn step(&self, config: &Config, rate: f64, gradient: Tensor<1>) -> Self {
         let Config {
             beta1,

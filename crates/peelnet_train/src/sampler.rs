@@ -38,7 +38,6 @@ pub(crate) enum Stream {
 }
 
 impl Stream {
-    /// The stream of a seed.
     pub(crate) fn of(self, seed: u64) -> Random {
         match self {
             Self::Weights => Random::new(seed, &[1, 0]),
@@ -69,7 +68,6 @@ pub(crate) struct Sample {
     /// Number of the view, rows of the views up to and with it.
     view: u64,
     seen: u64,
-    /// Rows kept so far.
     kept: u64,
 }
 
@@ -92,7 +90,6 @@ impl Sample {
         }
     }
 
-    /// Every pixel.
     pub(crate) fn all() -> Self {
         Self::new(0, u64::MAX, 0)
     }
@@ -103,7 +100,6 @@ impl Sample {
         self.seen = self.seen.saturating_add(rows);
     }
 
-    /// Whether a pixel of the view is kept.
     pub(crate) fn keep(&mut self, [x, y]: [u32; 2], rows: usize) -> bool {
         if self.fraction < 1.0 {
             let place = u64::from(x) << 32 | u64::from(y);
@@ -156,37 +152,18 @@ pub(crate) fn by_subset(data: &TrainingData, config: &Config) -> [Vec<u32>; 3] {
     })
 }
 
-/// The examples of a run.
 pub(crate) struct Feed<'a> {
-    config: &'a Config,
-    data: &'a TrainingData,
-    device: &'a Device,
-    normalisation: &'a [Normalisation],
+    pub(crate) config: &'a Config,
+    pub(crate) data: &'a TrainingData,
+    pub(crate) device: &'a Device,
+    pub(crate) normalisation: &'a [Normalisation],
     /// Those in memory.
-    examples: [Vec<u32>; 3],
+    pub(crate) examples: [Vec<u32>; 3],
     /// Of subsets in memory whose order never changes.
-    loaded: [Option<Window>; 3],
+    pub(crate) loaded: [Option<Window>; 3],
 }
 
-impl<'a> Feed<'a> {
-    pub(crate) fn new(
-        config: &'a Config,
-        data: &'a TrainingData,
-        examples: [Vec<u32>; 3],
-        normalisation: &'a [Normalisation],
-        device: &'a Device,
-    ) -> Self {
-        Self {
-            config,
-            data,
-            device,
-            normalisation,
-            examples,
-            loaded: [const { None }; 3],
-        }
-    }
-
-    /// Number of examples of a subset.
+impl Feed<'_> {
     pub(crate) fn examples(&self, subset: Subset) -> u64 {
         match &self.data.scratch {
             Some(scratch) => scratch.examples(subset),

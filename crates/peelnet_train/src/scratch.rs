@@ -64,16 +64,17 @@ impl Scratch {
         })
     }
 
-    /// Number of examples of a subset.
     pub(crate) fn examples(&self, subset: Subset) -> u64 {
         let blocks = self.blocks.get(subset as usize).into_iter().flatten();
         blocks.map(|block| u64::from(block.examples)).sum()
     }
 
     fn failed(&self) -> impl Fn(std::io::Error) -> TrainError + '_ {
-        |error| TrainError::Scratch {
-            folder: self.folder.clone(),
-            error,
+        |error| {
+            TrainError::Failed(format!(
+                "the scratch file of streamed training in {}: {error}; it needs room for all examples",
+                self.folder.display()
+            ))
         }
     }
 

@@ -7,7 +7,7 @@ use peelnet_dataset::Subset;
 use peelnet_model::{DatasetRef, Inputs, Recipe};
 
 use crate::error::TrainError;
-use crate::normalise::Normalisation;
+use crate::normalise::{Moments, Normalisation};
 use crate::scratch::Scratch;
 
 /// Examples, by column.
@@ -114,7 +114,6 @@ impl TrainingData {
         }
     }
 
-    /// The columns of rows.
     pub(crate) fn row_columns(&self) -> impl Iterator<Item = &Vec<f32>> {
         let pixels = self.pixels.iter().flat_map(|p| &p.rows);
         self.inputs.iter().chain(&self.targets).chain(pixels)
@@ -126,7 +125,6 @@ impl TrainingData {
         columns.chain(pixels)
     }
 
-    /// The columns of examples.
     pub(crate) fn example_columns(&self) -> impl Iterator<Item = &Vec<f32>> {
         let pixels = self.pixels.iter().flat_map(|p| &p.fixed);
         pixels.chain(&self.weights)
@@ -137,7 +135,6 @@ impl TrainingData {
         pixels.chain(&mut self.weights)
     }
 
-    /// Appends a row.
     pub(crate) fn push_row(
         &mut self,
         inputs: impl IntoIterator<Item = f64>,
@@ -155,7 +152,6 @@ impl TrainingData {
         self.subsets.iter_mut().for_each(|all| all.push(subset));
     }
 
-    /// Number of rows in memory.
     pub(crate) fn rows_held(&self) -> usize {
         self.targets.first().map_or(0, Vec::len)
     }
@@ -171,7 +167,6 @@ impl TrainingData {
         self.scratch.as_ref().map(|scratch| scratch.bytes)
     }
 
-    /// The rows of an example.
     pub(crate) fn rows_of(&self, example: u32) -> Range<u32> {
         let Some(PixelColumns { first, .. }) = &self.pixels else {
             return example..example + 1;
@@ -180,7 +175,6 @@ impl TrainingData {
         first[example as usize]..end.map_or(self.rows_held() as u32, |&row| row)
     }
 
-    /// Number of examples in memory.
     pub(crate) fn examples_held(&self) -> usize {
         let pixels = self.pixels.as_ref();
         pixels.map_or(self.rows_held(), |pixels| pixels.first.len())
@@ -236,7 +230,7 @@ impl TrainingData {
         } else {
             return self.check_values(recipe, &self.source, 0);
         };
-        Err(TrainError::columns(&self.source, problem))
+        Err(TrainError::rows(&self.source, &problem))
     }
 
     /// # Errors
@@ -251,12 +245,10 @@ impl TrainingData {
         let named = names.into_iter().chain(std::iter::repeat("target"));
         for (name, values) in named.zip(self.inputs.iter().chain(&self.targets)) {
             if let Some(row) = values.iter().position(|v| !v.is_finite()) {
-                return Err(TrainError::Value {
-                    data: source.to_owned(),
-                    row: before + row as u64,
-                    column: name.to_owned(),
-                    value: values[row],
-                });
+                let (value, row) = (values[row], before + row as u64);
+                return Err(TrainError::Failed(format!(
+                    "{source}: row {row}, column `{name}` is {value}; extract the dataset again or leave the row out"
+                )));
             }
         }
         Ok(())
@@ -312,7 +304,7 @@ impl TrainingData {
             return scratch.moments.iter().map(Normalisation::of).collect();
         }
         let rows: Vec<u32> = train.iter().flat_map(|&e| self.rows_of(e)).collect();
-        let over = |values: &Vec<f32>| Normalisation::over(values, &rows);
+        let over = |values: &Vec<f32>| Normalisation::of(&Moments::over(values, &rows));
         self.inputs.iter().map(over).collect()
     }
 }

@@ -67,7 +67,7 @@ const MAX_THREADS: usize = 16;
 ///
 /// # Errors
 /// Settings out of range, columns that do not fit, files that cannot be written or that another run writes, a checkpoint that belongs to
-/// another run, or [`TrainError::Diverged`] when a loss or a weight is no longer finite. Being asked to stop is not an error:
+/// another run, or a loss or a weight that is no longer finite. Being asked to stop is not an error:
 /// see [`End::Interrupted`].
 pub fn train(
     config: &Config,
@@ -104,11 +104,18 @@ pub fn train(
         threads: rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
-            .map_err(|error| TrainError::Threads(error.to_string()))?,
+            .map_err(|e| TrainError::Failed(format!("threads could not be started: {e}")))?,
         shape: Shape::new(config),
         folder: checkpoint::folder(&options.out),
     };
-    let mut feed = Feed::new(config, data, examples, &run.normalisation, &device);
+    let mut feed = Feed {
+        config,
+        data,
+        device: &device,
+        normalisation: &run.normalisation,
+        examples,
+        loaded: Default::default(),
+    };
     run.go(&mut feed, on_epoch)
 }
 
@@ -327,18 +334,22 @@ impl Run<'_> {
 
     /// Keeps what there is, then says what happened. The divergence is what the user must hear of, so a failure to save
     /// only means that nothing is said to be kept.
-    fn diverged(&self, what: &'static str, progress: &Progress) -> TrainError {
+    fn diverged(&self, what: &str, progress: &Progress) -> TrainError {
         let saved = self.save(progress).is_ok();
         for path in &self.options.loss_curve {
             let _ = write_curve(path, &progress.history);
         }
-        let kept = saved && !progress.history.is_empty();
-        TrainError::Diverged {
-            epoch: progress.history.len() as u32 + 1,
-            what,
-            learning_rate: self.config.learning_rate,
-            kept: kept.then(|| self.folder.join("last.safetensors")),
-        }
+        let kept = if saved && !progress.history.is_empty() {
+            let last = self.folder.join("last.safetensors");
+            format!("; the weights before it are in {}", last.display())
+        } else {
+            String::new()
+        };
+        TrainError::Failed(format!(
+            "training diverged in epoch {}: {what} is not finite; a lower learning rate than {} may help{kept}",
+            progress.history.len() + 1,
+            self.config.learning_rate
+        ))
     }
 
     /// Saves the state and the two model files made from it.

@@ -11,12 +11,6 @@ use crate::absorbance::{DepthWarp, absorbance};
 pub const UNIT: f64 = 1.0 / 2048.0;
 
 /// The estimated transmittance in front of each of a pixel's fragments, given as (linear depth, α), where all pixels around are like this one.
-///
-/// ```
-/// # use peelnet_core::{absorbance::DepthWarp, methods::avboit};
-/// let t = avboit::transmittances(&[(1.0, 0.5), (3.0, 0.25)], &DepthWarp::new(0.1, 10.0), 64);
-/// assert!(t[0] == 1.0 && (t[1] - 0.5).abs() < 1e-3);
-/// ```
 pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, slices: usize) -> Vec<f64> {
     let depth = |z: f32| (warp.apply(z.into()) * 0.5 + 0.5) * slices as f64;
     // Absorbance up to the near end of each slice, and behind the last.

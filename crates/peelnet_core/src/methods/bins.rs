@@ -11,28 +11,12 @@ use super::range::{Bounds, Range};
 use crate::absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance};
 
 /// Fragments of more opacity hide all that is behind them.
-pub const OPAQUE: f32 = 0.99;
+const OPAQUE: f32 = 0.99;
 
 /// The most absorbance that any other fragment adds: e⁻⁴ is 2 % of the light.
-pub const ABSORBANCE_CAP: f64 = 4.0;
-
-/// What is behind a fragment of this opacity loses to it.
-pub fn capped_absorbance(alpha: f32) -> f64 {
-    if alpha > OPAQUE {
-        ABSORBANCE_MAX
-    } else {
-        absorbance(alpha).min(ABSORBANCE_CAP)
-    }
-}
+const ABSORBANCE_CAP: f64 = 4.0;
 
 /// The estimated transmittance in front of each of a pixel's fragments, given as (linear depth, α).
-///
-/// ```
-/// # use peelnet_core::{absorbance::DepthWarp, methods::{bins, range::Bounds}};
-/// let two = [(1.0, 0.5), (3.0, 0.25)];
-/// let t = bins::transmittances(&two, &DepthWarp::new(0.1, 10.0), 8, Bounds::Pixel);
-/// assert!((t[0] - 1.0).abs() < 1e-12 && (t[1] - 0.5).abs() < 1e-12);
-/// ```
 pub fn transmittances(
     fragments: &[(f32, f32)],
     warp: &DepthWarp,
@@ -44,7 +28,12 @@ pub fn transmittances(
     let point = |(zeta, &(_, alpha)): (f64, &(f32, f32))| {
         let position = range.place(zeta) * bins as f64;
         let bin = (position as usize).min(bins - 1);
-        (bin, position - bin as f64, capped_absorbance(alpha))
+        let b = if alpha > OPAQUE {
+            ABSORBANCE_MAX
+        } else {
+            absorbance(alpha).min(ABSORBANCE_CAP)
+        };
+        (bin, position - bin as f64, b)
     };
     let points: Vec<_> = zetas.zip(fragments).map(point).collect();
     // Absorbance up to the far end of every bin, behind a zero.
@@ -115,15 +104,5 @@ mod tests {
         assert!((behind(0.5) - 0.5).abs() < 1e-12);
         assert!((behind(0.985) - f64::exp(-4.0)).abs() < 1e-12);
         assert!((behind(0.991) - f64::exp(-16.0)).abs() < 1e-12);
-    }
-
-    /// Coincident fragments have nothing in front: their colour is the mean.
-    #[test]
-    fn coincident_fragments_are_averaged() {
-        let f = [(2.0, 0.5); 3];
-        assert_eq!(
-            transmittances(&f, &warp(), 8, Bounds::Pixel),
-            [1.0, 1.0, 1.0]
-        );
     }
 }

@@ -9,14 +9,11 @@ use crate::methods::wboit::{Sums, normalised};
 pub struct Row {
     /// Distance along the view axis, in scene units.
     pub linear_depth: f32,
-    /// Sum of the opacities of the pixel's fragments.
     pub alpha_sum: f32,
-    /// Number of the pixel's fragments.
     pub fragment_count: f32,
 }
 
 impl Row {
-    /// Of a fragment and its pixel.
     pub fn of(fragment: &Fragment, pixel: &[Fragment]) -> Self {
         Self {
             linear_depth: fragment.depth,

@@ -106,17 +106,11 @@ mod tests {
     use super::*;
     use crate::fragment::worked_example;
 
-    /// Up to two layers are exact whatever the network predicts. From three on its colour stands in front of the background.
+    /// From three layers on the network's colour stands in front of the background, with T_∞ = ½³·0.1.
     #[test]
-    fn few_layers_are_exact() {
-        let f = worked_example();
+    fn the_background_shines_through() {
         let c0 = [0.1, 0.2, 0.9];
-        for n in 0..=2 {
-            let want = over::composite(&f[..n], c0);
-            assert_eq!(composite(&f[..n], c0, |_| [9.0; 3]), want, "{n}");
-        }
-        // T_∞ = ½³·0.1.
-        let got = composite(&f, c0, |_| [0.5; 3]);
+        let got = composite(&worked_example(), c0, |_| [0.5; 3]);
         for (g, b) in got.iter().zip(c0) {
             assert!((g - (0.5 + 0.0125 * b)).abs() < 1e-6, "{got:?}");
         }

@@ -28,10 +28,17 @@ use crate::{
     guards::WEIGHT_FLOOR,
 };
 
-/// Absorbance and warped depth of fragments that are given as (linear depth, α).
-fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<(f64, f64)> {
-    let point = |&(depth, alpha): &(f32, f32)| (absorbance(alpha), warp.apply(depth.into()));
-    fragments.iter().map(point).collect()
+/// A fragment: its absorbance, its warped depth, and whether it is visible enough to be the nearest or the farthest of those around it.
+pub type Point = (f64, f64, bool);
+
+fn point(alpha: f32, zeta: f64) -> Point {
+    (absorbance(alpha), zeta, alpha >= anchored::FAINT)
+}
+
+/// Of fragments that are given as (linear depth, α).
+fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
+    let of = |&(depth, alpha): &(f32, f32)| point(alpha, warp.apply(depth.into()));
+    fragments.iter().map(of).collect()
 }
 
 /// Eq 6's composite with an estimate of the transmittance in front of each fragment as its weight.
@@ -47,55 +54,46 @@ pub fn composite(fragments: &[Fragment], background: [f32; 3], transmittances: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragment::worked_example;
-    use crate::weights::Weight;
+    use crate::{fragment::worked_example, random::Random, weights::Weight};
+    use slabs::Design;
 
     const C0: [f32; 3] = [0.1, 0.2, 0.9];
 
-    fn normalised(fragments: &[Fragment]) -> Vec<[f32; 3]> {
-        let mut all = vec![
-            weighted_average::composite(fragments, C0),
-            blended::composite(fragments, C0),
-            deep::composite(fragments, C0, |f| 1.0 / f.depth),
-        ];
-        all.extend(Weight::ALL.map(|w| wboit::composite(fragments, C0, w)));
-        all
-    }
-
-    /// One fragment: every normalised method is exact. 1e−6: about ten roundings of values ≤ 1.
+    /// Up to so many layers, drawn in any order, are exact whatever a network says. 1e−6: about ten roundings of values ≤ 1. Layers closer
+    /// than a level of depth would share a record, so the stacks are spread evenly.
     #[test]
-    fn a_single_fragment_is_exact() {
-        for alpha in [1e-3, 0.25, 0.5, 0.99, 1.0] {
-            let f = [Fragment::new(3.0, alpha, [0.8, 0.4, 0.2])];
+    fn few_layers_are_exact() {
+        let warp = DepthWarp::new(0.1, 2000.0);
+        let mut random = Random::new(7, &[]);
+        for seed in 0..800 {
+            let n = seed % 4 + 1;
+            let mut f: Vec<_> = (0..n)
+                .map(|i| {
+                    let depth = 0.2 * 8f32.powi(i as i32) * random.between(1.0, 1.5);
+                    Fragment::new(depth, random.between(0.02, 0.98), random.color())
+                })
+                .collect();
             let exact = over::composite(&f, C0);
-            for c in normalised(&f) {
-                for k in 0..3 {
-                    assert!((c[k] - exact[k]).abs() < 1e-6, "{alpha} {c:?} {exact:?}");
-                }
-            }
-        }
-    }
-
-    /// No fragment, and fragments of α = 0: the background comes back bit for bit.
-    #[test]
-    fn nothing_leaves_the_background() {
-        for f in [vec![], vec![Fragment::new(2.0, 0.0, [1.0; 3]); 3]] {
-            assert_eq!(over::composite(&f, C0), C0);
-            for c in normalised(&f) {
-                assert_eq!(c, C0);
-            }
-        }
-    }
-
-    /// Fragments of one colour over the same colour: any convex combination gives that colour.
-    #[test]
-    fn one_colour_stays() {
-        let f: Vec<_> = (1..9)
-            .map(|i| Fragment::new(i as f32, 0.1 * i as f32, C0))
-            .collect();
-        for c in normalised(&f) {
-            for k in 0..3 {
-                assert!((c[k] - C0[k]).abs() < 2e-6);
+            f.rotate_left(random.below(n));
+            let share = random.below(3) as f64 / 2.0;
+            let anchored = |apart| anchored::composite(&f, C0, &warp, apart, |_| share);
+            let slabs = |design| slabs::composite(&f, C0, &warp, design, |_| share);
+            // The last layer is a tail of its own.
+            let kbuffer = |tail| kbuffer::composite(&f, C0, 3, tail, stored::Colors::Full);
+            for (name, most, found) in [
+                ("anchored", 2, anchored(false)),
+                ("anchored, separate ends", 3, anchored(true)),
+                ("small slabs", 3, slabs(Design::SMALL)),
+                ("medium slabs", 3, slabs(Design::MEDIUM)),
+                ("large slabs", 3, slabs(Design::LARGE)),
+                ("dfaoit", 2, dfaoit::composite(&f, C0, |_| [9.0; 3])),
+                ("kbuffer", 4, kbuffer(None)),
+                ("hybrid", 4, kbuffer(Some(Weight::Eq9))),
+                ("mlab", 4, mlab::composite(&f, C0, 4)),
+                ("stochastic", 1, stochastic::composite(&f, C0, 8, [3, 5])),
+            ] {
+                let is_near = (0..3).all(|k| (found[k] - exact[k]).abs() < 1e-6);
+                assert!(n > most || is_near, "{name}: {found:?} {exact:?}");
             }
         }
     }
@@ -119,38 +117,6 @@ mod tests {
         ] {
             for (a, b) in got.into_iter().zip(want) {
                 assert!((f64::from(a) - b).abs() < 1e-6, "{got:?} {want:?}");
-            }
-        }
-    }
-
-    /// A single surface comes out exact at 801 depths across the range, whatever its opacity, with moments of all kinds.
-    #[test]
-    fn a_single_surface_is_exact_with_moments() {
-        use moments::Settings;
-        let warp = DepthWarp::new(0.1, 100.0);
-        let trigonometric = [2, 3].map(Settings::trigonometric);
-        let all = [Settings::FOUR, Settings::SIX, Settings::EIGHT].into_iter();
-        for (settings, own_share_out) in all
-            .chain(trigonometric)
-            .flat_map(|s| [(s, false), (s, true)])
-        {
-            let settings = Settings {
-                own_share_out,
-                ..settings
-            };
-            for i in 0..801 {
-                let z = 0.1 * 1000f32.powf(i as f32 / 800.0);
-                for alpha in [0.01, 0.5, 0.99] {
-                    let f = [Fragment::new(z, alpha, [0.9, 0.1, 0.4])];
-                    let t = moments::transmittances(&[(z, alpha)], &warp, &settings);
-                    let (got, want) = (composite(&f, C0, &t), over::composite(&f, C0));
-                    for k in 0..3 {
-                        assert!(
-                            (got[k] - want[k]).abs() < 1e-6,
-                            "{z} {alpha}: {got:?} {want:?}"
-                        );
-                    }
-                }
             }
         }
     }

@@ -24,11 +24,9 @@ pub const EXTENT_FLOOR: f64 = 1.0 / 65_536.0;
 /// What is known of a fragment and its pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Warped depth of the fragment.
     pub zeta: f64,
     /// Warped depths of the pixel's nearest and farthest fragment.
     pub extent: [f64; 2],
-    /// Number of the pixel's fragments.
     pub count: usize,
     /// Moments `b_0 … b_4` of the pixel.
     pub moments: [f64; 5],

@@ -13,7 +13,6 @@ pub enum Bounds {
 /// Ranges of warped depth below this are one depth: 32-bit floats near 1 have 17 values in it.
 pub const LEAST_EXTENT: f64 = 1e-6;
 
-/// A range of warped depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     near: f64,

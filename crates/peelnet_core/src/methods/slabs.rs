@@ -12,9 +12,9 @@ mod inputs;
 
 pub use inputs::{FIVE, NINE};
 
-use super::anchored::{FAINT, composite_weighted};
+use super::{Point, anchored::composite_weighted, point, points};
 use crate::{
-    absorbance::{DepthWarp, absorbance},
+    absorbance::DepthWarp,
     fragment::Fragment,
     statistics::{EndCode, FAR_END, SumPrecision, half_of_code},
 };
@@ -34,9 +34,7 @@ pub struct Kept {
     pub end: f64,
     /// The mean depth of its absorbance.
     pub mean: bool,
-    /// Its nearest fragment.
     pub nearest: bool,
-    /// Its farthest fragment.
     pub farthest: bool,
 }
 
@@ -58,7 +56,6 @@ pub struct Design {
     pub slabs: &'static [Kept],
     /// How nearest and farthest fragments are kept, by their place in the slab.
     pub records: EndCode,
-    /// What is cut into slabs.
     pub extent: Extent,
     /// Whether the colours of known fragments have a sum of their own.
     pub apart: bool,
@@ -78,16 +75,12 @@ const fn until(end: f64, mean: bool, farthest: bool) -> Kept {
 /// there are three: ten, twelve and sixteen values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// [`Design::SMALL`].
     Small,
-    /// [`Design::MEDIUM`].
     Medium,
-    /// [`Design::LARGE`].
     Large,
 }
 
 impl Layout {
-    /// All, the smallest first.
     pub const ALL: [Self; 3] = [Self::Small, Self::Medium, Self::Large];
 
     /// Its name in methods, recipes and shaders.
@@ -99,7 +92,6 @@ impl Layout {
         }
     }
 
-    /// What it holds.
     pub const fn design(self) -> Design {
         match self {
             Self::Small => Design::SMALL,
@@ -188,7 +180,6 @@ pub struct Range {
 }
 
 impl Range {
-    /// That of the frame.
     pub const WHOLE: Self = Self {
         low: 0.0,
         high: RANGE_TOP,
@@ -237,7 +228,6 @@ struct Slab {
 pub struct Between {
     /// Absorbance `r` of it.
     pub absorbance: f64,
-    /// Depth of the fragment.
     pub place: f64,
     /// Mean depth of the absorbance; a half where it is not kept.
     pub mean: f64,
@@ -245,7 +235,6 @@ pub struct Between {
     pub bounds: [f64; 2],
     /// Half of what the two are apart, in slabs.
     pub extent: f64,
-    /// Absorbance of the fragment.
     pub own: f64,
     /// Absorbance of the ends that lies in front: the nearer end's, and half of an end's in the fragment's own bin.
     pub nearest: f64,
@@ -271,9 +260,6 @@ impl Seen {
     }
 }
 
-/// A fragment: its absorbance, its warped depth, whether it is visible enough to be a slab's nearest or farthest.
-pub type Point = (f64, f64, bool);
-
 /// The slabs of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slabs {
@@ -283,7 +269,6 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// Of a pixel's fragments.
     pub fn of(fragments: &[Point], design: Design, precision: SumPrecision) -> Self {
         let mut all = Self {
             design,
@@ -307,7 +292,6 @@ impl Slabs {
         all
     }
 
-    /// The range that is cut.
     pub const fn range(&self) -> Range {
         self.range
     }
@@ -337,7 +321,6 @@ impl Slabs {
         }
     }
 
-    /// What is known of one of its fragments.
     pub fn seen(&self, absorbance: f64, zeta: f64, counts: bool) -> Seen {
         let place = self.place(absorbance, zeta);
         let slab = &self.slabs[place.slab];
@@ -444,27 +427,6 @@ pub fn seen(
     let slabs = Slabs::of(&points, design, precision);
     let of = |&(b, zeta, counts): &Point| slabs.seen(b, zeta, counts);
     points.iter().map(of).collect()
-}
-
-/// The weights of a pixel's fragments; `guess` says where between its bounds the share lies that is in front of a fragment.
-pub fn weights(
-    fragments: &[(f32, f32)],
-    warp: &DepthWarp,
-    design: Design,
-    precision: SumPrecision,
-    guess: impl Fn(&Between) -> f64,
-) -> Vec<f64> {
-    let seen = seen(fragments, warp, design, precision);
-    seen.iter().map(|seen| seen.weight(&guess)).collect()
-}
-
-fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
-    let of = |&(depth, alpha): &(f32, f32)| point(alpha, warp.apply(depth.into()));
-    fragments.iter().map(of).collect()
-}
-
-fn point(alpha: f32, zeta: f64) -> Point {
-    (absorbance(alpha), zeta, alpha >= FAINT)
 }
 
 /// The guess without a network: the middle of the bounds.

@@ -62,27 +62,6 @@ pub fn composite(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::over;
-
-    /// One fragment is exact whatever its samples; opaque ones hide what lies behind.
-    #[test]
-    fn one_and_opaque_are_exact() {
-        let c0 = [0.2, 0.6, 0.4];
-        for i in 0..50 {
-            let one = [Fragment {
-                triangle: i,
-                ..Fragment::new(2.0, 0.02 * i as f32, [0.9, 0.1, 0.4])
-            }];
-            let opaque = [one[0], Fragment::new(1.0, 1.0, [0.3, 0.5, 0.7])];
-            for f in [&one[..], &opaque[..]] {
-                let (got, want) = (composite(f, c0, 8, [i, 3]), over::composite(f, c0));
-                for k in 0..3 {
-                    // What is hidden keeps its unseen share.
-                    assert!((got[k] - want[k]).abs() <= UNSEEN, "{got:?} {want:?}");
-                }
-            }
-        }
-    }
 
     /// The mean over many pixels of the share of samples that see a fragment is `α_i T_i`: the error falls with the root of
     /// their number. Four standard deviations of a share of samples, which is at most a half wide.
@@ -114,22 +93,6 @@ mod tests {
             let bound = 4.0 * 0.5 / f64::from(pixels).sqrt();
             assert!((share - want).abs() < bound, "{share} {want}");
             transmittance *= 1.0 - f64::from(f.alpha);
-        }
-    }
-
-    /// Faint layers that no sample sees still have their average colour: nothing turns black.
-    #[test]
-    fn nothing_turns_black() {
-        let f: Vec<_> = (0..3)
-            .map(|i| Fragment {
-                triangle: i,
-                ..Fragment::new(1.0 + i as f32, 0.01, [0.5; 3])
-            })
-            .collect();
-        for p in 0..200 {
-            for c in composite(&f, [0.5; 3], 1, [p, 0]) {
-                assert!((c - 0.5).abs() < 1e-6);
-            }
         }
     }
 }

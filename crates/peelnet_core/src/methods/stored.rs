@@ -5,10 +5,8 @@ use crate::fragment::Fragment;
 /// What a stored colour and its alpha are kept in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colors {
-    /// Four 32-bit floats.
     #[default]
     Full,
-    /// Four half floats.
     Half,
     /// Four bytes: the roots of the premultiplied colour, which spend them on dark colours, and alpha. Light beyond 1 is cut off.
     Bytes,
@@ -16,13 +14,6 @@ pub enum Colors {
 
 impl Colors {
     /// A premultiplied colour and its alpha as they come back.
-    ///
-    /// ```
-    /// # use peelnet_core::methods::stored::Colors;
-    /// let color = [0.25, 0.001, 2.0, 0.5];
-    /// assert_eq!(Colors::Full.restored(color), color);
-    /// assert_eq!(Colors::Bytes.restored(color)[2], 1.0);
-    /// ```
     pub fn restored(self, color: [f32; 4]) -> [f32; 4] {
         let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5).floor() / 255.0;
         match self {

@@ -15,7 +15,6 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Accumulates a pixel with the given weight.
     pub fn of(fragments: &[Fragment], mut weight: impl FnMut(&Fragment) -> f32) -> Self {
         let mut sums = Self {
             color: [0.0; 3],

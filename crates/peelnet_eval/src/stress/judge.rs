@@ -42,12 +42,10 @@ pub fn clip_triangles(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<sca
 pub fn light(light: &Light) -> shading::Light {
     shading::Light {
         source: match light.source {
-            Source::Point(p) => shading::Source::Point(p.as_dvec3().to_array()),
-            Source::Toward(d) => shading::Source::Toward(d.as_dvec3().to_array()),
+            Source::Point(p) => shading::Source::Point(p.as_dvec3()),
+            Source::Toward(d) => shading::Source::Toward(d.as_dvec3()),
         },
-        color: light
-            .color
-            .map(|c| f64::from(c) * f64::from(light.intensity)),
+        color: DVec3::from(light.color.map(f64::from)) * f64::from(light.intensity),
     }
 }
 
@@ -243,14 +241,14 @@ impl<'a> View<'a> {
         let view = (self.eye - position).normalize();
         let normal = normal(object, object.mesh.triangles[triangle], position);
         // As in the shader: where vertices' normals cancel, the view direction stands in.
-        let normal = normal.unwrap_or(view).to_array();
+        let normal = normal.unwrap_or(view);
         let point = shading::Point {
-            position: position.to_array(),
+            position,
             normal,
-            eye: self.eye.to_array(),
+            eye: self.eye,
             ambient: 1.0,
         };
-        let color = material.color.map(f64::from);
+        let color = DVec3::from(material.color.map(f64::from));
         let radiance = match material.lighting {
             Lighting::Phong => {
                 let (strength, exponent) = (material.specular.into(), material.shininess.into());
@@ -261,7 +259,7 @@ impl<'a> View<'a> {
                 shading::physically_based(&point, color, metallic, roughness, &self.lights)
             }
         };
-        Some(radiance.map(|c| c as f32))
+        Some(radiance.to_array().map(|c| c as f32))
     }
 }
 

@@ -77,7 +77,8 @@ fn transmittances(
 ) -> Option<Vec<f64>> {
     let (design, guess) = design_and_guess(spec, model)?;
     let half = SumPrecision::Half;
-    Some(slabs::weights(fragments, warp, design, half, guess))
+    let seen = slabs::seen(fragments, warp, design, half);
+    Some(seen.iter().map(|seen| seen.weight(&guess)).collect())
 }
 
 /// What all of them have in common.

@@ -1,13 +1,9 @@
 //! Whole runs: what they learn, that they repeat, resume, stop and refuse.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-
 use peelnet_dataset::Subset;
 use peelnet_model::{Model, Recipe};
 use peelnet_train::{
-    Config, End, OutputLock, RunOptions, Schedule, TrainError, TrainingData, checkpoint_folder,
-    train,
+    Config, End, OutputLock, RunOptions, Schedule, TrainingData, checkpoint_folder, train,
 };
 
 use super::{NEVER, assert_repeats, assert_resumes, resuming, run};
@@ -18,11 +14,8 @@ fn rows(n: usize) -> TrainingData {
     for i in 0..n {
         // Low-discrepancy points, so that no generator is needed.
         let point = |step: f64| (i as f64 * step).fract();
-        let (share, alpha) = (
-            point(0.618_033_988_749_895),
-            0.1 + 0.8 * point(0.414_213_562_373_095),
-        );
-        let count = 1.0 + (9.0 * point(0.732_050_807_568_877)).floor();
+        let (share, alpha) = (point(0.618_033_988_75), 0.1 + 0.8 * point(0.414_213_562));
+        let count = 1.0 + (9.0 * point(0.732_050_807_568)).floor();
         data.inputs[0].push((2.0 + 10.0 * share) as f32);
         data.inputs[1].push((alpha * count) as f32);
         data.inputs[2].push(count as f32);
@@ -57,18 +50,10 @@ fn a_network_learns_and_its_file_answers_in_raw_units() {
             .into(),
         ..RunOptions::new(&out, &NEVER)
     };
-    let mut seen = 0;
-    let outcome = train(&config, &data, &options, |report| {
-        seen += 1;
-        assert_eq!((report.epoch, report.epochs), (seen, 30));
-        assert!(report.rows_per_s > 0.0);
-    })
-    .unwrap();
-    assert_eq!(seen, 30);
-    assert_eq!(
-        (outcome.end, outcome.model_epoch, outcome.resumed_from),
-        (End::Finished, 30, None)
-    );
+    let mut seen = Vec::new();
+    let outcome = train(&config, &data, &options, |e| seen.push(e.epoch)).unwrap();
+    assert!(seen.into_iter().eq(1..=30));
+    assert_eq!((outcome.end, outcome.model_epoch), (End::Finished, 30));
     // The target's variance is about 0.1: a network that learnt nothing would stay there.
     let test = outcome.model.meta.losses.test.unwrap();
     assert!(test < 0.005, "{test}");
@@ -114,35 +99,6 @@ fn runs_repeat_and_resume() {
     ] {
         assert_resumes(&config, &|| rows(3000));
     }
-}
-
-/// The moment of the stop is left to chance: whatever it is, the result must be the same.
-#[test]
-fn a_run_interrupted_within_an_epoch_resumes_to_the_same_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let data = rows(20_000);
-    let whole = folder.path().join("whole.safetensors");
-    let config = with(|c| c.batch = 32);
-    run(&config, &data, &whole).unwrap();
-    let out = folder.path().join("parts.safetensors");
-    for attempt in 0..1000 {
-        let stop = AtomicBool::new(false);
-        let options = RunOptions {
-            resume: checkpoint_folder(&out).exists(),
-            ..RunOptions::new(&out, &stop)
-        };
-        let outcome = std::thread::scope(|scope| {
-            scope.spawn(|| {
-                std::thread::sleep(Duration::from_millis(20 * (attempt + 1)));
-                stop.store(true, Ordering::Relaxed);
-            });
-            train(&config, &data, &options, |_| {}).unwrap()
-        });
-        if outcome.end == End::Finished {
-            break;
-        }
-    }
-    assert_eq!(std::fs::read(whole).unwrap(), std::fs::read(out).unwrap());
 }
 
 #[test]
@@ -197,22 +153,6 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
 }
 
 #[test]
-fn resuming_without_a_checkpoint_is_an_error_that_names_the_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let options = resuming(&folder.path().join("net.safetensors"));
-    let refused = train(&config(), &rows(200), &options, |_| {
-        panic!("no epoch may run")
-    });
-    let text = refused.unwrap_err().to_string();
-    let file = "net.safetensors.checkpoint";
-    assert!(
-        text.contains(file) && text.contains("no such file"),
-        "{text}"
-    );
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
-#[test]
 fn divergence_is_an_error_that_keeps_the_last_good_weights() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("net.safetensors");
@@ -222,17 +162,18 @@ fn divergence_is_an_error_that_keeps_the_last_good_weights() {
         |held_out| with(|c| (c.learning_rate, c.batch, c.held_out) = (1e9, 100, held_out));
     let error = run(&diverging(0.0), &rows(100), &out).unwrap_err();
     let text = error.to_string();
-    assert!(text.contains("in epoch 2:"), "{text}");
-    assert!(text.contains("learning rate"), "{text}");
     let kept = checkpoint_folder(&out).join("last.safetensors");
-    assert!(text.contains(&kept.display().to_string()), "{text}");
+    for words in ["in epoch 2:", "learning rate", &kept.display().to_string()] {
+        assert!(text.contains(words), "{text}");
+    }
     assert_eq!(Model::load(kept).unwrap().meta.epochs, 1);
     assert!(!out.exists());
 
     // With held-out rows the first epoch is found out already, and there is nothing to keep.
     let error = run(&diverging(0.5), &rows(100), &out).unwrap_err();
-    assert!(error.to_string().contains("in epoch 1:"), "{error}");
-    assert!(matches!(error, TrainError::Diverged { kept: None, .. }));
+    let text = error.to_string();
+    let is_kept = text.contains("weights before");
+    assert!(text.contains("in epoch 1:") && !is_kept, "{text}");
 }
 
 #[test]
@@ -318,86 +259,26 @@ fn few_equal_and_constant_rows_train_to_something_finite() {
         model.forward_raw(&[0.1, 2.0, 4.0]),
         model.forward_raw(&[0.1, 0.5, 4.0])
     );
-
-    // Depths of a thousand million carry the same information as small ones.
-    let mut far = rows(2000);
-    for depth in &mut far.inputs[0] {
-        *depth *= 1e8;
-    }
-    let [near, far] =
-        [&rows(2000), &far].map(|data| run(&config(), data, &out).unwrap().history[5].train_loss);
-    assert!((near - far).abs() < 1e-4 * near, "{near} against {far}");
-}
-
-/// Endings are appended to the whole name: what follows the last dot of `exp-0.5` is part of it.
-#[test]
-fn models_with_dots_in_their_names_have_checkpoints_of_their_own() {
-    let folder = tempfile::tempdir().unwrap();
-    let outs = ["exp-0.5", "exp-0.7"].map(|name| folder.path().join(name));
-    let models = outs.each_ref().map(|out| {
-        let outcome = run(&config(), &rows(200), out).unwrap();
-        assert_eq!(outcome.checkpoint, checkpoint_folder(out));
-        std::fs::read(outcome.checkpoint.join("last.safetensors")).unwrap()
-    });
-    assert_eq!(models[0], models[1]);
-    for name in ["exp-0.5.checkpoint", "exp-0.7.checkpoint"] {
-        assert!(folder.path().join(name).join("state.safetensors").is_file());
-    }
-    // Locks are gone.
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
 }
 
 #[test]
 fn two_trainings_of_one_output_exclude_one_another() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("net.safetensors");
+    let options = RunOptions::new(&out, &NEVER);
     let mut refused = 0;
-    train(
-        &config(),
-        &rows(200),
-        &RunOptions::new(&out, &NEVER),
-        |_| {
-            let e = run(&config(), &rows(200), &out).unwrap_err();
-            assert!(matches!(&e, TrainError::Busy { .. }), "{e}");
-            refused += 1;
-        },
-    )
+    train(&config(), &rows(200), &options, |_| {
+        let e = run(&config(), &rows(200), &out).unwrap_err();
+        assert!(e.to_string().contains("another training writes"), "{e}");
+        refused += 1;
+    })
     .unwrap();
     assert_eq!(refused, config().epochs);
-    run(&config(), &rows(200), &out).unwrap();
     // A caller that holds the lock longer than the run.
     let lock = OutputLock::take(&out).unwrap();
     let options = RunOptions {
         lock: Some(&lock),
-        ..RunOptions::new(&out, &NEVER)
+        ..options
     };
     train(&config(), &rows(200), &options, |_| {}).unwrap();
-}
-
-#[test]
-fn places_that_cannot_be_written_are_refused_before_training() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("file");
-    std::fs::write(&file, "").unwrap();
-    let refuse = |options: RunOptions<'_>, word: &str| {
-        let text = train(&config(), &rows(20), &options, |_| {
-            panic!("no epoch may run")
-        })
-        .unwrap_err()
-        .to_string();
-        assert!(text.contains(word), "{text}");
-    };
-    refuse(
-        RunOptions::new(file.join("net.safetensors"), &NEVER),
-        "file/net.safetensors.lock",
-    );
-    refuse(
-        RunOptions::new(folder.path(), &NEVER),
-        &folder.path().display().to_string(),
-    );
-    let curve = RunOptions {
-        loss_curve: vec![folder.path().join("loss.png")],
-        ..RunOptions::new(folder.path().join("net.safetensors"), &NEVER)
-    };
-    refuse(curve, "loss.png: a loss curve ends in .csv or .svg");
 }

@@ -1,23 +1,16 @@
 //! Bounds from power moments over warped depth.
 
 use super::roots;
-use num_traits::Float;
 
 /// The least and the most of a measure on −1 … 1 that can lie in front of `zeta`, from its first four moments over its
 /// zeroth: the share without and with all that the bound's measure has at `zeta` itself. Of three points: the depth and two others.
 ///
 /// NaN where the points of that measure coincide.
-pub fn four_moment_bounds<F: Float>(moments: [F; 4], bias: F, zeta: F) -> (F, F) {
-    let (zero, one) = (F::zero(), F::one());
-    let half = one / (one + one);
+pub fn four_moment_bounds(moments: [f64; 4], bias: f64, zeta: f64) -> (f64, f64) {
     // A measure with these moments (0, ⅜, 0, ⅜) has more than two points, so that the matrix below is never singular.
-    let neutral = F::from(0.375).unwrap_or(half);
-    let m = [
-        moments[0] * (one - bias),
-        moments[1] * (one - bias) + neutral * bias,
-        moments[2] * (one - bias),
-        moments[3] * (one - bias) + neutral * bias,
-    ];
+    let mut m = moments.map(|mean| mean * (1.0 - bias));
+    m[1] += 0.375 * bias;
+    m[3] += 0.375 * bias;
     // Factors L D of the Hankel matrix [1 m1 m2; m1 m2 m3; m2 m3 m4], times their denominators.
     let variance = m[1] - m[0] * m[0];
     let l21 = m[2] - m[0] * m[1];
@@ -33,14 +26,14 @@ pub fn four_moment_bounds<F: Float>(moments: [F; 4], bias: F, zeta: F) -> (F, F)
     let own = determinant / (determinant + y1 * y1 * d + y2 * y2);
     // Its roots are the other two points of the measure: the smaller one, p, and one over the larger, q, so that a point at
     // infinity is none in particular, and neither is a difference of large numbers.
-    let root = ((half * c1).powi(2) - c0 * c2).max(zero).sqrt();
-    let inverse = -(half * c1 + if c1 >= zero { root } else { -root }).recip();
+    let root = ((0.5 * c1).powi(2) - c0 * c2).max(0.0).sqrt();
+    let inverse = -(0.5 * c1 + if c1 >= 0.0 { root } else { -root }).recip();
     let (p, q) = (c0 * inverse, c2 * inverse);
     // What lies at either, from the measure's zeroth and first moment.
-    let at_p = (one - own - q * (m[0] - own * zeta)) / (one - p * q);
-    let at_q = one - own - at_p;
-    let in_front = |yes: bool, mass: F| if yes { mass } else { zero };
-    let low = in_front(p < zeta, at_p) + in_front((one - zeta * q) * q < zero, at_q);
+    let at_p = (1.0 - own - q * (m[0] - own * zeta)) / (1.0 - p * q);
+    let at_q = 1.0 - own - at_p;
+    let in_front = |yes: bool, mass: f64| if yes { mass } else { 0.0 };
+    let low = in_front(p < zeta, at_p) + in_front((1.0 - zeta * q) * q < 0.0, at_q);
     (low, low + own)
 }
 

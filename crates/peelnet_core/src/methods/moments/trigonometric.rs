@@ -14,7 +14,6 @@ use super::roots;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// The most moments.
 pub const MOST: usize = 3;
 
 /// Behind the farthest depth, an angle that no depth has.

@@ -6,6 +6,10 @@ use crate::features::Feature;
 /// Keeps a share of two absorbances that are both 0 finite.
 const FLOOR: f64 = 1e-6;
 
+const OF_DEPTH: &str = "of the depth between the slab's ends";
+
+const OF_ABSORBANCE: &str = "of the absorbance between the slab's ends";
+
 /// How much lies between a slab's ends, where the fragment lies, what is known of the share in front, how far apart the ends are, and how
 /// the absorbances compare.
 pub static NINE: [&Feature<Between>; 9] = [
@@ -15,30 +19,10 @@ pub static NINE: [&Feature<Between>; 9] = [
         "sqrt(between.absorbance)",
         |between| between.absorbance.sqrt(),
     ),
-    &Feature::new(
-        "depth_fraction",
-        "of the depth between the slab's ends",
-        "between.place",
-        |between| between.place,
-    ),
-    &Feature::new(
-        "mean_fraction",
-        "of the depth between the slab's ends",
-        "between.mean",
-        |between| between.mean,
-    ),
-    &Feature::new(
-        "share_low",
-        "of the absorbance between the slab's ends",
-        "between.low",
-        |between| between.bounds[0],
-    ),
-    &Feature::new(
-        "share_high",
-        "of the absorbance between the slab's ends",
-        "between.high",
-        |between| between.bounds[1],
-    ),
+    &Feature::new("depth_fraction", OF_DEPTH, "between.place", |b| b.place),
+    &Feature::new("mean_fraction", OF_DEPTH, "between.mean", |b| b.mean),
+    &Feature::new("share_low", OF_ABSORBANCE, "between.low", |b| b.bounds[0]),
+    &Feature::new("share_high", OF_ABSORBANCE, "between.high", |b| b.bounds[1]),
     &Feature::new(
         "root_own",
         "root of the fragment's absorbance",

@@ -1,9 +1,5 @@
 use super::*;
-use crate::{
-    fragment::points as points_of,
-    methods::{self, moments, over},
-    random::Random,
-};
+use crate::{absorbance::absorbance, fragment::points as points_of, methods::over, random::Random};
 
 const C0: [f32; 3] = [0.3, 0.1, 0.7];
 
@@ -102,24 +98,6 @@ fn depths_that_are_rounded_otherwise_are_known_still() {
     );
 }
 
-/// 1e−6: about ten roundings of values up to 1. Layers of one bin share a record, so the places are spread evenly.
-#[test]
-fn few_layers_are_exact_whatever_is_guessed() {
-    let mut random = Random::new(5, &[]);
-    for seed in 0..600 {
-        let n = 1 + seed % 3;
-        let places: Vec<_> = (0..n)
-            .map(|i| (0.1 + 0.8 * f64::from(random.unit()) + f64::from(i)) / f64::from(n))
-            .collect();
-        let f = at(&places, 0.98, &mut random);
-        // The middle one of three is the second of its slab at most, beside one of the pixel's own ends.
-        for design in [Design::LARGE, Design::MEDIUM, Design::SMALL] {
-            let worst = worst(&f, design, f64::from(seed % 4) / 3.0);
-            assert!(worst < 1e-6, "{design:?} {f:?}: {worst}");
-        }
-    }
-}
-
 /// The truth lies between the bounds, but for what 32 levels of opacity round away of the slab's two ends. Half a level is
 /// (1 + b)²/2·31 of absorbance; the mean depth is off by as much again, from both ends.
 #[test]
@@ -153,31 +131,4 @@ fn bounds_hold() {
     }
     assert!(guessed > 1000, "only {guessed} fragments are guessed");
     assert!(width < 0.75 * unbounded, "{width} of {unbounded}");
-}
-
-/// Without a network the largest design errs a tenth of four moments' squared error on random pixels, and each smaller one more.
-#[test]
-fn known_layers_beat_moments() {
-    let mut random = Random::new(11, &[]);
-    let mut squares = [0.0f64; 4];
-    for _ in 0..400 {
-        let n = 4 + random.below(12);
-        let places: Vec<_> = (0..n).map(|_| f64::from(random.unit())).collect();
-        let f = at(&places, 0.98, &mut random);
-        let exact = over::composite(&f, C0);
-        let designs = [Design::LARGE, Design::MEDIUM, Design::SMALL];
-        let mut found = designs
-            .map(|d| composite(&f, C0, &warp(), d, middle))
-            .to_vec();
-        let estimate = moments::transmittances(&points_of(&f), &warp(), &moments::Settings::FOUR);
-        found.push(methods::composite(&f, C0, &estimate));
-        for (sum, found) in squares.iter_mut().zip(found) {
-            *sum += (0..3)
-                .map(|k| f64::from(found[k] - exact[k]).powi(2))
-                .sum::<f64>();
-        }
-    }
-    let [large, medium, small, moments] = squares;
-    assert!(large < medium && medium < small, "{squares:?}");
-    assert!(large < 0.1 * moments, "{squares:?}");
 }
