@@ -53,7 +53,7 @@ impl Timer {
                 mapped_at_creation: false,
             });
             encoder.resolve_query_set(&queries, 0..count, &resolved, 0);
-            Download::record(gpu, encoder, &resolved, 0..bytes)
+            Download::record(gpu, encoder, &[resolved])
         });
         Times {
             download,
@@ -82,12 +82,10 @@ impl Times {
         let Some(download) = self.download else {
             return Ok(Vec::new());
         };
-        (&download).await;
-        let ticks: Vec<u64> = download.take()?;
-        let passes = self
-            .labels
-            .into_iter()
-            .zip(ticks.chunks_exact(2))
+        let ticks: Vec<Vec<u64>> = download.read().await?;
+        let labels = self.labels.into_iter();
+        let passes = labels
+            .zip(ticks[0].chunks_exact(2))
             .map(|(label, t)| PassTime {
                 label,
                 micros: t[1].saturating_sub(t[0]) as f64 * self.period / 1e3,
@@ -102,7 +100,6 @@ pub struct Recorder<'e> {
     gpu: &'e Gpu,
     encoder: &'e mut wgpu::CommandEncoder,
     timer: Option<&'e mut Timer>,
-    passes: u32,
 }
 
 impl<'e> Recorder<'e> {
@@ -116,7 +113,6 @@ impl<'e> Recorder<'e> {
             gpu,
             encoder,
             timer,
-            passes: 0,
         }
     }
 
@@ -128,11 +124,6 @@ impl<'e> Recorder<'e> {
     /// The encoder, for copies and clears between passes.
     pub const fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         self.encoder
-    }
-
-    /// Number of passes so far.
-    pub const fn passes(&self) -> u32 {
-        self.passes
     }
 
     /// Writes to a buffer in the order of the recorded commands: what was recorded before sees the old bytes. (A queue's writes all
@@ -167,8 +158,8 @@ impl<'e> Recorder<'e> {
         }
     }
 
+    /// The place of a pass's times; none without timestamps, and beyond so many passes.
     fn next_query(&mut self, label: &str) -> Option<(wgpu::QuerySet, u32)> {
-        self.passes += 1;
         let timer = self.timer.as_mut()?;
         let queries = timer.queries.clone()?;
         if timer.labels.len() as u32 >= MAX_TIMED {

@@ -1,11 +1,11 @@
 //! The order in which transparent surfaces are drawn.
 
 use crate::{
-    FrameTargets, RasterError, SceneBuffers,
+    FrameTargets, RenderError, SceneBuffers,
     pipelines::GeometryPipelines,
     upload::{DrawRun, push_run},
 };
-use peelnet_gpu::{Gpu, record::Recorder, wgpu};
+use peelnet_gpu::{record::Recorder, wgpu};
 use peelnet_scene::Camera;
 
 /// The order in which transparent surfaces are drawn.
@@ -42,18 +42,17 @@ pub struct Sorted {
 
 impl Sorted {
     /// Room for the order; none is needed to draw in the scene's order.
-    ///
-    /// # Errors
-    /// More triangles than the adapter's largest buffer indexes.
-    pub fn new(gpu: &Gpu, scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RasterError> {
+    pub fn new(scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RenderError> {
+        let gpu = &scene.gpu;
         let triangles: usize = scene.transparent_parts().map(|p| p.centroids.len()).sum();
         let size = triangles.max(1) as u64 * 12;
-        if order == Order::Triangles {
+        let by_triangle = order == Order::Triangles;
+        if by_triangle {
             let what = format!("the order of {triangles} triangles");
             let hint = "sort objects instead (painter-object)";
             gpu.check_limit(what, size, gpu.limits.max_buffer_size, "bytes", hint)?;
         }
-        let indices = (order == Order::Triangles).then(|| {
+        let indices = by_triangle.then(|| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("sorted triangles"),
                 size,
@@ -124,7 +123,7 @@ impl Sorted {
         frame: &FrameTargets,
         pipelines: &GeometryPipelines,
     ) {
-        scene.set_vertices(pass, &frame.scene_group);
+        scene.begin(pass, frame, pipelines);
         if let Some(indices) = &self.indices {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }

@@ -4,7 +4,7 @@
 //! `cargo bench -p peelnet_render --bench plain`; frames in turn, the median of their ratios is what counts.
 
 use peelnet_gpu::{
-    AdapterRequest, Gpu,
+    AdapterRequest, Gpu, RenderPipeline,
     bind::{Bind, Bound},
     record::{Recorder, Timer},
     wgpu,
@@ -127,36 +127,26 @@ impl<'g> Plain<'g> {
         let camera = gpu.upload("camera", &[[0.0f32; 16]], wgpu::BufferUsages::UNIFORM);
         let colors = gpu.upload("colors", &colors, wgpu::BufferUsages::STORAGE);
         let entries = [Bind::Uniform(&camera), Bind::Read(&colors)];
-        let bound = gpu.bind("scene", wgpu::ShaderStages::VERTEX_FRAGMENT, &entries);
-        let module = gpu.shader("plain", SHADER);
-        let gather = wgpu::RenderPipelineDescriptor {
-            label: Some("plain"),
-            layout: Some(&gpu.layout(&[Some(&bound.layout)])),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex_main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: 16,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &wgpu::vertex_attr_array![0 => Float32x4],
-                })],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment_main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[
-                    target(T::Rgba16Float, blend(F::One, F::One)),
-                    target(T::R16Float, blend(F::Zero, F::OneMinusSrc)),
-                ],
-            }),
-            multiview_mask: None,
-            cache: None,
-        };
+        let scene_group = gpu.bind("scene", wgpu::ShaderStages::VERTEX_FRAGMENT, &entries);
+        let buffers = [Some(wgpu::VertexBufferLayout {
+            array_stride: 16,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x4],
+        })];
+        let gather = gpu.render_pipeline(&RenderPipeline {
+            label: "plain",
+            vertex: ["plain", SHADER],
+            fragment: ["plain", SHADER],
+            groups: &[Some(&scene_group)],
+            buffers: &buffers,
+            targets: &[
+                target(T::Rgba16Float, blend(F::One, F::One)),
+                target(T::R16Float, blend(F::Zero, F::OneMinusSrc)),
+            ],
+            depth: None,
+            samples: 1,
+            culled: None,
+        });
         let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
         let resolve = FullscreenPass::new(
             gpu,
@@ -165,14 +155,15 @@ impl<'g> Plain<'g> {
             &[("plain", RESOLVE)],
             &[&sums, &transmittance].map(Bind::Texture),
             &[target(T::Rgba16Float, over)],
+            1,
         )?;
         let [r, g, b] = scene.background.map(f64::from);
         Ok(Self {
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
             count: vertices.len() as u32,
-            gather: gpu.device.create_render_pipeline(&gather),
+            gather,
             camera,
-            scene: bound,
+            scene: scene_group,
             sums,
             transmittance,
             image,
@@ -257,7 +248,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             ratios.push(drawn / written);
         }
         // Both draw the same.
-        let image = gpu.read_texture::<[f32; 4]>(&plain.image)?;
+        let image = gpu.read_texture::<[u16; 4]>(&plain.image)?;
+        let image = image
+            .iter()
+            .map(|p| p.map(|c| half::f16::from_bits(c).to_f32()));
+        let image: Vec<[f32; 4]> = image.collect();
         let frame = renderer.image(&mut prepared, &camera)?;
         let differs = |(a, b): (&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-3);
         let pairs = image.iter().zip(&frame.image.pixels);

@@ -5,7 +5,7 @@
 //! their edges.
 
 use crate::{
-    error::RenderError,
+    RenderError,
     image::Image,
     methods::{
         FrameStats,
@@ -127,7 +127,7 @@ impl Canvas {
             let (shader, entries) = ("methods::samples::average", [Bind::Texture(&view)]);
             let mean = Target::half("mean", 4, Blend::Add);
             let target = [Some(mean.state())];
-            let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target)?;
+            let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target, 1)?;
             let view = gpu.texture(mean.label, mean.format(), size, 1, none)?;
             Some((pass, view))
         } else {

@@ -1,6 +1,6 @@
 //! The drawn frame in memory, and its three file formats.
 
-use crate::error::RenderError;
+use crate::RenderError;
 use peelnet_core::srgb;
 use peelnet_files::{Kind, STDOUT};
 use std::path::Path;

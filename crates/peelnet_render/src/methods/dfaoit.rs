@@ -56,7 +56,7 @@ struct Dfaoit {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let front = Layers::new(b, &peeling::found(b.gpu)?)?;
+    let front = Layers::new(b, &peeling::found(b)?)?;
     let mut p = Plan::new(b);
     b.learned_weight()?.wgsl.clone_into(&mut p.network);
     // Sums over the fragments behind the front, over all fragments, and the number of those behind.

@@ -9,7 +9,7 @@ use super::{
     plan::Plan,
     spec::MethodSpec,
 };
-use crate::{error::RenderError, flaw::Flaw};
+use crate::{RenderError, flaw::Flaw};
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{Fragment, points},

@@ -42,19 +42,19 @@ pub use spec::MethodSpec;
 /// What most declarations are made of.
 mod prelude {
     pub(super) use super::{
-        compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+        compositor::{Build, Compositor, DrawContext, Fit, FrameStats},
         method::{Method, Numbered, Pixel, Promises, weighted_twin},
         parameter::{MOMENT_TARGETS, Parameter, Precision, TARGETS},
         plan::{Blend, ENDS, Plan, SUMS, TRANSMITTANCE, Target},
         spec::MethodSpec,
     };
     pub(super) use crate::{
-        error::RenderError,
+        RenderError,
         flaw::{Flaw, Property, half_statistics, half_sums},
     };
 }
 
-use crate::error::RenderError;
+use crate::RenderError;
 use compositor::{Build, Compositor};
 
 /// Every method, in the order of lists and reports.
@@ -104,7 +104,7 @@ pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let default = if method.is_exact() {
         1.0
     } else {
-        b.scene.transparency_scale
+        b.scene.scene().transparency_scale
     };
     let scale = SCALE.given(spec).map_or(default, |s: f64| s as f32);
     if b.scene.tinted && (!(method.promises)(spec).tinted || scale < 1.0) {
