@@ -141,7 +141,6 @@ pub(crate) async fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
     (instance, adapters)
 }
 
-/// Picks an adapter from the list.
 pub(crate) fn pick(
     adapters: Vec<wgpu::Adapter>,
     request: &AdapterRequest,

@@ -32,7 +32,6 @@ pub struct Gpu {
     pub(crate) shared: Arc<Shared>,
 }
 
-/// What all clones of a [`Gpu`] share.
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     /// Whether an allocation did not fit the GPU's memory.

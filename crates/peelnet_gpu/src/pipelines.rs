@@ -8,7 +8,6 @@ use crate::{
 };
 use std::{collections::HashMap, sync::Mutex};
 
-/// Pipelines by their keys, for the life of the device.
 #[derive(Debug, Default)]
 pub(crate) struct PipelineCache {
     render: Mutex<HashMap<String, wgpu::RenderPipeline>>,

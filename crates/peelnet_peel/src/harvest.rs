@@ -10,7 +10,7 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers,
+    FrameTargets, PixelSample, SamplePoint, SceneBuffers,
     count::{CountPass, FragmentCount},
     dual::DualPeel,
     frame::Output,
@@ -78,7 +78,6 @@ pub struct Harvester {
     gpu: Gpu,
     scene: SceneBuffers,
     frame: FrameTargets,
-    opaque: Option<GeometryPipelines>,
     sbuffer: SBuffer,
     peeler: Peeler,
     /// They put peeled layers into runs, in turn; made anew when storage grows.
@@ -113,7 +112,7 @@ impl Harvester {
         sampled: bool,
         budget: Option<u64>,
     ) -> Result<Self, PeelError> {
-        let features: &[&str] = if sampled {
+        let features: &[&'static str] = if sampled {
             &["dataset", "sampled"]
         } else {
             &["dataset"]
@@ -129,7 +128,6 @@ impl Harvester {
             Peel::Single => Peeler::Single(SinglePeel::new(&scene, &frame, features)?),
         };
         Ok(Self {
-            opaque: scene.opaque_pipelines(&frame)?,
             sbuffer: SBuffer::new(&scene, &frame, budget, features)?,
             step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
             collectors: None,
@@ -176,7 +174,7 @@ impl Harvester {
             SamplePoint::MIDDLE,
         );
         self.scene
-            .draw_background(&mut recorder, &self.frame, self.opaque.as_ref(), None, true);
+            .draw_background(&mut recorder, &self.frame, None, true);
         let found = self
             .sbuffer
             .count
@@ -280,7 +278,7 @@ impl Harvester {
                 Bind::Texture(&dual.back),
             ],
             Peeler::Single(single) => vec![
-                Bind::Uint(&single.keys[1 - from]),
+                Bind::Texture(&single.keys[1 - from]),
                 Bind::Texture(&single.layer),
             ],
         };

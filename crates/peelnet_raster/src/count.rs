@@ -155,7 +155,7 @@ impl CountPass {
 }
 
 /// Format of the attachment of passes that write storage alone: WebGPU wants one.
-const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+pub(crate) const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// That attachment's texture, a byte a pixel.
 pub fn unwritten_texture(
@@ -164,15 +164,6 @@ pub fn unwritten_texture(
 ) -> Result<wgpu::TextureView, RenderError> {
     let none = wgpu::TextureUsages::empty();
     Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, 1, none)?)
-}
-
-/// A colour target that nothing is written to.
-pub(crate) fn unwritten() -> Option<wgpu::ColorTargetState> {
-    Some(wgpu::ColorTargetState {
-        format: UNWRITTEN,
-        blend: None,
-        write_mask: wgpu::ColorWrites::empty(),
-    })
 }
 
 /// The attachment, cleared and not stored.

@@ -7,7 +7,8 @@
 //! A dataset needs fragments one by one, not composited. Its layers keep the maximum, and callers count what is found less than there is.
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers, frame::clear_color,
+    Blend, FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    frame::clear_color,
 };
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 
@@ -45,36 +46,18 @@ impl DualPeel {
         found: Option<&wgpu::Buffer>,
     ) -> Result<Self, RenderError> {
         use wgpu::TextureFormat::{Rg32Float, Rgba32Float};
-        use wgpu::{BlendFactor as F, BlendOperation as O};
         let gpu = &scene.gpu;
         check_adapter(gpu)?;
         let none = wgpu::TextureUsages::empty();
         let texture = |label: &str, format| gpu.texture(label, format, frame.size, 1, none);
         let range = || texture("depth range", Rg32Float);
         let ranges = [range()?, range()?];
-        let blended = |format, color: [F; 2], alpha: [F; 2], operation| {
-            let component = |[src_factor, dst_factor]: [F; 2]| wgpu::BlendComponent {
-                src_factor,
-                dst_factor,
-                operation,
-            };
-            Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState {
-                    color: component(color),
-                    alpha: component(alpha),
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })
-        };
-        // Min and max blending require both factors to be one.
-        let max = |format| blended(format, [F::One; 2], [F::One; 2], O::Max);
+        let max = |format| Some(Blend::Max.state(format));
         let (layer, start) = if features.contains(&"dataset") {
             (max(Rgba32Float), [0.0; 4])
         } else {
-            let under = ([F::DstAlpha, F::One], [F::Zero, F::OneMinusSrcAlpha]);
-            let layer = blended(Rgba32Float, under.0, under.1, O::Add);
-            (layer, [0.0, 0.0, 0.0, 1.0])
+            let under = Blend::Under;
+            (Some(under.state(Rgba32Float)), under.start())
         };
         let init = GeometryPass {
             label: "dual init",

@@ -1,10 +1,7 @@
 //! The targets of one frame size, and where the finished picture goes.
 
-use crate::{RenderError, SceneBuffers};
-use peelnet_gpu::{
-    bind::{Bind, Bound},
-    wgpu,
-};
+use crate::{GeometryPipelines, RenderError, SceneBuffers};
+use peelnet_gpu::{bind::Bound, wgpu};
 
 /// Where the finished picture goes, as pipelines need to know it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,43 +30,35 @@ impl Output {
     }
 
     /// The colour target of a pass that writes finished pixels: premultiplied colour and coverage.
-    pub const fn state(self) -> wgpu::ColorTargetState {
+    pub fn state(self) -> wgpu::ColorTargetState {
         match self {
-            Self::Image => plain(IMAGE),
+            Self::Image => IMAGE.into(),
             // The background is in the pixel: it is opaque, as its target was cleared.
             Self::Target {
                 format,
                 over: false,
                 ..
             } => wgpu::ColorTargetState {
-                format,
-                blend: None,
                 write_mask: wgpu::ColorWrites::COLOR,
+                ..format.into()
             },
             Self::Target { format, .. } => wgpu::ColorTargetState {
-                format,
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
+                ..format.into()
             },
         }
     }
 
-    /// The colour target of the opaque surfaces.
-    pub(crate) const fn opaque_state(self) -> wgpu::ColorTargetState {
+    /// Format and samples a pixel of what opaque surfaces are drawn onto: a target that is blended over, and `C_0` otherwise.
+    pub(crate) const fn opaque(self) -> (wgpu::TextureFormat, u32) {
         match self {
             Self::Target {
-                format, over: true, ..
-            } => plain(format),
-            _ => plain(IMAGE),
+                format,
+                samples,
+                over: true,
+            } => (format, samples),
+            _ => (IMAGE, 1),
         }
-    }
-}
-
-const fn plain(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
-    wgpu::ColorTargetState {
-        format,
-        blend: None,
-        write_mask: wgpu::ColorWrites::ALL,
     }
 }
 
@@ -87,14 +76,6 @@ pub struct OpaqueDepth {
 impl OpaqueDepth {
     pub fn samples(&self) -> u32 {
         self.view.texture().sample_count()
-    }
-
-    pub fn bind(&self) -> Bind<'_> {
-        if self.samples() > 1 {
-            Bind::DepthMultisampled(&self.view)
-        } else {
-            Bind::Depth(&self.view)
-        }
     }
 
     /// The shader features of passes that compare with it.
@@ -119,7 +100,9 @@ pub struct FrameTargets {
     pub depth: Option<OpaqueDepth>,
     pub output: Output,
     /// The finished image, RGBA32F, of [`Output::Image`].
-    image: Option<wgpu::TextureView>,
+    pub image: Option<wgpu::TextureView>,
+    /// Those of the scene's opaque surfaces, where there are any.
+    pub(crate) opaque: Option<GeometryPipelines>,
     pub(crate) scene_group: Bound,
     pub(crate) opaque_group: Bound,
 }
@@ -127,10 +110,6 @@ pub struct FrameTargets {
 impl FrameTargets {
     pub const fn pixels(&self) -> u32 {
         self.size[0] * self.size[1]
-    }
-
-    pub const fn image(&self) -> Option<&wgpu::TextureView> {
-        self.image.as_ref()
     }
 
     /// The attachment of a pass that writes finished pixels, to `target` where the output is one.
@@ -169,13 +148,7 @@ impl SceneBuffers {
                 is_callers: true,
             }),
             None if self.has_opaque() => {
-                // Opaque surfaces are drawn onto a target that is blended over, and into C_0 otherwise.
-                let samples = if output.is_over() {
-                    output.samples()
-                } else {
-                    1
-                };
-                let format = wgpu::TextureFormat::Depth32Float;
+                let (format, samples) = (wgpu::TextureFormat::Depth32Float, output.opaque().1);
                 Some(OpaqueDepth {
                     view: gpu.texture("opaque depth", format, size, samples, none)?,
                     is_callers: false,
@@ -185,7 +158,7 @@ impl SceneBuffers {
         };
         let [opaque_group, scene_group] = self.groups(depth.as_ref());
         let background = if output.is_over() { [1, 1] } else { size };
-        Ok(FrameTargets {
+        let mut frame = FrameTargets {
             size,
             aspect: width as f32 / height as f32,
             background: gpu.texture("background", IMAGE, background, 1, none)?,
@@ -197,7 +170,10 @@ impl SceneBuffers {
             depth,
             scene_group,
             opaque_group,
-        })
+            opaque: None,
+        };
+        frame.opaque = self.opaque_pipelines(&frame)?;
+        Ok(frame)
     }
 }
 

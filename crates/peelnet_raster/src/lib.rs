@@ -12,6 +12,7 @@
 // What users of the facade see of this crate is documented; the rest where there is more to say than its name.
 #![allow(missing_docs)]
 
+mod blend;
 mod boxes;
 pub mod count;
 pub mod dual;
@@ -32,6 +33,7 @@ mod specialise;
 mod uniforms;
 mod upload;
 
+pub use blend::Blend;
 pub use boxes::BoxPass;
 pub use error::RenderError;
 pub use frame::{FrameTargets, OpaqueDepth};

@@ -2,7 +2,7 @@
 
 use crate::{
     FrameTargets, RenderError, SceneBuffers,
-    count::unwritten,
+    count::UNWRITTEN,
     specialise,
     upload::{ATTRIBUTES, Vertex},
 };
@@ -192,7 +192,10 @@ fn pipeline(
     while buffers.last().is_some_and(Option::is_none) {
         buffers.pop();
     }
-    let unwritten = [unwritten()];
+    let unwritten = [Some(wgpu::ColorTargetState {
+        write_mask: wgpu::ColorWrites::empty(),
+        ..UNWRITTEN.into()
+    })];
     Ok(gpu.render_pipeline(&RenderPipeline {
         label: pass.label,
         vertex: ["scene::vertex", &vertex],

@@ -117,7 +117,7 @@ pub struct SBuffer {
     /// Fragments that one tile may hold: what the adapter, the budget and memory allow.
     pub limit: u64,
     store: Option<Kernels>,
-    features: Vec<String>,
+    features: Vec<&'static str>,
     tinted: bool,
 }
 
@@ -139,7 +139,7 @@ impl SBuffer {
         scene: &SceneBuffers,
         frame: &FrameTargets,
         budget: Option<u64>,
-        features: &[&str],
+        features: &[&'static str],
     ) -> Result<Self, RenderError> {
         let (gpu, tinted) = (&scene.gpu, features.contains(&"tinted"));
         let limits = &gpu.limits;
@@ -152,7 +152,7 @@ impl SBuffer {
             tile: gpu.upload("tile", &[Tile::zeroed()], wgpu::BufferUsages::UNIFORM),
             limit: budget.map_or(binding, |b| b.clamp(1, binding)),
             store: None,
-            features: features.iter().map(|&f| f.to_owned()).collect(),
+            features: features.to_vec(),
             tinted,
         })
     }
@@ -271,11 +271,10 @@ impl SBuffer {
             Bind::Write(&storage.colors),
             Bind::Uniform(&self.tile),
         ];
-        let features: Vec<_> = self.features.iter().map(String::as_str).collect();
         let pass = GeometryPass {
             label: "store",
             shader: "peel::store",
-            features: &features,
+            features: &self.features,
             entries: &stored,
             ..GeometryPass::NONE
         };

@@ -236,7 +236,7 @@ impl SceneBuffers {
             lights,
         ];
         let opaque = self.gpu.bind("opaque scene", stages, &entries);
-        entries.extend(depth.map(OpaqueDepth::bind));
+        entries.extend(depth.map(|depth| Bind::Texture(&depth.view)));
         [opaque, self.gpu.bind("scene", stages, &entries)]
     }
 
@@ -399,13 +399,12 @@ impl SceneBuffers {
         &self,
         recorder: &mut Recorder<'_>,
         frame: &FrameTargets,
-        pipelines: Option<&GeometryPipelines>,
         target: Option<&wgpu::TextureView>,
         clear: bool,
     ) {
         let [r, g, b] = self.scene.background.map(f64::from);
         let begin = [r, g, b, 1.0];
-        let over = frame.output.is_over();
+        let (over, pipelines) = (frame.output.is_over(), frame.opaque.as_ref());
         if over && !clear && pipelines.is_none() {
             return;
         }
@@ -434,7 +433,7 @@ impl SceneBuffers {
     }
 
     /// The opaque pass's pipelines, where the scene has anything opaque.
-    pub fn opaque_pipelines(
+    pub(crate) fn opaque_pipelines(
         &self,
         frame: &FrameTargets,
     ) -> Result<Option<GeometryPipelines>, RenderError> {
@@ -442,17 +441,14 @@ impl SceneBuffers {
             return Ok(None);
         };
         let format = depth.view.texture().format();
+        let (color, samples) = frame.output.opaque();
         let pass = GeometryPass {
             label: "opaque",
             shader: "scene::opaque",
             opaque: true,
-            targets: &[Some(frame.output.opaque_state())],
+            targets: &[Some(color.into())],
             depth: Some(depth_state(format)),
-            samples: if frame.output.is_over() {
-                frame.output.samples()
-            } else {
-                1
-            },
+            samples,
             ..GeometryPass::NONE
         };
         self.pipelines(frame, &pass).map(Some)

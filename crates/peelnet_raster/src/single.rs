@@ -39,7 +39,7 @@ impl SinglePeel {
                 label: "peel",
                 shader: "peel::single",
                 features,
-                entries: &[Bind::Uint(key)],
+                entries: &[Bind::Texture(key)],
                 targets: &[Some(Rgba32Float.into()), Some(Rg32Uint.into())],
                 depth: Some(depth_state(Depth32Float)),
                 ..GeometryPass::NONE

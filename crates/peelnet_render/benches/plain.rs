@@ -10,7 +10,8 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    frame::{attachment, clear_color},
+    Blend,
+    frame::{Output, attachment, clear_color},
     fullscreen::FullscreenPass,
 };
 use peelnet_render::{MethodOptions, Renderer, milliseconds};
@@ -80,30 +81,9 @@ struct Plain<'g> {
     clear: [f64; 4],
 }
 
-fn target(format: wgpu::TextureFormat, blend: wgpu::BlendState) -> Option<wgpu::ColorTargetState> {
-    Some(wgpu::ColorTargetState {
-        format,
-        blend: Some(blend),
-        ..format.into()
-    })
-}
-
-/// `dst · dst_factor + src · src_factor` of all channels.
-const fn blend(src_factor: wgpu::BlendFactor, dst_factor: wgpu::BlendFactor) -> wgpu::BlendState {
-    let component = wgpu::BlendComponent {
-        src_factor,
-        dst_factor,
-        operation: wgpu::BlendOperation::Add,
-    };
-    wgpu::BlendState {
-        color: component,
-        alpha: component,
-    }
-}
-
 impl<'g> Plain<'g> {
     fn new(gpu: &'g Gpu, scene: &Scene) -> Result<Self, Box<dyn Error>> {
-        use wgpu::{BlendFactor as F, TextureFormat as T};
+        use wgpu::TextureFormat as T;
         let (mut vertices, mut colors) = (Vec::new(), Vec::new());
         for object in &scene.objects {
             for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
@@ -140,21 +120,25 @@ impl<'g> Plain<'g> {
             groups: &[Some(&scene_group)],
             buffers: &buffers,
             targets: &[
-                target(T::Rgba16Float, blend(F::One, F::One)),
-                target(T::R16Float, blend(F::Zero, F::OneMinusSrc)),
+                Some(Blend::Add.state(T::Rgba16Float)),
+                Some(Blend::Transmit.state(T::R16Float)),
             ],
             depth: None,
             samples: 1,
             culled: None,
         });
-        let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
+        let output = Output::Target {
+            format: T::Rgba16Float,
+            samples: 1,
+            over: true,
+        };
         let resolve = FullscreenPass::new(
             gpu,
             "plain",
             &[],
             &[("plain", RESOLVE)],
             &[&sums, &transmittance].map(Bind::Texture),
-            &[target(T::Rgba16Float, over)],
+            &[Some(output.state())],
             1,
         )?;
         let [r, g, b] = scene.background.map(f64::from);

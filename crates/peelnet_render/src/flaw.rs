@@ -151,12 +151,10 @@ fn is_llvmpipe(info: &wgpu::AdapterInfo) -> bool {
     kind == (wgpu::Backend::Vulkan, wgpu::DeviceType::Cpu) && driver.contains("llvmpipe")
 }
 
-/// Whether the sums of colour have 16 bits.
 pub(crate) fn half_sums(spec: &MethodSpec) -> bool {
     spec.promises().sums == Precision::Half
 }
 
-/// Whether the statistics have 16 bits.
 pub(crate) fn half_statistics(spec: &MethodSpec) -> bool {
     spec.promises().statistics == Precision::Half
 }

@@ -7,10 +7,7 @@
 use crate::{
     RenderError,
     image::Image,
-    methods::{
-        FrameStats,
-        plan::{Blend, Target},
-    },
+    methods::{FrameStats, plan::Target},
 };
 use peelnet_files::counted;
 use peelnet_gpu::{
@@ -20,7 +17,7 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    BACKGROUND_PASS,
+    BACKGROUND_PASS, Blend,
     frame::{attachment, clear_color},
     fullscreen::FullscreenPass,
 };

@@ -121,7 +121,6 @@ impl Image {
         Ok(bytes.into_inner())
     }
 
-    /// Opaque sRGB, 8 bits a channel.
     fn write_png(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
         let mut encoder = png::Encoder::new(to, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);

@@ -58,13 +58,12 @@ impl Renderer {
         }
         let mut frame = scene.targets([1, 1], Output::Image, None)?;
         frame.aspect = size[0] as f32 / size[1] as f32;
-        let opaque = scene.opaque_pipelines(&frame)?;
         let mut sbuffer = SBuffer::new(scene, &frame, None, &["dataset"])?;
         let mut encoder = gpu.encoder();
         let mut recorder = Recorder::new(gpu, &mut encoder, None);
         let point = SamplePoint::of_pixel(size, pixel);
         scene.set_view(&mut recorder, camera, &frame, PixelSample::ALL, point);
-        scene.draw_background(&mut recorder, &frame, opaque.as_ref(), None, true);
+        scene.draw_background(&mut recorder, &frame, None, true);
         sbuffer.count.encode(&mut recorder, scene, &frame);
         gpu.queue.submit([encoder.finish()]);
         let found = CountPass::found(&gpu.read_async(&sbuffer.count.total).await?)?;

@@ -17,9 +17,7 @@ use peelnet_gpu::{
     record::{Recorder, Timer},
     wgpu,
 };
-use peelnet_raster::{
-    FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers, frame::Output,
-};
+use peelnet_raster::{FrameTargets, PixelSample, SamplePoint, SceneBuffers, frame::Output};
 use peelnet_scene::{Camera, Scene};
 use std::{
     collections::VecDeque,
@@ -33,10 +31,9 @@ const FRAMES_IN_FLIGHT: usize = 3;
 /// makes targets anew, and takes pipelines from the device's cache.
 #[derive(Debug)]
 pub struct Prepared {
-    pub(crate) spec: MethodSpec,
-    pub(crate) options: MethodOptions,
+    spec: MethodSpec,
+    options: MethodOptions,
     pub(crate) ready: Option<Ready>,
-    /// The target of profiles.
     pub(crate) canvas: Option<Canvas>,
     /// Counts on their way, of frames that had the room there is now.
     pub(crate) pending: VecDeque<Download>,
@@ -50,7 +47,6 @@ pub(crate) struct Ready {
     generation: u64,
     callers_depth: Option<wgpu::TextureView>,
     pub(crate) frame: FrameTargets,
-    opaque: Option<GeometryPipelines>,
     pub(crate) compositor: Box<dyn Compositor>,
 }
 
@@ -73,6 +69,26 @@ impl Prepared {
     /// What the method reports of the last frame that [`Renderer::draw`] encoded: passes and memory; fragments where it needs their number.
     pub const fn stats(&self) -> FrameStats {
         self.stats
+    }
+
+    /// Takes the counts of a frame: see [`Compositor::learn`].
+    pub(crate) fn learn(
+        &mut self,
+        scene: &SceneBuffers,
+        exact: bool,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        let Some(ready) = &mut self.ready else {
+            return Ok(Fit::Whole);
+        };
+        let b = Build {
+            scene,
+            frame: &ready.frame,
+            spec: &self.spec,
+            options: &self.options,
+        };
+        ready.compositor.learn(&b, exact, words, stats)
     }
 
     /// Where the repetitions of a frame sample its pixels.
@@ -203,7 +219,6 @@ impl Renderer {
         method.ready = Some(Ready {
             generation,
             callers_depth: depth.cloned(),
-            opaque: scene.opaque_pipelines(&frame)?,
             frame,
             compositor,
         });
@@ -266,70 +281,50 @@ impl Renderer {
 
     /// How pipelines write to a target.
     pub(crate) fn output(&self, target: &Target<'_>) -> Result<([u32; 2], Output), RenderError> {
-        let texture = target.color.texture();
+        let (texture, tinted) = (target.color.texture(), self.scene.tinted);
+        let (format, samples) = (texture.format(), texture.sample_count());
         let size = [texture.width(), texture.height()];
-        let format = texture.format();
         // What WebGPU guarantees of the format with the device's features: some adapters would blend more.
-        let flags = format
-            .guaranteed_format_features(self.gpu.device.features())
-            .flags;
-        if !self.scene.tinted && !flags.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
-            return Err(RenderError::Target(format!(
+        let guaranteed = format.guaranteed_format_features(self.gpu.device.features());
+        let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
+        let depth = target.depth.map(wgpu::TextureView::texture);
+        let fits =
+            |d: &wgpu::Texture| ([d.width(), d.height()], d.sample_count()) == (size, samples);
+        let depth_format = depth.map(wgpu::Texture::format);
+        let is_depth_alone =
+            |f: wgpu::TextureFormat| f.is_depth_stencil_format() && !f.has_stencil_aspect();
+        let fault = if !tinted && !guaranteed.flags.contains(blendable) {
+            format!(
                 "its format {format:?} cannot be blended on this device; use Rgba16Float, Rgba8Unorm or another that can"
-            )));
-        }
-        if let Some(depth) = target.depth {
-            let depth = depth.texture();
-            if [depth.width(), depth.height()] != size
-                || depth.sample_count() != texture.sample_count()
-            {
-                return Err(RenderError::Target(
-                    "its depth has another size or sample count".into(),
-                ));
-            }
-            if !depth.format().is_depth_stencil_format() || depth.format().has_stencil_aspect() {
-                return Err(RenderError::Target(format!(
-                    "its depth is {:?}; use a format of depth alone",
-                    depth.format()
-                )));
-            }
-        }
-        // Coloured transmission cannot be blended: the resolve needs what lies behind, and that is ours only after a clear.
-        if self.scene.tinted && (!target.clear || target.depth.is_some()) {
-            return Err(RenderError::Target(
-                "this scene's transmission is coloured, which needs the background: clear the target, and let the scene hold \
-                 the opaque surfaces"
-                    .into(),
-            ));
-        }
-        Ok((
-            size,
-            Output::Target {
+            )
+        } else if !depth.is_none_or(fits) {
+            "its depth has another size or sample count".into()
+        } else if let Some(format) = depth_format.filter(|f| !is_depth_alone(*f)) {
+            format!("its depth is {format:?}; use a format of depth alone")
+        } else if tinted && (!target.clear || depth.is_some()) {
+            // Coloured transmission cannot be blended: the resolve needs what lies behind, and that is ours only after a clear.
+            "this scene's transmission is coloured, which needs the background: clear the target, and let the scene hold the opaque \
+             surfaces"
+                .into()
+        } else {
+            let output = Output::Target {
                 format,
-                samples: texture.sample_count(),
-                over: !self.scene.tinted,
-            },
-        ))
+                samples,
+                over: !tinted,
+            };
+            return Ok((size, output));
+        };
+        Err(RenderError::Target(fault))
     }
 
     /// Takes the counts that came back, and makes room for what they say.
     fn learn(&self, method: &mut Prepared) -> Result<(), RenderError> {
-        let Some(ready) = &mut method.ready else {
-            return Ok(());
-        };
         while let Some(download) = method.pending.front_mut() {
             let Some(words) = download.try_read()? else {
                 break;
             };
             method.pending.pop_front();
-            let b = Build {
-                scene: &self.scene,
-                frame: &ready.frame,
-                spec: &method.spec,
-                options: &method.options,
-            };
-            let stats = &mut FrameStats::default();
-            let fit = ready.compositor.learn(&b, false, &words, stats)?;
+            let fit = method.learn(&self.scene, false, &words, &mut FrameStats::default())?;
             method.status = match fit {
                 Fit::TooSmall => FrameStatus::Grown,
                 Fit::Whole | Fit::Loose => FrameStatus::Whole,
@@ -356,13 +351,8 @@ impl Renderer {
         self.scene
             .set_view(recorder, camera, frame, PixelSample::ALL, point);
         let color = target.map(|t| t.color);
-        self.scene.draw_background(
-            recorder,
-            frame,
-            ready.opaque.as_ref(),
-            color,
-            target.is_none_or(|t| t.clear),
-        );
+        let clear = target.is_none_or(|t| t.clear);
+        self.scene.draw_background(recorder, frame, color, clear);
         ready.compositor.draw(&mut DrawContext {
             recorder,
             scene: &self.scene,

@@ -4,7 +4,7 @@ use crate::{
     RenderError,
     frame::{Canvas, Frame, Profile},
     image::Image,
-    methods::compositor::{Build, Fit},
+    methods::compositor::Fit,
     renderer::{Prepared, Renderer},
     target::Target,
 };
@@ -35,12 +35,12 @@ impl Renderer {
         };
         method.pending.clear();
         self.ready(method, size, output, None)?;
-        let Some(ready) = &mut method.ready else {
-            return Ok(Profile::default());
-        };
         // Passes of tries that were too small: the frame took them too.
         let mut wasted = 0;
         for _ in 0..MOST_TRIES {
+            let Some(ready) = &mut method.ready else {
+                break;
+            };
             let only_count = !ready.compositor.is_ready();
             let start = Instant::now();
             let mut encoder = self.gpu().encoder();
@@ -61,13 +61,7 @@ impl Renderer {
             };
             self.gpu().check()?;
             let wall_micros = start.elapsed().as_secs_f64() * 1e6;
-            let b = Build {
-                scene: &self.scene,
-                frame: &ready.frame,
-                spec: &method.spec,
-                options: &method.options,
-            };
-            let fit = ready.compositor.learn(&b, true, &words, &mut stats)?;
+            let fit = method.learn(&self.scene, true, &words, &mut stats)?;
             if !only_count && (fit == Fit::Whole || (counting && fit == Fit::Loose)) {
                 stats.geometry_passes += wasted;
                 return Ok(Profile {
@@ -99,7 +93,7 @@ impl Renderer {
         let points = method.points();
         for &point in &points {
             sum.add(self.drawn(method, (camera, point), true, None).await?);
-            let view = method.ready.as_ref().and_then(|r| r.frame.image());
+            let view = method.ready.as_ref().and_then(|r| r.frame.image.as_ref());
             let read = match view {
                 Some(view) => self.gpu().read_texture_async(view).await?,
                 None => Vec::new(),

@@ -26,7 +26,6 @@ pub struct FrameStats {
     pub bytes_per_pixel: f64,
 }
 
-/// What a compositor draws with.
 #[derive(Debug)]
 pub(crate) struct DrawContext<'a, 'e> {
     pub recorder: &'a mut Recorder<'e>,
@@ -98,7 +97,6 @@ pub(crate) trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     }
 }
 
-/// What a method is built from.
 pub(crate) struct Build<'a> {
     pub scene: &'a SceneBuffers,
     pub frame: &'a FrameTargets,

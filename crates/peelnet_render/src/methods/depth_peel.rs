@@ -73,7 +73,7 @@ impl Layers {
             let entries = [
                 Bind::Texture(&accumulated[from]),
                 Bind::Texture(&peel.layer),
-                Bind::Uint(&peel.keys[1 - from]),
+                Bind::Texture(&peel.keys[1 - from]),
                 Bind::Write(found),
             ];
             let (shader, target) = ("methods::depth_peel::under", [Some(format.into())]);

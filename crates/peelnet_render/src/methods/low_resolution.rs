@@ -6,7 +6,7 @@
 use super::{compositor::resolve, prelude::*};
 use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{
-    FrameTargets, GeometryPipelines, OpaqueDepth, PixelSample,
+    FrameTargets, PixelSample,
     frame::{Output, clear_color},
     fullscreen::FullscreenPass,
 };
@@ -17,7 +17,6 @@ const BYTES_PER_SAMPLE: f64 = 16.0 + 16.0 + 4.0;
 #[derive(Debug)]
 struct LowResolution {
     frame: FrameTargets,
-    opaque: Option<GeometryPipelines>,
     method: Box<dyn Compositor>,
     upsample: FullscreenPass,
 }
@@ -43,7 +42,6 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
     let mut frame = b.scene.targets(size, Output::Image, None)?;
     // Rounded sides make pixels that are not square.
     frame.aspect = full.aspect;
-    let opaque = b.scene.opaque_pipelines(&frame)?;
     let method = b.spec.method().build(&Build {
         frame: &frame,
         ..*b
@@ -53,13 +51,13 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
     let extent = gpu.upload("full extent", &extent, wgpu::BufferUsages::UNIFORM);
     let mut entries = vec![
         // Its output is one.
-        Bind::Texture(frame.image().unwrap_or(&frame.background)),
+        Bind::Texture(frame.image.as_ref().unwrap_or(&frame.background)),
         Bind::Texture(&full.background),
         Bind::Uniform(&extent),
     ];
     let mut features: &[&str] = &[];
     if let (Some(low), Some(full)) = (&frame.depth, &full.depth) {
-        entries.extend([low, full].map(OpaqueDepth::bind));
+        entries.extend([low, full].map(|depth| Bind::Texture(&depth.view)));
         entries.push(Bind::Uniform(&b.scene.camera));
         features = &["opaque"];
     }
@@ -67,7 +65,6 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
     Ok(Box::new(LowResolution {
         upsample: resolve(gpu, full, shader, features, &[], &entries)?,
         frame,
-        opaque,
         method,
     }))
 }
@@ -78,8 +75,7 @@ impl Compositor for LowResolution {
         let frame = &self.frame;
         cx.scene
             .set_view(cx.recorder, cx.camera, frame, PixelSample::ALL, cx.point);
-        cx.scene
-            .draw_background(cx.recorder, frame, self.opaque.as_ref(), None, true);
+        cx.scene.draw_background(cx.recorder, frame, None, true);
         let black = [clear_color(&frame.background, [0.0, 0.0, 0.0, 1.0])];
         drop(cx.recorder.render("black", &black, None));
         let stats = self.method.draw(&mut DrawContext {

@@ -45,13 +45,14 @@ mod prelude {
         compositor::{Build, Compositor, DrawContext, Fit, FrameStats},
         method::{Method, Numbered, Pixel, Promises, weighted_twin},
         parameter::{MOMENT_TARGETS, Parameter, Precision, TARGETS},
-        plan::{Blend, ENDS, Plan, SUMS, TRANSMITTANCE, Target},
+        plan::{ENDS, Plan, SUMS, TRANSMITTANCE, Target},
         spec::MethodSpec,
     };
     pub(super) use crate::{
         RenderError,
         flaw::{Flaw, Property, half_statistics, half_sums},
     };
+    pub(super) use peelnet_raster::Blend;
 }
 
 use crate::RenderError;
@@ -97,7 +98,6 @@ pub const METHODS: &[Method] = &[
     anchored::MEDIUM,
 ];
 
-/// Makes a method ready.
 pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (spec, method) = (b.spec, b.spec.method());
     // A scene's scale concerns estimates; the methods that judge them stay exact unless they are asked for a scale themselves.

@@ -35,7 +35,6 @@ pub(super) trait Peel: fmt::Debug + wgpu::WasmNotSend {
     fn besides(&self) -> (u32, u32, f64);
 }
 
-/// A peeling method made ready.
 #[derive(Debug)]
 pub(super) struct Peeling<P> {
     peel: P,

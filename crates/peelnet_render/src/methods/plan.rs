@@ -9,71 +9,14 @@ use super::{
     views::Shows,
 };
 use crate::RenderError;
-use peelnet_core::guards::HALF_MAX;
 use peelnet_gpu::{Kernel, bind::Bind, wgpu};
 use peelnet_raster::{
-    BoxPass, GeometryPass, GeometryPipelines, Order, Sorted,
+    Blend, BoxPass, GeometryPass, GeometryPipelines, Order, Sorted,
     count::{unwritten_attachment, unwritten_texture},
     frame::clear_color,
     fullscreen::FullscreenPass,
 };
 
-/// How a target blends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Blend {
-    /// `dst + src`, from 0.
-    Add,
-    /// `dst · (1 − src)`, from 1.
-    Transmit,
-    /// `dst + src` of red, green and blue, from 0; `dst · (1 − src.a)` of alpha, from 1.
-    AddTransmit,
-    /// `src + dst · (1 − src.a)` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
-    Over,
-    /// `dst + src · dst.a` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
-    Under,
-    /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
-    MaxAdd,
-    /// `max(dst, src)`, from the smallest half.
-    Max,
-    /// `max(dst, src)` of 8-bit channels, 0 … 1, from 0.
-    MaxBytes,
-}
-
-impl Blend {
-    /// What a target is cleared to, and how colour and alpha blend.
-    fn table(self) -> ([f64; 4], [wgpu::BlendComponent; 2]) {
-        use wgpu::{BlendFactor as F, BlendOperation as O};
-        let component = |src_factor, dst_factor, operation| wgpu::BlendComponent {
-            src_factor,
-            dst_factor,
-            operation,
-        };
-        let add = component(F::One, F::One, O::Add);
-        let max = component(F::One, F::One, O::Max);
-        let transmit = component(F::Zero, F::OneMinusSrc, O::Add);
-        let transmit_alpha = component(F::Zero, F::OneMinusSrcAlpha, O::Add);
-        let over = component(F::One, F::OneMinusSrcAlpha, O::Add);
-        let under = component(F::DstAlpha, F::One, O::Add);
-        let (clear, least) = ([0.0, 0.0, 0.0, 1.0], -f64::from(HALF_MAX));
-        match self {
-            Self::Add => ([0.0; 4], [add, add]),
-            Self::Transmit => ([1.0; 4], [transmit, transmit]),
-            Self::AddTransmit => (clear, [add, transmit_alpha]),
-            Self::Over => (clear, [over, transmit_alpha]),
-            Self::Under => (clear, [under, transmit_alpha]),
-            Self::MaxAdd => ([least, least, least, 0.0], [max, add]),
-            Self::Max => ([least; 4], [max, max]),
-            Self::MaxBytes => ([0.0; 4], [max, max]),
-        }
-    }
-
-    /// What a target is cleared to.
-    pub fn start(self) -> [f64; 4] {
-        self.table().0
-    }
-}
-
-/// One accumulator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     pub label: &'static str,
@@ -131,32 +74,23 @@ impl Target {
     }
 
     pub fn state(&self) -> wgpu::ColorTargetState {
-        let (_, [color, alpha]) = self.blend.table();
-        wgpu::ColorTargetState {
-            blend: Some(wgpu::BlendState { color, alpha }),
-            ..self.format().into()
-        }
+        self.blend.state(self.format())
     }
 }
 
-/// What passes read and write.
 #[derive(Clone, Debug)]
 pub(crate) enum Resource {
     Target(Target, wgpu::TextureView),
     Texture(wgpu::TextureView),
-    /// A texture of unsigned integers.
-    Integers(wgpu::TextureView),
     Storage(wgpu::Buffer),
     Uniform(wgpu::Buffer),
     /// Where the finished picture goes, blended as that is; there is no resolve then.
     Output,
 }
 
-/// A resource of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Handle(usize);
 
-/// What a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Draws {
     Surfaces,
@@ -352,7 +286,6 @@ impl<'b> Plan<'b> {
         }
     }
 
-    /// Makes the plan ready.
     pub fn build(mut self) -> Result<Box<dyn Compositor>, RenderError> {
         let b = self.b;
         if b.options.shows == Shows::Sums {
@@ -402,7 +335,6 @@ impl<'b> Plan<'b> {
                     Resource::Target(_, view) | Resource::Texture(view) => {
                         Some(Bind::Texture(view))
                     }
-                    Resource::Integers(view) => Some(Bind::Uint(view)),
                     Resource::Storage(buffer) => Some(Bind::Read(buffer)),
                     Resource::Uniform(buffer) => Some(Bind::Uniform(buffer)),
                     Resource::Output => None,
@@ -421,7 +353,7 @@ impl<'b> Plan<'b> {
                     samples = output.samples();
                 }
                 Resource::Storage(buffer) => entries.push(Bind::Write(buffer)),
-                Resource::Texture(_) | Resource::Integers(_) | Resource::Uniform(_) => {}
+                Resource::Texture(_) | Resource::Uniform(_) => {}
             }
         }
         let work = match pass.draws {
@@ -462,7 +394,6 @@ impl<'b> Plan<'b> {
     }
 }
 
-/// A plan made ready.
 #[derive(Debug)]
 struct Planned {
     passes: Vec<PlannedPass>,
