@@ -407,8 +407,7 @@ impl Gpu {
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
-    /// Compiles WGSL text.
-    pub fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
+    pub(crate) fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
         self.device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
@@ -416,8 +415,10 @@ impl Gpu {
             })
     }
 
-    /// A pipeline layout from the layouts of its bind groups; groups may be left out.
-    pub fn layout(&self, layouts: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+    pub(crate) fn layout(
+        &self,
+        layouts: &[Option<&wgpu::BindGroupLayout>],
+    ) -> wgpu::PipelineLayout {
         self.device
             .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,

@@ -211,7 +211,7 @@ impl Harvester {
         CountPass::check(&gpu.read(faults, 0..faults.size())?, self.frame.size[0])?;
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        let times = gpu.block_on(times.read())?;
+        let times = gpu.block_on(times)?;
         Ok(Harvest {
             fragments: found.total,
             max_layers: found.most,

@@ -184,7 +184,7 @@ impl<'g> Plain<'g> {
         self.resolve.draw(&mut recorder, &[over]);
         let times = timer.finish(self.gpu, &mut encoder);
         queue.submit([encoder.finish()]);
-        let passes = self.gpu.block_on(times.read())?;
+        let passes = self.gpu.block_on(times)?;
         let clock = start.elapsed().as_secs_f64() * 1e3;
         Ok(milliseconds(&passes).unwrap_or(clock))
     }

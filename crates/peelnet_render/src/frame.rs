@@ -162,7 +162,7 @@ impl Canvas {
                 fullscreen_passes: 1,
                 ..FrameStats::default()
             },
-            times: times.read().await?,
+            times: times.await?,
             wall_micros: start.elapsed().as_secs_f64() * 1e6,
         })
     }

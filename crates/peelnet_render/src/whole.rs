@@ -54,7 +54,7 @@ impl Renderer {
             let times = timer.finish(self.gpu(), &mut encoder);
             self.gpu().queue.submit([encoder.finish()]);
             self.gpu().submitted_async().await;
-            let times = times.read().await?;
+            let times = times.await?;
             let words = match counts {
                 Some(counts) => counts.read().await?,
                 None => Vec::new(),
