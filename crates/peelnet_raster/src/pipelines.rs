@@ -24,28 +24,16 @@ pub struct GeometryPipelines {
 }
 
 #[derive(Debug)]
-struct OfVariant {
+pub(crate) struct OfVariant {
     variant: Variant,
-    pipeline: wgpu::RenderPipeline,
+    pub(crate) pipeline: wgpu::RenderPipeline,
     /// Whether it reads the number of a fragment's triangle.
-    numbered: bool,
+    pub(crate) numbered: bool,
 }
 
 impl GeometryPipelines {
-    pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
-        // Built for every run's variant.
-        if let Some(found) = self.of(variant) {
-            pass.set_pipeline(&found.pipeline);
-        }
-    }
-
-    fn of(&self, variant: Variant) -> Option<&OfVariant> {
+    pub(crate) fn of(&self, variant: Variant) -> Option<&OfVariant> {
         self.variants.iter().find(|p| p.variant == variant)
-    }
-
-    /// Whether a variant's pipeline reads the number of a fragment's triangle.
-    pub(crate) fn is_numbered(&self, variant: Variant) -> bool {
-        self.of(variant).is_some_and(|p| p.numbered)
     }
 }
 
@@ -167,28 +155,12 @@ fn pipeline(
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes,
     };
-    let attributes: Vec<[wgpu::VertexAttribute; 1]> = ATTRIBUTES
-        .iter()
-        .zip(2..)
-        .map(|((_, format, _), shader_location)| {
-            [wgpu::VertexAttribute {
-                format: *format,
-                offset: 0,
-                shader_location,
-            }]
-        })
-        .collect();
     let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
     let mut buffers = vec![Some(layout(size_of::<Vertex>() as u64, always.as_slice()))];
-    buffers.extend(
-        ATTRIBUTES
-            .iter()
-            .zip(&attributes)
-            .map(|((_, format, feature), attributes)| {
-                let is_read = features.contains(feature);
-                is_read.then(|| layout(format.size(), attributes.as_slice()))
-            }),
-    );
+    for (_, attribute, feature) in ATTRIBUTES {
+        let is_read = features.contains(feature);
+        buffers.push(is_read.then(|| layout(attribute[0].format.size(), attribute)));
+    }
     while buffers.last().is_some_and(Option::is_none) {
         buffers.pop();
     }

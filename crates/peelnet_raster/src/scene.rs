@@ -121,11 +121,12 @@ impl SceneBuffers {
         }
         // A binding may not be smaller than one element.
         materials.resize(materials.len().max(1), MaterialData::zeroed());
-        let mut kinds = ATTRIBUTES.iter().zip(0..);
-        let attributes = attributes.map(|mut all| {
-            let ((label, ..), i) = kinds.next().filter(|_| !all.is_empty())?;
-            all.resize(vertices.len() * floats(i), 0.0);
-            Some(gpu.upload(label, &all, wgpu::BufferUsages::VERTEX))
+        let attributes = std::array::from_fn(|i| {
+            let all = &mut attributes[i];
+            (!all.is_empty()).then(|| {
+                all.resize(vertices.len() * floats(i), 0.0);
+                gpu.upload(ATTRIBUTES[i].0, all, wgpu::BufferUsages::VERTEX)
+            })
         });
         let camera = [CameraUniform::zeroed()];
         let mut buffers = Self {
@@ -337,40 +338,23 @@ impl SceneBuffers {
         frame: &FrameTargets,
         pipelines: &GeometryPipelines,
     ) {
-        self.begin(pass, frame, pipelines);
-        for run in self.half(frame, pipelines.opaque).1 {
-            self.draw_run(pass, pipelines, run);
-        }
+        let runs = self.half(frame, pipelines.opaque).1;
+        self.draw_runs(pass, frame, pipelines, runs, None);
     }
 
-    /// Draws a run of triangles, each vertex once where no pipeline asks for the number of its triangle.
-    pub(crate) fn draw_run(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        pipelines: &GeometryPipelines,
-        run: &DrawRun,
-    ) {
-        self.set_run(pass, pipelines, run);
-        if pipelines.is_numbered(run.variant) {
-            pass.draw(run.vertices.clone(), 0..1);
-        } else {
-            pass.set_index_buffer(self.shared.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(run.vertices.clone(), 0, 0..1);
-        }
-    }
-
-    /// Sets the bind groups and vertices of all runs.
-    pub(crate) fn begin(
+    /// Draws runs of triangles, of `indices` where there are any. Otherwise each vertex is drawn once where no pipeline asks for the number
+    /// of its triangle.
+    pub(crate) fn draw_runs(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         frame: &FrameTargets,
         pipelines: &GeometryPipelines,
+        runs: &[DrawRun],
+        indices: Option<&wgpu::Buffer>,
     ) {
         let scene_group = self.half(frame, pipelines.opaque).0;
-        for (bound, index) in [Some(scene_group), pipelines.group.as_ref()]
-            .iter()
-            .zip(0..)
-        {
+        let groups = [Some(scene_group), pipelines.group.as_ref()];
+        for (bound, index) in groups.iter().zip(0..) {
             pass.set_bind_group(index, bound.map(|bound| &bound.group), &[]);
         }
         pass.set_vertex_buffer(0, self.vertices.slice(..));
@@ -379,17 +363,26 @@ impl SceneBuffers {
                 pass.set_vertex_buffer(slot, buffer.slice(..));
             }
         }
-    }
-
-    pub(crate) fn set_run(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        all: &GeometryPipelines,
-        run: &DrawRun,
-    ) {
-        all.set(pass, run.variant);
-        if let Some(number) = run.maps {
-            pass.set_bind_group(2, &self.maps.bound(number).group, &[]);
+        if let Some(indices) = indices {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        }
+        for run in runs {
+            // There is one for every run's variant.
+            let Some(found) = pipelines.of(run.variant) else {
+                continue;
+            };
+            pass.set_pipeline(&found.pipeline);
+            if let Some(number) = run.maps {
+                pass.set_bind_group(2, &self.maps.bound(number).group, &[]);
+            }
+            if indices.is_none() && found.numbered {
+                pass.draw(run.vertices.clone(), 0..1);
+                continue;
+            }
+            if indices.is_none() {
+                pass.set_index_buffer(self.shared.slice(..), wgpu::IndexFormat::Uint32);
+            }
+            pass.draw_indexed(run.vertices.clone(), 0, 0..1);
         }
     }
 

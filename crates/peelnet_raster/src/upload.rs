@@ -1,7 +1,7 @@
 //! Vertices and their attributes in world space, and runs of triangles that one pipeline draws.
 
 use bytemuck::{Pod, Zeroable};
-use peelnet_gpu::wgpu;
+use peelnet_gpu::wgpu::{self, vertex_attr_array};
 use peelnet_scene::{Object, Variant};
 use std::ops::Range;
 
@@ -14,12 +14,12 @@ pub(crate) struct Vertex {
     pub material: u32,
 }
 
-/// What only some materials read of a vertex, each in a buffer of its own: name, format, the shader feature that reads it.
-pub(crate) const ATTRIBUTES: [(&str, wgpu::VertexFormat, &str); 4] = [
-    ("uv", wgpu::VertexFormat::Float32x2, "mapped"),
-    ("tangent", wgpu::VertexFormat::Float32x4, "normal_map"),
-    ("color", wgpu::VertexFormat::Float32x4, "vertex_colors"),
-    ("normal", wgpu::VertexFormat::Float32x3, "lit"),
+/// What only some materials read of a vertex, each in a buffer of its own: name, place and format, the shader feature that reads it.
+pub(crate) const ATTRIBUTES: &[(&str, [wgpu::VertexAttribute; 1], &str)] = &[
+    ("uv", vertex_attr_array![2 => Float32x2], "mapped"),
+    ("tangent", vertex_attr_array![3 => Float32x4], "normal_map"),
+    ("color", vertex_attr_array![4 => Float32x4], "vertex_colors"),
+    ("normal", vertex_attr_array![5 => Float32x3], "lit"),
 ];
 
 /// How many vertices that stand for one of the mesh are compared: of more, some are drawn as vertices of their own.
@@ -166,7 +166,7 @@ impl<'a> Placement<'a> {
 
 /// Floats of one vertex's attribute.
 pub(crate) fn floats(attribute: usize) -> usize {
-    ATTRIBUTES[attribute].1.size() as usize / 4
+    ATTRIBUTES[attribute].1[0].format.size() as usize / 4
 }
 
 /// Adds the attributes of a part whose first vertex is `first`, behind zeros where nothing reads a vertex's.
