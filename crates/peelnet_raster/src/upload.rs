@@ -184,19 +184,21 @@ mod tests {
     use super::*;
     use peelnet_scene::{Material, Setting};
 
+    fn object(positions: Vec<glam::Vec3>, triangles: Vec<[u32; 3]>) -> Object {
+        let mut object = Object::of_triangles("test", &[], Material::unlit([1.0; 3], 0.5));
+        let mesh = std::sync::Arc::make_mut(&mut object.mesh);
+        mesh.normals = vec![glam::Vec3::Z; positions.len()];
+        (mesh.positions, mesh.triangles) = (positions, triangles);
+        object
+    }
+
     /// Two triangles of four vertices share two of them, unless an attribute differs there; mirrored ones turn round, and the numbers
     /// follow.
     #[test]
     fn the_same_vertices_are_shared() {
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-        let mut object = Object::of_triangles("none", &[], Material::unlit([1.0; 3], 0.5));
-        let mesh = peelnet_scene::Mesh {
-            positions: points.map(|[x, y]| glam::Vec3::new(x, y, 0.0)).to_vec(),
-            normals: vec![glam::Vec3::Z; 4],
-            triangles: vec![[0, 1, 2], [2, 1, 3]],
-            ..(*object.mesh).clone()
-        };
-        object.mesh = std::sync::Arc::new(mesh);
+        let points = points.map(|[x, y]| glam::Vec3::new(x, y, 0.0));
+        let mut object = object(points.to_vec(), vec![[0, 1, 2], [2, 1, 3]]);
         let shared = |object: &Object, attributes: &[Vec<f32>; 4]| {
             Placement::of(object).shared(&(0..2), attributes, 30)
         };
@@ -220,14 +222,7 @@ mod tests {
     /// A fan whose middle has other UVs in every triangle, and twice: what stands for a vertex is the same, however many there are.
     #[test]
     fn vertices_of_many_seams_stay_themselves() {
-        let mut object = Object::of_triangles("fan", &[], Material::unlit([1.0; 3], 0.5));
-        let mesh = peelnet_scene::Mesh {
-            positions: vec![glam::Vec3::ZERO; 3],
-            normals: vec![glam::Vec3::Z; 3],
-            triangles: vec![[0, 1, 2]; 60],
-            ..(*object.mesh).clone()
-        };
-        object.mesh = std::sync::Arc::new(mesh);
+        let object = object(vec![glam::Vec3::ZERO; 3], vec![[0, 1, 2]; 60]);
         let mut attributes: [Vec<f32>; 4] = Default::default();
         let uv = |corner: usize| {
             [

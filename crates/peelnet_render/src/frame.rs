@@ -39,16 +39,14 @@ pub struct Frame {
 impl Frame {
     /// What is wrong with the picture.
     pub fn warnings(&self) -> Vec<String> {
-        let lost = counted(self.stats.lost, "fragment");
-        let not_finite = self.image.non_finite() as u64;
-        let odd = counted(not_finite, "pixel");
-        [
-            (self.stats.lost, format!("not in the image: {lost}")),
-            (not_finite, format!("not finite: {odd}")),
-        ]
-        .into_iter()
-        .filter_map(|(count, text)| (count > 0).then_some(text))
-        .collect()
+        let all = [
+            (self.stats.lost, "not in the image", "fragment"),
+            (self.image.non_finite() as u64, "not finite", "pixel"),
+        ];
+        let found = all.into_iter().filter(|(count, ..)| *count > 0);
+        found
+            .map(|(count, what, unit)| format!("{what}: {}", counted(count, unit)))
+            .collect()
     }
 }
 

@@ -18,10 +18,7 @@ impl LearnedWeight {
 }
 
 impl Build<'_> {
-    /// The text that a learned method draws with.
-    ///
-    /// # Errors
-    /// No model, or one that was trained for another method.
+    /// The text that a learned method draws with, if it was trained for this method.
     pub(crate) fn learned_weight(&self) -> Result<&LearnedWeight, RenderError> {
         let learned = self.options.learned.as_ref();
         let learned = learned.ok_or_else(|| RenderError::NeedsModel(self.spec.to_string()))?;
