@@ -117,7 +117,7 @@ impl Gpu {
         buffer: &wgpu::Buffer,
     ) -> Result<Vec<T>, GpuError> {
         let mut encoder = self.encoder();
-        let download = Download::record(self, &mut encoder, &[buffer.clone()]);
+        let download = Download::record(self, &mut encoder, std::slice::from_ref(buffer));
         self.queue.submit([encoder.finish()]);
         let values = download.read().await;
         self.check()?;

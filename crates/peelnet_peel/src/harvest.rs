@@ -68,8 +68,8 @@ struct Step {
 #[derive(Debug)]
 enum Peeler {
     SBuffer,
-    Dual(DualPeel),
-    Single(SinglePeel),
+    Dual(Box<DualPeel>),
+    Single(Box<SinglePeel>),
 }
 
 /// A scene made ready for peeling at one frame size.
@@ -124,8 +124,8 @@ impl Harvester {
         let frame = scene.targets(size, Output::Image, None)?;
         let peeler = match peel {
             Peel::SBuffer => Peeler::SBuffer,
-            Peel::Dual => Peeler::Dual(DualPeel::new(&scene, &frame, features, None)?),
-            Peel::Single => Peeler::Single(SinglePeel::new(&scene, &frame, features)?),
+            Peel::Dual => Peeler::Dual(DualPeel::new(&scene, &frame, features, None)?.into()),
+            Peel::Single => Peeler::Single(SinglePeel::new(&scene, &frame, features)?.into()),
         };
         Ok(Self {
             sbuffer: SBuffer::new(&scene, &frame, budget, features)?,
