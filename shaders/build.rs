@@ -10,12 +10,7 @@ fn main() -> io::Result<()> {
     let out = PathBuf::from(env::var("OUT_DIR").map_err(io::Error::other)?);
     println!("cargo::rerun-if-changed={}", root.display());
     let mut entries = Vec::new();
-    for folder in fs::read_dir(&root)? {
-        let folder = folder?;
-        if folder.file_type()?.is_dir() {
-            list(&folder.path(), &module("", &folder.path()), &mut entries)?;
-        }
-    }
+    list(&root, "", &mut entries)?;
     entries.sort();
     let text: String = entries
         .iter()
@@ -28,17 +23,13 @@ fn main() -> io::Result<()> {
 fn list(folder: &Path, prefix: &str, entries: &mut Vec<(String, PathBuf)>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        let name = module(&format!("{prefix}::"), &path);
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let name = format!("{prefix}{stem}");
         if path.is_dir() {
-            list(&path, &name, entries)?;
+            list(&path, &format!("{name}::"), entries)?;
         } else if path.extension().is_some_and(|e| e == "wgsl") {
             entries.push((name, path));
         }
     }
     Ok(())
-}
-
-fn module(prefix: &str, path: &Path) -> String {
-    let stem = path.file_stem().unwrap_or_default();
-    format!("{prefix}{}", stem.to_string_lossy())
 }

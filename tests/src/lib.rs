@@ -4,7 +4,7 @@ pub mod readers;
 
 use glam::{Vec2, Vec3};
 use peelnet_core::{fragment::Fragment, random::Random};
-use peelnet_gpu::{AdapterRequest, Gpu, bind::Bind, wgpu};
+use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{
     Frame, Image, LearnedWeight, METHODS, MethodOptions, MethodSpec, Prepared, Renderer,
@@ -103,18 +103,7 @@ pub fn run_text<T: bytemuck::Pod>(
     inputs: &[[f32; 4]],
     count: usize,
 ) -> Vec<T> {
-    let input = gpu.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
-    let bytes = (count * size_of::<T>()) as u64;
-    let output = gpu
-        .storage("answers", bytes)
-        .unwrap_or_else(|e| panic!("{e}"));
-    let bound = gpu.bind(
-        "driver",
-        wgpu::ShaderStages::COMPUTE,
-        &[Bind::Read(&input), Bind::Write(&output)],
-    );
-    gpu.dispatch("driver", wgsl, &bound, (count as u32).div_ceil(64));
-    gpu.read(&output, 0..bytes)
+    gpu.run(wgsl, inputs, count, count as u32)
         .unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -401,7 +401,7 @@ fn scenes_change_in_place() {
         renderer.set_transform(9, Mat4::IDENTITY),
         renderer.set_material(0, 3, Material::unlit([0.0; 3], 0.5)),
     ] {
-        assert!(matches!(error, Err(RenderError::Raster(_))), "{error:?}");
+        assert!(matches!(error, Err(RenderError::Refused(_))), "{error:?}");
     }
 }
 

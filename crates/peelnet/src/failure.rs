@@ -102,7 +102,7 @@ fn advice(error: &(dyn Error + 'static)) -> (bool, Option<&'static str>) {
     }
     if let Some(error) = find::<RenderError>(error) {
         return match error {
-            RenderError::Parameter { .. } | RenderError::UnknownMethod { .. } => (true, None),
+            RenderError::WrongValue(_) => (true, None),
             RenderError::NeedsModel(_) => (false, Some("give its model file with --model")),
             _ => (false, None),
         };

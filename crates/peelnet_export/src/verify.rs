@@ -13,7 +13,7 @@ use peelnet_core::{
     tolerance::{EXPORT_F16, EXPORT_F32},
 };
 use peelnet_files::STDOUT;
-use peelnet_gpu::{Gpu, bind::Bind, wgpu};
+use peelnet_gpu::{Gpu, wgpu};
 use peelnet_model::Model;
 use serde::Serialize;
 use std::{
@@ -87,7 +87,7 @@ pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, Expo
     let halves = has_halves(wgsl);
     if halves {
         let flag = wgpu::Features::SHADER_F16;
-        gpu.need(flag, "shader-f16", "a text in 16 bits", "export in 32 bits")?;
+        gpu.need(flag, "a text in 16 bits", "export in 32 bits")?;
     }
     let precision = if halves {
         Precision::F16
@@ -230,21 +230,8 @@ pub fn evaluate(
     );
     parsed(&driver)?;
     let flat: Vec<f32> = samples.iter().flatten().copied().collect();
-    let inputs = gpu.upload("inputs", &flat, wgpu::BufferUsages::STORAGE);
-    let bytes = (samples.len() * outputs) as u64 * 4;
-    let answers = gpu.storage("outputs", bytes)?;
-    let bound = gpu.bind(
-        "verification",
-        wgpu::ShaderStages::COMPUTE,
-        &[Bind::Read(&inputs), Bind::Write(&answers)],
-    );
-    gpu.dispatch(
-        "verification",
-        &driver,
-        &bound,
-        (samples.len() as u32).div_ceil(64),
-    );
-    Ok(gpu.read(&answers, 0..bytes)?)
+    let threads = samples.len() as u32;
+    Ok(gpu.run(&driver, &flat, samples.len() * outputs, threads)?)
 }
 
 /// The description beside an exported text: its name with `json` instead of the last extension, `.es.glsl` being one. `None` of a text that

@@ -60,19 +60,13 @@ pub struct OptionalFeature {
     pub name: &'static str,
     /// What we use it for and what happens without it.
     pub without: &'static str,
-    #[serde(skip)]
-    flag: wgpu::Features,
-}
-
-impl OptionalFeature {
     /// The wgpu flag.
-    pub const fn flag(&self) -> wgpu::Features {
-        self.flag
-    }
+    #[serde(skip)]
+    pub flag: wgpu::Features,
 }
 
 /// Every optional feature that a device is opened with where it exists.
-pub const OPTIONAL_FEATURES: &[OptionalFeature] = &[
+pub(crate) const OPTIONAL_FEATURES: &[OptionalFeature] = &[
     OptionalFeature {
         name: "float32-blendable",
         without: "dual depth peeling and 32-bit blending targets are unavailable; use sbuffer or single peeling and 16-bit targets",
@@ -115,32 +109,23 @@ pub struct AdapterReport {
     pub why: &'static str,
 }
 
+/// The kinds of adapters with their words, the one that [`AdapterRequest::Auto`] prefers first.
+const KINDS: [(wgpu::DeviceType, &str); 5] = [
+    (wgpu::DeviceType::DiscreteGpu, "discrete"),
+    (wgpu::DeviceType::IntegratedGpu, "integrated"),
+    (wgpu::DeviceType::VirtualGpu, "virtual"),
+    (wgpu::DeviceType::Other, "other"),
+    (wgpu::DeviceType::Cpu, "software"),
+];
+
 /// Word for an adapter's kind.
-pub const fn kind_name(kind: wgpu::DeviceType) -> &'static str {
-    match kind {
-        wgpu::DeviceType::DiscreteGpu => "discrete",
-        wgpu::DeviceType::IntegratedGpu => "integrated",
-        wgpu::DeviceType::VirtualGpu => "virtual",
-        wgpu::DeviceType::Cpu => "software",
-        wgpu::DeviceType::Other => "other",
-    }
+pub fn kind_name(kind: wgpu::DeviceType) -> &'static str {
+    KINDS[rank(kind)].1
 }
 
-const fn rank(kind: wgpu::DeviceType) -> u8 {
-    match kind {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    }
-}
-
-/// Flags of all optional features.
-pub(crate) fn optional_flags() -> wgpu::Features {
-    OPTIONAL_FEATURES
-        .iter()
-        .fold(wgpu::Features::empty(), |all, f| all | f.flag())
+fn rank(kind: wgpu::DeviceType) -> usize {
+    let found = KINDS.iter().position(|(k, _)| *k == kind);
+    found.unwrap_or_default()
 }
 
 /// All adapters, best first.
@@ -156,7 +141,6 @@ pub(crate) async fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
     (instance, adapters)
 }
 
-/// Picks an adapter from the list.
 pub(crate) fn pick(
     adapters: Vec<wgpu::Adapter>,
     request: &AdapterRequest,
@@ -165,25 +149,19 @@ pub(crate) fn pick(
         return Err(GpuError::NoAdapter);
     }
     let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
-    let mut all = adapters.into_iter();
     let (wanted, found) = match request {
-        AdapterRequest::Auto => ("auto", all.next()),
+        AdapterRequest::Auto => ("auto", Some(0)),
         AdapterRequest::Software => {
-            let is_software =
-                |a: &_| wgpu::Adapter::get_info(a).device_type == wgpu::DeviceType::Cpu;
-            ("software", all.find(is_software))
+            let is_software = |a: &wgpu::Adapter| a.get_info().device_type == wgpu::DeviceType::Cpu;
+            ("software", adapters.iter().position(is_software))
         }
         AdapterRequest::Named(name) => {
             let text = name.to_lowercase();
-            let is_named = |a: &_| {
-                wgpu::Adapter::get_info(a)
-                    .name
-                    .to_lowercase()
-                    .contains(&text)
-            };
-            (name.as_str(), all.find(is_named))
+            let is_named = |n: &String| n.to_lowercase().contains(&text);
+            (name.as_str(), names.iter().position(is_named))
         }
     };
+    let found = found.and_then(|place| adapters.into_iter().nth(place));
     found.ok_or_else(|| GpuError::NoSuchAdapter {
         wanted: wanted.to_owned(),
         available: names.join(", "),
@@ -193,12 +171,7 @@ pub(crate) fn pick(
 /// What `peelnet doctor` prints. Empty where no driver is installed.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn report() -> Vec<AdapterReport> {
-    pollster::block_on(report_async())
-}
-
-/// The same without waiting.
-pub async fn report_async() -> Vec<AdapterReport> {
-    let (_instance, adapters) = enumerate().await;
+    let (_instance, adapters) = pollster::block_on(enumerate());
     adapters
         .iter()
         .enumerate()

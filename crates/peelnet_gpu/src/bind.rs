@@ -11,16 +11,8 @@ pub enum Bind<'a> {
     Read(&'a wgpu::Buffer),
     /// A storage buffer that shaders write.
     Write(&'a wgpu::Buffer),
-    /// A colour texture read by `textureLoad`.
+    /// A texture of floats, integers or depths read by `textureLoad`.
     Texture(&'a wgpu::TextureView),
-    /// An unsigned integer texture read by `textureLoad`.
-    Uint(&'a wgpu::TextureView),
-    /// A depth texture read by `textureLoad`.
-    Depth(&'a wgpu::TextureView),
-    /// The same of several samples a pixel.
-    DepthMultisampled(&'a wgpu::TextureView),
-    /// A write-only storage texture of format RGBA32F.
-    Store(&'a wgpu::TextureView),
     /// A colour texture read through a sampler.
     Image(&'a wgpu::TextureView),
     /// A sampler.
@@ -51,7 +43,7 @@ impl Gpu {
                 binding,
                 // Vertex shaders may not write storage in portable WebGPU.
                 visibility: match bind {
-                    Bind::Write(_) | Bind::Store(_) => stages & !wgpu::ShaderStages::VERTEX,
+                    Bind::Write(_) => stages & !wgpu::ShaderStages::VERTEX,
                     _ => stages,
                 },
                 ty,
@@ -92,31 +84,26 @@ impl Bind<'_> {
             has_dynamic_offset: false,
             min_binding_size: None,
         };
-        let texture = |sample_type| wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
+        let texture = |view: &wgpu::TextureView, float| {
+            let texture = view.texture();
+            wgpu::BindingType::Texture {
+                sample_type: match texture.format().sample_type(None, None) {
+                    Some(wgpu::TextureSampleType::Float { .. }) | None => float,
+                    Some(other) => other,
+                },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: texture.sample_count() > 1,
+            }
         };
+        let float = |filterable| wgpu::TextureSampleType::Float { filterable };
         let kind = match self {
             Self::None => return None,
             Self::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
             Self::Read(_) => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             Self::Write(_) => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Self::Texture(_) => texture(wgpu::TextureSampleType::Float { filterable: false }),
-            Self::Image(_) => texture(wgpu::TextureSampleType::Float { filterable: true }),
+            Self::Texture(view) => texture(view, float(false)),
+            Self::Image(view) => texture(view, float(true)),
             Self::Sampler(_) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            Self::Uint(_) => texture(wgpu::TextureSampleType::Uint),
-            Self::Depth(_) => texture(wgpu::TextureSampleType::Depth),
-            Self::DepthMultisampled(_) => wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: true,
-            },
-            Self::Store(_) => wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: wgpu::TextureFormat::Rgba32Float,
-                view_dimension: wgpu::TextureViewDimension::D2,
-            },
         };
         Some(kind)
     }
@@ -126,12 +113,7 @@ impl Bind<'_> {
             Self::None => return None,
             Self::Uniform(b) | Self::Read(b) | Self::Write(b) => b.as_entire_binding(),
             Self::Sampler(s) => wgpu::BindingResource::Sampler(s),
-            Self::Texture(v)
-            | Self::Image(v)
-            | Self::Uint(v)
-            | Self::Depth(v)
-            | Self::DepthMultisampled(v)
-            | Self::Store(v) => wgpu::BindingResource::TextureView(v),
+            Self::Texture(v) | Self::Image(v) => wgpu::BindingResource::TextureView(v),
         };
         Some(resource)
     }

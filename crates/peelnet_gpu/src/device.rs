@@ -29,10 +29,9 @@ pub struct Gpu {
     pub limits: wgpu::Limits,
     /// The limit that [`Gpu::pretend_memory`] set.
     largest_allocation: u64,
-    shared: Arc<Shared>,
+    pub(crate) shared: Arc<Shared>,
 }
 
-/// What all clones of a [`Gpu`] share.
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     /// Whether an allocation did not fit the GPU's memory.
@@ -66,10 +65,12 @@ impl Gpu {
     pub async fn open_async(request: &AdapterRequest) -> Result<Self, GpuError> {
         let (instance, adapters) = adapter::enumerate().await;
         let adapter = adapter::pick(adapters, request)?;
+        let optional = OPTIONAL_FEATURES.iter().map(|f| f.flag);
+        let optional = optional.fold(wgpu::Features::empty(), |all, flag| all | flag);
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("peelnet"),
-                required_features: adapter::optional_flags() & adapter.features(),
+                required_features: optional & adapter.features(),
                 required_limits: adapter.limits(),
                 ..Default::default()
             })
@@ -131,12 +132,7 @@ impl Gpu {
     /// The optional features that the device was opened without, each with what that costs.
     pub fn missing(&self) -> Vec<OptionalFeature> {
         let all = OPTIONAL_FEATURES.iter().copied();
-        all.filter(|f| !self.has(f.flag())).collect()
-    }
-
-    /// Pipelines compiled so far.
-    pub(crate) fn pipelines(&self) -> &PipelineCache {
-        &self.shared.pipelines
+        all.filter(|f| !self.has(f.flag)).collect()
     }
 
     /// A command encoder.
@@ -157,19 +153,18 @@ impl Gpu {
     pub fn need(
         &self,
         feature: wgpu::Features,
-        name: &'static str,
         what: &str,
         hint: &'static str,
     ) -> Result<(), GpuError> {
-        if self.has(feature) {
-            return Ok(());
+        match self.missing().iter().find(|f| f.flag == feature) {
+            None => Ok(()),
+            Some(missing) => Err(GpuError::MissingFeature {
+                what: what.to_owned(),
+                feature: missing.name,
+                adapter: self.info.name.clone(),
+                hint,
+            }),
         }
-        Err(GpuError::MissingFeature {
-            what: what.to_owned(),
-            feature: name,
-            adapter: self.info.name.clone(),
-            hint,
-        })
     }
 
     /// Fails where something needs more than a limit of the adapter, both counted in `unit`.
@@ -331,26 +326,38 @@ impl Gpu {
         } else {
             wgpu::TextureUsages::empty()
         };
-        let side = u64::from(self.limits.max_texture_dimension_2d);
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some(label),
+            size: extent([width, height]),
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | copied
+                | extra,
+            view_formats: &[],
+        };
         let what = format!("a frame of {width}×{height} pixels");
-        let (unit, hint) = ("pixels a side", "draw a smaller frame");
-        self.check_limit(what, width.max(height).into(), side, unit, hint)?;
-        let texture = self.allocate(label, bytes, || {
-            self.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: extent([width, height]),
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | copied
-                    | extra,
-                view_formats: &[],
-            })
-        })?;
+        let hints = ["pixels a side", "draw a smaller frame"];
+        let texture = self.create_texture(&descriptor, bytes, what, hints)?;
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+
+    fn create_texture(
+        &self,
+        descriptor: &wgpu::TextureDescriptor<'_>,
+        bytes: u64,
+        what: String,
+        [unit, hint]: [&'static str; 2],
+    ) -> Result<wgpu::Texture, GpuError> {
+        let side = descriptor.size.width.max(descriptor.size.height);
+        let limit = self.limits.max_texture_dimension_2d;
+        self.check_limit(what, side.into(), limit.into(), unit, hint)?;
+        self.allocate(descriptor.label.unwrap_or_default(), bytes, || {
+            self.device.create_texture(descriptor)
+        })
     }
 
     /// A texture of 8 bits a channel with its levels of detail, the largest first: size, and texels row by row.
@@ -364,28 +371,24 @@ impl Gpu {
         levels: &[([u32; 2], Cow<'_, [u8]>)],
     ) -> Result<wgpu::TextureView, GpuError> {
         let [width, height] = levels.first().map_or([1, 1], |(size, _)| *size);
-        let side = u64::from(self.limits.max_texture_dimension_2d);
-        let what = format!("the image {label} of {width}×{height} texels");
-        let (unit, hint) = ("texels a side", "make it smaller");
-        self.check_limit(what, width.max(height).into(), side, unit, hint)?;
-        let format = if srgb {
-            wgpu::TextureFormat::Rgba8UnormSrgb
-        } else {
-            wgpu::TextureFormat::Rgba8Unorm
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some(label),
+            size: extent([width, height]),
+            mip_level_count: levels.len().max(1) as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: if srgb {
+                wgpu::TextureFormat::Rgba8UnormSrgb
+            } else {
+                wgpu::TextureFormat::Rgba8Unorm
+            },
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
         };
         let bytes = levels.iter().map(|(_, texels)| texels.len() as u64).sum();
-        let texture = self.allocate(label, bytes, || {
-            self.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: extent([width, height]),
-                mip_level_count: levels.len().max(1) as u32,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
-        })?;
+        let what = format!("the image {label} of {width}×{height} texels");
+        let hints = ["texels a side", "make it smaller"];
+        let texture = self.create_texture(&descriptor, bytes, what, hints)?;
         for ((size, texels), level) in levels.iter().zip(0..) {
             self.queue.write_texture(
                 wgpu::TexelCopyTextureInfo {
@@ -404,8 +407,7 @@ impl Gpu {
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
-    /// Compiles WGSL text.
-    pub fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
+    pub(crate) fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
         self.device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
@@ -413,8 +415,10 @@ impl Gpu {
             })
     }
 
-    /// A pipeline layout from the layouts of its bind groups; groups may be left out.
-    pub fn layout(&self, layouts: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+    pub(crate) fn layout(
+        &self,
+        layouts: &[Option<&wgpu::BindGroupLayout>],
+    ) -> wgpu::PipelineLayout {
         self.device
             .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,

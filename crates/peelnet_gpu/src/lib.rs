@@ -12,11 +12,9 @@ mod error;
 mod pipelines;
 pub mod readback;
 pub mod record;
-mod scope;
 
 pub use adapter::{AdapterRequest, OptionalFeature};
 pub use device::Gpu;
 pub use error::GpuError;
-pub use pipelines::RenderPipeline;
-pub use scope::AdapterScope;
+pub use pipelines::{Kernel, RenderPipeline, groups_2d};
 pub use wgpu;

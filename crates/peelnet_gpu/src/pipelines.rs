@@ -1,13 +1,68 @@
 //! Compiled pipelines, kept by all that decides them: a resize, a second scene or a second method compiles none anew.
 
-use crate::{Gpu, bind::Bound, device::locked};
+use crate::{
+    Gpu,
+    bind::{Bind, Bound},
+    device::locked,
+    record::Recorder,
+};
 use std::{collections::HashMap, sync::Mutex};
 
-/// Pipelines by their keys, for the life of the device.
 #[derive(Debug, Default)]
 pub(crate) struct PipelineCache {
     render: Mutex<HashMap<String, wgpu::RenderPipeline>>,
     compute: Mutex<HashMap<String, wgpu::ComputePipeline>>,
+}
+
+/// A compute shader, whose entry point is `main`, with its bindings.
+#[derive(Debug)]
+pub struct Kernel {
+    label: String,
+    pipeline: wgpu::ComputePipeline,
+    group: Bound,
+}
+
+impl Kernel {
+    /// Compiles the shader where its pipeline is not known yet.
+    pub fn new(gpu: &Gpu, label: &str, wgsl: &str, entries: &[Bind<'_>]) -> Self {
+        let group = gpu.bind(label, wgpu::ShaderStages::COMPUTE, entries);
+        let key = format!("{}\n{wgsl}", group.signature);
+        let all = &gpu.shared.pipelines.compute;
+        let known = locked(all).get(&key).cloned();
+        let pipeline = known.unwrap_or_else(|| {
+            let descriptor = wgpu::ComputePipelineDescriptor {
+                label: Some(label),
+                layout: Some(&gpu.layout(&[Some(&group.layout)])),
+                module: &gpu.shader(label, wgsl),
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            };
+            let made = gpu.device.create_compute_pipeline(&descriptor);
+            locked(all).entry(key).or_insert(made).clone()
+        });
+        Self {
+            label: label.to_owned(),
+            pipeline,
+            group,
+        }
+    }
+
+    /// Records it over this many threads, in workgroups of 64.
+    pub fn dispatch(&self, recorder: &mut Recorder<'_>, threads: u32) {
+        let [x, y] = groups_2d(threads);
+        let mut pass = recorder.compute(&self.label);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group.group, &[]);
+        pass.dispatch_workgroups(x, y, 1);
+    }
+}
+
+/// Workgroups of 64 threads over `items`, as a 2-D dispatch: one dimension holds at most 65,535 groups.
+pub fn groups_2d(items: u32) -> [u32; 2] {
+    let groups = items.div_ceil(64).max(1);
+    let x = groups.min(32_768);
+    [x, groups.div_ceil(x)]
 }
 
 /// A render pipeline that is not made yet, with the entry points `vertex_main` and `fragment_main`.
@@ -36,25 +91,16 @@ pub struct RenderPipeline<'a> {
 impl Gpu {
     /// A render pipeline, made where there is none that equals it yet.
     pub fn render_pipeline(&self, made_of: &RenderPipeline<'_>) -> wgpu::RenderPipeline {
-        let RenderPipeline { groups, .. } = made_of;
+        let RenderPipeline {
+            groups, samples, ..
+        } = made_of;
         let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
-        let states = (
-            made_of.targets,
-            &made_of.depth,
-            made_of.samples,
-            made_of.culled,
-        );
-        let ([_, vertex], [_, fragment], buffers) =
-            (made_of.vertex, made_of.fragment, made_of.buffers);
-        let key = format!(
-            "{signatures:?}
-{states:?}
-{buffers:?}
-{vertex}
-{fragment}"
-        );
+        let states = (made_of.targets, &made_of.depth, samples, made_of.culled);
+        let ([_, vertex], [_, fragment]) = (made_of.vertex, made_of.fragment);
+        let buffers = made_of.buffers;
+        let key = format!("{signatures:?}\n{states:?}\n{buffers:?}\n{vertex}\n{fragment}");
         // Compiling takes long: the lock is not held meanwhile, and the first of two equal pipelines stays.
-        if let Some(known) = locked(&self.pipelines().render).get(&key) {
+        if let Some(known) = locked(&self.shared.pipelines.render).get(&key) {
             return known.clone();
         }
         let [vertex, fragment] =
@@ -88,51 +134,12 @@ impl Gpu {
             cache: None,
         };
         let made = self.device.create_render_pipeline(&descriptor);
-        let mut all = locked(&self.pipelines().render);
+        let mut all = locked(&self.shared.pipelines.render);
         all.entry(key).or_insert(made).clone()
-    }
-
-    /// A compute pipeline with one entry point, `main`, and one bind group.
-    pub fn compute(&self, label: &str, wgsl: &str, group: &Bound) -> wgpu::ComputePipeline {
-        let key = format!("{}\n{wgsl}", group.signature);
-        if let Some(known) = locked(&self.pipelines().compute).get(&key) {
-            return known.clone();
-        }
-        let module = self.shader(label, wgsl);
-        let made = self
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(label),
-                layout: Some(&self.layout(&[Some(&group.layout)])),
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
-        locked(&self.pipelines().compute)
-            .entry(key)
-            .or_insert(made)
-            .clone()
-    }
-
-    /// Submits one compute shader with one bind group, over this many workgroups.
-    pub fn dispatch(&self, label: &str, wgsl: &str, group: &Bound, workgroups: u32) {
-        let pipeline = self.compute(label, wgsl, group);
-        let mut encoder = self.encoder();
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(label),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group.group, &[]);
-            pass.dispatch_workgroups(workgroups, 1, 1);
-        }
-        self.queue.submit([encoder.finish()]);
     }
 
     /// Number of pipelines compiled so far.
     pub fn compiled_pipelines(&self) -> usize {
-        locked(&self.pipelines().render).len() + locked(&self.pipelines().compute).len()
+        locked(&self.shared.pipelines.render).len() + locked(&self.shared.pipelines.compute).len()
     }
 }

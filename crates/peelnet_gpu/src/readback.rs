@@ -2,13 +2,18 @@
 //!
 //! Functions named `_async` run wherever a future can be awaited, in a browser too. The others wait, and do not exist there.
 
-use crate::{Gpu, GpuError, device::locked};
-use std::{
-    future::Future,
-    ops::Range,
-    pin::Pin,
-    sync::{Arc, Mutex},
-    task::{Context, Poll, Waker},
+use crate::{Gpu, GpuError};
+use bytemuck::{AnyBitPattern, NoUninit};
+use futures_channel::oneshot;
+
+#[cfg(not(target_arch = "wasm32"))]
+use {
+    crate::{Kernel, bind::Bind, record::Recorder},
+    std::{
+        future::Future,
+        ops::Range,
+        task::{Context, Poll, Waker},
+    },
 };
 
 /// Bytes of one staging buffer: larger ones were measured to be slower, see the peak in page faults.
@@ -19,176 +24,145 @@ const CHUNK: u64 = 16 << 20;
 #[cfg(not(target_arch = "wasm32"))]
 const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
 
-const DID_NOT_MAP: &str = "a buffer did not map";
+/// What a buffer's mapping came to, once it is done.
+type Mapped = oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>;
 
-/// What a mapping, or a submission, came to, and who waits for it.
-#[derive(Debug, Default)]
-struct Mapping {
-    result: Option<Result<(), wgpu::BufferAsyncError>>,
-    waker: Option<Waker>,
+fn lost(reason: impl ToString) -> GpuError {
+    GpuError::Lost(reason.to_string())
 }
 
-impl Mapping {
-    fn done(shared: &Mutex<Self>, result: Result<(), wgpu::BufferAsyncError>) {
-        let mut mapping = locked(shared);
-        mapping.result = Some(result);
-        if let Some(waker) = mapping.waker.take() {
-            waker.wake();
-        }
-    }
-
-    fn poll(shared: &Mutex<Self>, cx: &Context<'_>) -> Poll<()> {
-        let mut mapping = locked(shared);
-        if mapping.result.is_some() {
-            return Poll::Ready(());
-        }
-        mapping.waker = Some(cx.waker().clone());
-        Poll::Pending
-    }
+fn did_not_map() -> GpuError {
+    lost("a buffer did not map")
 }
 
-/// Bytes on their way from the GPU: ready once the commands that write them are done.
+/// Bytes of some buffers on their way from the GPU: there once the commands that write them are done.
 #[derive(Debug)]
 pub struct Download {
     staging: wgpu::Buffer,
-    mapping: Arc<Mutex<Mapping>>,
+    sizes: Vec<u64>,
+    mapped: Mapped,
 }
 
 impl Download {
-    /// Records a copy of a buffer's range (multiples of 4), which is mapped when the encoder's commands are submitted.
-    pub fn record(
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        buffer: &wgpu::Buffer,
-        range: Range<u64>,
-    ) -> Self {
-        let bytes = range.end - range.start;
-        let staging = gpu.staging(bytes);
-        encoder.copy_buffer_to_buffer(buffer, range.start, &staging, 0, bytes);
-        let mapping = Arc::new(Mutex::new(Mapping::default()));
-        let sink = Arc::clone(&mapping);
-        encoder.map_buffer_on_submit(&staging, wgpu::MapMode::Read, .., move |result| {
-            Mapping::done(&sink, result);
+    /// Records a copy of buffers, which is mapped when the encoder's commands are submitted.
+    pub fn record(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, buffers: &[wgpu::Buffer]) -> Self {
+        let sizes: Vec<u64> = buffers.iter().map(wgpu::Buffer::size).collect();
+        let staging = gpu.staging(sizes.iter().sum());
+        let mut end = 0;
+        for buffer in buffers {
+            encoder.copy_buffer_to_buffer(buffer, 0, &staging, end, buffer.size());
+            end += buffer.size();
+        }
+        let (sender, mapped) = oneshot::channel();
+        encoder.map_buffer_on_submit(&staging, wgpu::MapMode::Read, .., |result| {
+            // Nobody may wait for it any more.
+            let _ = sender.send(result);
         });
-        Self { staging, mapping }
+        Self {
+            staging,
+            sizes,
+            mapped,
+        }
     }
 
-    /// Whether the bytes are there, without waiting.
-    pub fn is_ready(&self) -> bool {
-        locked(&self.mapping).result.is_some()
-    }
-
-    /// The bytes, once [`Self::is_ready`] or after awaiting.
+    /// The values of each buffer if they are there, without waiting; to be asked until then.
     ///
     /// # Errors
     /// A mapping that failed, as on a lost device.
-    pub fn take<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
-        &self,
-    ) -> Result<Vec<T>, GpuError> {
-        match locked(&self.mapping).result.take() {
-            Some(Ok(())) => {}
-            Some(Err(e)) => return Err(GpuError::Lost(e.to_string())),
-            None => return Err(GpuError::Lost(DID_NOT_MAP.into())),
+    pub fn try_read<T: AnyBitPattern + NoUninit>(
+        &mut self,
+    ) -> Result<Option<Vec<Vec<T>>>, GpuError> {
+        match self.mapped.try_recv() {
+            Ok(None) => Ok(None),
+            Ok(Some(result)) => self.values(result).map(Some),
+            Err(_) => Err(did_not_map()),
         }
-        let view = self
-            .staging
-            .get_mapped_range(..)
-            .map_err(|e| GpuError::Lost(e.to_string()))?;
-        let values = bytemuck::pod_collect_to_vec(&view);
+    }
+
+    /// The values of each buffer, once the encoder's commands are submitted.
+    ///
+    /// # Errors
+    /// A mapping that failed, as on a lost device.
+    pub async fn read<T: AnyBitPattern + NoUninit>(mut self) -> Result<Vec<Vec<T>>, GpuError> {
+        let result = (&mut self.mapped).await;
+        self.values(result.map_err(|_| did_not_map())?)
+    }
+
+    fn values<T: AnyBitPattern + NoUninit>(
+        &self,
+        mapped: Result<(), wgpu::BufferAsyncError>,
+    ) -> Result<Vec<Vec<T>>, GpuError> {
+        mapped.map_err(lost)?;
+        let view = self.staging.get_mapped_range(..).map_err(lost)?;
+        let mut left: &[u8] = &view;
+        let take = |&size: &u64| {
+            let (values, rest) = left.split_at(size as usize);
+            left = rest;
+            bytemuck::pod_collect_to_vec(values)
+        };
+        let values = self.sizes.iter().map(take).collect();
         drop(view);
         self.staging.unmap();
         Ok(values)
     }
 }
 
-impl Future for &Download {
-    type Output = ();
-
-    fn poll(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
-        Mapping::poll(&self.mapping, cx)
-    }
-}
-
 impl Gpu {
-    /// Copies a byte range of a buffer: all of it at once, after everything submitted so far.
+    /// Copies a buffer: all of it at once, after everything submitted so far.
     ///
     /// # Errors
     /// A lost device, or a validation error.
-    pub async fn read_async<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+    pub async fn read_async<T: AnyBitPattern + NoUninit>(
         &self,
         buffer: &wgpu::Buffer,
-        range: Range<u64>,
     ) -> Result<Vec<T>, GpuError> {
-        if range.is_empty() {
-            self.check()?;
-            return Ok(Vec::new());
-        }
         let mut encoder = self.encoder();
-        let download = Download::record(self, &mut encoder, buffer, range);
+        let download = Download::record(self, &mut encoder, std::slice::from_ref(buffer));
         self.queue.submit([encoder.finish()]);
-        (&download).await;
+        let values = download.read().await;
         self.check()?;
-        download.take()
+        Ok(values?.pop().unwrap_or_default())
     }
 
-    /// Copies an RGBA32F texture: `height × width` pixels, row 0 at the top.
+    /// Copies a texture whose texels are `T`s: `height × width` of them, row 0 at the top.
     ///
     /// # Errors
     /// A lost device, or a validation error.
-    pub async fn read_rgba32f_async(
+    ///
+    /// # Panics
+    /// If a texel has another size than `T`.
+    pub async fn read_texture_async<T: AnyBitPattern + NoUninit>(
         &self,
         view: &wgpu::TextureView,
-    ) -> Result<Vec<[f32; 4]>, GpuError> {
-        let (buffer, row) = self.copied(view);
-        let padded: Vec<[f32; 4]> = self.read_async(&buffer, 0..buffer.size()).await?;
-        Ok(without_padding(&padded, row, view.texture().width()))
+    ) -> Result<Vec<T>, GpuError> {
+        let (buffer, row) = self.copied::<T>(view);
+        let padded: Vec<T> = self.read_async(&buffer).await?;
+        let rows = padded.chunks_exact(row);
+        let rows = rows.map(|row| &row[..view.texture().width() as usize]);
+        Ok(rows.flatten().copied().collect())
     }
 
     /// Ends when everything submitted so far is done.
     pub async fn submitted_async(&self) {
-        let mapping = Arc::new(Mutex::new(Mapping::default()));
-        let sink = Arc::clone(&mapping);
-        self.queue
-            .on_submitted_work_done(move || Mapping::done(&sink, Ok(())));
-        std::future::poll_fn(|cx| Mapping::poll(&mapping, cx)).await;
+        let (sender, done) = oneshot::channel();
+        self.queue.on_submitted_work_done(|| {
+            // Nobody may wait for it any more.
+            let _ = sender.send(());
+        });
+        // An error is a device that went away: what is read next says so.
+        let _ = done.await;
     }
 
-    /// Runs a future of this device to its end, waiting for the device where the future does. Not in a browser.
-    ///
-    /// # Errors
-    /// Those of the future, and a lost device.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn block_on<T, E: From<GpuError>>(
-        &self,
-        future: impl Future<Output = Result<T, E>>,
-    ) -> Result<T, E> {
-        let mut future = std::pin::pin!(future);
-        let mut cx = Context::from_waker(Waker::noop());
-        // A wait runs the callbacks of everything submitted. What is not done long after the queue is empty never will be.
-        let mut waits_in_vain = 0;
-        loop {
-            if let Poll::Ready(result) = future.as_mut().poll(&mut cx) {
-                return result;
-            }
-            let waited = self.poll(None);
-            self.check()?;
-            let queue_empty = waited?.is_queue_empty();
-            waits_in_vain = if queue_empty { waits_in_vain + 1 } else { 0 };
-            if waits_in_vain > 1_000 {
-                return Err(GpuError::Lost(DID_NOT_MAP.into()).into());
-            }
-        }
-    }
-
-    /// Copies an RGBA32F texture into a buffer of padded rows; returns it with the texels of a row.
-    fn copied(&self, view: &wgpu::TextureView) -> (wgpu::Buffer, usize) {
+    /// Copies a texture into a buffer of padded rows; returns it with the texels of a row.
+    fn copied<T>(&self, view: &wgpu::TextureView) -> (wgpu::Buffer, usize) {
         let texture = view.texture();
-        let (width, height) = (texture.width(), texture.height());
-        let texel = texture.format().block_copy_size(None).unwrap_or(1);
-        let row = (width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let (format, texel) = (texture.format(), size_of::<T>() as u32);
+        let is_of_texel = format.block_copy_size(None) == Some(texel);
+        assert!(is_of_texel, "a texel of {format:?} has not {texel} bytes");
+        let row = (texture.width() * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("image read-back"),
-            size: u64::from(row) * u64::from(height),
+            size: u64::from(row) * u64::from(texture.height()),
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
@@ -219,18 +193,35 @@ impl Gpu {
     }
 }
 
-/// Rows of `row` texels without what pads them behind `width`.
-fn without_padding<T: Copy>(padded: &[T], row: usize, width: u32) -> Vec<T> {
-    padded
-        .chunks_exact(row)
-        .flat_map(|r| &r[..width as usize])
-        .copied()
-        .collect()
-}
-
 /// What waits: everywhere but in a browser.
 #[cfg(not(target_arch = "wasm32"))]
 impl Gpu {
+    /// Runs a future of this device to its end, waiting for the device where the future does.
+    ///
+    /// # Errors
+    /// Those of the future, and a lost device.
+    pub fn block_on<T, E: From<GpuError>>(
+        &self,
+        future: impl Future<Output = Result<T, E>>,
+    ) -> Result<T, E> {
+        let mut future = std::pin::pin!(future);
+        let mut cx = Context::from_waker(Waker::noop());
+        // A wait runs the callbacks of everything submitted. What is not done long after the queue is empty never will be.
+        let mut waits_in_vain = 0;
+        loop {
+            if let Poll::Ready(result) = future.as_mut().poll(&mut cx) {
+                return result;
+            }
+            let waited = self.poll(None);
+            self.check()?;
+            let queue_empty = waited?.is_queue_empty();
+            waits_in_vain = if queue_empty { waits_in_vain + 1 } else { 0 };
+            if waits_in_vain > 1_000 {
+                return Err(did_not_map().into());
+            }
+        }
+    }
+
     /// Waits until everything submitted is done.
     ///
     /// # Errors
@@ -244,7 +235,7 @@ impl Gpu {
     ///
     /// # Errors
     /// A lost device, or a validation error.
-    pub fn read_into<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+    pub fn read_into<T: AnyBitPattern + NoUninit>(
         &self,
         buffer: &wgpu::Buffer,
         range: Range<u64>,
@@ -275,11 +266,8 @@ impl Gpu {
             if i + 1 < chunks.len() {
                 submitted = send(1 - slot, chunks[i + 1]);
             }
-            let view = staging[slot]
-                .get_mapped_range(..chunks[i].1)
-                .map_err(|e| GpuError::Lost(e.to_string()))?;
-            out.extend_from_slice(bytemuck::cast_slice(&view));
-            drop(view);
+            let view = staging[slot].get_mapped_range(..chunks[i].1);
+            out.extend_from_slice(bytemuck::cast_slice(&view.map_err(lost)?));
             staging[slot].unmap();
         }
         self.check()
@@ -289,7 +277,7 @@ impl Gpu {
     ///
     /// # Errors
     /// A lost device, or a validation error.
-    pub fn read<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+    pub fn read<T: AnyBitPattern + NoUninit>(
         &self,
         buffer: &wgpu::Buffer,
         range: Range<u64>,
@@ -299,44 +287,59 @@ impl Gpu {
         Ok(out)
     }
 
-    /// Copies a texture whose texels are `T`s: `height × width` of them, row 0 at the top.
+    /// The same as [`Gpu::read_texture_async`], waiting for the device.
     ///
     /// # Errors
-    /// A lost device, or a validation error.
-    ///
-    /// # Panics
-    /// If a texel has another size than `T`.
-    pub fn read_texture<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+    /// See there.
+    pub fn read_texture<T: AnyBitPattern + NoUninit>(
         &self,
         view: &wgpu::TextureView,
     ) -> Result<Vec<T>, GpuError> {
-        let format = view.texture().format();
-        let texel = format.block_copy_size(None);
-        assert_eq!(texel, Some(size_of::<T>() as u32), "a texel of {format:?}");
-        let (buffer, row) = self.copied(view);
-        let padded: Vec<T> = self.read(&buffer, 0..buffer.size())?;
-        Ok(without_padding(&padded, row, view.texture().width()))
+        self.block_on(self.read_texture_async(view))
     }
 
+    /// Runs a compute shader with a thread for each input or more: binding 0 holds the inputs, 1 is where so many answers are written.
+    ///
+    /// # Errors
+    /// Answers that do not fit the GPU's memory, a lost device, or a validation error.
+    pub fn run<I: NoUninit, O: AnyBitPattern + NoUninit>(
+        &self,
+        wgsl: &str,
+        inputs: &[I],
+        answers: usize,
+        threads: u32,
+    ) -> Result<Vec<O>, GpuError> {
+        let inputs = self.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
+        let bytes = (answers * size_of::<O>()) as u64;
+        let answers = self.storage("answers", bytes)?;
+        let entries = [Bind::Read(&inputs), Bind::Write(&answers)];
+        let kernel = Kernel::new(self, "run", wgsl, &entries);
+        let mut encoder = self.encoder();
+        kernel.dispatch(&mut Recorder::new(self, &mut encoder, None), threads);
+        self.queue.submit([encoder.finish()]);
+        self.read(&answers, 0..bytes)
+    }
+
+    /// Maps a buffer's first bytes once a submission is done.
     fn map(
         &self,
         buffer: &wgpu::Buffer,
         bytes: u64,
         after: wgpu::SubmissionIndex,
     ) -> Result<(), GpuError> {
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
+        let (sender, mut mapped) = oneshot::channel();
+        buffer.map_async(wgpu::MapMode::Read, ..bytes, |result| {
             // The receiver is alive until it has got this one message.
             let _ = sender.send(result);
         });
         self.poll(Some(after))?;
-        let lost = match receiver.try_recv() {
-            Ok(Ok(())) => return Ok(()),
-            Ok(Err(e)) => e.to_string(),
-            Err(_) => DID_NOT_MAP.into(),
+        let error = match mapped.try_recv() {
+            Ok(Some(Ok(()))) => return Ok(()),
+            Ok(Some(Err(e))) => lost(e),
+            Ok(None) | Err(_) => did_not_map(),
         };
         self.check()?;
-        Err(GpuError::Lost(lost))
+        Err(error)
     }
 
     /// Waits until a submission, or all of them, is done.
@@ -345,6 +348,6 @@ impl Gpu {
             submission_index: after,
             timeout: Some(PATIENCE),
         });
-        waited.map_err(|e| GpuError::Lost(e.to_string()))
+        waited.map_err(lost)
     }
 }

@@ -41,58 +41,45 @@ impl Timer {
         }
     }
 
-    /// Records the copy of all timestamps, behind the frame's last pass.
-    pub fn finish(self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Times {
-        let count = self.labels.len() as u32 * 2;
-        let download = self.queries.filter(|_| count > 0).map(|queries| {
-            let bytes = u64::from(count) * 8;
+    /// Records the copy of all timestamps, behind the frame's last pass. What it returns is the time of work on the CPU and of every measured
+    /// pass in order (none without timestamps), to be awaited once the frame was submitted.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn finish(
+        self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> impl Future<Output = Result<Vec<PassTime>, GpuError>> + use<> {
+        let Self {
+            queries,
+            labels,
+            cpu,
+        } = self;
+        let count = labels.len() as u32 * 2;
+        let period = f64::from(gpu.queue.get_timestamp_period());
+        let download = queries.filter(|_| count > 0).map(|queries| {
             let resolved = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pass times"),
-                size: bytes,
+                size: u64::from(count) * 8,
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
             encoder.resolve_query_set(&queries, 0..count, &resolved, 0);
-            Download::record(gpu, encoder, &resolved, 0..bytes)
+            Download::record(gpu, encoder, &[resolved])
         });
-        Times {
-            download,
-            labels: self.labels,
-            cpu: self.cpu,
-            period: f64::from(gpu.queue.get_timestamp_period()),
-        }
-    }
-}
-
-/// The times of a frame that was recorded, on their way from the GPU.
-#[derive(Debug)]
-pub struct Times {
-    download: Option<Download>,
-    labels: Vec<String>,
-    cpu: Vec<PassTime>,
-    period: f64,
-}
-
-impl Times {
-    /// The time of work on the CPU and of every measured pass in order (none without timestamps), once the frame was submitted.
-    ///
-    /// # Errors
-    /// A lost device.
-    pub async fn read(self) -> Result<Vec<PassTime>, GpuError> {
-        let Some(download) = self.download else {
-            return Ok(Vec::new());
-        };
-        (&download).await;
-        let ticks: Vec<u64> = download.take()?;
-        let passes = self
-            .labels
-            .into_iter()
-            .zip(ticks.chunks_exact(2))
-            .map(|(label, t)| PassTime {
+        async move {
+            let Some(download) = download else {
+                return Ok(Vec::new());
+            };
+            let ticks: Vec<Vec<u64>> = download.read().await?;
+            let passes = labels.into_iter().zip(ticks[0].chunks_exact(2));
+            let passes = passes.map(|(label, t)| PassTime {
                 label,
-                micros: t[1].saturating_sub(t[0]) as f64 * self.period / 1e3,
+                micros: t[1].saturating_sub(t[0]) as f64 * period / 1e3,
             });
-        Ok(self.cpu.into_iter().chain(passes).collect())
+            Ok(cpu.into_iter().chain(passes).collect())
+        }
     }
 }
 
@@ -102,7 +89,6 @@ pub struct Recorder<'e> {
     gpu: &'e Gpu,
     encoder: &'e mut wgpu::CommandEncoder,
     timer: Option<&'e mut Timer>,
-    passes: u32,
 }
 
 impl<'e> Recorder<'e> {
@@ -116,7 +102,6 @@ impl<'e> Recorder<'e> {
             gpu,
             encoder,
             timer,
-            passes: 0,
         }
     }
 
@@ -128,11 +113,6 @@ impl<'e> Recorder<'e> {
     /// The encoder, for copies and clears between passes.
     pub const fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         self.encoder
-    }
-
-    /// Number of passes so far.
-    pub const fn passes(&self) -> u32 {
-        self.passes
     }
 
     /// Writes to a buffer in the order of the recorded commands: what was recorded before sees the old bytes. (A queue's writes all
@@ -167,8 +147,8 @@ impl<'e> Recorder<'e> {
         }
     }
 
+    /// The place of a pass's times; none without timestamps, and beyond so many passes.
     fn next_query(&mut self, label: &str) -> Option<(wgpu::QuerySet, u32)> {
-        self.passes += 1;
         let timer = self.timer.as_mut()?;
         let queries = timer.queries.clone()?;
         if timer.labels.len() as u32 >= MAX_TIMED {

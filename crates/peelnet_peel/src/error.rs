@@ -6,7 +6,7 @@ use std::path::PathBuf;
 pub enum PeelError {
     /// A scene, a frame, or the fragments of one.
     #[error("{0}")]
-    Raster(#[from] peelnet_raster::RasterError),
+    Render(#[from] peelnet_raster::RenderError),
     /// Coloured transmission: rows hold one transmittance.
     #[error(
         "a dataset keeps one transmittance a fragment, and this scene's transmission is coloured: make transmission_color grey"
@@ -55,6 +55,6 @@ pub enum PeelError {
 
 impl From<peelnet_shaders::ShaderError> for PeelError {
     fn from(e: peelnet_shaders::ShaderError) -> Self {
-        Self::Raster(e.into())
+        Self::Render(e.into())
     }
 }

@@ -4,14 +4,14 @@ use crate::{PeelError, rows::RawTile};
 use bytemuck::{Pod, Zeroable};
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
+    Gpu, Kernel,
+    bind::Bind,
     record::{Recorder, Timer},
     wgpu,
 };
 use peelnet_raster::{
-    FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers,
-    count::{Faults, FragmentCount},
+    FrameTargets, PixelSample, SamplePoint, SceneBuffers,
+    count::{CountPass, FragmentCount},
     dual::DualPeel,
     frame::Output,
     sbuffer::{SBuffer, Tile},
@@ -68,15 +68,8 @@ struct Step {
 #[derive(Debug)]
 enum Peeler {
     SBuffer,
-    Dual(DualPeel),
-    Single(SinglePeel),
-}
-
-/// Kernels that put peeled layers into runs; made anew when storage grows.
-#[derive(Debug)]
-struct Collector {
-    pipeline: wgpu::ComputePipeline,
-    groups: [Bound; 2],
+    Dual(Box<DualPeel>),
+    Single(Box<SinglePeel>),
 }
 
 /// A scene made ready for peeling at one frame size.
@@ -85,10 +78,10 @@ pub struct Harvester {
     gpu: Gpu,
     scene: SceneBuffers,
     frame: FrameTargets,
-    opaque: Option<GeometryPipelines>,
     sbuffer: SBuffer,
     peeler: Peeler,
-    collector: Option<Collector>,
+    /// They put peeled layers into runs, in turn; made anew when storage grows.
+    collectors: Option<[Kernel; 2]>,
     step: wgpu::Buffer,
     with_triangles: bool,
 }
@@ -119,7 +112,7 @@ impl Harvester {
         sampled: bool,
         budget: Option<u64>,
     ) -> Result<Self, PeelError> {
-        let features: &[&str] = if sampled {
+        let features: &[&'static str] = if sampled {
             &["dataset", "sampled"]
         } else {
             &["dataset"]
@@ -128,17 +121,16 @@ impl Harvester {
         if scene.tinted {
             return Err(PeelError::Tinted);
         }
-        let frame = scene.targets(gpu, size, Output::Image, None)?;
+        let frame = scene.targets(size, Output::Image, None)?;
         let peeler = match peel {
             Peel::SBuffer => Peeler::SBuffer,
-            Peel::Dual => Peeler::Dual(DualPeel::new(gpu, &scene, &frame, features, None)?),
-            Peel::Single => Peeler::Single(SinglePeel::new(gpu, &scene, &frame, features)?),
+            Peel::Dual => Peeler::Dual(DualPeel::new(&scene, &frame, features, None)?.into()),
+            Peel::Single => Peeler::Single(SinglePeel::new(&scene, &frame, features)?.into()),
         };
         Ok(Self {
-            opaque: scene.opaque_pipelines(gpu, &frame)?,
-            sbuffer: SBuffer::new(gpu, &scene, &frame, budget, features)?,
+            sbuffer: SBuffer::new(&scene, &frame, budget, features)?,
             step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
-            collector: None,
+            collectors: None,
             with_triangles: false,
             gpu: gpu.clone(),
             scene,
@@ -182,7 +174,7 @@ impl Harvester {
             SamplePoint::MIDDLE,
         );
         self.scene
-            .draw_background(&mut recorder, &self.frame, self.opaque.as_ref(), None, true);
+            .draw_background(&mut recorder, &self.frame, None, true);
         let found = self
             .sbuffer
             .count
@@ -194,9 +186,9 @@ impl Harvester {
         };
         let (tiles, grown) = self
             .sbuffer
-            .plan_counted(gpu, &self.scene, &self.frame, needed)?;
+            .plan_counted(&self.scene, &self.frame, needed)?;
         if grown {
-            self.collector = self.collector()?;
+            self.collectors = self.collectors()?;
         }
         for tile in &tiles {
             match &self.peeler {
@@ -215,11 +207,11 @@ impl Harvester {
                 ready(raw)?;
             }
         }
-        let faults = gpu.read(&self.sbuffer.count.faults, Faults::BYTES)?;
-        Faults::check(&faults, self.frame.size[0])?;
+        let faults = &self.sbuffer.count.faults;
+        CountPass::check(&gpu.read(faults, 0..faults.size())?, self.frame.size[0])?;
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        let times = gpu.block_on(times.read())?;
+        let times = gpu.block_on(times)?;
         Ok(Harvest {
             fragments: found.total,
             max_layers: found.most,
@@ -230,10 +222,10 @@ impl Harvester {
 
     /// Peels the whole frame and keeps what lies in `tile`.
     fn peel(&self, recorder: &mut Recorder<'_>, tile: &Tile, layers: u32, cap: Option<u32>) {
-        let (Some(collector), Some(storage)) = (&self.collector, self.sbuffer.storage()) else {
+        let (Some(collectors), Some(storage)) = (&self.collectors, self.sbuffer.storage()) else {
             return;
         };
-        recorder.write(self.sbuffer.tile_buffer(), &[*tile]);
+        recorder.write(&self.sbuffer.tile, &[*tile]);
         // A depth of 0 marks a slot that no pass fills.
         recorder.encoder().clear_buffer(&storage.depths, 0, None);
         let passes = match &self.peeler {
@@ -263,59 +255,44 @@ impl Harvester {
                 pad: [0; 2],
             };
             recorder.write(&self.step, &[step]);
-            {
-                let mut pass = recorder.compute("collect");
-                pass.set_pipeline(&collector.pipeline);
-                pass.set_bind_group(0, &collector.groups[(pass_index % 2) as usize].group, &[]);
-                let [x, y] = tile.dispatch();
-                pass.dispatch_workgroups(x, y, 1);
-            }
+            collectors[(pass_index % 2) as usize].dispatch(recorder, tile.end - tile.begin);
         }
     }
 
-    fn collector(&self) -> Result<Option<Collector>, PeelError> {
+    fn collectors(&self) -> Result<Option<[Kernel; 2]>, PeelError> {
         let Some(storage) = self.sbuffer.storage() else {
             return Ok(None);
         };
         let common = [
-            Bind::Uniform(self.sbuffer.tile_buffer()),
+            Bind::Uniform(&self.sbuffer.tile),
             Bind::Uniform(&self.step),
             Bind::Read(&self.sbuffer.count.offsets),
             Bind::Write(&storage.depths),
             Bind::Write(&storage.colors),
         ];
-        let bound = |textures: &[Bind<'_>]| {
-            let entries = [&common, textures].concat();
-            self.gpu
-                .bind("collect", wgpu::ShaderStages::COMPUTE, &entries)
+        let textures = |from: usize| match &self.peeler {
+            Peeler::SBuffer => vec![],
+            Peeler::Dual(dual) => vec![
+                Bind::Texture(&dual.ranges[from]),
+                Bind::Texture(&dual.front),
+                Bind::Texture(&dual.back),
+            ],
+            Peeler::Single(single) => vec![
+                Bind::Texture(&single.keys[1 - from]),
+                Bind::Texture(&single.layer),
+            ],
         };
-        let (shader, groups) = match &self.peeler {
+        let shader = match &self.peeler {
             Peeler::SBuffer => return Ok(None),
-            Peeler::Dual(dual) => (
-                "peel::collect_dual",
-                [0, 1].map(|from: usize| {
-                    bound(&[
-                        Bind::Texture(&dual.ranges[from]),
-                        Bind::Texture(&dual.front),
-                        Bind::Texture(&dual.back),
-                    ])
-                }),
-            ),
-            Peeler::Single(single) => (
-                "peel::collect_single",
-                [0, 1].map(|from: usize| {
-                    bound(&[
-                        Bind::Uint(&single.keys[1 - from]),
-                        Bind::Texture(&single.layer),
-                    ])
-                }),
-            ),
+            Peeler::Dual(_) => "peel::collect_dual",
+            Peeler::Single(_) => "peel::collect_single",
         };
         let wgsl = peelnet_shaders::link(shader, &[], &[])?;
-        Ok(Some(Collector {
-            pipeline: self.gpu.compute(shader, &wgsl, &groups[0]),
-            groups,
-        }))
+        let kernel = |from| {
+            let entries = [&common, textures(from).as_slice()].concat();
+            Kernel::new(&self.gpu, "collect", &wgsl, &entries)
+        };
+        Ok(Some([0, 1].map(kernel)))
     }
 
     /// Reads a tile's runs back.

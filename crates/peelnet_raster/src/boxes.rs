@@ -1,15 +1,15 @@
 //! A pass over the boxes around transparent parts instead of their surfaces: what lies where is known less well, by far fewer triangles.
 
-use crate::{FrameTargets, GeometryPass, RasterError, SceneBuffers};
-use peelnet_gpu::{Gpu, RenderPipeline, bind::Bound, record::Recorder, wgpu};
+use crate::{FrameTargets, GeometryPass, RenderError, SceneBuffers};
+use peelnet_gpu::{RenderPipeline, bind::Bound, record::Recorder, wgpu};
 
 /// Two triangles for each face.
 const VERTICES: u32 = 36;
 
-/// The pipeline of such a pass, and the boxes.
 #[derive(Debug)]
 pub struct BoxPass {
     pipeline: wgpu::RenderPipeline,
+    group: Option<Bound>,
     /// Of each box the number of its object, and from the unit cube to the object's space.
     parts: Vec<(usize, glam::Mat4)>,
     boxes: wgpu::Buffer,
@@ -18,17 +18,15 @@ pub struct BoxPass {
 impl BoxPass {
     /// Builds the pass. Its fragment shader runs where the far side of a box is, also where the eye is inside; what it is given is
     /// `scene::box_vertex`.
-    ///
-    /// # Errors
-    /// A shader that does not link.
     pub fn new(
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         pass: &GeometryPass<'_>,
-    ) -> Result<Self, RasterError> {
-        let groups: [Option<&Bound>; 2] = [Some(&frame.scene_group), pass.group];
-        let groups = &groups[..1 + usize::from(pass.group.is_some())];
+    ) -> Result<Self, RenderError> {
+        let gpu = &scene.gpu;
+        let group = pass.bind(gpu);
+        let groups = [Some(&frame.scene_group), group.as_ref()];
+        let groups = &groups[..1 + usize::from(group.is_some())];
         let vertex = peelnet_shaders::link("scene::box_vertex", &[], &[])?;
         let fragment = peelnet_shaders::link(pass.shader, pass.features, pass.extra)?;
         let attributes = wgpu::vertex_attr_array![
@@ -63,6 +61,7 @@ impl BoxPass {
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
         Ok(Self {
             pipeline,
+            group,
             parts,
             boxes: gpu.upload("boxes of parts", &data, usage),
         })
@@ -76,10 +75,10 @@ impl BoxPass {
         }
     }
 
-    /// Draws all boxes.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameTargets) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &frame.scene_group.group, &[]);
+        pass.set_bind_group(1, self.group.as_ref().map(|g| &g.group), &[]);
         pass.set_vertex_buffer(0, self.boxes.slice(..));
         pass.draw(0..VERTICES, 0..self.parts.len() as u32);
     }

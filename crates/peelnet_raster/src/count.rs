@@ -1,64 +1,20 @@
 //! How many fragments each pixel has, and the prefix sum of that.
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
-    frame::attachment, long_runs::Kernel,
+    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    frame::attachment,
+    long_runs::{self, kernel},
 };
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    record::Recorder,
-    wgpu,
-};
+use peelnet_gpu::{Gpu, Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
 
 /// Pixels of one block of the prefix sum; `BLOCK` in `peel/scan_blocks.wgsl`.
 const BLOCK: u32 = 256;
 
-/// What the count pass found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FragmentCount {
-    /// Fragments in the frame.
     pub total: u64,
     /// Fragments in the fullest pixel.
     pub most: u32,
-}
-
-/// What the checks of a frame found wrong, fragment by fragment. Anything is a bug of ours or of the GPU's driver.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Faults {
-    /// Fragments that do not come before the next one of their pixel.
-    pub unsorted: u32,
-    /// Fragments that were counted and not stored.
-    pub lost: u32,
-    /// Fragments that were stored and not counted.
-    pub uncounted: u32,
-    /// The last pixel where anything is wrong.
-    pub pixel: [u32; 2],
-}
-
-impl Faults {
-    /// The bytes of [`CountPass::faults`] that are read back.
-    pub const BYTES: std::ops::Range<u64> = 0..16;
-
-    /// Nothing, for words without a fault in a frame of this width.
-    ///
-    /// # Errors
-    /// [`RasterError::Faults`].
-    pub fn check(words: &[u32], width: u32) -> Result<(), RasterError> {
-        match *words {
-            [0, 0, 0, ..] => Ok(()),
-            [unsorted, lost, uncounted, last, ..] => {
-                let pixel = last.saturating_sub(1);
-                Err(RasterError::Faults(Self {
-                    unsorted,
-                    lost,
-                    uncounted,
-                    pixel: [pixel % width, pixel / width],
-                }))
-            }
-            _ => Ok(()),
-        }
-    }
 }
 
 /// The count pass and the three kernels of the prefix sum.
@@ -68,31 +24,25 @@ pub struct CountPass {
     pub counts: wgpu::Buffer,
     /// First fragment of each pixel; one entry more than pixels, the last one the total.
     pub offsets: wgpu::Buffer,
-    /// See [`Self::found`]; the bytes [`Self::TOTAL`].
+    /// See [`Self::found`].
     pub total: wgpu::Buffer,
-    /// What is wrong with the frame's fragments, see [`Faults`]; the bytes [`Faults::BYTES`].
+    /// What is wrong with the frame's fragments, see [`Self::check`].
     pub faults: wgpu::Buffer,
     // A pass needs an attachment; nothing is written to this one.
     attachment: wgpu::TextureView,
     pipelines: GeometryPipelines,
-    group: Bound,
-    kernels: [(Kernel, [u32; 2]); 3],
+    /// With the threads of each.
+    kernels: [(Kernel, u32); 3],
 }
 
 impl CountPass {
-    /// The bytes of [`Self::total`] that are read back.
-    pub const TOTAL: std::ops::Range<u64> = 0..12;
-
     /// Builds the pass for a frame. `features` may hold `sampled`.
-    ///
-    /// # Errors
-    /// A frame whose counters exceed a storage binding, or a shader that does not link.
     pub fn new(
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
-    ) -> Result<Self, RasterError> {
+    ) -> Result<Self, RenderError> {
+        let gpu = &scene.gpu;
         let pixels = frame.pixels();
         let counts = gpu.storage("fragment counts", u64::from(pixels) * 4)?;
         let offsets = gpu.storage("fragment offsets", u64::from(pixels) * 4 + 4)?;
@@ -101,53 +51,28 @@ impl CountPass {
         let total = gpu.storage("fragment total", 12)?;
         let faults = gpu.storage("faults", 16)?;
         let attachment = unwritten_texture(gpu, frame)?;
-        let group = gpu.bind(
-            "count",
-            wgpu::ShaderStages::FRAGMENT,
-            &[Bind::Write(&counts)],
-        );
-        let pipelines = scene.pipelines(
-            gpu,
-            frame,
-            Surfaces::Transparent,
-            &GeometryPass {
-                label: "count",
-                shader: "peel::count",
-                features,
-                group: Some(&group),
-                targets: &[unwritten()],
-                ..GeometryPass::NONE
-            },
-        )?;
-        let groups = groups_2d(blocks_count);
-        let extent = gpu.upload(
-            "extent",
-            &[pixels, blocks_count, groups[0], 0],
-            wgpu::BufferUsages::UNIFORM,
-        );
+        let pass = GeometryPass {
+            label: "count",
+            shader: "peel::count",
+            features,
+            entries: &[Bind::Write(&counts)],
+            ..GeometryPass::NONE
+        };
+        let pipelines = scene.pipelines(frame, &pass)?;
+        let extent = [pixels, blocks_count, groups_2d(blocks_count)[0], 0];
+        let extent = gpu.upload("extent", &extent, wgpu::BufferUsages::UNIFORM);
         let extent = Bind::Uniform(&extent);
+        let parameters = long_runs::parameters();
+        let kernel = |shader, entries: &[_]| kernel(gpu, shader, &[], &parameters, entries);
+        let scan = [extent, Bind::Read(&counts), Bind::Write(&blocks)];
+        let top = [extent, Bind::Write(&blocks), Bind::Write(&total)];
+        let (counted, of_blocks) = (Bind::Read(&counts), Bind::Read(&blocks));
+        let sums = [extent, counted, of_blocks, Bind::Write(&offsets)];
         let kernels = [
-            (
-                "peel::scan_blocks",
-                vec![extent, Bind::Read(&counts), Bind::Write(&blocks)],
-            ),
-            (
-                "peel::scan_top",
-                vec![extent, Bind::Write(&blocks), Bind::Write(&total)],
-            ),
-            (
-                "peel::scan_pixels",
-                vec![
-                    extent,
-                    Bind::Read(&counts),
-                    Bind::Read(&blocks),
-                    Bind::Write(&offsets),
-                ],
-            ),
+            (kernel("peel::scan_blocks", &scan)?, blocks_count),
+            (kernel("peel::scan_top", &top)?, 1),
+            (kernel("peel::scan_pixels", &sums)?, blocks_count),
         ];
-        let kernels = kernels.map(|(name, entries)| Kernel::new(gpu, name, &[], &entries));
-        let [blocks, top, pixels] = kernels;
-        let kernels = [(blocks?, groups), (top?, [1, 1]), (pixels?, groups)];
         Ok(Self {
             counts,
             offsets,
@@ -155,7 +80,6 @@ impl CountPass {
             faults,
             attachment,
             pipelines,
-            group,
             kernels,
         })
     }
@@ -165,25 +89,22 @@ impl CountPass {
         recorder.encoder().clear_buffer(&self.counts, 0, None);
         recorder.encoder().clear_buffer(&self.faults, 0, None);
         {
-            let mut pass =
-                recorder.render("count", &[unwritten_attachment(&self.attachment)], None);
-            pass.set_bind_group(1, &self.group.group, &[]);
-            scene.draw(&mut pass, frame, Surfaces::Transparent, &self.pipelines);
+            let mut pass = recorder.render("count", &[self.attachment()], None);
+            scene.draw(&mut pass, frame, &self.pipelines);
         }
-        for (kernel, groups) in &self.kernels {
-            kernel.dispatch(recorder, *groups);
+        for (kernel, threads) in &self.kernels {
+            kernel.dispatch(recorder, *threads);
         }
     }
 
     /// What was found, from the words of [`Self::total`].
-    ///
-    /// # Errors
-    /// More fragments than 32-bit offsets can count.
-    pub fn found(words: &[u32]) -> Result<FragmentCount, RasterError> {
+    pub fn found(words: &[u32]) -> Result<FragmentCount, RenderError> {
         let word = |i: usize| u64::from(words.get(i).copied().unwrap_or(0));
         let total = word(2) << 32 | word(0);
         if total > u64::from(u32::MAX) {
-            return Err(RasterError::TooManyFragments(total));
+            return Err(RenderError::Refused(format!(
+                "a frame holds {total} fragments or more, beyond what 32-bit offsets can count; draw it in smaller frames"
+            )));
         }
         Ok(FragmentCount {
             total,
@@ -191,20 +112,40 @@ impl CountPass {
         })
     }
 
-    /// Counts a frame, submits and reads the result back.
+    /// Nothing, for words of [`Self::faults`] without a fault in a frame of this width.
     ///
     /// # Errors
-    /// A lost device, or more fragments than 32-bit offsets can count.
+    /// How many fragments do not come before the next one of their pixel, were counted and not stored, or stored and not counted: a bug of
+    /// ours or of the GPU's driver.
+    pub fn check(words: &[u32], width: u32) -> Result<(), RenderError> {
+        let &[unsorted, lost, uncounted, last] = words else {
+            return Ok(());
+        };
+        if [unsorted, lost, uncounted] == [0; 3] {
+            return Ok(());
+        }
+        // The last pixel where anything is wrong, counted from 1.
+        let pixel = last.saturating_sub(1);
+        Err(RenderError::Refused(format!(
+            "the fragments of this frame are wrong: {unsorted} out of order, {lost} lost, {uncounted} found twice, the last at pixel \
+             ({}, {}). This is a fault of peelnet or of the GPU's driver: please report it with what `peelnet doctor` prints. Depth \
+             peeling needs no sort",
+            pixel % width,
+            pixel / width
+        )))
+    }
+
+    /// Counts a frame, submits and reads the result back.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(
         &self,
         recorder: &mut Recorder<'_>,
         scene: &SceneBuffers,
         frame: &FrameTargets,
-    ) -> Result<FragmentCount, RasterError> {
+    ) -> Result<FragmentCount, RenderError> {
         self.encode(recorder, scene, frame);
         recorder.submit();
-        Self::found(&recorder.gpu().read::<u32>(&self.total, Self::TOTAL)?)
+        Self::found(&scene.gpu.read(&self.total, 0..self.total.size())?)
     }
 
     /// The attachment of passes that write storage only.
@@ -213,35 +154,16 @@ impl CountPass {
     }
 }
 
-/// Workgroups of 64 threads over `items`, as a 2-D dispatch: one dimension holds at most 65,535 groups.
-pub fn groups_2d(items: u32) -> [u32; 2] {
-    let groups = items.div_ceil(64).max(1);
-    let x = groups.min(32_768);
-    [x, groups.div_ceil(x)]
-}
-
 /// Format of the attachment of passes that write storage alone: WebGPU wants one.
-const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+pub(crate) const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// That attachment's texture, a byte a pixel.
-///
-/// # Errors
-/// A frame beyond the adapter's limits.
 pub fn unwritten_texture(
     gpu: &Gpu,
     frame: &FrameTargets,
-) -> Result<wgpu::TextureView, RasterError> {
+) -> Result<wgpu::TextureView, RenderError> {
     let none = wgpu::TextureUsages::empty();
     Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, 1, none)?)
-}
-
-/// A colour target that nothing is written to.
-pub fn unwritten() -> Option<wgpu::ColorTargetState> {
-    Some(wgpu::ColorTargetState {
-        format: UNWRITTEN,
-        blend: None,
-        write_mask: wgpu::ColorWrites::empty(),
-    })
 }
 
 /// The attachment, cleared and not stored.

@@ -7,15 +7,10 @@
 //! A dataset needs fragments one by one, not composited. Its layers keep the maximum, and callers count what is found less than there is.
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
+    Blend, FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
     frame::clear_color,
 };
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    record::Recorder,
-    wgpu,
-};
+use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 
 /// Below every depth, see `peel/dual.wgsl`.
 const NOTHING: f64 = -3.0e38;
@@ -23,28 +18,20 @@ const NOTHING: f64 = -3.0e38;
 /// Bytes of the targets, a pixel: two ranges in turn, front and back layer.
 pub const BYTES_PER_PIXEL: f64 = 2.0 * 8.0 + 2.0 * 16.0;
 
-/// The targets and pipelines of dual peeling.
 #[derive(Debug)]
 pub struct DualPeel {
     /// `(−nearest, farthest)` of what is left, written in turn.
     pub ranges: [wgpu::TextureView; 2],
     /// The layer peeled from the front in the last pass: premultiplied colour and transmittance. In a dataset's passes radiance and alpha.
     pub front: wgpu::TextureView,
-    /// The layer peeled from the back.
     pub back: wgpu::TextureView,
     init: GeometryPipelines,
-    peel: Peel,
+    /// The peeling passes, which read the two ranges in turn.
+    peel: [GeometryPipelines; 2],
     /// The same passes, which also count the fragments they peel.
-    counting: Option<Peel>,
+    counting: Option<[GeometryPipelines; 2]>,
     /// What layers are cleared to.
     start: [f64; 4],
-}
-
-/// The peeling passes, which read the two ranges in turn.
-#[derive(Debug)]
-struct Peel {
-    pipelines: GeometryPipelines,
-    groups: [Bound; 2],
 }
 
 impl DualPeel {
@@ -53,89 +40,58 @@ impl DualPeel {
     /// # Errors
     /// Adapters without 32-bit blending or with fewer than 40 bytes of colour a sample are refused, with the way out.
     pub fn new(
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
         found: Option<&wgpu::Buffer>,
-    ) -> Result<Self, RasterError> {
+    ) -> Result<Self, RenderError> {
+        use wgpu::TextureFormat::{Rg32Float, Rgba32Float};
+        let gpu = &scene.gpu;
         check_adapter(gpu)?;
-        let texture = |label: &str, format| {
-            gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty())
-        };
-        let (range_format, layer_format) = (
-            wgpu::TextureFormat::Rg32Float,
-            wgpu::TextureFormat::Rgba32Float,
-        );
-        let ranges = [
-            texture("depth range", range_format)?,
-            texture("depth range", range_format)?,
-        ];
-        use wgpu::{BlendFactor as F, BlendOperation as O};
-        let blended = |format, color: [F; 2], alpha: [F; 2], operation| {
-            let component = |[src_factor, dst_factor]: [F; 2]| wgpu::BlendComponent {
-                src_factor,
-                dst_factor,
-                operation,
-            };
-            Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState {
-                    color: component(color),
-                    alpha: component(alpha),
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })
-        };
-        // Min and max blending require both factors to be one.
-        let max = |format| blended(format, [F::One; 2], [F::One; 2], O::Max);
+        let none = wgpu::TextureUsages::empty();
+        let texture = |label: &str, format| gpu.texture(label, format, frame.size, 1, none);
+        let range = || texture("depth range", Rg32Float);
+        let ranges = [range()?, range()?];
+        let max = |format| Some(Blend::Max.state(format));
         let (layer, start) = if features.contains(&"dataset") {
-            (max(layer_format), [0.0; 4])
+            (max(Rgba32Float), [0.0; 4])
         } else {
-            let under = ([F::DstAlpha, F::One], [F::Zero, F::OneMinusSrcAlpha]);
-            let layer = blended(layer_format, under.0, under.1, O::Add);
-            (layer, [0.0, 0.0, 0.0, 1.0])
+            let under = Blend::Under;
+            (Some(under.state(Rgba32Float)), under.start())
         };
-        let init = scene.pipelines(
-            gpu,
-            frame,
-            Surfaces::Transparent,
-            &GeometryPass {
-                label: "dual init",
-                shader: "peel::dual_init",
-                features,
-                targets: &[max(range_format)],
-                ..GeometryPass::NONE
-            },
-        )?;
-        let peel = |found: Option<&wgpu::Buffer>| -> Result<Peel, RasterError> {
-            let groups = [0, 1].map(|i| {
-                let range = [Bind::Texture(&ranges[i])].into_iter();
-                let entries: Vec<_> = range.chain(found.map(Bind::Write)).collect();
-                gpu.bind("depth range", wgpu::ShaderStages::FRAGMENT, &entries)
-            });
+        let init = GeometryPass {
+            label: "dual init",
+            shader: "peel::dual_init",
+            features,
+            targets: &[max(Rg32Float)],
+            ..GeometryPass::NONE
+        };
+        let peel = |range: &wgpu::TextureView, found: Option<&wgpu::Buffer>| {
+            let entries: Vec<_> = [Bind::Texture(range)]
+                .into_iter()
+                .chain(found.map(Bind::Write))
+                .collect();
             let mut features = features.to_vec();
             features.extend(found.map(|_| "counted"));
             let pass = GeometryPass {
                 label: "dual peel",
                 shader: "peel::dual",
                 features: &features,
-                group: Some(&groups[0]),
-                targets: &[max(range_format), layer.clone(), layer.clone()],
+                entries: &entries,
+                targets: &[max(Rg32Float), layer.clone(), layer.clone()],
                 ..GeometryPass::NONE
             };
-            Ok(Peel {
-                pipelines: scene.pipelines(gpu, frame, Surfaces::Transparent, &pass)?,
-                groups,
-            })
+            scene.pipelines(frame, &pass)
         };
+        let peels =
+            |found| Ok::<_, RenderError>([peel(&ranges[0], found)?, peel(&ranges[1], found)?]);
         Ok(Self {
-            init,
-            peel: peel(None)?,
-            counting: found.map(|found| peel(Some(found))).transpose()?,
+            init: scene.pipelines(frame, &init)?,
+            peel: peels(None)?,
+            counting: found.map(|found| peels(Some(found))).transpose()?,
             start,
-            front: texture("front layer", layer_format)?,
-            back: texture("back layer", layer_format)?,
+            front: texture("front layer", Rgba32Float)?,
+            back: texture("back layer", Rgba32Float)?,
             ranges,
         })
     }
@@ -144,7 +100,7 @@ impl DualPeel {
     pub fn init(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, frame: &FrameTargets) {
         let range = clear_color(&self.ranges[0], [NOTHING; 4]);
         let mut pass = recorder.render("dual init", &[range], None);
-        scene.draw(&mut pass, frame, Surfaces::Transparent, &self.init);
+        scene.draw(&mut pass, frame, &self.init);
     }
 
     /// Peeling pass `index` (from 0): reads `ranges[index % 2]`, writes the other one and both layers, and with `counts` counts what it
@@ -166,20 +122,15 @@ impl DualPeel {
         let peel = self.counting.as_ref().filter(|_| counts);
         let peel = peel.unwrap_or(&self.peel);
         let mut pass = recorder.render("dual peel", &targets, None);
-        pass.set_bind_group(1, &peel.groups[from].group, &[]);
-        scene.draw(&mut pass, frame, Surfaces::Transparent, &peel.pipelines);
+        scene.draw(&mut pass, frame, &peel[from]);
     }
 }
 
 /// Refuses adapters that cannot blend in 32 bits, or not into all targets at once.
-fn check_adapter(gpu: &Gpu) -> Result<(), RasterError> {
+fn check_adapter(gpu: &Gpu) -> Result<(), RenderError> {
     const HINT: &str = "use S-buffer or single peeling, or the methods abuffer or depth-peel";
-    gpu.need(
-        wgpu::Features::FLOAT32_BLENDABLE,
-        "float32-blendable",
-        "dual depth peeling",
-        HINT,
-    )?;
+    let feature = wgpu::Features::FLOAT32_BLENDABLE;
+    gpu.need(feature, "dual depth peeling", HINT)?;
     let (needed, what) = (8 + 16 + 16, "dual depth peeling with its colour targets");
     let limit = gpu.limits.max_color_attachment_bytes_per_sample.into();
     gpu.check_limit(what, needed, limit, "bytes a sample", HINT)?;

@@ -1,22 +1,15 @@
 //! The targets of one frame size, and where the finished picture goes.
 
-use crate::{RasterError, SceneBuffers};
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    wgpu,
-};
+use crate::{GeometryPipelines, RenderError, SceneBuffers};
+use peelnet_gpu::{bind::Bound, wgpu};
 
 /// Where the finished picture goes, as pipelines need to know it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
     /// Into [`FrameTargets::image`], with the background in it: RGBA32F, linear colour and coverage.
     Image,
-    /// Onto a target of the caller's.
     Target {
-        /// Its format.
         format: wgpu::TextureFormat,
-        /// Its samples a pixel.
         samples: u32,
         /// Whether transparency is blended over what the target holds. Otherwise the whole pixel is written, background included.
         over: bool,
@@ -24,7 +17,6 @@ pub enum Output {
 }
 
 impl Output {
-    /// Samples a pixel.
     pub const fn samples(self) -> u32 {
         match self {
             Self::Image => 1,
@@ -38,50 +30,41 @@ impl Output {
     }
 
     /// The colour target of a pass that writes finished pixels: premultiplied colour and coverage.
-    pub const fn state(self) -> wgpu::ColorTargetState {
+    pub fn state(self) -> wgpu::ColorTargetState {
         match self {
-            Self::Image => plain(IMAGE),
+            Self::Image => IMAGE.into(),
             // The background is in the pixel: it is opaque, as its target was cleared.
             Self::Target {
                 format,
                 over: false,
                 ..
             } => wgpu::ColorTargetState {
-                format,
-                blend: None,
                 write_mask: wgpu::ColorWrites::COLOR,
+                ..format.into()
             },
             Self::Target { format, .. } => wgpu::ColorTargetState {
-                format,
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
+                ..format.into()
             },
         }
     }
 
-    /// The colour target of the opaque surfaces.
-    pub(crate) const fn opaque_state(self) -> wgpu::ColorTargetState {
+    /// Format and samples a pixel of what opaque surfaces are drawn onto: a target that is blended over, and `C_0` otherwise.
+    pub(crate) const fn opaque(self) -> (wgpu::TextureFormat, u32) {
         match self {
             Self::Target {
-                format, over: true, ..
-            } => plain(format),
-            _ => plain(IMAGE),
+                format,
+                samples,
+                over: true,
+            } => (format, samples),
+            _ => (IMAGE, 1),
         }
-    }
-}
-
-const fn plain(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
-    wgpu::ColorTargetState {
-        format,
-        blend: None,
-        write_mask: wgpu::ColorWrites::ALL,
     }
 }
 
 /// Format of `C_0` and of the finished image.
 const IMAGE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The depth of opaque surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpaqueDepth {
     /// A view of depth alone, which passes bind and attach.
@@ -91,18 +74,8 @@ pub struct OpaqueDepth {
 }
 
 impl OpaqueDepth {
-    /// Samples a pixel.
     pub fn samples(&self) -> u32 {
         self.view.texture().sample_count()
-    }
-
-    /// As a binding.
-    pub fn bind(&self) -> Bind<'_> {
-        if self.samples() > 1 {
-            Bind::DepthMultisampled(&self.view)
-        } else {
-            Bind::Depth(&self.view)
-        }
     }
 
     /// The shader features of passes that compare with it.
@@ -118,32 +91,25 @@ impl OpaqueDepth {
 /// The frame's own targets: `C_0`, the opaque depth and the finished image.
 #[derive(Debug)]
 pub struct FrameTargets {
-    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Width over height of the view; not that of `size` where a lower resolution was rounded.
+    /// Width over height of the view: that of `size`, unless it is set for pixels that are not square.
     pub aspect: f32,
     /// `C_0`, RGBA32F: the opaque image over the background; one black texel where the output blends over a target. Loads outside
     /// of a texture give zero or one of its texels (WGSL), so that shaders find black everywhere.
     pub background: wgpu::TextureView,
-    /// Depth of the opaque surfaces, where there are any.
     pub depth: Option<OpaqueDepth>,
-    /// Where the finished picture goes.
     pub output: Output,
     /// The finished image, RGBA32F, of [`Output::Image`].
-    image: Option<wgpu::TextureView>,
+    pub image: Option<wgpu::TextureView>,
+    /// Those of the scene's opaque surfaces, where there are any.
+    pub(crate) opaque: Option<GeometryPipelines>,
     pub(crate) scene_group: Bound,
     pub(crate) opaque_group: Bound,
 }
 
 impl FrameTargets {
-    /// Number of pixels.
     pub const fn pixels(&self) -> u32 {
         self.size[0] * self.size[1]
-    }
-
-    /// The finished image of [`Output::Image`].
-    pub const fn image(&self) -> Option<&wgpu::TextureView> {
-        self.image.as_ref()
     }
 
     /// The attachment of a pass that writes finished pixels, to `target` where the output is one.
@@ -163,36 +129,17 @@ impl FrameTargets {
 impl SceneBuffers {
     /// Makes the targets of a frame: of the image alone, or of what is drawn onto a caller's target with the depth that the caller
     /// drew.
-    ///
-    /// # Errors
-    /// A frame without pixels, or larger than the adapter allows.
     pub fn targets(
         &self,
-        gpu: &Gpu,
         size: [u32; 2],
         output: Output,
         depth: Option<&wgpu::TextureView>,
-    ) -> Result<FrameTargets, RasterError> {
-        self.targets_of(gpu, size, size[0] as f32 / size[1] as f32, output, depth)
-    }
-
-    /// The same for pixels that need not be square: `aspect` is the width of the view over its height.
-    ///
-    /// # Errors
-    /// See [`Self::targets`].
-    pub fn targets_of(
-        &self,
-        gpu: &Gpu,
-        size: [u32; 2],
-        aspect: f32,
-        output: Output,
-        depth: Option<&wgpu::TextureView>,
-    ) -> Result<FrameTargets, RasterError> {
-        if size[0] == 0 || size[1] == 0 {
-            return Err(RasterError::EmptyFrame {
-                width: size[0],
-                height: size[1],
-            });
+    ) -> Result<FrameTargets, RenderError> {
+        let (gpu, [width, height]) = (&self.gpu, size);
+        if width == 0 || height == 0 {
+            return Err(RenderError::Refused(format!(
+                "a frame of {width}×{height} pixels: both sides must be at least 1"
+            )));
         }
         let none = wgpu::TextureUsages::empty();
         let depth = match depth {
@@ -201,13 +148,7 @@ impl SceneBuffers {
                 is_callers: true,
             }),
             None if self.has_opaque() => {
-                // Opaque surfaces are drawn onto a target that is blended over, and into C_0 otherwise.
-                let samples = if output.is_over() {
-                    output.samples()
-                } else {
-                    1
-                };
-                let format = wgpu::TextureFormat::Depth32Float;
+                let (format, samples) = (wgpu::TextureFormat::Depth32Float, output.opaque().1);
                 Some(OpaqueDepth {
                     view: gpu.texture("opaque depth", format, size, samples, none)?,
                     is_callers: false,
@@ -215,11 +156,11 @@ impl SceneBuffers {
             }
             None => None,
         };
-        let [opaque_group, scene_group] = self.groups(gpu, depth.as_ref());
+        let [opaque_group, scene_group] = self.groups(depth.as_ref());
         let background = if output.is_over() { [1, 1] } else { size };
-        Ok(FrameTargets {
+        let mut frame = FrameTargets {
             size,
-            aspect,
+            aspect: width as f32 / height as f32,
             background: gpu.texture("background", IMAGE, background, 1, none)?,
             image: match output {
                 Output::Image => Some(gpu.texture("image", IMAGE, size, 1, none)?),
@@ -229,26 +170,24 @@ impl SceneBuffers {
             depth,
             scene_group,
             opaque_group,
-        })
+            opaque: None,
+        };
+        frame.opaque = self.opaque_pipelines(&frame)?;
+        Ok(frame)
     }
 }
 
-/// Depth test state on a depth format.
-pub(crate) fn depth_state(
-    format: wgpu::TextureFormat,
-    write: bool,
-    compare: wgpu::CompareFunction,
-) -> wgpu::DepthStencilState {
+/// A depth test that keeps the nearest.
+pub(crate) fn depth_state(format: wgpu::TextureFormat) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format,
-        depth_write_enabled: Some(write),
-        depth_compare: Some(compare),
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::Less),
         stencil: wgpu::StencilState::default(),
         bias: wgpu::DepthBiasState::default(),
     }
 }
 
-/// A depth attachment.
 pub(crate) fn depth_attachment(
     view: &wgpu::TextureView,
     load: wgpu::LoadOp<f32>,
@@ -269,7 +208,6 @@ pub fn clear_color(
     attachment(view, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }))
 }
 
-/// A colour attachment.
 pub fn attachment(
     view: &wgpu::TextureView,
     load: wgpu::LoadOp<wgpu::Color>,

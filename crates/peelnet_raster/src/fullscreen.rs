@@ -1,6 +1,6 @@
 //! A pass over every pixel, without geometry.
 
-use crate::{RasterError, frame::Output};
+use crate::RenderError;
 use peelnet_gpu::{
     Gpu, RenderPipeline,
     bind::{Bind, Bound},
@@ -8,7 +8,6 @@ use peelnet_gpu::{
     wgpu,
 };
 
-/// A pipeline that covers the frame, with its bind group.
 #[derive(Debug)]
 pub struct FullscreenPass {
     label: String,
@@ -17,10 +16,8 @@ pub struct FullscreenPass {
 }
 
 impl FullscreenPass {
-    /// Builds the pass; `extra` are modules that are not in `shaders/`, `entries` the bindings of group 0 in order.
-    ///
-    /// # Errors
-    /// A shader that does not link.
+    /// Builds the pass, onto targets of so many samples a pixel; `extra` are modules that are not in `shaders/`, `entries` the bindings of
+    /// group 0 in order.
     pub fn new(
         gpu: &Gpu,
         shader: &str,
@@ -28,43 +25,8 @@ impl FullscreenPass {
         extra: &[(&str, &str)],
         entries: &[Bind<'_>],
         targets: &[Option<wgpu::ColorTargetState>],
-    ) -> Result<Self, RasterError> {
-        Self::with_samples(gpu, shader, features, extra, entries, targets, 1)
-    }
-
-    /// The same for the pass that writes finished pixels to where the frame's output goes.
-    ///
-    /// # Errors
-    /// A shader that does not link.
-    pub fn resolve(
-        gpu: &Gpu,
-        shader: &str,
-        features: &[&str],
-        extra: &[(&str, &str)],
-        entries: &[Bind<'_>],
-        output: Output,
-    ) -> Result<Self, RasterError> {
-        let targets = [Some(output.state())];
-        Self::with_samples(
-            gpu,
-            shader,
-            features,
-            extra,
-            entries,
-            &targets,
-            output.samples(),
-        )
-    }
-
-    fn with_samples(
-        gpu: &Gpu,
-        shader: &str,
-        features: &[&str],
-        extra: &[(&str, &str)],
-        entries: &[Bind<'_>],
-        targets: &[Option<wgpu::ColorTargetState>],
         samples: u32,
-    ) -> Result<Self, RasterError> {
+    ) -> Result<Self, RenderError> {
         let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
         let wgsl = peelnet_shaders::link(shader, features, extra)?;
         let pipeline = gpu.render_pipeline(&RenderPipeline {
@@ -85,7 +47,6 @@ impl FullscreenPass {
         })
     }
 
-    /// Records the pass.
     pub fn draw(
         &self,
         recorder: &mut Recorder<'_>,

@@ -9,6 +9,10 @@
 //! Transparent passes have no fixed-function depth test. One shader function compares with the opaque depth, because
 //! storage writes of a fragment shader happen before that test; it exists only in frames that have opaque depth.
 
+// What users of the facade see of this crate is documented; the rest where there is more to say than its name.
+#![allow(missing_docs)]
+
+mod blend;
 mod boxes;
 pub mod count;
 pub mod dual;
@@ -29,10 +33,11 @@ mod specialise;
 mod uniforms;
 mod upload;
 
+pub use blend::Blend;
 pub use boxes::BoxPass;
-pub use error::RasterError;
+pub use error::RenderError;
 pub use frame::{FrameTargets, OpaqueDepth};
-pub use pipelines::{GeometryPass, GeometryPipelines, Surfaces};
+pub use pipelines::{GeometryPass, GeometryPipelines};
 pub use sample_point::SamplePoint;
 pub use scene::{BACKGROUND_PASS, SceneBuffers, shader_bytes};
 pub use sort::{Order, Sorted, Submission};

@@ -4,16 +4,10 @@
 //! rasterisers end long loops without an error. Every loop of these kernels is bounded by a constant of `shaders/peel`.
 
 use crate::{
-    RasterError,
-    count::groups_2d,
+    RenderError,
     sbuffer::{FragmentStorage, Tile},
 };
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    record::Recorder,
-    wgpu,
-};
+use peelnet_gpu::{Gpu, Kernel, bind::Bind, record::Recorder, wgpu};
 
 /// Fragments of a run that one thread sorts at most: two windows, and few enough that its neighbours do not wait long. Scenes of 100 layers are
 /// faster with it than with one thread for all, on a software rasteriser; where the border is best was not searched.
@@ -36,46 +30,16 @@ pub fn parameters() -> String {
     format!("const SHORT: u32 = {SHORT}u;\n")
 }
 
-/// A compute shader with its bindings.
-#[derive(Debug)]
-pub(crate) struct Kernel {
-    label: &'static str,
-    pipeline: wgpu::ComputePipeline,
-    group: Bound,
-}
-
-impl Kernel {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        label: &'static str,
-        features: &[&str],
-        entries: &[Bind<'_>],
-    ) -> Result<Self, RasterError> {
-        Self::with(gpu, label, features, &parameters(), entries)
-    }
-
-    fn with(
-        gpu: &Gpu,
-        label: &'static str,
-        features: &[&str],
-        parameters: &str,
-        entries: &[Bind<'_>],
-    ) -> Result<Self, RasterError> {
-        let group = gpu.bind(label, wgpu::ShaderStages::COMPUTE, entries);
-        let wgsl = peelnet_shaders::link(label, features, &[("parameters", parameters)])?;
-        Ok(Self {
-            label,
-            pipeline: gpu.compute(label, &wgsl, &group),
-            group,
-        })
-    }
-
-    pub(crate) fn dispatch(&self, recorder: &mut Recorder<'_>, [x, y]: [u32; 2]) {
-        let mut pass = recorder.compute(self.label);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group.group, &[]);
-        pass.dispatch_workgroups(x, y, 1);
-    }
+/// A kernel of `peel` with its module `parameters`.
+pub(crate) fn kernel(
+    gpu: &Gpu,
+    shader: &str,
+    features: &[&str],
+    parameters: &str,
+    entries: &[Bind<'_>],
+) -> Result<Kernel, RenderError> {
+    let wgsl = peelnet_shaders::link(shader, features, &[("parameters", parameters)])?;
+    Ok(Kernel::new(gpu, shader, &wgsl, entries))
 }
 
 /// Buffers and kernels that sort long runs.
@@ -106,8 +70,8 @@ impl LongRuns {
         storage: &FragmentStorage,
         faults: &wgpu::Buffer,
         most: u32,
-    ) -> Result<Self, RasterError> {
-        let fragments = storage.capacity();
+    ) -> Result<Self, RenderError> {
+        let fragments = storage.capacity;
         let windows = fragments.div_ceil(WINDOW.into());
         let order = gpu.storage("fragment order", fragments * 4)?;
         let other = gpu.storage("other fragment order", fragments * 4)?;
@@ -120,8 +84,9 @@ impl LongRuns {
             Bind::Read(&storage.triangles),
             Bind::Write(&touched),
         ];
-        let kernel = |label, own: &[Bind<'_>]| {
-            Kernel::new(gpu, label, &[], &[common.as_slice(), own].concat())
+        let kernel = |shader, own: &[Bind<'_>]| {
+            let entries = [common.as_slice(), own].concat();
+            kernel(gpu, shader, &[], &parameters(), &entries)
         };
         let merge = |from: &wgpu::Buffer, to: &wgpu::Buffer| {
             let own = [Bind::Uniform(&step), Bind::Read(from), Bind::Write(to)];
@@ -150,16 +115,16 @@ impl LongRuns {
 
     /// Sorts the long runs of a tile, and checks that they are.
     pub(crate) fn sort(&self, recorder: &mut Recorder<'_>) {
-        let groups = groups_2d(self.windows);
-        self.find.dispatch(recorder, groups);
-        self.sort.dispatch(recorder, groups);
+        let windows = self.windows;
+        self.find.dispatch(recorder, windows);
+        self.sort.dispatch(recorder, windows);
         for doubling in 0..self.doublings {
             recorder.write(&self.step, &[WINDOW << doubling, 0, 0, 0]);
             // The last one writes `order`.
             let left = (self.doublings - 1 - doubling) % 2;
-            self.merge[left as usize].dispatch(recorder, groups);
+            self.merge[left as usize].dispatch(recorder, windows);
         }
-        self.check.dispatch(recorder, groups);
+        self.check.dispatch(recorder, windows);
     }
 }
 
@@ -174,20 +139,17 @@ pub struct Fold {
 impl Fold {
     /// For runs of at most `most` fragments; `features` name the pass that composites, `parameters` is its module of that name, and
     /// `entries` are its bindings.
-    ///
-    /// # Errors
-    /// A shader that does not link.
     pub fn new(
         gpu: &Gpu,
         features: &[&str],
         parameters: &str,
         entries: &[Bind<'_>],
         most: u32,
-    ) -> Result<Self, RasterError> {
+    ) -> Result<Self, RenderError> {
         let step = gpu.upload("piece", &[0u32; 4], wgpu::BufferUsages::UNIFORM);
         let entries = [entries, &[Bind::Uniform(&step)]].concat();
         Ok(Self {
-            kernel: Kernel::with(gpu, "peel::fold", features, parameters, &entries)?,
+            kernel: kernel(gpu, "peel::fold", features, parameters, &entries)?,
             pieces: most.div_ceil(PIECE),
             step,
         })
@@ -197,7 +159,7 @@ impl Fold {
     pub fn encode(&self, recorder: &mut Recorder<'_>, tile: &Tile) {
         for piece in 0..self.pieces.saturating_sub(1) {
             recorder.write(&self.step, &[piece, 0, 0, 0]);
-            self.kernel.dispatch(recorder, tile.dispatch());
+            self.kernel.dispatch(recorder, tile.end - tile.begin);
         }
     }
 }

@@ -1,14 +1,13 @@
 //! Textures on surfaces: mip levels, samplers and bindings.
 
-use crate::RasterError;
-use crate::mip_levels::levels;
+use crate::{RenderError, mip_levels::levels};
 use peelnet_gpu::{
     Gpu,
     bind::{Bind, Bound},
     wgpu,
 };
-use peelnet_scene::{Maps, Texture, Wrap};
-use std::sync::Arc;
+use peelnet_scene::{Maps, Material, Texture, Variant, Wrap};
+use std::{ops::Range, sync::Arc};
 
 /// The textures that a material binds, and which of them a variant reads.
 #[derive(Debug)]
@@ -29,16 +28,18 @@ pub(crate) struct MapSets {
 const IS_SRGB: [bool; 5] = [true, false, false, false, true];
 
 impl MapSets {
-    /// The number of the set that binds the textures of a material that a variant reads.
-    ///
-    /// # Errors
-    /// A texture beyond the adapter's limits.
+    /// The number of the set that binds the textures of a material that a variant reads; `None` of none, or of no triangles.
     pub fn number(
         &mut self,
         gpu: &Gpu,
-        maps: &Maps,
-        read: [bool; 5],
-    ) -> Result<usize, RasterError> {
+        material: &Material,
+        variant: Variant,
+        triangles: &Range<usize>,
+    ) -> Result<Option<usize>, RenderError> {
+        if !variant.is_mapped() || triangles.is_empty() {
+            return Ok(None);
+        }
+        let (maps, read) = (&material.maps, variant.maps);
         let same = |set: &Set| {
             let pointers = |maps: &Maps| maps.all().map(|map| map.map(Arc::as_ptr));
             set.read == read
@@ -46,7 +47,7 @@ impl MapSets {
                 && (set.maps.wrap, set.maps.nearest) == (maps.wrap, maps.nearest)
         };
         if let Some(known) = self.sets.iter().position(same) {
-            return Ok(known);
+            return Ok(Some(known));
         }
         let mode = |wrap| match wrap {
             Wrap::Repeat => wgpu::AddressMode::Repeat,
@@ -84,10 +85,9 @@ impl MapSets {
             read,
             bound,
         });
-        Ok(self.sets.len() - 1)
+        Ok(Some(self.sets.len() - 1))
     }
 
-    /// A set's bindings.
     pub fn bound(&self, number: usize) -> &Bound {
         &self.sets[number].bound
     }
@@ -97,7 +97,7 @@ impl MapSets {
         gpu: &Gpu,
         map: &Arc<Texture>,
         srgb: bool,
-    ) -> Result<wgpu::TextureView, RasterError> {
+    ) -> Result<wgpu::TextureView, RenderError> {
         let mut known = self.images.iter();
         if let Some((_, _, view)) = known.find(|(m, s, _)| Arc::ptr_eq(m, map) && *s == srgb) {
             return Ok(view.clone());

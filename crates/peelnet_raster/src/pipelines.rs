@@ -1,69 +1,58 @@
 //! Pipelines of geometry passes: one for each variant of the materials that a pass draws.
 
 use crate::{
-    FrameTargets, RasterError, SceneBuffers, specialise,
+    FrameTargets, RenderError, SceneBuffers,
+    count::UNWRITTEN,
+    specialise,
     upload::{ATTRIBUTES, Vertex},
 };
-use peelnet_gpu::{Gpu, RenderPipeline, bind::Bound, wgpu};
+use peelnet_gpu::{
+    Gpu, RenderPipeline,
+    bind::{Bind, Bound},
+    wgpu,
+};
 use peelnet_scene::Variant;
-
-/// Which half of the scene a geometry pass draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Surfaces {
-    /// Opaque objects.
-    Opaque,
-    /// Transparent ones.
-    Transparent,
-}
 
 /// Pipelines of one geometry pass: one for each variant of the materials that it draws.
 #[derive(Debug)]
-pub struct GeometryPipelines(Vec<OfVariant>);
+pub struct GeometryPipelines {
+    /// Of the opaque surfaces or the transparent ones.
+    pub(crate) opaque: bool,
+    /// Bind group 1.
+    pub(crate) group: Option<Bound>,
+    variants: Vec<OfVariant>,
+}
 
 #[derive(Debug)]
-struct OfVariant {
+pub(crate) struct OfVariant {
     variant: Variant,
-    pipeline: wgpu::RenderPipeline,
+    pub(crate) pipeline: wgpu::RenderPipeline,
     /// Whether it reads the number of a fragment's triangle.
-    numbered: bool,
+    pub(crate) numbered: bool,
 }
 
 impl GeometryPipelines {
-    pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
-        // Built for every run's variant.
-        if let Some(found) = self.of(variant) {
-            pass.set_pipeline(&found.pipeline);
-        }
-    }
-
-    fn of(&self, variant: Variant) -> Option<&OfVariant> {
-        self.0.iter().find(|p| p.variant == variant)
-    }
-
-    /// Whether a variant's pipeline reads the number of a fragment's triangle.
-    pub(crate) fn is_numbered(&self, variant: Variant) -> bool {
-        self.of(variant).is_some_and(|p| p.numbered)
+    pub(crate) fn of(&self, variant: Variant) -> Option<&OfVariant> {
+        self.variants.iter().find(|p| p.variant == variant)
     }
 }
 
-/// What a geometry pass is made of.
 #[derive(Debug)]
 pub struct GeometryPass<'a> {
-    /// Label for messages and times.
     pub label: &'a str,
     /// Root module of the fragment shader.
     pub shader: &'a str,
+    /// Whether it draws the opaque surfaces of the scene, not the transparent ones.
+    pub opaque: bool,
     /// Features besides those that the scene's materials need.
     pub features: &'a [&'a str],
     /// Modules that are not in the repository.
     pub extra: &'a [(&'a str, &'a str)],
-    /// Bind group 1.
-    pub group: Option<&'a Bound>,
-    /// Colour targets.
+    /// The bindings of group 1 in order.
+    pub entries: &'a [Bind<'a>],
+    /// Colour targets; none of a pass that writes storage alone.
     pub targets: &'a [Option<wgpu::ColorTargetState>],
-    /// Depth state.
     pub depth: Option<wgpu::DepthStencilState>,
-    /// Samples a pixel of the targets.
     pub samples: u32,
 }
 
@@ -72,37 +61,40 @@ impl GeometryPass<'_> {
     pub const NONE: GeometryPass<'static> = GeometryPass {
         label: "",
         shader: "",
+        opaque: false,
         features: &[],
         extra: &[],
-        group: None,
+        entries: &[],
         targets: &[],
         depth: None,
         samples: 1,
     };
+
+    /// Bind group 1, where it has any.
+    pub(crate) fn bind(&self, gpu: &Gpu) -> Option<Bound> {
+        let stages = wgpu::ShaderStages::FRAGMENT;
+        (!self.entries.is_empty()).then(|| gpu.bind(self.label, stages, self.entries))
+    }
 }
 
 impl SceneBuffers {
     /// Builds a geometry pass's pipelines: the shared vertex shader, the pass's fragment shader, and the features
     /// that this scene's materials need.
-    ///
-    /// # Errors
-    /// A shader that does not link.
     pub fn pipelines(
         &self,
-        gpu: &Gpu,
         frame: &FrameTargets,
-        surfaces: Surfaces,
         pass: &GeometryPass<'_>,
-    ) -> Result<GeometryPipelines, RasterError> {
-        let (group, runs) = self.half(frame, surfaces);
+    ) -> Result<GeometryPipelines, RenderError> {
+        let (scene_group, runs) = self.half(frame, pass.opaque);
+        let own_group = pass.bind(&self.gpu);
         let mut variants: Vec<(Variant, Option<usize>)> = Vec::new();
         for run in runs {
             if !variants.iter().any(|(v, _)| *v == run.variant) {
                 variants.push((run.variant, run.maps));
             }
         }
-        let compared: &[&str] = match (surfaces, &frame.depth) {
-            (Surfaces::Transparent, Some(depth)) => depth.features(),
+        let compared: &[&str] = match &frame.depth {
+            Some(depth) if !pass.opaque => depth.features(),
             _ => &[],
         };
         let mut all = Vec::with_capacity(variants.len());
@@ -113,17 +105,28 @@ impl SceneBuffers {
             let (features, fragment) = specialise::link(pass.shader, features, pass.extra)?;
             let maps = maps.filter(|_| features.contains(&"mapped"));
             let maps = maps.map(|number| self.maps.bound(number));
-            let mut groups = vec![Some(group), pass.group, maps];
+            let mut groups = vec![Some(scene_group), own_group.as_ref(), maps];
             while groups.last().is_some_and(Option::is_none) {
                 groups.pop();
             }
             all.push(OfVariant {
                 variant,
-                pipeline: pipeline(gpu, pass, &groups, &features, &fragment, variant.culled)?,
+                pipeline: pipeline(
+                    &self.gpu,
+                    pass,
+                    &groups,
+                    &features,
+                    &fragment,
+                    variant.culled,
+                )?,
                 numbered: features.contains(&"numbered"),
             });
         }
-        Ok(GeometryPipelines(all))
+        Ok(GeometryPipelines {
+            opaque: pass.opaque,
+            group: own_group,
+            variants: all,
+        })
     }
 }
 
@@ -135,7 +138,7 @@ fn pipeline(
     features: &[&str],
     fragment: &str,
     culled: bool,
-) -> Result<wgpu::RenderPipeline, RasterError> {
+) -> Result<wgpu::RenderPipeline, RenderError> {
     let carried = [
         "numbered",
         "material",
@@ -152,38 +155,29 @@ fn pipeline(
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes,
     };
-    let attributes: Vec<[wgpu::VertexAttribute; 1]> = ATTRIBUTES
-        .iter()
-        .zip(2..)
-        .map(|((_, format, _), shader_location)| {
-            [wgpu::VertexAttribute {
-                format: *format,
-                offset: 0,
-                shader_location,
-            }]
-        })
-        .collect();
     let always = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
     let mut buffers = vec![Some(layout(size_of::<Vertex>() as u64, always.as_slice()))];
-    buffers.extend(
-        ATTRIBUTES
-            .iter()
-            .zip(&attributes)
-            .map(|((_, format, feature), attributes)| {
-                let is_read = features.contains(feature);
-                is_read.then(|| layout(format.size(), attributes.as_slice()))
-            }),
-    );
+    for (_, attribute, feature) in ATTRIBUTES {
+        let is_read = features.contains(feature);
+        buffers.push(is_read.then(|| layout(attribute[0].format.size(), attribute)));
+    }
     while buffers.last().is_some_and(Option::is_none) {
         buffers.pop();
     }
+    let unwritten = [Some(wgpu::ColorTargetState {
+        write_mask: wgpu::ColorWrites::empty(),
+        ..UNWRITTEN.into()
+    })];
     Ok(gpu.render_pipeline(&RenderPipeline {
         label: pass.label,
         vertex: ["scene::vertex", &vertex],
         fragment: [pass.shader, fragment],
         groups,
         buffers: &buffers,
-        targets: pass.targets,
+        targets: match pass.targets {
+            [] => &unwritten,
+            targets => targets,
+        },
         depth: pass.depth.clone(),
         samples: pass.samples,
         culled: culled.then_some(wgpu::Face::Back),

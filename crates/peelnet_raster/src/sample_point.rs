@@ -51,36 +51,35 @@ mod tests {
     use super::*;
     use glam::Vec4;
 
-    /// A point at a sample's place in a pixel comes to lie in that pixel's middle, whatever its distance.
+    /// Where a place in a frame of 8 x 4 pixels, counted from the upper left corner, comes to lie in normalised device coordinates, at
+    /// two distances.
+    fn moved(point: SamplePoint, [x, y]: [f32; 2]) -> [[f32; 2]; 2] {
+        let ndc = [x / 4.0 - 1.0, 1.0 - y / 2.0];
+        [0.5, 7.0].map(|w| {
+            let moved = point.shift() * Vec4::new(ndc[0] * w, ndc[1] * w, 0.3, w);
+            assert_eq!((moved.z, moved.w), (0.3, w));
+            [moved.x / w, moved.y / w]
+        })
+    }
+
+    /// A sample's place in a pixel comes to lie in that pixel's middle; the corners of a pixel, in those of the frame.
     #[test]
-    fn samples_move_to_the_middle() {
-        let size = [8, 4];
+    fn samples_move_to_the_middle_and_a_pixel_fills_the_frame() {
+        let near = |a: [f32; 2], b: [f32; 2]| (0..2).all(|k| (a[k] - b[k]).abs() < 1e-5);
+        let four = SamplePoint::of_four([8, 4]).into_iter();
         let expected = [[-2.0, -6.0], [6.0, -2.0], [-6.0, 2.0], [2.0, 6.0]];
-        for (point, [x, y]) in SamplePoint::of_four(size).into_iter().zip(expected) {
-            // Pixel (5, 1), in pixels from the upper left corner.
-            let at = [5.5 + x / 16.0, 1.5 + y / 16.0];
-            for w in [0.5, 7.0] {
-                let ndc = [at[0] / 4.0 - 1.0, 1.0 - at[1] / 2.0];
-                let moved = point.shift() * Vec4::new(ndc[0] * w, ndc[1] * w, 0.3, w);
-                let pixel = [(moved.x / w + 1.0) * 4.0, (1.0 - moved.y / w) * 2.0];
-                assert!((pixel[0] - 5.5).abs() < 1e-5 && (pixel[1] - 1.5).abs() < 1e-5);
-                assert_eq!((moved.z, moved.w), (0.3, w));
+        for (point, [x, y]) in four.zip(expected) {
+            let middle = [5.5 / 4.0 - 1.0, 1.0 - 1.5 / 2.0];
+            for place in moved(point, [5.5 + x / 16.0, 1.5 + y / 16.0]) {
+                assert!(near(place, middle), "{place:?}");
+            }
+        }
+        let point = SamplePoint::of_pixel([8, 4], [5, 1]);
+        for (corner, want) in [([5.0, 1.0], [-1.0, 1.0]), ([6.0, 2.0], [1.0, -1.0])] {
+            for place in moved(point, corner) {
+                assert!(near(place, want), "{place:?}");
             }
         }
         assert_eq!(SamplePoint::MIDDLE.shift(), glam::Mat4::IDENTITY);
-    }
-
-    /// The four corners of a pixel become the corners of the frame.
-    #[test]
-    fn a_pixel_fills_the_frame() {
-        let point = SamplePoint::of_pixel([8, 4], [5, 1]);
-        for (corner, want) in [([5.0, 1.0], [-1.0, 1.0]), ([6.0, 2.0], [1.0, -1.0])] {
-            for w in [0.5, 7.0] {
-                let ndc = [corner[0] / 4.0 - 1.0, 1.0 - corner[1] / 2.0];
-                let moved = point.shift() * Vec4::new(ndc[0] * w, ndc[1] * w, 0.3, w);
-                assert!((moved.x / w - want[0]).abs() < 1e-5, "{moved}");
-                assert!((moved.y / w - want[1]).abs() < 1e-5, "{moved}");
-            }
-        }
     }
 }

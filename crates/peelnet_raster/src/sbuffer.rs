@@ -4,22 +4,13 @@
 //! whose fragments fit. Nothing is dropped: every sort counts what is out of order, lost or stored twice behind it ([`CountPass::faults`]).
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
-    count::{CountPass, FragmentCount, groups_2d, unwritten},
-    long_runs::{Kernel, LongRuns, MAX_RUN, SHORT},
+    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    count::{CountPass, FragmentCount},
+    error::over_budget,
+    long_runs::{self, LongRuns, MAX_RUN, SHORT, kernel},
 };
 use bytemuck::{Pod, Zeroable};
-use peelnet_gpu::{
-    Gpu, GpuError,
-    bind::{Bind, Bound},
-    record::Recorder,
-    wgpu,
-};
-
-/// Bytes of one fragment in storage: depth, triangle, and its colours.
-pub const fn bytes_per_fragment(tinted: bool) -> u64 {
-    4 + 4 + color_bytes(tinted)
-}
+use peelnet_gpu::{Gpu, GpuError, Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
 
 /// Bytes of a fragment's colours: with alpha, or with what it covers of each channel.
 const fn color_bytes(tinted: bool) -> u64 {
@@ -30,7 +21,6 @@ const fn color_bytes(tinted: bool) -> u64 {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable, PartialEq, Eq)]
 pub struct Tile {
-    /// First pixel.
     pub begin: u32,
     /// One past the last pixel.
     pub end: u32,
@@ -50,11 +40,6 @@ impl Tile {
         }
     }
 
-    /// Workgroups of 64 over its pixels.
-    pub fn dispatch(&self) -> [u32; 2] {
-        groups_2d(self.end - self.begin)
-    }
-
     /// Its rectangle in a frame of this width: whole rows or a part of one; x, y, width, height.
     pub fn scissor(&self, width: u32) -> [u32; 4] {
         let (first, last) = (self.begin / width, (self.end - 1) / width);
@@ -71,8 +56,8 @@ impl Tile {
 /// Tiles are whole rows where a row fits, else runs inside one row.
 ///
 /// # Errors
-/// [`RasterError::PixelOverBudget`] where a single pixel does not fit.
-pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, RasterError> {
+/// A single pixel that does not fit.
+pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, RenderError> {
     let pixels = offsets.len() as u32 - 1;
     let load = |begin: u32, end: u32| u64::from(offsets[end as usize] - offsets[begin as usize]);
     let mut tiles = Vec::new();
@@ -92,10 +77,7 @@ pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, Ra
             }
         }
         if end == begin {
-            return Err(RasterError::PixelOverBudget {
-                fragments: load(begin, begin + 1),
-                capacity,
-            });
+            return Err(over_budget(load(begin, begin + 1), capacity));
         }
         tiles.push(Tile::new(begin, end, capacity));
         begin = end;
@@ -108,24 +90,15 @@ pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, Ra
 pub struct FragmentStorage {
     /// Linear depth of each fragment.
     pub depths: wgpu::Buffer,
-    /// Triangle of each fragment.
     pub triangles: wgpu::Buffer,
     /// Un-premultiplied radiance and alpha of each fragment.
     pub colors: wgpu::Buffer,
-    capacity: u64,
+    pub capacity: u64,
 }
 
 impl FragmentStorage {
-    /// Fragments that it holds.
-    pub const fn capacity(&self) -> u64 {
-        self.capacity
-    }
-
     /// Storage for `fragments` fragments, with two colours each where transmission is coloured (`tinted`).
-    ///
-    /// # Errors
-    /// More than a storage binding holds.
-    pub fn new(gpu: &Gpu, fragments: u64, tinted: bool) -> Result<Self, RasterError> {
+    pub fn new(gpu: &Gpu, fragments: u64, tinted: bool) -> Result<Self, RenderError> {
         Ok(Self {
             depths: gpu.storage("fragment depths", fragments * 4)?,
             triangles: gpu.storage("fragment triangles", fragments * 4)?,
@@ -133,27 +106,19 @@ impl FragmentStorage {
             capacity: fragments,
         })
     }
-
-    /// Fragments that one tile may hold on this adapter: bounded by the largest binding and by `budget`.
-    pub fn limit(gpu: &Gpu, budget: Option<u64>, tinted: bool) -> u64 {
-        let binding = gpu
-            .limits
-            .max_storage_buffer_binding_size
-            .min(gpu.limits.max_buffer_size)
-            / color_bytes(tinted);
-        budget.map_or(binding, |b| b.clamp(1, binding))
-    }
 }
 
 /// Store and sort, for one tile at a time.
 #[derive(Debug)]
 pub struct SBuffer {
-    /// Counts and offsets of the frame.
     pub count: CountPass,
+    /// Uniform that holds the tile being worked on.
+    pub tile: wgpu::Buffer,
+    /// Fragments that one tile may hold: what the adapter, the budget and memory allow.
+    pub limit: u64,
     store: Option<Kernels>,
-    tile: wgpu::Buffer,
-    features: Vec<String>,
-    limit: u64,
+    features: Vec<&'static str>,
+    tinted: bool,
 }
 
 #[derive(Debug)]
@@ -162,7 +127,6 @@ struct Kernels {
     /// Fragments of a pixel that are sorted.
     most: u32,
     store: GeometryPipelines,
-    store_group: Bound,
     sort: Kernel,
     /// Where a pixel may have more than [`SHORT`] fragments.
     long: Option<LongRuns>,
@@ -171,33 +135,26 @@ struct Kernels {
 impl SBuffer {
     /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`, and one of
     /// `dataset`, `tinted`, `layered` and `named`, which say what is kept of a fragment; `half_colors` or `byte_colors` rounds it.
-    ///
-    /// # Errors
-    /// See [`CountPass::new`].
     pub fn new(
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         budget: Option<u64>,
-        features: &[&str],
-    ) -> Result<Self, RasterError> {
+        features: &[&'static str],
+    ) -> Result<Self, RenderError> {
+        let (gpu, tinted) = (&scene.gpu, features.contains(&"tinted"));
+        let limits = &gpu.limits;
+        let binding = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+            / color_bytes(tinted);
         Ok(Self {
-            count: CountPass::new(gpu, scene, frame, features)?,
-            store: None,
+            count: CountPass::new(scene, frame, features)?,
             tile: gpu.upload("tile", &[Tile::zeroed()], wgpu::BufferUsages::UNIFORM),
-            features: features.iter().map(|&f| f.to_owned()).collect(),
-            limit: FragmentStorage::limit(gpu, budget, features.contains(&"tinted")),
+            limit: budget.map_or(binding, |b| b.clamp(1, binding)),
+            store: None,
+            features: features.to_vec(),
+            tinted,
         })
-    }
-
-    /// Fragments that one tile may hold: what the adapter, the budget and memory allow.
-    pub const fn limit(&self) -> u64 {
-        self.limit
-    }
-
-    /// Uniform that holds the tile being worked on.
-    pub const fn tile_buffer(&self) -> &wgpu::Buffer {
-        &self.tile
     }
 
     /// Fragment storage, once [`Self::plan`] has made it.
@@ -215,11 +172,10 @@ impl SBuffer {
         self.store.as_ref().map_or(SHORT, |k| k.most)
     }
 
-    /// Bytes of one fragment in storage, with its places in the orders of long runs.
+    /// Bytes of one fragment in storage: depth, triangle, its colours, and its places in the orders of long runs.
     pub fn bytes_per_fragment(&self) -> f64 {
-        let tinted = self.features.iter().any(|f| f == "tinted");
         let long = self.long_runs().map_or(0.0, |_| LongRuns::BYTES);
-        bytes_per_fragment(tinted) as f64 + long
+        (4 + 4 + color_bytes(self.tinted)) as f64 + long
     }
 
     /// Decides the tiles of a frame of `needed` fragments and makes storage for the largest; returns whether storage was made anew, or
@@ -230,18 +186,14 @@ impl SBuffer {
     /// A pixel that does not fit, or a lost device.
     pub fn plan(
         &mut self,
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         needed: FragmentCount,
         offsets: Option<&[u32]>,
-    ) -> Result<Option<(Vec<Tile>, bool)>, RasterError> {
+    ) -> Result<Option<(Vec<Tile>, bool)>, RenderError> {
         let FragmentCount { total, most } = needed;
         if most > MAX_RUN {
-            return Err(RasterError::PixelOverBudget {
-                fragments: most.into(),
-                capacity: MAX_RUN.into(),
-            });
+            return Err(over_budget(most.into(), MAX_RUN.into()));
         }
         let has_room = most <= self.most();
         // A power of two, so that a moving camera does not grow it every frame.
@@ -270,13 +222,13 @@ impl SBuffer {
             }
             // The old storage goes first, so that both are never held at once.
             self.store = None;
-            match self.kernels(gpu, scene, frame, largest, most) {
+            match self.kernels(scene, frame, largest, most) {
                 Ok(kernels) => {
                     self.store = Some(kernels);
                     return Ok(Some((tiles, true)));
                 }
                 // Smaller tiles, from now on, until a pixel does not fit.
-                Err(RasterError::Gpu(GpuError::OutOfMemory { .. })) if largest > 1 => {
+                Err(RenderError::Gpu(GpuError::OutOfMemory { .. })) if largest > 1 => {
                     self.limit = largest / 2;
                 }
                 Err(e) => return Err(e),
@@ -285,63 +237,48 @@ impl SBuffer {
     }
 
     /// The same, reading offsets back where they are needed.
-    ///
-    /// # Errors
-    /// See [`Self::plan`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn plan_counted(
         &mut self,
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         needed: FragmentCount,
-    ) -> Result<(Vec<Tile>, bool), RasterError> {
-        if let Some(planned) = self.plan(gpu, scene, frame, needed, None)? {
+    ) -> Result<(Vec<Tile>, bool), RenderError> {
+        if let Some(planned) = self.plan(scene, frame, needed, None)? {
             return Ok(planned);
         }
         let bytes = u64::from(frame.pixels()) * 4 + 4;
-        let offsets: Vec<u32> = gpu.read(&self.count.offsets, 0..bytes)?;
-        let planned = self.plan(gpu, scene, frame, needed, Some(&offsets))?;
+        let offsets: Vec<u32> = scene.gpu.read(&self.count.offsets, 0..bytes)?;
+        let planned = self.plan(scene, frame, needed, Some(&offsets))?;
         Ok(planned.unwrap_or_default())
     }
 
     fn kernels(
         &self,
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         fragments: u64,
         most: u32,
-    ) -> Result<Kernels, RasterError> {
-        let tinted = self.features.iter().any(|f| f == "tinted");
-        let storage = FragmentStorage::new(gpu, fragments, tinted)?;
-        let store_group = gpu.bind(
-            "store",
-            wgpu::ShaderStages::FRAGMENT,
-            &[
-                Bind::Write(&self.count.counts),
-                Bind::Read(&self.count.offsets),
-                Bind::Write(&storage.depths),
-                Bind::Write(&storage.triangles),
-                Bind::Write(&storage.colors),
-                Bind::Uniform(&self.tile),
-            ],
-        );
-        let features: Vec<_> = self.features.iter().map(String::as_str).collect();
-        let store = scene.pipelines(
-            gpu,
-            frame,
-            Surfaces::Transparent,
-            &GeometryPass {
-                label: "store",
-                shader: "peel::store",
-                features: &features,
-                group: Some(&store_group),
-                targets: &[unwritten()],
-                ..GeometryPass::NONE
-            },
-        )?;
+    ) -> Result<Kernels, RenderError> {
+        let gpu = &scene.gpu;
+        let storage = FragmentStorage::new(gpu, fragments, self.tinted)?;
         let (offsets, faults) = (&self.count.offsets, &self.count.faults);
+        let stored = [
+            Bind::Write(&self.count.counts),
+            Bind::Read(offsets),
+            Bind::Write(&storage.depths),
+            Bind::Write(&storage.triangles),
+            Bind::Write(&storage.colors),
+            Bind::Uniform(&self.tile),
+        ];
+        let pass = GeometryPass {
+            label: "store",
+            shader: "peel::store",
+            features: &self.features,
+            entries: &stored,
+            ..GeometryPass::NONE
+        };
+        let store = scene.pipelines(frame, &pass)?;
         let long = (most > SHORT)
             .then(|| LongRuns::new(gpu, &self.tile, offsets, &storage, faults, most))
             .transpose()?;
@@ -354,18 +291,23 @@ impl SBuffer {
             Bind::Read(&self.count.counts),
             Bind::Write(faults),
         ];
-        let mut features = if tinted { vec!["tinted"] } else { vec![] };
+        let mut features = Vec::from_iter(self.tinted.then_some("tinted"));
         if let Some(long) = &long {
             sorted.push(Bind::Write(&long.order));
             features.push("long");
         }
         Ok(Kernels {
-            sort: Kernel::new(gpu, "peel::sort", &features, &sorted)?,
+            sort: kernel(
+                gpu,
+                "peel::sort",
+                &features,
+                &long_runs::parameters(),
+                &sorted,
+            )?,
             long,
             most,
             storage,
             store,
-            store_group,
         })
     }
 
@@ -385,10 +327,9 @@ impl SBuffer {
             let mut pass = recorder.render("store", &[self.count.attachment()], None);
             let [x, y, w, h] = tile.scissor(frame.size[0]);
             pass.set_scissor_rect(x, y, w, h);
-            pass.set_bind_group(1, &kernels.store_group.group, &[]);
-            scene.draw(&mut pass, frame, Surfaces::Transparent, &kernels.store);
+            scene.draw(&mut pass, frame, &kernels.store);
         }
-        kernels.sort.dispatch(recorder, tile.dispatch());
+        kernels.sort.dispatch(recorder, tile.end - tile.begin);
         if let Some(long) = &kernels.long {
             long.sort(recorder);
         }
@@ -428,13 +369,7 @@ mod tests {
 
     #[test]
     fn a_pixel_beyond_the_budget_is_an_error() {
-        let result = tiles(&offsets(&[1, 9, 1]), 3, 8);
-        assert!(matches!(
-            result,
-            Err(RasterError::PixelOverBudget {
-                fragments: 9,
-                capacity: 8
-            })
-        ));
+        let error = tiles(&offsets(&[1, 9, 1]), 3, 8).unwrap_err().to_string();
+        assert!(error.contains("9 fragments") && error.contains("holds 8"));
     }
 }

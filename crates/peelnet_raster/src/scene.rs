@@ -1,15 +1,12 @@
 //! A scene's buffers, drawn from every view by every method, and edited in place.
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RasterError, SamplePoint,
-    Submission, Surfaces,
+    FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RenderError, SamplePoint,
+    Submission,
     frame::{OpaqueDepth, attachment, clear_color, depth_attachment, depth_state},
     maps::MapSets,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
-    upload::{
-        ATTRIBUTES, AttributeData, DrawRun, Placement, Sharing, Vertex, bounding_box, centroid,
-        push_run,
-    },
+    upload::{ATTRIBUTES, DrawRun, Placement, Vertex, extend, floats, push_run},
 };
 use bytemuck::Zeroable;
 use peelnet_core::absorbance::DepthWarp;
@@ -19,8 +16,7 @@ use peelnet_gpu::{
     record::Recorder,
     wgpu,
 };
-use peelnet_scene::{Camera, Material, Scene, Setting, Variant};
-use std::ops::Range;
+use peelnet_scene::{Camera, Scene, Setting, Variant};
 
 /// A part of an object with one material, on the GPU.
 #[derive(Clone, Debug)]
@@ -44,6 +40,8 @@ pub const BACKGROUND_PASS: &str = "background";
 /// groups or targets. Changes apply to all commands submitted after them.
 #[derive(Debug)]
 pub struct SceneBuffers {
+    /// The device.
+    pub gpu: Gpu,
     pub(crate) scene: Scene,
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) vertex_count: usize,
@@ -55,7 +53,8 @@ pub struct SceneBuffers {
     pub(crate) materials: wgpu::Buffer,
     /// Where any material is lit.
     pub(crate) lights: Option<wgpu::Buffer>,
-    camera: wgpu::Buffer,
+    /// The view's uniform.
+    pub camera: wgpu::Buffer,
     /// In the scene's order; a part's number is its material's.
     pub(crate) parts: Vec<PartBuffers>,
     /// The order in which transparent parts are submitted.
@@ -64,14 +63,10 @@ pub struct SceneBuffers {
     opaque: Vec<DrawRun>,
     transparent: Vec<DrawRun>,
     pub(crate) generation: u64,
-    /// Background radiance, linear RGB.
-    pub background: [f32; 3],
     /// Whether every colour is grey.
     pub grey: bool,
     /// Whether transmission is coloured.
     pub tinted: bool,
-    /// The share of the resolution that the scene wants transparency drawn at.
-    pub transparency_scale: f32,
 }
 
 impl SceneBuffers {
@@ -79,7 +74,7 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// A scene larger than the adapter's largest buffer.
-    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RasterError> {
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
         let triangles = scene.triangles();
         let needed = triangles as u64 * 3 * size_of::<Vertex>() as u64;
         // Numbers of vertices have 32 bits.
@@ -91,7 +86,7 @@ impl SceneBuffers {
         let hint = "split the scene or simplify its meshes";
         gpu.check_limit(what, needed, limit, "bytes", hint)?;
         let setting = Setting::of(scene);
-        let mut attributes = AttributeData::default();
+        let mut attributes: [Vec<f32>; 4] = Default::default();
         let mut maps = MapSets::default();
         let mut vertices = Vec::with_capacity(triangles * 3);
         let mut shared = Vec::with_capacity(triangles * 3);
@@ -99,7 +94,6 @@ impl SceneBuffers {
         let mut parts = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
             let placement = Placement::of(object);
-            let mut sharing = Sharing::of(placement);
             let all = object.mesh.parts.iter().zip(&object.materials);
             for (part_number, (part, material)) in all.enumerate() {
                 let index = materials.len() as u32;
@@ -108,14 +102,14 @@ impl SceneBuffers {
                 let begin = vertices.len();
                 vertices.extend(placement.vertices(part.triangles.clone(), index));
                 let of_part = placement.attributes(&part.triangles, variant);
-                shared.extend(sharing.numbers(&part.triangles, &of_part, begin));
-                attributes.extend(begin, of_part);
+                shared.extend(placement.shared(&part.triangles, &of_part, begin));
+                extend(&mut attributes, begin, of_part);
                 let mut buffers = PartBuffers {
                     place: (number, part_number),
                     run: DrawRun {
                         vertices: begin as u32..vertices.len() as u32,
                         variant,
-                        maps: set_of(gpu, &mut maps, material, variant, &part.triangles)?,
+                        maps: maps.number(gpu, material, variant, &part.triangles)?,
                     },
                     opaque: material.is_opaque(),
                     bounds: None,
@@ -127,32 +121,35 @@ impl SceneBuffers {
         }
         // A binding may not be smaller than one element.
         materials.resize(materials.len().max(1), MaterialData::zeroed());
+        let attributes = std::array::from_fn(|i| {
+            let all = &mut attributes[i];
+            (!all.is_empty()).then(|| {
+                all.resize(vertices.len() * floats(i), 0.0);
+                gpu.upload(ATTRIBUTES[i].0, all, wgpu::BufferUsages::VERTEX)
+            })
+        });
+        let camera = [CameraUniform::zeroed()];
         let mut buffers = Self {
-            attributes: attributes.upload(gpu, vertices.len()),
+            gpu: gpu.clone(),
+            attributes,
             maps,
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
             vertex_count: vertices.len(),
             shared: gpu.upload("shared vertices", &shared, wgpu::BufferUsages::INDEX),
             materials: gpu.upload("materials", &materials, wgpu::BufferUsages::STORAGE),
             lights: None,
-            camera: gpu.upload(
-                "camera",
-                &[CameraUniform::zeroed()],
-                wgpu::BufferUsages::UNIFORM,
-            ),
+            camera: gpu.upload("camera", &camera, wgpu::BufferUsages::UNIFORM),
             parts,
             submission: Submission::Listed,
             submitted: Vec::new(),
             opaque: Vec::new(),
             transparent: Vec::new(),
             generation: 0,
-            background: scene.background,
             grey: scene.is_grey(),
             tinted: scene.is_tinted(),
-            transparency_scale: scene.transparency_scale,
             scene: scene.clone(),
         };
-        buffers.upload_lights(gpu)?;
+        buffers.upload_lights()?;
         buffers.arrange();
         Ok(buffers)
     }
@@ -201,11 +198,6 @@ impl SceneBuffers {
         self.submitted.iter().map(|&number| &self.parts[number])
     }
 
-    /// The view's uniform.
-    pub const fn camera_buffer(&self) -> &wgpu::Buffer {
-        &self.camera
-    }
-
     /// Names of the bindings of the scene that a transparent pass has.
     pub fn bindings(&self) -> Vec<&'static str> {
         let drawn = || self.parts.iter().filter(|p| p.run.maps.is_some());
@@ -235,7 +227,7 @@ impl SceneBuffers {
     }
 
     /// Bind group 0 of opaque passes and of transparent ones.
-    pub(crate) fn groups(&self, gpu: &Gpu, depth: Option<&OpaqueDepth>) -> [Bound; 2] {
+    pub(crate) fn groups(&self, depth: Option<&OpaqueDepth>) -> [Bound; 2] {
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
         // Where nothing is lit no light is bound.
         let lights = self.lights.as_ref().map_or(Bind::None, Bind::Read);
@@ -244,9 +236,9 @@ impl SceneBuffers {
             Bind::Read(&self.materials),
             lights,
         ];
-        let opaque = gpu.bind("opaque scene", stages, &entries);
-        entries.extend(depth.map(OpaqueDepth::bind));
-        [opaque, gpu.bind("scene", stages, &entries)]
+        let opaque = self.gpu.bind("opaque scene", stages, &entries);
+        entries.extend(depth.map(|depth| Bind::Texture(&depth.view)));
+        [opaque, self.gpu.bind("scene", stages, &entries)]
     }
 
     /// Records the write of a view into the camera uniform; `point` is where pixels are sampled.
@@ -330,64 +322,67 @@ impl SceneBuffers {
     pub(crate) fn half<'a>(
         &'a self,
         frame: &'a FrameTargets,
-        surfaces: Surfaces,
+        opaque: bool,
     ) -> (&'a Bound, &'a [DrawRun]) {
-        match surfaces {
-            Surfaces::Opaque => (&frame.opaque_group, &self.opaque),
-            Surfaces::Transparent => (&frame.scene_group, &self.transparent),
+        if opaque {
+            (&frame.opaque_group, &self.opaque)
+        } else {
+            (&frame.scene_group, &self.transparent)
         }
     }
 
-    /// Draws one half of the scene, triangles in the order of the scene's list.
+    /// Draws the half of the scene that the pipelines are of, triangles in the order of the scene's list.
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         frame: &FrameTargets,
-        surfaces: Surfaces,
         pipelines: &GeometryPipelines,
     ) {
-        let (group, runs) = self.half(frame, surfaces);
-        self.set_vertices(pass, group);
-        for run in runs {
-            self.draw_run(pass, pipelines, run);
-        }
+        let runs = self.half(frame, pipelines.opaque).1;
+        self.draw_runs(pass, frame, pipelines, runs, None);
     }
 
-    /// Draws a run of triangles, each vertex once where no pipeline asks for the number of its triangle.
-    pub(crate) fn draw_run(
+    /// Draws runs of triangles, of `indices` where there are any. Otherwise each vertex is drawn once where no pipeline asks for the number
+    /// of its triangle.
+    pub(crate) fn draw_runs(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
+        frame: &FrameTargets,
         pipelines: &GeometryPipelines,
-        run: &DrawRun,
+        runs: &[DrawRun],
+        indices: Option<&wgpu::Buffer>,
     ) {
-        self.set_run(pass, pipelines, run);
-        if pipelines.is_numbered(run.variant) {
-            pass.draw(run.vertices.clone(), 0..1);
-        } else {
-            pass.set_index_buffer(self.shared.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(run.vertices.clone(), 0, 0..1);
+        let scene_group = self.half(frame, pipelines.opaque).0;
+        let groups = [Some(scene_group), pipelines.group.as_ref()];
+        for (bound, index) in groups.iter().zip(0..) {
+            pass.set_bind_group(index, bound.map(|bound| &bound.group), &[]);
         }
-    }
-
-    pub(crate) fn set_vertices(&self, pass: &mut wgpu::RenderPass<'_>, group: &Bound) {
-        pass.set_bind_group(0, &group.group, &[]);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         for (buffer, slot) in self.attributes.iter().zip(1..) {
             if let Some(buffer) = buffer {
                 pass.set_vertex_buffer(slot, buffer.slice(..));
             }
         }
-    }
-
-    pub(crate) fn set_run(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        all: &GeometryPipelines,
-        run: &DrawRun,
-    ) {
-        all.set(pass, run.variant);
-        if let Some(number) = run.maps {
-            pass.set_bind_group(2, &self.maps.bound(number).group, &[]);
+        if let Some(indices) = indices {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        }
+        for run in runs {
+            // There is one for every run's variant.
+            let Some(found) = pipelines.of(run.variant) else {
+                continue;
+            };
+            pass.set_pipeline(&found.pipeline);
+            if let Some(number) = run.maps {
+                pass.set_bind_group(2, &self.maps.bound(number).group, &[]);
+            }
+            if indices.is_none() && found.numbered {
+                pass.draw(run.vertices.clone(), 0..1);
+                continue;
+            }
+            if indices.is_none() {
+                pass.set_index_buffer(self.shared.slice(..), wgpu::IndexFormat::Uint32);
+            }
+            pass.draw_indexed(run.vertices.clone(), 0, 0..1);
         }
     }
 
@@ -397,13 +392,12 @@ impl SceneBuffers {
         &self,
         recorder: &mut Recorder<'_>,
         frame: &FrameTargets,
-        pipelines: Option<&GeometryPipelines>,
         target: Option<&wgpu::TextureView>,
         clear: bool,
     ) {
-        let [r, g, b] = self.background.map(f64::from);
+        let [r, g, b] = self.scene.background.map(f64::from);
         let begin = [r, g, b, 1.0];
-        let over = frame.output.is_over();
+        let (over, pipelines) = (frame.output.is_over(), frame.opaque.as_ref());
         if over && !clear && pipelines.is_none() {
             return;
         }
@@ -427,37 +421,30 @@ impl SceneBuffers {
         });
         let mut pass = recorder.render(BACKGROUND_PASS, &[color], depth);
         if let Some(pipelines) = pipelines {
-            self.draw(&mut pass, frame, Surfaces::Opaque, pipelines);
+            self.draw(&mut pass, frame, pipelines);
         }
     }
 
     /// The opaque pass's pipelines, where the scene has anything opaque.
-    ///
-    /// # Errors
-    /// A shader that does not link.
-    pub fn opaque_pipelines(
+    pub(crate) fn opaque_pipelines(
         &self,
-        gpu: &Gpu,
         frame: &FrameTargets,
-    ) -> Result<Option<GeometryPipelines>, RasterError> {
+    ) -> Result<Option<GeometryPipelines>, RenderError> {
         let Some(depth) = frame.depth.as_ref().filter(|_| self.has_opaque()) else {
             return Ok(None);
         };
         let format = depth.view.texture().format();
+        let (color, samples) = frame.output.opaque();
         let pass = GeometryPass {
             label: "opaque",
             shader: "scene::opaque",
-            targets: &[Some(frame.output.opaque_state())],
-            depth: Some(depth_state(format, true, wgpu::CompareFunction::Less)),
-            samples: if frame.output.is_over() {
-                frame.output.samples()
-            } else {
-                1
-            },
+            opaque: true,
+            targets: &[Some(color.into())],
+            depth: Some(depth_state(format)),
+            samples,
             ..GeometryPass::NONE
         };
-        self.pipelines(gpu, frame, Surfaces::Opaque, &pass)
-            .map(Some)
+        self.pipelines(frame, &pass).map(Some)
     }
 }
 
@@ -466,33 +453,20 @@ fn clip_from_world(camera: &Camera, frame: &FrameTargets, point: SamplePoint) ->
 }
 
 impl PartBuffers {
-    /// Takes the part's box and centres of triangles.
     pub(crate) fn measure(&mut self, vertices: &[Vertex]) {
-        self.bounds = bounding_box(vertices);
-        self.centroids = vertices.chunks_exact(3).map(centroid).collect();
+        let points = || vertices.iter().map(|v| glam::Vec3::from_array(v.position));
+        let [lo, hi] = [glam::Vec3::min, glam::Vec3::max].map(|pick| points().reduce(pick));
+        self.bounds = lo.zip(hi).map(|(lo, hi)| [lo, hi]);
+        let points: Vec<_> = points().collect();
+        let (triangles, _) = points.as_chunks::<3>();
+        let middle = |triangle: &[glam::Vec3; 3]| triangle.iter().sum::<glam::Vec3>() / 3.0;
+        self.centroids = triangles.iter().map(middle).collect();
     }
-}
-
-/// The number of the textures that a part of an object binds; `None` where it has none or no triangles.
-pub(crate) fn set_of(
-    gpu: &Gpu,
-    maps: &mut MapSets,
-    material: &Material,
-    variant: Variant,
-    triangles: &Range<usize>,
-) -> Result<Option<usize>, RasterError> {
-    if !variant.is_mapped() || triangles.is_empty() {
-        return Ok(None);
-    }
-    maps.number(gpu, &material.maps, variant.maps).map(Some)
 }
 
 /// Bytes of shader text that a scene's surfaces link, without tests of visibility: the opaque pass and one that gathers premultiplied
 /// colour (`blended`), a text for each variant.
-///
-/// # Errors
-/// A shader that does not link.
-pub fn shader_bytes(scene: &Scene) -> Result<usize, RasterError> {
+pub fn shader_bytes(scene: &Scene) -> Result<usize, RenderError> {
     let setting = Setting::of(scene);
     let mut texts: Vec<String> = Vec::new();
     for object in &scene.objects {

@@ -2,84 +2,55 @@
 //! on coplanar fragments, see `peel/single.wgsl`.
 
 use crate::{
-    FrameTargets, GeometryPass, GeometryPipelines, RasterError, SceneBuffers, Surfaces,
+    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
     frame::{attachment, clear_color, depth_attachment, depth_state},
 };
-use peelnet_gpu::{
-    Gpu,
-    bind::{Bind, Bound},
-    record::Recorder,
-    wgpu,
-};
+use peelnet_gpu::{bind::Bind, record::Recorder, wgpu};
 
 /// Bytes of the targets, a pixel: two keys in turn, the layer, the depth test.
 pub const BYTES_PER_PIXEL: f64 = 2.0 * 8.0 + 16.0 + 4.0;
 
-/// The targets and pipelines of front-to-back peeling.
 #[derive(Debug)]
 pub struct SinglePeel {
     /// Key of the last peeled fragment (bits of linear depth, triangle + 1), written in turn.
     pub keys: [wgpu::TextureView; 2],
-    /// The layer peeled in the last pass.
     pub layer: wgpu::TextureView,
     depth: wgpu::TextureView,
-    peel: GeometryPipelines,
-    groups: [Bound; 2],
+    peel: [GeometryPipelines; 2],
 }
 
 impl SinglePeel {
     /// Builds the passes.
-    ///
-    /// # Errors
-    /// A frame beyond the adapter's limits, or a shader that does not link.
     pub fn new(
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         features: &[&str],
-    ) -> Result<Self, RasterError> {
-        let texture = |label: &str, format| {
-            gpu.texture(label, format, frame.size, 1, wgpu::TextureUsages::empty())
-        };
-        let (key_format, layer_format) = (
-            wgpu::TextureFormat::Rg32Uint,
-            wgpu::TextureFormat::Rgba32Float,
-        );
+    ) -> Result<Self, RenderError> {
+        use wgpu::TextureFormat::{Depth32Float, Rg32Uint, Rgba32Float};
+        let gpu = &scene.gpu;
+        let none = wgpu::TextureUsages::empty();
+        let texture = |label: &str, format| gpu.texture(label, format, frame.size, 1, none);
         let keys = [
-            texture("last key", key_format)?,
-            texture("last key", key_format)?,
+            texture("last key", Rg32Uint)?,
+            texture("last key", Rg32Uint)?,
         ];
-        let groups = [0, 1].map(|i| {
-            gpu.bind(
-                "last key",
-                wgpu::ShaderStages::FRAGMENT,
-                &[Bind::Uint(&keys[i])],
-            )
-        });
-        let peel = scene.pipelines(
-            gpu,
-            frame,
-            Surfaces::Transparent,
-            &GeometryPass {
+        let peel = |key: &wgpu::TextureView| {
+            let pass = GeometryPass {
                 label: "peel",
                 shader: "peel::single",
                 features,
-                group: Some(&groups[0]),
-                targets: &[Some(layer_format.into()), Some(key_format.into())],
-                depth: Some(depth_state(
-                    wgpu::TextureFormat::Depth32Float,
-                    true,
-                    wgpu::CompareFunction::Less,
-                )),
+                entries: &[Bind::Texture(key)],
+                targets: &[Some(Rgba32Float.into()), Some(Rg32Uint.into())],
+                depth: Some(depth_state(Depth32Float)),
                 ..GeometryPass::NONE
-            },
-        )?;
+            };
+            scene.pipelines(frame, &pass)
+        };
         Ok(Self {
+            peel: [peel(&keys[0])?, peel(&keys[1])?],
             keys,
-            layer: texture("layer", layer_format)?,
-            depth: texture("peel depth", wgpu::TextureFormat::Depth32Float)?,
-            peel,
-            groups,
+            layer: texture("layer", Rgba32Float)?,
+            depth: texture("peel depth", Depth32Float)?,
         })
     }
 
@@ -107,7 +78,6 @@ impl SinglePeel {
         let clear = wgpu::LoadOp::Clear(1.0);
         let depth = depth_attachment(&self.depth, clear, wgpu::StoreOp::Discard);
         let mut pass = recorder.render("peel", &targets, Some(depth));
-        pass.set_bind_group(1, &self.groups[from].group, &[]);
-        scene.draw(&mut pass, frame, Surfaces::Transparent, &self.peel);
+        scene.draw(&mut pass, frame, &self.peel[from]);
     }
 }

@@ -1,11 +1,11 @@
 //! The order in which transparent surfaces are drawn.
 
 use crate::{
-    FrameTargets, RasterError, SceneBuffers,
+    FrameTargets, RenderError, SceneBuffers,
     pipelines::GeometryPipelines,
     upload::{DrawRun, push_run},
 };
-use peelnet_gpu::{Gpu, record::Recorder, wgpu};
+use peelnet_gpu::{record::Recorder, wgpu};
 use peelnet_scene::Camera;
 
 /// The order in which transparent surfaces are drawn.
@@ -34,7 +34,6 @@ pub enum Submission {
 /// The transparent surfaces in an order that depends on the view.
 #[derive(Debug)]
 pub struct Sorted {
-    order: Order,
     /// Vertex numbers of the sorted triangles; runs are ranges of it.
     indices: Option<wgpu::Buffer>,
     runs: Vec<DrawRun>,
@@ -42,30 +41,27 @@ pub struct Sorted {
 
 impl Sorted {
     /// Room for the order; none is needed to draw in the scene's order.
-    ///
-    /// # Errors
-    /// More triangles than the adapter's largest buffer indexes.
-    pub fn new(gpu: &Gpu, scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RasterError> {
-        let triangles: usize = scene.transparent_parts().map(|p| p.centroids.len()).sum();
-        let size = triangles.max(1) as u64 * 12;
-        if order == Order::Triangles {
-            let what = format!("the order of {triangles} triangles");
-            let hint = "sort objects instead (painter-object)";
-            gpu.check_limit(what, size, gpu.limits.max_buffer_size, "bytes", hint)?;
-        }
-        let indices = (order == Order::Triangles).then(|| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("sorted triangles"),
-                size,
-                usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        });
-        Ok((order != Order::Scene).then_some(Self {
-            order,
-            indices,
-            runs: Vec::new(),
-        }))
+    pub fn new(scene: &SceneBuffers, order: Order) -> Result<Option<Self>, RenderError> {
+        let indices = match order {
+            Order::Scene => return Ok(None),
+            Order::Objects => None,
+            Order::Triangles => {
+                let gpu = &scene.gpu;
+                let triangles: usize = scene.transparent_parts().map(|p| p.centroids.len()).sum();
+                let size = triangles.max(1) as u64 * 12;
+                let what = format!("the order of {triangles} triangles");
+                let hint = "sort objects instead (painter-object)";
+                gpu.check_limit(what, size, gpu.limits.max_buffer_size, "bytes", hint)?;
+                Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("sorted triangles"),
+                    size,
+                    usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                }))
+            }
+        };
+        let runs = Vec::new();
+        Ok(Some(Self { indices, runs }))
     }
 
     /// Bytes that the order takes on the GPU.
@@ -124,17 +120,6 @@ impl Sorted {
         frame: &FrameTargets,
         pipelines: &GeometryPipelines,
     ) {
-        scene.set_vertices(pass, &frame.scene_group);
-        if let Some(indices) = &self.indices {
-            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-        }
-        for run in &self.runs {
-            if self.order == Order::Triangles {
-                scene.set_run(pass, pipelines, run);
-                pass.draw_indexed(run.vertices.clone(), 0, 0..1);
-            } else {
-                scene.draw_run(pass, pipelines, run);
-            }
-        }
+        scene.draw_runs(pass, frame, pipelines, &self.runs, self.indices.as_ref());
     }
 }

@@ -1,12 +1,12 @@
 //! Vertices and their attributes in world space, and runs of triangles that one pipeline draws.
 
 use bytemuck::{Pod, Zeroable};
-use peelnet_gpu::{Gpu, wgpu};
+use peelnet_gpu::wgpu::{self, vertex_attr_array};
 use peelnet_scene::{Object, Variant};
 use std::ops::Range;
 
 /// One vertex of a triangle. Every triangle has three of its own: `vertex_index / 3` is then the triangle's index in the scene's
-/// list, which portable WebGPU has no other way to learn. Passes that do not ask for it draw by [`Sharing::numbers`].
+/// list, which portable WebGPU has no other way to learn. Passes that do not ask for it draw by [`Placement::shared`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Vertex {
@@ -14,13 +14,16 @@ pub(crate) struct Vertex {
     pub material: u32,
 }
 
-/// What only some materials read of a vertex, each in a buffer of its own: name, format, the shader feature that reads it.
-pub(crate) const ATTRIBUTES: [(&str, wgpu::VertexFormat, &str); 4] = [
-    ("uv", wgpu::VertexFormat::Float32x2, "mapped"),
-    ("tangent", wgpu::VertexFormat::Float32x4, "normal_map"),
-    ("color", wgpu::VertexFormat::Float32x4, "vertex_colors"),
-    ("normal", wgpu::VertexFormat::Float32x3, "lit"),
+/// What only some materials read of a vertex, each in a buffer of its own: name, place and format, the shader feature that reads it.
+pub(crate) const ATTRIBUTES: &[(&str, [wgpu::VertexAttribute; 1], &str)] = &[
+    ("uv", vertex_attr_array![2 => Float32x2], "mapped"),
+    ("tangent", vertex_attr_array![3 => Float32x4], "normal_map"),
+    ("color", vertex_attr_array![4 => Float32x4], "vertex_colors"),
+    ("normal", vertex_attr_array![5 => Float32x3], "lit"),
 ];
+
+/// How many vertices that stand for one of the mesh are compared: of more, some are drawn as vertices of their own.
+const MOST_COMPARED: usize = 8;
 
 /// A run of triangles that one pipeline draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,33 +123,13 @@ impl<'a> Placement<'a> {
         }
         all
     }
-}
-
-/// Finds which vertices of an object's triangles are the same.
-pub(crate) struct Sharing<'a> {
-    placement: Placement<'a>,
-    /// Of every vertex of the mesh the latest one found that stands for it in the part under way, counted from 1; 0 for none: memory
-    /// that is never touched costs nothing.
-    latest: Vec<u32>,
-}
-
-impl<'a> Sharing<'a> {
-    /// How many vertices that stand for one of the mesh are compared: of more, some are drawn as vertices of their own.
-    const MOST_COMPARED: usize = 8;
-
-    pub fn of(placement: Placement<'a>) -> Self {
-        Self {
-            placement,
-            latest: vec![0; placement.object.mesh.positions.len()],
-        }
-    }
 
     /// For every vertex of a run of triangles the number of the first one that is the same: one vertex of the mesh, with the same UVs
     /// and tangents where `attributes` has them. `begin` is the number of the run's first vertex.
     ///
     /// Drawn by these numbers a vertex is transformed about once, and not once for each of its triangles.
-    pub fn numbers(
-        &mut self,
+    pub fn shared(
+        &self,
         triangles: &Range<usize>,
         attributes: &[Vec<f32>; 4],
         begin: usize,
@@ -160,114 +143,40 @@ impl<'a> Sharing<'a> {
                 bits(a).eq(bits(b))
             })
         };
-        let of_mesh: Vec<usize> = self.placement.indices(triangles.clone()).collect();
+        let of_mesh: Vec<usize> = self.indices(triangles.clone()).collect();
+        // Of every vertex of the mesh the latest one found that stands for it, counted from 1; 0 for none: memory that is never touched
+        // costs nothing.
+        let mut latest = vec![0u32; self.object.mesh.positions.len()];
         // Of each that stands for a vertex of the mesh the one found before it, counted from 1.
         let mut before = vec![0u32; of_mesh.len()];
         let mut numbers = Vec::with_capacity(of_mesh.len());
         for (here, &i) in of_mesh.iter().enumerate() {
             let place = |counted: u32| (counted as usize).checked_sub(1);
-            let mut known = std::iter::successors(place(self.latest[i]), |&k| place(before[k]))
-                .take(Self::MOST_COMPARED);
+            let mut known =
+                std::iter::successors(place(latest[i]), |&k| place(before[k])).take(MOST_COMPARED);
             let found = known.find(|&k| same(k, here));
             if found.is_none() {
-                before[here] = std::mem::replace(&mut self.latest[i], here as u32 + 1);
+                before[here] = std::mem::replace(&mut latest[i], here as u32 + 1);
             }
             numbers.push((begin + found.unwrap_or(here)) as u32);
-        }
-        for i in of_mesh {
-            self.latest[i] = 0;
         }
         numbers
     }
 }
 
-/// Attribute buffers under way: zeros where nothing reads a vertex's.
-#[derive(Default)]
-pub(crate) struct AttributeData([Vec<f32>; 4]);
-
 /// Floats of one vertex's attribute.
-fn floats(attribute: usize) -> usize {
-    ATTRIBUTES[attribute].1.size() as usize / 4
+pub(crate) fn floats(attribute: usize) -> usize {
+    ATTRIBUTES[attribute].1[0].format.size() as usize / 4
 }
 
-impl AttributeData {
-    /// Adds those of a part whose first vertex is `first`.
-    pub fn extend(&mut self, first: usize, part: [Vec<f32>; 4]) {
-        for (i, (all, part)) in self.0.iter_mut().zip(part).enumerate() {
-            if !part.is_empty() {
-                all.resize(first * floats(i), 0.0);
-                all.extend(part);
-            }
+/// Adds the attributes of a part whose first vertex is `first`, behind zeros where nothing reads a vertex's.
+pub(crate) fn extend(all: &mut [Vec<f32>; 4], first: usize, part: [Vec<f32>; 4]) {
+    for (i, (all, part)) in all.iter_mut().zip(part).enumerate() {
+        if !part.is_empty() {
+            all.resize(first * floats(i), 0.0);
+            all.extend(part);
         }
     }
-
-    pub fn upload(self, gpu: &Gpu, vertices: usize) -> [Option<wgpu::Buffer>; 4] {
-        let mut number = 0;
-        self.0.map(|mut all| {
-            let (label, ..) = ATTRIBUTES[number];
-            let size = vertices * floats(number);
-            number += 1;
-            if all.is_empty() {
-                return None;
-            }
-            all.resize(size, 0.0);
-            Some(gpu.upload(label, &all, wgpu::BufferUsages::VERTEX))
-        })
-    }
-}
-
-/// Writes a part's attributes into buffers of `vertices` vertices; makes those that nothing has read so far.
-pub(crate) fn write_attributes(
-    gpu: &Gpu,
-    buffers: &mut [Option<wgpu::Buffer>; 4],
-    vertices: usize,
-    first: usize,
-    part: &[Vec<f32>; 4],
-) {
-    for (i, (buffer, part)) in buffers.iter_mut().zip(part).enumerate() {
-        if part.is_empty() {
-            continue;
-        }
-        let buffer = buffer.get_or_insert_with(|| {
-            // Zeros are what WebGPU fills new buffers with.
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(ATTRIBUTES[i].0),
-                size: (vertices * floats(i) * 4) as u64,
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        });
-        gpu.write_at(buffer, first * floats(i), part);
-    }
-}
-
-/// Writes which of a part's vertices are the same.
-pub(crate) fn write_shared(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    sharing: &mut Sharing<'_>,
-    triangles: &Range<usize>,
-    part: &[Vec<f32>; 4],
-    first: usize,
-) {
-    let numbers = sharing.numbers(triangles, part, first);
-    gpu.write_at(buffer, first, &numbers);
-}
-
-/// The middle of a triangle.
-pub(crate) fn centroid(vertices: &[Vertex]) -> glam::Vec3 {
-    let sum: glam::Vec3 = vertices
-        .iter()
-        .map(|c| glam::Vec3::from_array(c.position))
-        .sum();
-    sum / vertices.len() as f32
-}
-
-/// The box around some vertices; `None` without any.
-pub(crate) fn bounding_box(vertices: &[Vertex]) -> Option<[glam::Vec3; 2]> {
-    let mut points = vertices.iter().map(|c| glam::Vec3::from_array(c.position));
-    let first = points.next()?;
-    Some(points.fold([first; 2], |[lo, hi], p| [lo.min(p), hi.max(p)]))
 }
 
 #[cfg(test)]
@@ -275,21 +184,23 @@ mod tests {
     use super::*;
     use peelnet_scene::{Material, Setting};
 
+    fn object(positions: Vec<glam::Vec3>, triangles: Vec<[u32; 3]>) -> Object {
+        let mut object = Object::of_triangles("test", &[], Material::unlit([1.0; 3], 0.5));
+        let mesh = std::sync::Arc::make_mut(&mut object.mesh);
+        mesh.normals = vec![glam::Vec3::Z; positions.len()];
+        (mesh.positions, mesh.triangles) = (positions, triangles);
+        object
+    }
+
     /// Two triangles of four vertices share two of them, unless an attribute differs there; mirrored ones turn round, and the numbers
     /// follow.
     #[test]
     fn the_same_vertices_are_shared() {
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-        let mut object = Object::of_triangles("none", &[], Material::unlit([1.0; 3], 0.5));
-        let mesh = peelnet_scene::Mesh {
-            positions: points.map(|[x, y]| glam::Vec3::new(x, y, 0.0)).to_vec(),
-            normals: vec![glam::Vec3::Z; 4],
-            triangles: vec![[0, 1, 2], [2, 1, 3]],
-            ..(*object.mesh).clone()
-        };
-        object.mesh = std::sync::Arc::new(mesh);
+        let points = points.map(|[x, y]| glam::Vec3::new(x, y, 0.0));
+        let mut object = object(points.to_vec(), vec![[0, 1, 2], [2, 1, 3]]);
         let shared = |object: &Object, attributes: &[Vec<f32>; 4]| {
-            Sharing::of(Placement::of(object)).numbers(&(0..2), attributes, 30)
+            Placement::of(object).shared(&(0..2), attributes, 30)
         };
         let mut attributes: [Vec<f32>; 4] = Default::default();
         assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 31, 35]);
@@ -311,14 +222,7 @@ mod tests {
     /// A fan whose middle has other UVs in every triangle, and twice: what stands for a vertex is the same, however many there are.
     #[test]
     fn vertices_of_many_seams_stay_themselves() {
-        let mut object = Object::of_triangles("fan", &[], Material::unlit([1.0; 3], 0.5));
-        let mesh = peelnet_scene::Mesh {
-            positions: vec![glam::Vec3::ZERO; 3],
-            normals: vec![glam::Vec3::Z; 3],
-            triangles: vec![[0, 1, 2]; 60],
-            ..(*object.mesh).clone()
-        };
-        object.mesh = std::sync::Arc::new(mesh);
+        let object = object(vec![glam::Vec3::ZERO; 3], vec![[0, 1, 2]; 60]);
         let mut attributes: [Vec<f32>; 4] = Default::default();
         let uv = |corner: usize| {
             [
@@ -327,16 +231,13 @@ mod tests {
             ]
         };
         attributes[0] = (0..180).flat_map(uv).collect();
-        let mut sharing = Sharing::of(Placement::of(&object));
-        let numbers = sharing.numbers(&(0..60), &attributes, 0);
+        let numbers = Placement::of(&object).shared(&(0..60), &attributes, 0);
         for (corner, &number) in numbers.iter().enumerate() {
             let number = number as usize;
             assert_eq!((number % 3, uv(number)), (corner % 3, uv(corner)));
         }
         assert_eq!(numbers[1..3], [1, 2]);
         assert!(numbers.chunks(3).all(|t| t[1..] == [1, 2]));
-        // The next part begins anew.
-        assert_eq!(sharing.numbers(&(0..1), &attributes, 7), [7, 8, 9]);
     }
 
     #[test]

@@ -4,13 +4,14 @@
 //! `cargo bench -p peelnet_render --bench plain`; frames in turn, the median of their ratios is what counts.
 
 use peelnet_gpu::{
-    AdapterRequest, Gpu,
+    AdapterRequest, Gpu, RenderPipeline,
     bind::{Bind, Bound},
     record::{Recorder, Timer},
     wgpu,
 };
 use peelnet_raster::{
-    frame::{attachment, clear_color},
+    Blend,
+    frame::{Output, attachment, clear_color},
     fullscreen::FullscreenPass,
 };
 use peelnet_render::{MethodOptions, Renderer, milliseconds};
@@ -80,30 +81,9 @@ struct Plain<'g> {
     clear: [f64; 4],
 }
 
-fn target(format: wgpu::TextureFormat, blend: wgpu::BlendState) -> Option<wgpu::ColorTargetState> {
-    Some(wgpu::ColorTargetState {
-        format,
-        blend: Some(blend),
-        ..format.into()
-    })
-}
-
-/// `dst · dst_factor + src · src_factor` of all channels.
-const fn blend(src_factor: wgpu::BlendFactor, dst_factor: wgpu::BlendFactor) -> wgpu::BlendState {
-    let component = wgpu::BlendComponent {
-        src_factor,
-        dst_factor,
-        operation: wgpu::BlendOperation::Add,
-    };
-    wgpu::BlendState {
-        color: component,
-        alpha: component,
-    }
-}
-
 impl<'g> Plain<'g> {
     fn new(gpu: &'g Gpu, scene: &Scene) -> Result<Self, Box<dyn Error>> {
-        use wgpu::{BlendFactor as F, TextureFormat as T};
+        use wgpu::TextureFormat as T;
         let (mut vertices, mut colors) = (Vec::new(), Vec::new());
         for object in &scene.objects {
             for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
@@ -127,52 +107,47 @@ impl<'g> Plain<'g> {
         let camera = gpu.upload("camera", &[[0.0f32; 16]], wgpu::BufferUsages::UNIFORM);
         let colors = gpu.upload("colors", &colors, wgpu::BufferUsages::STORAGE);
         let entries = [Bind::Uniform(&camera), Bind::Read(&colors)];
-        let bound = gpu.bind("scene", wgpu::ShaderStages::VERTEX_FRAGMENT, &entries);
-        let module = gpu.shader("plain", SHADER);
-        let gather = wgpu::RenderPipelineDescriptor {
-            label: Some("plain"),
-            layout: Some(&gpu.layout(&[Some(&bound.layout)])),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex_main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: 16,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &wgpu::vertex_attr_array![0 => Float32x4],
-                })],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment_main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[
-                    target(T::Rgba16Float, blend(F::One, F::One)),
-                    target(T::R16Float, blend(F::Zero, F::OneMinusSrc)),
-                ],
-            }),
-            multiview_mask: None,
-            cache: None,
+        let scene_group = gpu.bind("scene", wgpu::ShaderStages::VERTEX_FRAGMENT, &entries);
+        let buffers = [Some(wgpu::VertexBufferLayout {
+            array_stride: 16,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x4],
+        })];
+        let gather = gpu.render_pipeline(&RenderPipeline {
+            label: "plain",
+            vertex: ["plain", SHADER],
+            fragment: ["plain", SHADER],
+            groups: &[Some(&scene_group)],
+            buffers: &buffers,
+            targets: &[
+                Some(Blend::Add.state(T::Rgba16Float)),
+                Some(Blend::Transmit.state(T::R16Float)),
+            ],
+            depth: None,
+            samples: 1,
+            culled: None,
+        });
+        let output = Output::Target {
+            format: T::Rgba16Float,
+            samples: 1,
+            over: true,
         };
-        let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
         let resolve = FullscreenPass::new(
             gpu,
             "plain",
             &[],
             &[("plain", RESOLVE)],
             &[&sums, &transmittance].map(Bind::Texture),
-            &[target(T::Rgba16Float, over)],
+            &[Some(output.state())],
+            1,
         )?;
         let [r, g, b] = scene.background.map(f64::from);
         Ok(Self {
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
             count: vertices.len() as u32,
-            gather: gpu.device.create_render_pipeline(&gather),
+            gather,
             camera,
-            scene: bound,
+            scene: scene_group,
             sums,
             transmittance,
             image,
@@ -209,7 +184,7 @@ impl<'g> Plain<'g> {
         self.resolve.draw(&mut recorder, &[over]);
         let times = timer.finish(self.gpu, &mut encoder);
         queue.submit([encoder.finish()]);
-        let passes = self.gpu.block_on(times.read())?;
+        let passes = self.gpu.block_on(times)?;
         let clock = start.elapsed().as_secs_f64() * 1e3;
         Ok(milliseconds(&passes).unwrap_or(clock))
     }
@@ -257,7 +232,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             ratios.push(drawn / written);
         }
         // Both draw the same.
-        let image = gpu.read_texture::<[f32; 4]>(&plain.image)?;
+        let image = gpu.read_texture::<[u16; 4]>(&plain.image)?;
+        let image = image
+            .iter()
+            .map(|p| p.map(|c| half::f16::from_bits(c).to_f32()));
+        let image: Vec<[f32; 4]> = image.collect();
         let frame = renderer.image(&mut prepared, &camera)?;
         let differs = |(a, b): (&[f32; 4], &[f32; 4])| (0..4).any(|k| (a[k] - b[k]).abs() > 1e-3);
         let pairs = image.iter().zip(&frame.image.pixels);

@@ -1,7 +1,7 @@
 //! What must hold of every method in the hard cases of `peelnet_eval::stress`, and the flaws that methods declare.
 
 use crate::methods::{parameter::Precision, spec::MethodSpec};
-use peelnet_gpu::{AdapterScope, wgpu};
+use peelnet_gpu::wgpu;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -44,8 +44,8 @@ impl fmt::Display for Property {
 
 /// A property that a method does not have in some hard cases.
 ///
-/// A flaw that follows from the method's mathematics is declared for [`AdapterScope::ANY`]; one that depends on how an adapter
-/// rounds or blends, for the adapters that it was seen on.
+/// A flaw that follows from the method's mathematics is declared for all adapters; one that depends on how an adapter rounds or blends,
+/// for the one that it was seen on.
 #[derive(Clone, Copy, Debug)]
 pub struct Flaw {
     /// The property that does not hold.
@@ -56,8 +56,8 @@ pub struct Flaw {
     pub when: fn(&MethodSpec) -> bool,
     /// Why, with its source.
     pub reason: &'static str,
-    /// The adapters on which it does not hold.
-    pub adapters: AdapterScope,
+    /// Whether it was seen on Mesa's software rasteriser alone.
+    on_llvmpipe: bool,
 }
 
 impl Flaw {
@@ -77,7 +77,7 @@ impl Flaw {
             flaw.property == property
                 && flaw.cases().any(|c| c == case)
                 && (flaw.when)(method)
-                && flaw.adapters.contains(adapter)
+                && (!flaw.on_llvmpipe || is_llvmpipe(adapter))
         })
     }
 
@@ -88,7 +88,7 @@ impl Flaw {
             cases,
             when: |_| true,
             reason,
-            adapters: AdapterScope::ANY,
+            on_llvmpipe: false,
         }
     }
 
@@ -100,7 +100,7 @@ impl Flaw {
     /// The same flaw where it was seen only: it depends on how that adapter rounds when it blends.
     pub(crate) const fn seen_on_llvmpipe(self) -> Self {
         Self {
-            adapters: AdapterScope::LLVMPIPE,
+            on_llvmpipe: true,
             ..self
         }
     }
@@ -144,12 +144,17 @@ impl Flaw {
     );
 }
 
-/// Whether the sums of colour have 16 bits.
+/// Whether an adapter is Mesa's software rasteriser.
+fn is_llvmpipe(info: &wgpu::AdapterInfo) -> bool {
+    let kind = (info.backend, info.device_type);
+    let driver = format!("{} {}", info.driver, info.driver_info).to_lowercase();
+    kind == (wgpu::Backend::Vulkan, wgpu::DeviceType::Cpu) && driver.contains("llvmpipe")
+}
+
 pub(crate) fn half_sums(spec: &MethodSpec) -> bool {
     spec.promises().sums == Precision::Half
 }
 
-/// Whether the statistics have 16 bits.
 pub(crate) fn half_statistics(spec: &MethodSpec) -> bool {
     spec.promises().statistics == Precision::Half
 }

@@ -5,12 +5,9 @@
 //! their edges.
 
 use crate::{
-    error::RenderError,
+    RenderError,
     image::Image,
-    methods::{
-        FrameStats,
-        plan::{Blend, Target},
-    },
+    methods::{FrameStats, plan::Target},
 };
 use peelnet_files::counted;
 use peelnet_gpu::{
@@ -20,7 +17,7 @@ use peelnet_gpu::{
     wgpu,
 };
 use peelnet_raster::{
-    BACKGROUND_PASS,
+    BACKGROUND_PASS, Blend,
     frame::{attachment, clear_color},
     fullscreen::FullscreenPass,
 };
@@ -42,16 +39,14 @@ pub struct Frame {
 impl Frame {
     /// What is wrong with the picture.
     pub fn warnings(&self) -> Vec<String> {
-        let lost = counted(self.stats.lost, "fragment");
-        let not_finite = self.image.non_finite() as u64;
-        let odd = counted(not_finite, "pixel");
-        [
-            (self.stats.lost, format!("not in the image: {lost}")),
-            (not_finite, format!("not finite: {odd}")),
-        ]
-        .into_iter()
-        .filter_map(|(count, text)| (count > 0).then_some(text))
-        .collect()
+        let all = [
+            (self.stats.lost, "not in the image", "fragment"),
+            (self.image.non_finite() as u64, "not finite", "pixel"),
+        ];
+        let found = all.into_iter().filter(|(count, ..)| *count > 0);
+        found
+            .map(|(count, what, unit)| format!("{what}: {}", counted(count, unit)))
+            .collect()
     }
 }
 
@@ -127,7 +122,7 @@ impl Canvas {
             let (shader, entries) = ("methods::samples::average", [Bind::Texture(&view)]);
             let mean = Target::half("mean", 4, Blend::Add);
             let target = [Some(mean.state())];
-            let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target)?;
+            let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target, 1)?;
             let view = gpu.texture(mean.label, mean.format(), size, 1, none)?;
             Some((pass, view))
         } else {
@@ -165,7 +160,7 @@ impl Canvas {
                 fullscreen_passes: 1,
                 ..FrameStats::default()
             },
-            times: times.read().await?,
+            times: times.await?,
             wall_micros: start.elapsed().as_secs_f64() * 1e6,
         })
     }

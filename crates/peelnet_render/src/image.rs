@@ -1,6 +1,6 @@
 //! The drawn frame in memory, and its three file formats.
 
-use crate::error::RenderError;
+use crate::RenderError;
 use peelnet_core::srgb;
 use peelnet_files::{Kind, STDOUT};
 use std::path::Path;
@@ -121,7 +121,6 @@ impl Image {
         Ok(bytes.into_inner())
     }
 
-    /// Opaque sRGB, 8 bits a channel.
     fn write_png(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
         let mut encoder = png::Encoder::new(to, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);

@@ -24,7 +24,6 @@
 //! # }
 //! ```
 
-mod error;
 pub mod flaw;
 mod frame;
 mod image;
@@ -34,7 +33,6 @@ mod renderer;
 mod target;
 mod whole;
 
-pub use error::RenderError;
 pub use flaw::{Flaw, Property};
 pub use frame::{Frame, Profile, milliseconds, of_method};
 pub use image::{Image, ImageFormat};
@@ -42,7 +40,7 @@ pub use methods::{
     FrameStats, METHODS, Method, MethodSpec, role,
     views::{LayerFormula, LayerView},
 };
-pub use peelnet_raster::{Order, PixelSample, Submission, shader_bytes};
+pub use peelnet_raster::{Order, PixelSample, RenderError, Submission, shader_bytes};
 pub use pixel::PixelFragment;
 pub use renderer::{Prepared, Renderer};
 pub use target::{FrameStatus, LearnedWeight, MethodOptions, Target};

@@ -1,13 +1,8 @@
 //! The fragments of one pixel, for people who want to see what a method composites.
 
-use crate::{error::RenderError, renderer::Renderer};
+use crate::{RenderError, renderer::Renderer};
 use peelnet_gpu::record::Recorder;
-use peelnet_raster::{
-    PixelSample, SamplePoint,
-    count::{CountPass, Faults},
-    frame::Output,
-    sbuffer::SBuffer,
-};
+use peelnet_raster::{PixelSample, SamplePoint, count::CountPass, frame::Output, sbuffer::SBuffer};
 use peelnet_scene::Camera;
 
 /// A transparent fragment of a pixel.
@@ -49,7 +44,7 @@ impl Renderer {
         size: [u32; 2],
         pixel: [u32; 2],
     ) -> Result<Vec<PixelFragment>, RenderError> {
-        let (gpu, scene) = (self.gpu(), &self.scene);
+        let (gpu, scene) = (&self.gpu, &self.scene);
         if pixel[0] >= size[0] || pixel[1] >= size[1] {
             return Err(RenderError::Target(format!(
                 "pixel {}, {} lies outside its {} x {} pixels",
@@ -61,22 +56,18 @@ impl Renderer {
                 "this scene's transmission is coloured: its fragments have no single opacity to list".into(),
             ));
         }
-        let aspect = size[0] as f32 / size[1] as f32;
-        let frame = scene.targets_of(gpu, [1, 1], aspect, Output::Image, None)?;
-        let opaque = scene.opaque_pipelines(gpu, &frame)?;
-        let mut sbuffer = SBuffer::new(gpu, scene, &frame, None, &["dataset"])?;
+        let mut frame = scene.targets([1, 1], Output::Image, None)?;
+        frame.aspect = size[0] as f32 / size[1] as f32;
+        let mut sbuffer = SBuffer::new(scene, &frame, None, &["dataset"])?;
         let mut encoder = gpu.encoder();
         let mut recorder = Recorder::new(gpu, &mut encoder, None);
         let point = SamplePoint::of_pixel(size, pixel);
         scene.set_view(&mut recorder, camera, &frame, PixelSample::ALL, point);
-        scene.draw_background(&mut recorder, &frame, opaque.as_ref(), None, true);
+        scene.draw_background(&mut recorder, &frame, None, true);
         sbuffer.count.encode(&mut recorder, scene, &frame);
         gpu.queue.submit([encoder.finish()]);
-        let words: Vec<u32> = gpu
-            .read_async(&sbuffer.count.total, CountPass::TOTAL)
-            .await?;
-        let found = CountPass::found(&words)?;
-        let planned = sbuffer.plan(gpu, scene, &frame, found, None)?;
+        let found = CountPass::found(&gpu.read_async(&sbuffer.count.total).await?)?;
+        let planned = sbuffer.plan(scene, &frame, found, None)?;
         let Some((tiles, _)) = planned.filter(|_| found.total > 0) else {
             return Ok(Vec::new());
         };
@@ -89,15 +80,13 @@ impl Renderer {
         let Some(storage) = sbuffer.storage() else {
             return Ok(Vec::new());
         };
-        let faults: Vec<u32> = gpu.read_async(&sbuffer.count.faults, Faults::BYTES).await?;
-        Faults::check(&faults, 1)?;
-        let (n, words) = (found.total, 0..found.total * 4);
-        let depths: Vec<f32> = gpu.read_async(&storage.depths, words.clone()).await?;
-        let triangles: Vec<u32> = gpu.read_async(&storage.triangles, words.clone()).await?;
-        let colors: Vec<[f32; 4]> = gpu.read_async(&storage.colors, 0..n * 16).await?;
-        let order = match sbuffer.long_runs() {
-            Some(long) => gpu.read_async(&long.order, words).await?,
-            None => (0..n as u32).collect::<Vec<u32>>(),
+        CountPass::check(&gpu.read_async(&sbuffer.count.faults).await?, 1)?;
+        let depths: Vec<f32> = gpu.read_async(&storage.depths).await?;
+        let triangles: Vec<u32> = gpu.read_async(&storage.triangles).await?;
+        let colors: Vec<[f32; 4]> = gpu.read_async(&storage.colors).await?;
+        let order: Vec<u32> = match sbuffer.long_runs() {
+            Some(long) => gpu.read_async(&long.order).await?,
+            None => (0..found.total as u32).collect(),
         };
         let fragment = |slot: u32| {
             let slot = slot as usize;

@@ -1,29 +1,28 @@
 //! [`Renderer`]: a scene on a device, drawn onto a caller's target. Images and times of whole frames are in `whole.rs`.
 
 use crate::{
-    error::RenderError,
+    RenderError,
     frame::Canvas,
     methods::{
         self, METHODS,
-        compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+        compositor::{Build, Compositor, DrawContext, Fit, FrameStats},
         spec::MethodSpec,
         views::{LayerView, Shows},
     },
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
-use peelnet_core::absorbance::DepthWarp;
 use peelnet_gpu::{
     Gpu,
     readback::Download,
     record::{Recorder, Timer},
     wgpu,
 };
-use peelnet_raster::{
-    FrameTargets, GeometryPipelines, PixelSample, SamplePoint, SceneBuffers, Submission,
-    frame::Output,
+use peelnet_raster::{FrameTargets, PixelSample, SamplePoint, SceneBuffers, frame::Output};
+use peelnet_scene::{Camera, Scene};
+use std::{
+    collections::VecDeque,
+    ops::{Deref, DerefMut},
 };
-use peelnet_scene::{Camera, Light, Material, Scene};
-use std::collections::VecDeque;
 
 /// Frames whose counts may be on their way at one time.
 const FRAMES_IN_FLIGHT: usize = 3;
@@ -35,10 +34,9 @@ pub struct Prepared {
     spec: MethodSpec,
     options: MethodOptions,
     pub(crate) ready: Option<Ready>,
-    /// The target of profiles.
     pub(crate) canvas: Option<Canvas>,
-    /// Counts on their way, with the version of the capacities that their frames had.
-    pub(crate) pending: VecDeque<(u64, Vec<Download>)>,
+    /// Counts on their way, of frames that had the room there is now.
+    pub(crate) pending: VecDeque<Download>,
     status: FrameStatus,
     /// Of the last frame that was encoded onto a caller's target.
     stats: FrameStats,
@@ -49,7 +47,6 @@ pub(crate) struct Ready {
     generation: u64,
     callers_depth: Option<wgpu::TextureView>,
     pub(crate) frame: FrameTargets,
-    opaque: Option<GeometryPipelines>,
     pub(crate) compositor: Box<dyn Compositor>,
 }
 
@@ -74,6 +71,26 @@ impl Prepared {
         self.stats
     }
 
+    /// Takes the counts of a frame: see [`Compositor::learn`].
+    pub(crate) fn learn(
+        &mut self,
+        scene: &SceneBuffers,
+        exact: bool,
+        words: &[Vec<u32>],
+        stats: &mut FrameStats,
+    ) -> Result<Fit, RenderError> {
+        let Some(ready) = &mut self.ready else {
+            return Ok(Fit::Whole);
+        };
+        let b = Build {
+            scene,
+            frame: &ready.frame,
+            spec: &self.spec,
+            options: &self.options,
+        };
+        ready.compositor.learn(&b, exact, words, stats)
+    }
+
     /// Where the repetitions of a frame sample its pixels.
     pub(crate) fn points(&self) -> Vec<SamplePoint> {
         match self.options.samples {
@@ -83,11 +100,24 @@ impl Prepared {
     }
 }
 
-/// A scene on a device. Objects, materials and lights change in place, for all frames submitted later.
+/// A scene on a device. Objects, materials and lights change in place, for all frames submitted later: see [`SceneBuffers`].
 #[derive(Debug)]
 pub struct Renderer {
-    gpu: Gpu,
     pub(crate) scene: SceneBuffers,
+}
+
+impl Deref for Renderer {
+    type Target = SceneBuffers;
+
+    fn deref(&self) -> &SceneBuffers {
+        &self.scene
+    }
+}
+
+impl DerefMut for Renderer {
+    fn deref_mut(&mut self) -> &mut SceneBuffers {
+        &mut self.scene
+    }
 }
 
 impl Renderer {
@@ -96,76 +126,13 @@ impl Renderer {
     /// # Errors
     /// A scene larger than the adapter's largest buffer.
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
-        Ok(Self {
-            scene: SceneBuffers::new(gpu, scene)?,
-            gpu: gpu.clone(),
-        })
+        let scene = SceneBuffers::new(gpu, scene)?;
+        Ok(Self { scene })
     }
 
     /// The device.
     pub const fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// The scene as it stands after all changes.
-    pub const fn scene(&self) -> &Scene {
-        self.scene.scene()
-    }
-
-    /// Names of the bindings of the scene that a transparent pass has.
-    pub fn bindings(&self) -> Vec<&'static str> {
-        self.scene.bindings()
-    }
-
-    /// Names of the attributes of a vertex that the vertex shader reads.
-    pub fn vertex_attributes(&self) -> Vec<&'static str> {
-        self.scene.vertex_attributes()
-    }
-
-    /// Submits transparent surfaces to the GPU in another order from now on.
-    pub fn submit(&mut self, order: Submission) {
-        self.scene.submit(order);
-    }
-
-    /// The warp that methods take a view's depths through.
-    pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
-        self.scene.depth_warp(camera)
-    }
-
-    /// Moves an object: its vertices are uploaded again, nothing else.
-    ///
-    /// # Errors
-    /// An object that the scene does not have.
-    pub fn set_transform(
-        &mut self,
-        object: usize,
-        world_from_object: glam::Mat4,
-    ) -> Result<(), RenderError> {
-        Ok(self
-            .scene
-            .set_transform(&self.gpu, object, world_from_object)?)
-    }
-
-    /// Gives a part of an object another material. Other values are one small write; a material that needs other shader features or
-    /// textures links and compiles what is not in the caches yet.
-    ///
-    /// # Errors
-    /// An object or part that the scene does not have, or a texture beyond the adapter's limits.
-    pub fn set_material(
-        &mut self,
-        object: usize,
-        part: usize,
-        material: Material,
-    ) -> Result<(), RenderError> {
-        Ok(self.scene.set_material(&self.gpu, object, part, material)?)
-    }
-
-    /// Replaces all lights.
-    ///
-    /// # Errors
-    /// A texture beyond the adapter's limits, of materials that were unlit so far.
-    pub fn set_lights(&mut self, lights: Vec<Light>) -> Result<(), RenderError> {
-        Ok(self.scene.set_lights(&self.gpu, lights)?)
+        &self.scene.gpu
     }
 
     /// Makes a method ready for images of the size in `options`.
@@ -178,7 +145,10 @@ impl Renderer {
         mut options: MethodOptions,
     ) -> Result<Prepared, RenderError> {
         if !matches!(options.samples, 1 | 4) {
-            return Err(RenderError::Samples(options.samples));
+            return Err(RenderError::Refused(format!(
+                "a pixel has 1 or 4 samples, not {}",
+                options.samples
+            )));
         }
         let shipped = || LearnedWeight::shipped(spec);
         options.learned = options.learned.or_else(shipped);
@@ -219,55 +189,40 @@ impl Renderer {
         self.method(&exact, MethodOptions { shows, ..options })
     }
 
-    /// The method's targets and pipelines for a frame, made anew where anything that they depend on changed.
-    pub(crate) fn ready<'m>(
+    /// Makes the method's targets and pipelines for a frame, anew where anything that they depend on changed.
+    pub(crate) fn ready(
         &self,
-        method: &'m mut Prepared,
+        method: &mut Prepared,
         size: [u32; 2],
         output: Output,
         depth: Option<&wgpu::TextureView>,
-    ) -> Result<&'m mut Ready, RenderError> {
-        let generation = self.scene.generation();
+    ) -> Result<(), RenderError> {
+        let (scene, generation) = (&self.scene, self.scene.generation());
         let fits = |r: &Ready| {
             (r.generation, r.frame.size, r.frame.output) == (generation, size, output)
                 && r.callers_depth.as_ref() == depth
         };
+        if method.ready.as_ref().is_some_and(fits) {
+            return Ok(());
+        }
         // Old targets go before new ones come.
-        let ready = match method.ready.take().filter(fits) {
-            Some(ready) => ready,
-            None => {
-                method.pending.clear();
-                method.status = FrameStatus::Unknown;
-                self.make_ready(method, size, output, depth)?
-            }
-        };
-        Ok(method.ready.insert(ready))
-    }
-
-    fn make_ready(
-        &self,
-        method: &Prepared,
-        size: [u32; 2],
-        output: Output,
-        depth: Option<&wgpu::TextureView>,
-    ) -> Result<Ready, RenderError> {
-        let frame = self.scene.targets(&self.gpu, size, output, depth)?;
-        let (gpu, scene) = (&self.gpu, &self.scene);
+        method.ready = None;
+        method.pending.clear();
+        method.status = FrameStatus::Unknown;
+        let frame = scene.targets(size, output, depth)?;
         let compositor = methods::build(&Build {
-            gpu,
             scene,
             frame: &frame,
             spec: &method.spec,
-            learned: method.options.learned.as_ref(),
-            shows: method.options.shows,
+            options: &method.options,
         })?;
-        Ok(Ready {
-            generation: scene.generation(),
+        method.ready = Some(Ready {
+            generation,
             callers_depth: depth.cloned(),
-            opaque: scene.opaque_pipelines(gpu, &frame)?,
             frame,
             compositor,
-        })
+        });
+        Ok(())
     }
 
     /// Encodes a frame onto a target of the caller's: it does not submit, wait or read back.
@@ -318,101 +273,68 @@ impl Renderer {
         if feedback.is_empty() {
             method.status = FrameStatus::Whole;
         } else if method.pending.len() < FRAMES_IN_FLIGHT {
-            let downloads = self.downloads(encoder, feedback);
-            let version = ready.compositor.version();
-            method.pending.push_back((version, downloads));
+            let download = Download::record(&self.gpu, encoder, &feedback);
+            method.pending.push_back(download);
         }
         Ok(method.status)
     }
 
     /// How pipelines write to a target.
     pub(crate) fn output(&self, target: &Target<'_>) -> Result<([u32; 2], Output), RenderError> {
-        let texture = target.color.texture();
+        let (texture, tinted) = (target.color.texture(), self.scene.tinted);
+        let (format, samples) = (texture.format(), texture.sample_count());
         let size = [texture.width(), texture.height()];
-        let format = texture.format();
         // What WebGPU guarantees of the format with the device's features: some adapters would blend more.
-        let flags = format
-            .guaranteed_format_features(self.gpu.device.features())
-            .flags;
-        if !self.scene.tinted && !flags.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
-            return Err(RenderError::Target(format!(
+        let guaranteed = format.guaranteed_format_features(self.gpu.device.features());
+        let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
+        let depth = target.depth.map(wgpu::TextureView::texture);
+        let fits =
+            |d: &wgpu::Texture| ([d.width(), d.height()], d.sample_count()) == (size, samples);
+        let depth_format = depth.map(wgpu::Texture::format);
+        let is_depth_alone =
+            |f: wgpu::TextureFormat| f.is_depth_stencil_format() && !f.has_stencil_aspect();
+        let fault = if !tinted && !guaranteed.flags.contains(blendable) {
+            format!(
                 "its format {format:?} cannot be blended on this device; use Rgba16Float, Rgba8Unorm or another that can"
-            )));
-        }
-        if let Some(depth) = target.depth {
-            let depth = depth.texture();
-            if [depth.width(), depth.height()] != size
-                || depth.sample_count() != texture.sample_count()
-            {
-                return Err(RenderError::Target(
-                    "its depth has another size or sample count".into(),
-                ));
-            }
-            if !depth.format().is_depth_stencil_format() || depth.format().has_stencil_aspect() {
-                return Err(RenderError::Target(format!(
-                    "its depth is {:?}; use a format of depth alone",
-                    depth.format()
-                )));
-            }
-        }
-        // Coloured transmission cannot be blended: the resolve needs what lies behind, and that is ours only after a clear.
-        if self.scene.tinted && (!target.clear || target.depth.is_some()) {
-            return Err(RenderError::Target(
-                "this scene's transmission is coloured, which needs the background: clear the target, and let the scene hold \
-                 the opaque surfaces"
-                    .into(),
-            ));
-        }
-        Ok((
-            size,
-            Output::Target {
+            )
+        } else if !depth.is_none_or(fits) {
+            "its depth has another size or sample count".into()
+        } else if let Some(format) = depth_format.filter(|f| !is_depth_alone(*f)) {
+            format!("its depth is {format:?}; use a format of depth alone")
+        } else if tinted && (!target.clear || depth.is_some()) {
+            // Coloured transmission cannot be blended: the resolve needs what lies behind, and that is ours only after a clear.
+            "this scene's transmission is coloured, which needs the background: clear the target, and let the scene hold the opaque \
+             surfaces"
+                .into()
+        } else {
+            let output = Output::Target {
                 format,
-                samples: texture.sample_count(),
-                over: !self.scene.tinted,
-            },
-        ))
+                samples,
+                over: !tinted,
+            };
+            return Ok((size, output));
+        };
+        Err(RenderError::Target(fault))
     }
 
     /// Takes the counts that came back, and makes room for what they say.
     fn learn(&self, method: &mut Prepared) -> Result<(), RenderError> {
-        let Some(ready) = &mut method.ready else {
-            return Ok(());
-        };
-        while let Some((version, downloads)) = method.pending.front() {
-            if !downloads.iter().all(Download::is_ready) {
+        while let Some(download) = method.pending.front_mut() {
+            let Some(words) = download.try_read()? else {
                 break;
-            }
-            // Of a frame with other capacities: it says nothing of those there are now.
-            if *version == ready.compositor.version() {
-                let words = downloads.iter().map(Download::take);
-                let words = words.collect::<Result<Vec<Vec<u32>>, _>>()?;
-                let cx = Learning {
-                    gpu: &self.gpu,
-                    scene: &self.scene,
-                    frame: &ready.frame,
-                    exact: false,
-                };
-                let fit = ready
-                    .compositor
-                    .learn(&cx, &words, &mut FrameStats::default())?;
-                method.status = match fit {
-                    Fit::TooSmall => FrameStatus::Grown,
-                    Fit::Whole | Fit::Loose => FrameStatus::Whole,
-                };
-            }
+            };
             method.pending.pop_front();
+            let fit = method.learn(&self.scene, false, &words, &mut FrameStats::default())?;
+            method.status = match fit {
+                Fit::TooSmall => FrameStatus::Grown,
+                Fit::Whole | Fit::Loose => FrameStatus::Whole,
+            };
+            if fit != Fit::Whole {
+                // The frames behind it had another room: they say nothing of what there is now.
+                method.pending.clear();
+            }
         }
         Ok(())
-    }
-
-    pub(crate) fn downloads(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        feedback: Vec<(wgpu::Buffer, std::ops::Range<u64>)>,
-    ) -> Vec<Download> {
-        let all = feedback.into_iter();
-        all.map(|(buffer, range)| Download::record(&self.gpu, encoder, &buffer, range))
-            .collect()
     }
 
     /// Records all passes of a frame.
@@ -429,13 +351,8 @@ impl Renderer {
         self.scene
             .set_view(recorder, camera, frame, PixelSample::ALL, point);
         let color = target.map(|t| t.color);
-        self.scene.draw_background(
-            recorder,
-            frame,
-            ready.opaque.as_ref(),
-            color,
-            target.is_none_or(|t| t.clear),
-        );
+        let clear = target.is_none_or(|t| t.clear);
+        self.scene.draw_background(recorder, frame, color, clear);
         ready.compositor.draw(&mut DrawContext {
             recorder,
             scene: &self.scene,

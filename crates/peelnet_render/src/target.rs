@@ -53,13 +53,6 @@ impl MethodOptions {
         self
     }
 
-    /// For images of the sums that a method blends, to look at its weights.
-    #[must_use]
-    pub const fn showing_sums(mut self) -> Self {
-        self.shows = Shows::Sums;
-        self
-    }
-
     /// With a network.
     #[must_use]
     pub fn with(mut self, learned: Option<&LearnedWeight>) -> Self {

@@ -1,14 +1,17 @@
 //! Whole frames of a [`Renderer`]: drawn again where they were too small, read back into images, or timed.
 
 use crate::{
-    error::RenderError,
+    RenderError,
     frame::{Canvas, Frame, Profile},
     image::Image,
-    methods::compositor::{Fit, Learning},
+    methods::compositor::Fit,
     renderer::{Prepared, Renderer},
     target::Target,
 };
-use peelnet_gpu::record::{Recorder, Timer};
+use peelnet_gpu::{
+    readback::Download,
+    record::{Recorder, Timer},
+};
 use peelnet_raster::{SamplePoint, frame::Output};
 use peelnet_scene::Camera;
 use web_time::Instant;
@@ -31,10 +34,13 @@ impl Renderer {
             None => (method.size(), Output::Image),
         };
         method.pending.clear();
-        let ready = self.ready(method, size, output, None)?;
+        self.ready(method, size, output, None)?;
         // Passes of tries that were too small: the frame took them too.
         let mut wasted = 0;
         for _ in 0..MOST_TRIES {
+            let Some(ready) = &mut method.ready else {
+                break;
+            };
             let only_count = !ready.compositor.is_ready();
             let start = Instant::now();
             let mut encoder = self.gpu().encoder();
@@ -42,28 +48,20 @@ impl Renderer {
             let mut recorder = Recorder::new(self.gpu(), &mut encoder, Some(&mut timer));
             let mut stats =
                 self.encode(ready, &mut recorder, view, target, counting, only_count)?;
-            let downloads = self.downloads(&mut encoder, ready.compositor.feedback());
+            let feedback = ready.compositor.feedback();
+            let counts = (!feedback.is_empty())
+                .then(|| Download::record(self.gpu(), &mut encoder, &feedback));
             let times = timer.finish(self.gpu(), &mut encoder);
             self.gpu().queue.submit([encoder.finish()]);
             self.gpu().submitted_async().await;
-            let times = times.read().await?;
-            let mut words: Vec<Vec<u32>> = Vec::with_capacity(downloads.len());
-            for download in &downloads {
-                download.await;
-                words.push(download.take()?);
-            }
+            let times = times.await?;
+            let words = match counts {
+                Some(counts) => counts.read().await?,
+                None => Vec::new(),
+            };
             self.gpu().check()?;
             let wall_micros = start.elapsed().as_secs_f64() * 1e6;
-            let fit = ready.compositor.learn(
-                &Learning {
-                    gpu: self.gpu(),
-                    scene: &self.scene,
-                    frame: &ready.frame,
-                    exact: true,
-                },
-                &words,
-                &mut stats,
-            )?;
+            let fit = method.learn(&self.scene, true, &words, &mut stats)?;
             if !only_count && (fit == Fit::Whole || (counting && fit == Fit::Loose)) {
                 stats.geometry_passes += wasted;
                 return Ok(Profile {
@@ -95,9 +93,9 @@ impl Renderer {
         let points = method.points();
         for &point in &points {
             sum.add(self.drawn(method, (camera, point), true, None).await?);
-            let view = method.ready.as_ref().and_then(|r| r.frame.image());
+            let view = method.ready.as_ref().and_then(|r| r.frame.image.as_ref());
             let read = match view {
-                Some(view) => self.gpu().read_rgba32f_async(view).await?,
+                Some(view) => self.gpu().read_texture_async(view).await?,
                 None => Vec::new(),
             };
             if pixels.is_empty() {

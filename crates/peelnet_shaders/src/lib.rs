@@ -16,40 +16,24 @@ use std::{
 };
 use wesl::{ModulePath, VirtualResolver, Wesl};
 
-/// Why a shader could not be made.
+/// Why a shader could not be made: a path that is no module's, what the linker refused, or what naga refused with its source lines.
 #[derive(Debug, thiserror::Error)]
-pub enum ShaderError {
-    /// A module path that cannot be parsed.
-    #[error("'{0}' is not a shader module path such as methods::wboit::gather")]
-    Path(String),
-    /// The linker refused.
-    #[error("linking shader {root} failed:\n{message}")]
-    Link {
-        /// The root module.
-        root: String,
-        /// The linker's message.
-        message: String,
-    },
-    /// naga refused the linked text.
-    #[error("shader {label} is not valid WGSL:\n{message}")]
-    Invalid {
-        /// Name of the shader.
-        label: String,
-        /// naga's message with source lines.
-        message: String,
-    },
+#[error("{0}")]
+pub struct ShaderError(String);
+
+fn no_module(path: &str) -> ShaderError {
+    ShaderError(format!(
+        "'{path}' is not a shader module path such as methods::wboit::gather"
+    ))
 }
 
 /// The text of a module as it stands in its file.
 ///
 /// # Errors
-/// [`ShaderError::Path`] for a module that is not in [`SOURCES`].
+/// A module that is not in [`SOURCES`].
 pub fn source(path: &str) -> Result<&'static str, ShaderError> {
-    SOURCES
-        .iter()
-        .find(|(p, _)| *p == path)
-        .map(|(_, text)| *text)
-        .ok_or_else(|| ShaderError::Path(path.to_owned()))
+    let found = SOURCES.iter().find(|(p, _)| *p == path);
+    found.map(|(_, text)| *text).ok_or_else(|| no_module(path))
 }
 
 /// The modules of a text that composites in slabs: of what surrounds `peelnet_network`, which says where between its bounds the share of
@@ -137,20 +121,15 @@ fn link_uncached(
     linker
         .set_options(options)
         .set_mangler(wesl::ManglerKind::Escape);
-    let text = linker
-        .compile(&module_path(root)?)
-        .map_err(|e| ShaderError::Link {
-            root: root.to_owned(),
-            message: e.to_string(),
-        })?
-        .to_string();
-    Ok(text)
+    let linked = linker.compile(&module_path(root)?);
+    let linked = linked.map_err(|e| ShaderError(format!("linking shader {root} failed:\n{e}")))?;
+    Ok(linked.to_string())
 }
 
 fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
     format!("package::{path}")
         .parse()
-        .map_err(|_| ShaderError::Path(path.to_owned()))
+        .map_err(|_| no_module(path))
 }
 
 /// What of naga's capabilities every WebGPU device has: WGSL's own `pack2x16float`, which only old OpenGL lacks.
@@ -160,16 +139,13 @@ pub const PORTABLE: naga::valid::Capabilities =
 /// Parses and validates WGSL with naga, with these capabilities. Returns naga's module and what it knows of it.
 ///
 /// # Errors
-/// [`ShaderError::Invalid`] with the source lines naga points at.
+/// Text that naga refuses, with the source lines that it points at.
 pub fn validate(
     label: &str,
     wgsl: &str,
     capabilities: naga::valid::Capabilities,
 ) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
-    let invalid = |message: String| ShaderError::Invalid {
-        label: label.to_owned(),
-        message,
-    };
+    let invalid = |message| ShaderError(format!("shader {label} is not valid WGSL:\n{message}"));
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| invalid(e.emit_to_string(wgsl)))?;
     let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
         .validate(&module)
@@ -182,66 +158,21 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// A stand-in for a network that was exported for the methods in `folder`.
-    fn learned(folder: &str, features: &[&str]) -> String {
-        let (modules, network): (&[&str], &str) = match folder {
-            "methods::deep_thesis" => (
-                &["learned::composite", "learned::thesis"],
-                "linear_depth: f32, statistics: vec2f) -> f32 { return 1.0; }",
-            ),
-            "methods::nmt" => (
-                &[
-                    "learned::zeta",
-                    "learned::absorbance",
-                    "learned::nmt",
-                    "learned::composite",
-                    "learned::resolve",
-                ],
-                "zeta: f32, extent: vec2f, totals: vec4f, moments: vec4f) -> f32 { return 1.0; }",
-            ),
-            "methods::dfaoit" => (
-                &["learned::dfaoit"],
-                "front: vec4f, behind: vec4f, all: vec4f, count: f32) -> vec3f { return vec3f(1.0); }",
-            ),
+    /// A shipped network of the methods in a folder.
+    fn learned(folder: &str, features: &[&str]) -> &'static str {
+        let name = match folder {
+            "methods::deep_thesis" => "thesis",
+            "methods::nmt" => "nmt",
+            "methods::dfaoit" => "dfaoit",
             "methods::slabs" => {
                 let layouts = ["small", "medium"];
                 let layout = layouts.into_iter().find(|l| features.contains(l));
-                let modules = slab_modules(layout.unwrap_or("large"));
-                return with(&modules, "between: PeelnetBetween) -> f32 { return 0.5; }");
+                layout.unwrap_or("large")
             }
-            _ if features.contains(&"separate_ends") => (
-                &[
-                    "learned::zeta",
-                    "learned::absorbance",
-                    "learned::levels",
-                    "learned::anchored",
-                    "learned::anchored_fragment",
-                    "learned::resolve_separate_ends",
-                ],
-                "rest: PeelnetRest) -> f32 { return 1.0; }",
-            ),
-            _ => (
-                &[
-                    "learned::zeta",
-                    "learned::absorbance",
-                    "learned::levels",
-                    "learned::anchored",
-                    "learned::anchored_fragment",
-                    "learned::composite",
-                    "learned::resolve",
-                ],
-                "rest: PeelnetRest) -> f32 { return 1.0; }",
-            ),
+            _ if features.contains(&"separate_ends") => "anchored-medium",
+            _ => "anchored-small",
         };
-        with(modules, network)
-    }
-
-    fn with(modules: &[&str], network: &str) -> String {
-        let texts: Vec<_> = modules
-            .iter()
-            .map(|m| source(m).expect("a module of the table"))
-            .collect();
-        format!("{}\nfn peelnet_network({network}\n", texts.join("\n"))
+        peelnet_models::find(name).expect("ships").wgsl
     }
 
     /// Stand-ins for the constants that methods write: whole numbers, which take the type that is needed.
@@ -356,9 +287,8 @@ mod tests {
             }
             let folder = path.rsplit_once("::").map_or("", |(folder, _)| folder);
             for features in all {
-                let learned = learned(folder, &features);
                 let extra = [
-                    ("learned::weight", learned.as_str()),
+                    ("learned::weight", learned(folder, &features)),
                     ("parameters", parameters.as_str()),
                 ];
                 let result = link(path, &features, &extra)
@@ -459,10 +389,7 @@ mod tests {
     fn features_switch_bindings_off() {
         let plain = link("peel::count", &[], &[]).expect("links");
         assert!(!plain.contains("opaque_depth"));
-        assert!(
-            link("peel::count", &["opaque"], &[])
-                .expect("links")
-                .contains("opaque_depth")
-        );
+        let opaque = link("peel::count", &["opaque"], &[]).expect("links");
+        assert!(opaque.contains("opaque_depth"));
     }
 }

@@ -67,7 +67,7 @@ impl Display {
             let [first, second] = pictures.each_ref().map(Bind::Texture);
             let entries = [first, second, Bind::Uniform(&self.view)];
             let targets = [Some(SHOWN.into())];
-            let pass = FullscreenPass::new(gpu, SHADER, &[], &text, &entries, &targets)?;
+            let pass = FullscreenPass::new(gpu, SHADER, &[], &text, &entries, &targets, 1)?;
             self.pass = Some((pictures, pass));
         }
         if let Some((_, pass)) = &self.pass {

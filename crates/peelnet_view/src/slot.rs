@@ -207,7 +207,7 @@ impl Slot {
         let drawn = renderer.draw_timed(encoder, prepared, &view.camera, &target, timer.as_mut());
         if let Some(timer) = timer {
             let times = timer.finish(&stage.gpu, encoder);
-            self.timing = Some(Task::new(times.read()));
+            self.timing = Some(Task::new(times));
         }
         self.status = drawn?;
         self.frames += 1;

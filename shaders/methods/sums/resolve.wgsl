@@ -2,8 +2,9 @@
 // Variants: none | separate_ends
 import package::helpers::screen::screen_corner;
 
-@group(0) @binding(0) var sums: texture_2d<f32>;
-@if(separate_ends) @group(0) @binding(1) var ends: texture_2d<f32>;
+// Binding 0 is C_0.
+@group(0) @binding(1) var sums: texture_2d<f32>;
+@if(separate_ends) @group(0) @binding(2) var ends: texture_2d<f32>;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {

@@ -331,7 +331,8 @@ impl<'a> Stand<'a> {
             return Ok(());
         };
         let stage = Stage::new(self.gpu, &scene)?;
-        let options = self.options(subject).showing_sums();
+        let mut options = self.options(subject);
+        options.shows = peelnet_render::methods::views::Shows::Sums;
         let mut ready = stage.ready(&subject.method, options)?;
         let sums = stage.image(&mut ready, &scene.views[0])?.image;
         for (content, sum) in self.truth.pixels.iter().zip(&sums.pixels) {

@@ -2,17 +2,16 @@
 //!
 //! A frame's storage has the room that an earlier frame needed. Fragments beyond it are left out and counted, and the next frame has room.
 
-use super::{prelude::*, views::Composite};
+use super::{compositor::resolve, prelude::*, views::Composite};
 use peelnet_core::methods::over;
-use peelnet_gpu::{Gpu, bind::Bind, wgpu};
+use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{
     FrameTargets, SceneBuffers,
-    count::{CountPass, Faults, FragmentCount},
+    count::{CountPass, FragmentCount},
     fullscreen::FullscreenPass,
     long_runs::{self, Fold},
     sbuffer::{SBuffer, Tile},
 };
-use std::ops::Range;
 
 const BUDGET: Parameter = Parameter::whole(
     "budget",
@@ -54,7 +53,6 @@ struct ABuffer {
     is_counted: bool,
     /// Whether the next frame's offsets come back: they plan the tiles of the frame that follows.
     wants_offsets: bool,
-    version: u64,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
@@ -66,20 +64,19 @@ pub(super) fn build_with(
     b: &Build<'_>,
     rounding: Option<&'static str>,
 ) -> Result<Box<dyn Compositor>, RenderError> {
-    let composite = b.shows.composite(b.scene.tinted);
+    let composite = b.options.shows.composite(b.scene.tinted);
     let features: Vec<_> = rounding.into_iter().chain(composite.stored).collect();
     let budget = BUDGET.count(b.spec);
     Ok(Box::new(ABuffer {
-        sbuffer: SBuffer::new(b.gpu, b.scene, b.frame, budget, &features)?,
+        sbuffer: SBuffer::new(b.scene, b.frame, budget, &features)?,
         composite,
         pass: None,
         fold: None,
         tiles: Vec::new(),
-        ends: b.gpu.storage("tile ends", 4)?,
+        ends: b.scene.gpu.storage("tile ends", 4)?,
         is_counted: false,
         // A first frame may need several tiles.
         wants_offsets: true,
-        version: 0,
     }))
 }
 
@@ -87,24 +84,24 @@ impl ABuffer {
     /// Plans the tiles of a frame; without `offsets` it may find that it needs them.
     fn plan(
         &mut self,
-        gpu: &Gpu,
         scene: &SceneBuffers,
         frame: &FrameTargets,
         needed: FragmentCount,
         offsets: Option<&[u32]>,
     ) -> Result<bool, RenderError> {
-        let planned = self.sbuffer.plan(gpu, scene, frame, needed, offsets)?;
+        let planned = self.sbuffer.plan(scene, frame, needed, offsets)?;
         let Some((tiles, is_new)) = planned else {
             return Ok(false);
         };
+        let gpu = &scene.gpu;
         let ends = tiles.len() as u64 * 4;
         if self.ends.size() < ends {
             self.ends = gpu.storage("tile ends", ends)?;
         }
         if let (true, Some(storage)) = (is_new || self.pass.is_none(), self.sbuffer.storage()) {
             let mut entries = vec![
-                Bind::Uniform(self.sbuffer.tile_buffer()),
-                Bind::Uniform(scene.camera_buffer()),
+                Bind::Uniform(&self.sbuffer.tile),
+                Bind::Uniform(&scene.camera),
                 Bind::Read(&self.sbuffer.count.offsets),
                 Bind::Read(&storage.colors),
                 Bind::Texture(&frame.background),
@@ -119,17 +116,12 @@ impl ABuffer {
                 let most = self.sbuffer.most();
                 self.fold = Some(Fold::new(gpu, &of_fold, &parameters, &entries, most)?);
             }
-            self.pass = Some(FullscreenPass::resolve(
-                gpu,
-                &format!("methods::{}::composite", self.composite.name),
-                &features,
-                &[("parameters", &parameters)],
-                &entries,
-                frame.output,
-            )?);
+            let shader = format!("methods::{}::composite", self.composite.name);
+            let extra = [("parameters", parameters.as_str())];
+            let pass = resolve(gpu, frame, &shader, &features, &extra, &entries);
+            self.pass = Some(pass?);
         }
         self.tiles = tiles;
-        self.version += 1;
         Ok(true)
     }
 
@@ -149,19 +141,17 @@ impl ABuffer {
 
 impl Compositor for ABuffer {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        let gpu = cx.recorder.gpu();
         self.sbuffer.count.encode(cx.recorder, cx.scene, cx.frame);
         if cx.only_count {
             return Ok(FrameStats::default());
         }
         if self.tiles.is_empty() {
             let guess = u64::from(cx.frame.pixels()) * FIRST_GUESS;
-            let guess = guess.min(self.sbuffer.limit());
             let guess = FragmentCount {
-                total: guess,
+                total: guess.min(self.sbuffer.limit),
                 most: 0,
             };
-            self.plan(gpu, cx.scene, cx.frame, guess, None)?;
+            self.plan(cx.scene, cx.frame, guess, None)?;
         }
         let mut output = cx.output();
         for (number, tile) in (0..).zip(&self.tiles) {
@@ -196,23 +186,17 @@ impl Compositor for ABuffer {
         self.is_counted
     }
 
-    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+    fn feedback(&self) -> Vec<wgpu::Buffer> {
         let count = &self.sbuffer.count;
-        let tiles = self.tiles.len().max(1) as u64;
-        let mut all = vec![
-            (count.total.clone(), CountPass::TOTAL),
-            (count.faults.clone(), Faults::BYTES),
-            (self.ends.clone(), 0..tiles * 4),
-        ];
-        if self.wants_offsets {
-            all.push((count.offsets.clone(), 0..count.offsets.size()));
-        }
-        all
+        let offsets = self.wants_offsets.then_some(&count.offsets);
+        let all = [&count.total, &count.faults, &self.ends].into_iter();
+        all.chain(offsets).cloned().collect()
     }
 
     fn learn(
         &mut self,
-        cx: &Learning<'_>,
+        b: &Build<'_>,
+        exact: bool,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
@@ -220,39 +204,35 @@ impl Compositor for ABuffer {
         stats.fragments = Some(found.total);
         stats.max_layers = Some(found.most);
         let stored = if self.tiles.len() > 1 {
-            self.sbuffer.limit().min(found.total)
+            self.sbuffer.limit.min(found.total)
         } else {
             found.total
         };
         // Count, offset and the unwritten attachment; then the fragments.
         stats.bytes_per_pixel =
-            9.0 + stored as f64 * self.sbuffer.bytes_per_fragment() / f64::from(cx.frame.pixels());
+            9.0 + stored as f64 * self.sbuffer.bytes_per_fragment() / f64::from(b.frame.pixels());
         // A frame that fits one tile may be followed by one that does not; at least half of a tile is left then.
-        self.wants_offsets = found.total > self.sbuffer.limit() / 2;
+        self.wants_offsets = found.total > self.sbuffer.limit / 2;
         let is_whole = !self.tiles.is_empty()
             && found.most <= self.sbuffer.most()
             && self.had_room(found.total, words.get(2));
         if is_whole {
-            Faults::check(&words[1], cx.frame.size[0])?;
+            CountPass::check(&words[1], b.frame.size[0])?;
         }
-        let one_would_do = self.tiles.len() > 1 && found.total <= self.sbuffer.limit();
+        let one_would_do = self.tiles.len() > 1 && found.total <= self.sbuffer.limit;
         if is_whole && !one_would_do {
             self.is_counted = true;
             return Ok(Fit::Whole);
         }
-        let limit = self.sbuffer.limit();
+        let limit = self.sbuffer.limit;
         // A quarter more where views move, as far as one tile holds it.
-        let reserve = if cx.exact { 0 } else { found.total / 4 };
+        let reserve = if exact { 0 } else { found.total / 4 };
         let needed = FragmentCount {
             total: (found.total + reserve).min(limit).max(found.total),
             most: found.most,
         };
         let offsets = words.get(3).map(Vec::as_slice);
-        self.is_counted = self.plan(cx.gpu, cx.scene, cx.frame, needed, offsets)?;
-        Ok(if is_whole { Fit::Whole } else { Fit::TooSmall })
-    }
-
-    fn version(&self) -> u64 {
-        self.version
+        self.is_counted = self.plan(b.scene, b.frame, needed, offsets)?;
+        Ok(if is_whole { Fit::Loose } else { Fit::TooSmall })
     }
 }

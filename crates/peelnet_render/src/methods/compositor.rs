@@ -1,11 +1,11 @@
 //! What a method draws behind, and with.
 
-use super::{spec::MethodSpec, views::Shows};
-use crate::{error::RenderError, target::LearnedWeight};
-use peelnet_gpu::{Gpu, record::Recorder, wgpu};
+use super::spec::MethodSpec;
+use crate::{RenderError, target::MethodOptions};
+use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use peelnet_raster::{FrameTargets, SamplePoint, SceneBuffers, fullscreen::FullscreenPass};
 use peelnet_scene::Camera;
-use std::{fmt, ops::Range};
+use std::fmt;
 
 /// What a method reports of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,7 +26,6 @@ pub struct FrameStats {
     pub bytes_per_pixel: f64,
 }
 
-/// What a compositor draws with.
 #[derive(Debug)]
 pub(crate) struct DrawContext<'a, 'e> {
     pub recorder: &'a mut Recorder<'e>,
@@ -70,16 +69,6 @@ pub(crate) enum Fit {
     TooSmall,
 }
 
-/// What a compositor learns the counts of a frame with.
-#[derive(Debug)]
-pub(crate) struct Learning<'a> {
-    pub gpu: &'a Gpu,
-    pub scene: &'a SceneBuffers,
-    pub frame: &'a FrameTargets,
-    /// Whether the same view is drawn again, so that room needs no reserve for movement.
-    pub exact: bool,
-}
-
 /// A method made ready for one scene and frame size.
 pub(crate) trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     /// Records the passes that composite the transparent fragments: over `C_0` into the frame's image, or onto the caller's target.
@@ -91,33 +80,39 @@ pub(crate) trait Compositor: fmt::Debug + wgpu::WasmNotSend {
     }
 
     /// What to read back of the frame just recorded; empty for methods that need no counts.
-    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+    fn feedback(&self) -> Vec<wgpu::Buffer> {
         Vec::new()
     }
 
-    /// Takes what was read back, word by word, completes the statistics, and makes room for the next frame.
+    /// Takes what was read back, word by word, completes the statistics, and makes room for the next frame: without a reserve for movement
+    /// where `exact`ly the same view is drawn again.
     fn learn(
         &mut self,
-        _cx: &Learning<'_>,
+        _b: &Build<'_>,
+        _exact: bool,
         _words: &[Vec<u32>],
         _stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
         Ok(Fit::Whole)
     }
-
-    /// Counts how often the room changed: counts of frames before say nothing of what there is now.
-    fn version(&self) -> u64 {
-        0
-    }
 }
 
-/// What a method is built from.
 pub(crate) struct Build<'a> {
-    pub gpu: &'a Gpu,
     pub scene: &'a SceneBuffers,
     pub frame: &'a FrameTargets,
     pub spec: &'a MethodSpec,
-    pub learned: Option<&'a LearnedWeight>,
-    /// What the image holds.
-    pub shows: Shows,
+    pub options: &'a MethodOptions,
+}
+
+/// The pass that writes finished pixels to where the frame's output goes.
+pub(super) fn resolve(
+    gpu: &Gpu,
+    frame: &FrameTargets,
+    shader: &str,
+    features: &[&str],
+    extra: &[(&str, &str)],
+    entries: &[Bind<'_>],
+) -> Result<FullscreenPass, RenderError> {
+    let (targets, samples) = ([Some(frame.output.state())], frame.output.samples());
+    FullscreenPass::new(gpu, shader, features, extra, entries, &targets, samples)
 }

@@ -1,6 +1,7 @@
 //! `depth-peel`: front to back, one layer a pass (Everitt 2001), until a pass peels nothing.
 
 use super::{
+    compositor::resolve,
     peeling::{self, PASSES, Peel, Peeling},
     prelude::*,
 };
@@ -39,7 +40,7 @@ pub(super) const METHOD: Method = Method {
         "depth-peel",
         "exact: front to back, one layer a pass",
         |b| {
-            let found = peeling::found(b.gpu)?;
+            let found = peeling::found(b)?;
             let peel = Layers::new(b, &found)?;
             Peeling::boxed(b, found, peel)
         },
@@ -62,8 +63,8 @@ impl Layers {
     pub const BYTES: f64 = single::BYTES_PER_PIXEL + 2.0 * 16.0;
 
     pub fn new(b: &Build<'_>, found: &wgpu::Buffer) -> Result<Self, RenderError> {
-        let (gpu, frame) = (b.gpu, b.frame);
-        let peel = SinglePeel::new(gpu, b.scene, frame, &[])?;
+        let (gpu, frame) = (&b.scene.gpu, b.frame);
+        let peel = SinglePeel::new(b.scene, frame, &[])?;
         let format = wgpu::TextureFormat::Rgba32Float;
         let none = wgpu::TextureUsages::empty();
         let texture = || gpu.texture("accumulated", format, frame.size, 1, none);
@@ -72,16 +73,22 @@ impl Layers {
             let entries = [
                 Bind::Texture(&accumulated[from]),
                 Bind::Texture(&peel.layer),
-                Bind::Uint(&peel.keys[1 - from]),
+                Bind::Texture(&peel.keys[1 - from]),
                 Bind::Write(found),
             ];
             let (shader, target) = ("methods::depth_peel::under", [Some(format.into())]);
-            FullscreenPass::new(gpu, shader, features, &[], &entries, &target)
+            FullscreenPass::new(gpu, shader, features, &[], &entries, &target, 1)
         };
         let resolve = |from: usize| {
             let entries = [&frame.background, &accumulated[from]].map(Bind::Texture);
-            let shader = "methods::depth_peel::resolve";
-            FullscreenPass::resolve(gpu, shader, &[], &[], &entries, frame.output)
+            resolve(
+                gpu,
+                frame,
+                "methods::depth_peel::resolve",
+                &[],
+                &[],
+                &entries,
+            )
         };
         Ok(Self {
             under: [

@@ -56,7 +56,7 @@ struct Dfaoit {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let front = Layers::new(b, &peeling::found(b.gpu)?)?;
+    let front = Layers::new(b, &peeling::found(b)?)?;
     let mut p = Plan::new(b);
     b.learned_weight()?.wgsl.clone_into(&mut p.network);
     // Sums over the fragments behind the front, over all fragments, and the number of those behind.
@@ -65,7 +65,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         Target::half("all", 4, Blend::AddTransmit),
         Target::half("count", 1, Blend::Add),
     ])?;
-    let second_key = p.resource(Resource::Integers(front.peel.keys[0].clone()));
+    let second_key = p.resource(Resource::Texture(front.peel.keys[0].clone()));
     let composited = p.resource(Resource::Texture(front.accumulated[0].clone()));
     p.geometry("methods::dfaoit::gather")
         .reads([second_key])

@@ -2,6 +2,7 @@
 //! (Bavoil & Myers 2008).
 
 use super::{
+    compositor::resolve,
     peeling::{self, PASSES, Peel, Peeling},
     prelude::*,
 };
@@ -69,7 +70,7 @@ struct Dual {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let (gpu, frame) = (b.gpu, b.frame);
+    let (gpu, frame) = (&b.scene.gpu, b.frame);
     let full = colors(b.spec) == Precision::Full;
     let stack = |label, blend| Target {
         full,
@@ -82,8 +83,8 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         Ok::<_, RenderError>((view, t.blend.start()))
     };
     let stacks = [texture(targets[0])?, texture(targets[1])?];
-    let found = peeling::found(gpu)?;
-    let peel = DualPeel::new(gpu, b.scene, frame, &[], Some(&found))?;
+    let found = peeling::found(b)?;
+    let peel = DualPeel::new(b.scene, frame, &[], Some(&found))?;
     let states = targets.map(|t| Some(t.state()));
     let blend = |from: usize| {
         let entries = [
@@ -94,13 +95,13 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
             Bind::Write(&found),
         ];
         let shader = "methods::dual_peel::blend";
-        FullscreenPass::new(gpu, shader, &[], &[], &entries, &states)
+        FullscreenPass::new(gpu, shader, &[], &[], &entries, &states, 1)
     };
     let entries = [&frame.background, &stacks[0].0, &stacks[1].0].map(Bind::Texture);
     let shader = "methods::dual_peel::resolve";
     let dual = Dual {
         blend: [blend(0)?, blend(1)?],
-        resolve: FullscreenPass::resolve(gpu, shader, &[], &[], &entries, frame.output)?,
+        resolve: resolve(gpu, frame, shader, &[], &[], &entries)?,
         peel,
         stacks,
         blended_bytes: if full { 32.0 } else { 16.0 },

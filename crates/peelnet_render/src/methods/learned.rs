@@ -18,22 +18,16 @@ impl LearnedWeight {
 }
 
 impl Build<'_> {
-    /// The text that a learned method draws with.
-    ///
-    /// # Errors
-    /// No model, or one that was trained for another method.
+    /// The text that a learned method draws with, if it was trained for this method.
     pub(crate) fn learned_weight(&self) -> Result<&LearnedWeight, RenderError> {
-        let learned = self
-            .learned
-            .ok_or_else(|| RenderError::NeedsModel(self.spec.to_string()))?;
+        let learned = self.options.learned.as_ref();
+        let learned = learned.ok_or_else(|| RenderError::NeedsModel(self.spec.to_string()))?;
         let method = learned.recipe.method;
         if method != self.spec.name() {
-            return Err(RenderError::Parameter {
-                method: self.spec.to_string(),
-                message: format!(
-                    "the model given was trained for method {method}; use that method, or another model"
-                ),
-            });
+            return Err(RenderError::WrongValue(format!(
+                "method {}: the model given was trained for method {method}; use that method, or another model",
+                self.spec
+            )));
         }
         Ok(learned)
     }

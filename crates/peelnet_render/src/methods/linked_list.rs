@@ -9,12 +9,10 @@ use super::{
     plan::Resource,
     prelude::*,
     stored::{self, COLORS},
-    views::Shows,
 };
 use peelnet_core::methods::over;
 use peelnet_gpu::wgpu;
-use peelnet_raster::count::Faults;
-use std::ops::Range;
+use peelnet_raster::count::CountPass;
 
 const NODES: Parameter = Parameter::whole(
     "nodes",
@@ -54,30 +52,23 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-/// The bytes of what is found of a frame's lists.
-const FOUND: Range<u64> = 0..20;
-
 #[derive(Debug)]
 struct LinkedList {
-    spec: MethodSpec,
     /// Nodes of the pool.
     nodes: u64,
     /// `Found` in `methods/linked_list/composite.wgsl`; none where the S-buffer draws instead, since a list was too long.
     found: Option<wgpu::Buffer>,
     passes: Box<dyn Compositor>,
-    version: u64,
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let found = b.gpu.storage("nodes found", FOUND.end)?;
+    let found = b.scene.gpu.storage("nodes found", 20)?;
     let pixels = u64::from(b.frame.pixels());
     let nodes = NODES.count(b.spec).unwrap_or(pixels * FIRST_GUESS);
     Ok(Box::new(LinkedList {
-        spec: b.spec.clone(),
         nodes,
         passes: passes(b, &found, nodes)?,
         found: Some(found),
-        version: 0,
     }))
 }
 
@@ -93,12 +84,12 @@ fn passes(
     let mut p = Plan::new(b);
     let heads = p.storage("list heads", 4, 0)?;
     let found = p.resource(Resource::Storage(found.clone()));
-    let camera = p.resource(Resource::Uniform(b.scene.camera_buffer().clone()));
+    let camera = p.resource(Resource::Uniform(b.scene.camera.clone()));
     // Not cleared: lists end where their links say.
     let mut pool = |label, bytes: u32| {
         let bytes = nodes * u64::from(bytes);
         p.frame_bytes += bytes;
-        let buffer = b.gpu.storage(label, bytes)?;
+        let buffer = b.scene.gpu.storage(label, bytes)?;
         Ok::<_, RenderError>(p.resource(Resource::Storage(buffer)))
     };
     let next = pool("list links", 4)?;
@@ -128,21 +119,22 @@ impl Compositor for LinkedList {
         self.passes.is_ready()
     }
 
-    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+    fn feedback(&self) -> Vec<wgpu::Buffer> {
         match &self.found {
-            Some(found) => vec![(found.clone(), FOUND)],
+            Some(found) => vec![found.clone()],
             None => self.passes.feedback(),
         }
     }
 
     fn learn(
         &mut self,
-        cx: &Learning<'_>,
+        b: &Build<'_>,
+        exact: bool,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
         let Some(found) = &self.found else {
-            return self.passes.learn(cx, words, stats);
+            return self.passes.learn(b, exact, words, stats);
         };
         let &[used, too_long, composited, unsorted, pixel] = words[0].as_slice() else {
             return Ok(Fit::TooSmall);
@@ -150,36 +142,20 @@ impl Compositor for LinkedList {
         let needed = u64::from(used);
         stats.fragments = Some(needed);
         if too_long == 0 && needed <= self.nodes {
-            let (lost, uncounted) = (
-                used.saturating_sub(composited),
-                composited.saturating_sub(used),
-            );
-            let faults = [unsorted, lost, uncounted, pixel];
-            Faults::check(&faults, cx.frame.size[0])?;
+            let lost = used.saturating_sub(composited);
+            let uncounted = composited.saturating_sub(used);
+            CountPass::check(&[unsorted, lost, uncounted, pixel], b.frame.size[0])?;
             return Ok(Fit::Whole);
         }
-        let b = Build {
-            gpu: cx.gpu,
-            scene: cx.scene,
-            frame: cx.frame,
-            spec: &self.spec,
-            learned: None,
-            shows: Shows::Colors,
-        };
         if too_long > 0 {
-            let (_, _, layout) = stored::layout(&self.spec);
-            self.passes = abuffer::build_with(&b, layout)?;
+            let (_, _, layout) = stored::layout(b.spec);
+            self.passes = abuffer::build_with(b, layout)?;
             self.found = None;
         } else {
             // A quarter more, so that a moving camera does not grow it every frame.
             self.nodes = needed + needed / 4;
-            self.passes = passes(&b, found, self.nodes)?;
+            self.passes = passes(b, found, self.nodes)?;
         }
-        self.version += 1;
         Ok(Fit::TooSmall)
-    }
-
-    fn version(&self) -> u64 {
-        self.version + self.passes.version()
     }
 }

@@ -3,14 +3,13 @@
 //! The method composites over black, at its own size and against its own opaque depth. The result is normalised,
 //! premultiplied colour with coverage, which may be interpolated; sums and moments may not.
 
-use super::prelude::*;
+use super::{compositor::resolve, prelude::*};
 use peelnet_gpu::{bind::Bind, wgpu};
 use peelnet_raster::{
-    FrameTargets, GeometryPipelines, OpaqueDepth, PixelSample,
+    FrameTargets, PixelSample,
     frame::{Output, clear_color},
     fullscreen::FullscreenPass,
 };
-use std::ops::Range;
 
 /// Colour over black, the black itself, and the opaque depth, at the lower resolution.
 const BYTES_PER_SAMPLE: f64 = 16.0 + 16.0 + 4.0;
@@ -18,7 +17,6 @@ const BYTES_PER_SAMPLE: f64 = 16.0 + 16.0 + 4.0;
 #[derive(Debug)]
 struct LowResolution {
     frame: FrameTargets,
-    opaque: Option<GeometryPipelines>,
     method: Box<dyn Compositor>,
     upsample: FullscreenPass,
 }
@@ -40,36 +38,33 @@ pub(super) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
     let size = full
         .size
         .map(|n| ((n as f32 * scale).round() as u32).max(1));
-    let frame = b
-        .scene
-        .targets_of(b.gpu, size, full.aspect, Output::Image, None)?;
-    let opaque = b.scene.opaque_pipelines(b.gpu, &frame)?;
+    let gpu = &b.scene.gpu;
+    let mut frame = b.scene.targets(size, Output::Image, None)?;
+    // Rounded sides make pixels that are not square.
+    frame.aspect = full.aspect;
     let method = b.spec.method().build(&Build {
         frame: &frame,
         ..*b
     })?;
     let [width, height] = full.size;
     let extent = [width, height, 0, 0];
-    let extent = b
-        .gpu
-        .upload("full extent", &extent, wgpu::BufferUsages::UNIFORM);
+    let extent = gpu.upload("full extent", &extent, wgpu::BufferUsages::UNIFORM);
     let mut entries = vec![
         // Its output is one.
-        Bind::Texture(frame.image().unwrap_or(&frame.background)),
+        Bind::Texture(frame.image.as_ref().unwrap_or(&frame.background)),
         Bind::Texture(&full.background),
         Bind::Uniform(&extent),
     ];
     let mut features: &[&str] = &[];
     if let (Some(low), Some(full)) = (&frame.depth, &full.depth) {
-        entries.extend([low, full].map(OpaqueDepth::bind));
-        entries.push(Bind::Uniform(b.scene.camera_buffer()));
+        entries.extend([low, full].map(|depth| Bind::Texture(&depth.view)));
+        entries.push(Bind::Uniform(&b.scene.camera));
         features = &["opaque"];
     }
     let shader = "methods::low_resolution::upsample";
     Ok(Box::new(LowResolution {
-        upsample: FullscreenPass::resolve(b.gpu, shader, features, &[], &entries, full.output)?,
+        upsample: resolve(gpu, full, shader, features, &[], &entries)?,
         frame,
-        opaque,
         method,
     }))
 }
@@ -80,8 +75,7 @@ impl Compositor for LowResolution {
         let frame = &self.frame;
         cx.scene
             .set_view(cx.recorder, cx.camera, frame, PixelSample::ALL, cx.point);
-        cx.scene
-            .draw_background(cx.recorder, frame, self.opaque.as_ref(), None, true);
+        cx.scene.draw_background(cx.recorder, frame, None, true);
         let black = [clear_color(&frame.background, [0.0, 0.0, 0.0, 1.0])];
         drop(cx.recorder.render("black", &black, None));
         let stats = self.method.draw(&mut DrawContext {
@@ -103,29 +97,26 @@ impl Compositor for LowResolution {
         self.method.is_ready()
     }
 
-    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
+    fn feedback(&self) -> Vec<wgpu::Buffer> {
         self.method.feedback()
     }
 
     fn learn(
         &mut self,
-        cx: &Learning<'_>,
+        b: &Build<'_>,
+        exact: bool,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
-        let samples = f64::from(self.frame.pixels()) / f64::from(cx.frame.pixels());
-        let cx = Learning {
+        let samples = f64::from(self.frame.pixels()) / f64::from(b.frame.pixels());
+        let b = Build {
             frame: &self.frame,
-            ..*cx
+            ..*b
         };
         // What is known only now is counted by pixels of the low resolution.
         let drawn = std::mem::take(&mut stats.bytes_per_pixel);
-        let fit = self.method.learn(&cx, words, stats)?;
+        let fit = self.method.learn(&b, exact, words, stats)?;
         stats.bytes_per_pixel = drawn + stats.bytes_per_pixel * samples;
         Ok(fit)
-    }
-
-    fn version(&self) -> u64 {
-        self.method.version()
     }
 }

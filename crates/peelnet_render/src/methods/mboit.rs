@@ -10,27 +10,24 @@ const OVERESTIMATION: Parameter = Parameter::share(
     Settings::FOUR.overestimation,
 );
 
-// The defaults are those of 32-bit moments.
-const BIAS_4: Parameter = Parameter::share(
-    "bias",
+/// The default is that of 32-bit moments.
+const fn bias(about: &'static str, default: f64) -> Parameter {
+    Parameter::share("bias", about, default)
+}
+
+const BIAS_4: Parameter = bias(
     "5e-7 by default, 6e-5 with 16-bit moments",
     Settings::FOUR.bias,
 );
-
-const BIAS_6: Parameter = Parameter::share(
-    "bias",
+const BIAS_6: Parameter = bias(
     "5e-6 by default, 6e-4 with 16-bit moments",
     Settings::SIX.bias,
 );
-
-const BIAS_8: Parameter = Parameter::share(
-    "bias",
+const BIAS_8: Parameter = bias(
     "5e-5 by default, 2.5e-3 with 16-bit moments",
     Settings::EIGHT.bias,
 );
-
-const BIAS_TRIG: Parameter = Parameter::share(
-    "bias",
+const BIAS_TRIG: Parameter = bias(
     "1e-4 by default, 1e-3 with 16-bit moments",
     trigonometric::BIAS,
 );

@@ -9,7 +9,7 @@ use super::{
     plan::Plan,
     spec::MethodSpec,
 };
-use crate::{error::RenderError, flaw::Flaw};
+use crate::{RenderError, flaw::Flaw};
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{Fragment, points},
@@ -186,7 +186,6 @@ pub mod role {
 }
 
 impl Numbered {
-    /// Any number of a range.
     pub(super) const fn range(least: u32, most: u32) -> Option<Self> {
         Some(Self {
             least,
@@ -195,7 +194,6 @@ impl Numbered {
         })
     }
 
-    /// The powers of two of a range.
     pub(super) const fn powers(least: u32, most: u32) -> Option<Self> {
         Some(Self {
             least,
@@ -204,7 +202,6 @@ impl Numbered {
         })
     }
 
-    /// Reads the number behind `name`.
     pub(super) fn parse(self, name: &str, text: &str) -> Result<u32, String> {
         let Self { least, most, .. } = self;
         let allowed = match text.parse::<u32>() {
@@ -257,7 +254,6 @@ impl Method {
         }
     }
 
-    /// Makes it ready at the frame's own resolution.
     pub(super) fn build(&self, b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         match self.draws {
             Draws::Plan(plan) => {

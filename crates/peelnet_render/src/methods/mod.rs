@@ -42,19 +42,20 @@ pub use spec::MethodSpec;
 /// What most declarations are made of.
 mod prelude {
     pub(super) use super::{
-        compositor::{Build, Compositor, DrawContext, Fit, FrameStats, Learning},
+        compositor::{Build, Compositor, DrawContext, Fit, FrameStats},
         method::{Method, Numbered, Pixel, Promises, weighted_twin},
         parameter::{MOMENT_TARGETS, Parameter, Precision, TARGETS},
-        plan::{Blend, ENDS, Plan, SUMS, TRANSMITTANCE, Target},
+        plan::{ENDS, Plan, SUMS, TRANSMITTANCE, Target},
         spec::MethodSpec,
     };
     pub(super) use crate::{
-        error::RenderError,
+        RenderError,
         flaw::{Flaw, Property, half_statistics, half_sums},
     };
+    pub(super) use peelnet_raster::Blend;
 }
 
-use crate::error::RenderError;
+use crate::RenderError;
 use compositor::{Build, Compositor};
 
 /// Every method, in the order of lists and reports.
@@ -97,14 +98,13 @@ pub const METHODS: &[Method] = &[
     anchored::MEDIUM,
 ];
 
-/// Makes a method ready.
 pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (spec, method) = (b.spec, b.spec.method());
     // A scene's scale concerns estimates; the methods that judge them stay exact unless they are asked for a scale themselves.
     let default = if method.is_exact() {
         1.0
     } else {
-        b.scene.transparency_scale
+        b.scene.scene().transparency_scale
     };
     let scale = SCALE.given(spec).map_or(default, |s: f64| s as f32);
     if b.scene.tinted && (!(method.promises)(spec).tinted || scale < 1.0) {

@@ -97,7 +97,6 @@ impl Parameter {
         Self::new(name, about, values)
     }
 
-    /// A number from 0 to 1.
     pub(super) const fn share(name: &'static str, about: &'static str, default: f64) -> Self {
         let values = Values::Number {
             default,
@@ -151,7 +150,6 @@ impl Parameter {
         }
     }
 
-    /// Whether a text is an allowed value.
     pub(super) fn allows(&self, text: &str) -> bool {
         match self.values {
             Values::Number {

@@ -2,9 +2,9 @@
 //! read back with the frame.
 
 use super::prelude::*;
-use peelnet_gpu::{Gpu, wgpu};
+use peelnet_gpu::wgpu;
 use peelnet_raster::{count::CountPass, fullscreen::FullscreenPass};
-use std::{fmt, ops::Range};
+use std::fmt;
 
 /// A cap on the number of passes.
 pub(super) const PASSES: Parameter = Parameter::whole(
@@ -35,7 +35,6 @@ pub(super) trait Peel: fmt::Debug + wgpu::WasmNotSend {
     fn besides(&self) -> (u32, u32, f64);
 }
 
-/// A peeling method made ready.
 #[derive(Debug)]
 pub(super) struct Peeling<P> {
     peel: P,
@@ -50,12 +49,11 @@ pub(super) struct Peeling<P> {
     /// Passes of the frame just recorded.
     recorded: u32,
     counted: bool,
-    version: u64,
 }
 
 /// The buffer of what passes found.
-pub(super) fn found(gpu: &Gpu) -> Result<wgpu::Buffer, RenderError> {
-    Ok(gpu.storage("found", 8)?)
+pub(super) fn found(b: &Build<'_>) -> Result<wgpu::Buffer, RenderError> {
+    Ok(b.scene.gpu.storage("found", 8)?)
 }
 
 impl<P: Peel + 'static> Peeling<P> {
@@ -68,33 +66,25 @@ impl<P: Peel + 'static> Peeling<P> {
         Ok(Box::new(Self {
             peel,
             found,
-            log: b.gpu.storage("found by pass", 4 * u64::from(FIRST_GUESS))?,
+            log: (b.scene.gpu).storage("found by pass", 4 * u64::from(FIRST_GUESS))?,
             count: None,
             known: None,
             most: PASSES.count(b.spec).map_or(u32::MAX, |n| n as u32),
             recorded: 0,
             counted: false,
-            version: 0,
         }))
-    }
-
-    fn room(&mut self, passes: u32) {
-        if self.known != Some(passes) {
-            self.known = Some(passes);
-            self.version += 1;
-        }
     }
 }
 
 impl<P: Peel + 'static> Compositor for Peeling<P> {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
-        let gpu = cx.recorder.gpu();
+        let gpu = &cx.scene.gpu;
         self.counted = cx.counting || cx.only_count;
         if self.counted {
             let count = match &self.count {
                 Some(count) => count,
                 None => {
-                    let made = CountPass::new(gpu, cx.scene, cx.frame, &[])?;
+                    let made = CountPass::new(cx.scene, cx.frame, &[])?;
                     self.count.insert(made)
                 }
             };
@@ -138,19 +128,19 @@ impl<P: Peel + 'static> Compositor for Peeling<P> {
         self.known.is_some()
     }
 
-    fn feedback(&self) -> Vec<(wgpu::Buffer, Range<u64>)> {
-        let log = 0..4 * u64::from(self.recorded.max(1));
-        let mut all = vec![(self.found.clone(), 0..8), (self.log.clone(), log)];
-        if let Some(count) = self.count.as_ref().filter(|_| self.counted) {
-            all.push((count.total.clone(), CountPass::TOTAL));
-        }
-        all
+    fn feedback(&self) -> Vec<wgpu::Buffer> {
+        let count = self.count.as_ref().filter(|_| self.counted);
+        let found = [self.found.clone(), self.log.clone()].into_iter();
+        found
+            .chain(count.map(|count| count.total.clone()))
+            .collect()
     }
 
     /// Learns how many passes the frame needed: those that left something to peel, and the one that found this out.
     fn learn(
         &mut self,
-        _: &Learning<'_>,
+        _: &Build<'_>,
+        _: bool,
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
@@ -165,12 +155,12 @@ impl<P: Peel + 'static> Compositor for Peeling<P> {
             if !is_whole {
                 // One layer a pass: another pass finds out that none is left. Two: the last pass knows.
                 let empty = u32::from(P::LAYERS == 1);
-                self.room((found.most.div_ceil(P::LAYERS) + empty).max(1));
+                self.known = Some((found.most.div_ceil(P::LAYERS) + empty).max(1));
                 return Ok(Fit::TooSmall);
             }
         }
         if !is_whole {
-            self.room(self.recorded.saturating_mul(2).max(FIRST_GUESS));
+            self.known = Some(self.recorded.saturating_mul(2).max(FIRST_GUESS));
             return Ok(Fit::TooSmall);
         }
         let needed = (useful + 1).min(self.most);
@@ -178,11 +168,7 @@ impl<P: Peel + 'static> Compositor for Peeling<P> {
         // Statistics report what a frame of this view takes.
         stats.geometry_passes = stats.geometry_passes.saturating_sub(spare);
         stats.fullscreen_passes = stats.fullscreen_passes.saturating_sub(spare);
-        self.room(needed);
+        self.known = Some(needed);
         Ok(if spare > 0 { Fit::Loose } else { Fit::Whole })
-    }
-
-    fn version(&self) -> u64 {
-        self.version
     }
 }

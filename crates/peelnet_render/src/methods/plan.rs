@@ -4,79 +4,19 @@
 //! All but the painter's methods give the same image whatever the order of drawing.
 
 use super::{
-    compositor::{Build, Compositor, DrawContext, FrameStats},
+    compositor::{Build, Compositor, DrawContext, FrameStats, resolve},
     parameter::Precision,
     views::Shows,
 };
-use crate::error::RenderError;
-use peelnet_core::guards::HALF_MAX;
-use peelnet_gpu::{
-    bind::{Bind, Bound},
-    wgpu,
-};
+use crate::RenderError;
+use peelnet_gpu::{Kernel, bind::Bind, wgpu};
 use peelnet_raster::{
-    BoxPass, GeometryPass, GeometryPipelines, Order, Sorted, Surfaces,
-    count::{groups_2d, unwritten, unwritten_attachment, unwritten_texture},
+    Blend, BoxPass, GeometryPass, GeometryPipelines, Order, Sorted,
+    count::{unwritten_attachment, unwritten_texture},
     frame::clear_color,
     fullscreen::FullscreenPass,
 };
 
-/// How a target blends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Blend {
-    /// `dst + src`, from 0.
-    Add,
-    /// `dst · (1 − src)`, from 1.
-    Transmit,
-    /// `dst + src` of red, green and blue, from 0; `dst · (1 − src.a)` of alpha, from 1.
-    AddTransmit,
-    /// `src + dst · (1 − src.a)` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
-    Over,
-    /// `dst + src · dst.a` of premultiplied colour, from 0; `dst · (1 − src.a)` of alpha, from 1.
-    Under,
-    /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
-    MaxAdd,
-    /// `max(dst, src)`, from the smallest half.
-    Max,
-    /// `max(dst, src)` of 8-bit channels, 0 … 1, from 0.
-    MaxBytes,
-}
-
-impl Blend {
-    /// What a target is cleared to, and how colour and alpha blend.
-    fn table(self) -> ([f64; 4], [wgpu::BlendComponent; 2]) {
-        use wgpu::{BlendFactor as F, BlendOperation as O};
-        let component = |src_factor, dst_factor, operation| wgpu::BlendComponent {
-            src_factor,
-            dst_factor,
-            operation,
-        };
-        let add = component(F::One, F::One, O::Add);
-        let max = component(F::One, F::One, O::Max);
-        let transmit = component(F::Zero, F::OneMinusSrc, O::Add);
-        let transmit_alpha = component(F::Zero, F::OneMinusSrcAlpha, O::Add);
-        let over = component(F::One, F::OneMinusSrcAlpha, O::Add);
-        let under = component(F::DstAlpha, F::One, O::Add);
-        let (clear, least) = ([0.0, 0.0, 0.0, 1.0], -f64::from(HALF_MAX));
-        match self {
-            Self::Add => ([0.0; 4], [add, add]),
-            Self::Transmit => ([1.0; 4], [transmit, transmit]),
-            Self::AddTransmit => (clear, [add, transmit_alpha]),
-            Self::Over => (clear, [over, transmit_alpha]),
-            Self::Under => (clear, [under, transmit_alpha]),
-            Self::MaxAdd => ([least, least, least, 0.0], [max, add]),
-            Self::Max => ([least; 4], [max, max]),
-            Self::MaxBytes => ([0.0; 4], [max, max]),
-        }
-    }
-
-    /// What a target is cleared to.
-    pub fn start(self) -> [f64; 4] {
-        self.table().0
-    }
-}
-
-/// One accumulator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     pub label: &'static str,
@@ -134,32 +74,23 @@ impl Target {
     }
 
     pub fn state(&self) -> wgpu::ColorTargetState {
-        let (_, [color, alpha]) = self.blend.table();
-        wgpu::ColorTargetState {
-            blend: Some(wgpu::BlendState { color, alpha }),
-            ..self.format().into()
-        }
+        self.blend.state(self.format())
     }
 }
 
-/// What passes read and write.
 #[derive(Clone, Debug)]
 pub(crate) enum Resource {
     Target(Target, wgpu::TextureView),
     Texture(wgpu::TextureView),
-    /// A texture of unsigned integers.
-    Integers(wgpu::TextureView),
     Storage(wgpu::Buffer),
     Uniform(wgpu::Buffer),
     /// Where the finished picture goes, blended as that is; there is no resolve then.
     Output,
 }
 
-/// A resource of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Handle(usize);
 
-/// What a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Draws {
     Surfaces,
@@ -169,8 +100,6 @@ enum Draws {
     Threads(u64),
     /// Finished pixels.
     Pixels,
-    /// The blended sums in their place.
-    Sums,
 }
 
 /// One pass: its shader, what it reads and what it writes. Its bindings are what it reads, then the storage that it writes, in bind
@@ -262,13 +191,13 @@ impl<'b> Plan<'b> {
 
     /// A target, of 16 or 32 bits as the method's `targets` says.
     pub fn target(&mut self, mut target: Target) -> Result<Handle, RenderError> {
-        let (gpu, spec) = (self.b.gpu, self.b.spec);
+        let (gpu, spec) = (&self.b.scene.gpu, self.b.spec);
         if let Some(precision) = spec.targets() {
             target.full = precision == Precision::Full;
         }
         if target.full {
             let (feature, hint) = (wgpu::Features::FLOAT32_BLENDABLE, "use targets=f16");
-            gpu.need(feature, "float32-blendable", &spec.to_string(), hint)?;
+            gpu.need(feature, &spec.to_string(), hint)?;
         }
         let (format, none) = (target.format(), wgpu::TextureUsages::empty());
         let view = gpu.texture(target.label, format, self.b.frame.size, 1, none)?;
@@ -288,7 +217,7 @@ impl<'b> Plan<'b> {
         self.pixel_bytes += pixel;
         self.frame_bytes += frame;
         let bytes = u64::from(self.b.frame.pixels()) * u64::from(pixel) + frame;
-        let buffer = self.b.gpu.storage(label, bytes)?;
+        let buffer = self.b.scene.gpu.storage(label, bytes)?;
         self.cleared.push(buffer.clone());
         Ok(self.resource(Resource::Storage(buffer)))
     }
@@ -349,33 +278,28 @@ impl<'b> Plan<'b> {
             return;
         };
         let ends = self.find(|target| target.label == ENDS.label);
-        if self
-            .passes
-            .pop_if(|last| last.draws == Draws::Pixels)
-            .is_some()
-        {
-            self.pass("methods::sums::resolve", Draws::Sums)
-                .reads([sums])
+        let is_resolve = |last: &mut Pass| last.draws == Draws::Pixels;
+        if self.passes.pop_if(is_resolve).is_some() {
+            self.resolve("methods::sums::resolve", [sums])
                 .reads(ends)
                 .features(ends.map(|_| "separate_ends"));
         }
     }
 
-    /// Makes the plan ready.
     pub fn build(mut self) -> Result<Box<dyn Compositor>, RenderError> {
         let b = self.b;
-        if b.shows == Shows::Sums {
+        if b.options.shows == Shows::Sums {
             self.show_sums();
         }
         let passes = self.passes.iter().map(|pass| self.build_pass(pass));
         let passes: Vec<PlannedPass> = passes.collect::<Result<_, _>>()?;
         let is_bare = |p: &PlannedPass| p.colors.is_empty() && matches!(p.work, Work::Surfaces(_));
         let attachment = match passes.iter().any(is_bare) {
-            true => Some(unwritten_texture(b.gpu, b.frame)?),
+            true => Some(unwritten_texture(&b.scene.gpu, b.frame)?),
             false => None,
         };
         let pixel_bytes = self.pixel_bytes + u32::from(attachment.is_some());
-        let sorted = Sorted::new(b.gpu, b.scene, self.order)?;
+        let sorted = Sorted::new(b.scene, self.order)?;
         let frame_bytes = self.frame_bytes + sorted.as_ref().map_or(0, Sorted::bytes);
         Ok(Box::new(Planned {
             passes,
@@ -388,7 +312,7 @@ impl<'b> Plan<'b> {
     }
 
     fn build_pass(&self, pass: &Pass) -> Result<PlannedPass, RenderError> {
-        let (b, gpu, output) = (self.b, self.b.gpu, self.b.frame.output);
+        let (b, gpu, output) = (self.b, &self.b.scene.gpu, self.b.frame.output);
         let (shader, mut features) = (pass.shader.as_str(), pass.features.clone());
         let parameters = pass.parameters.as_ref().unwrap_or(&self.parameters);
         let modules = [
@@ -402,7 +326,7 @@ impl<'b> Plan<'b> {
         let mut entries = match pass.draws {
             Draws::Threads(_) => vec![Bind::Uniform(&size)],
             Draws::Pixels => vec![Bind::Texture(&b.frame.background)],
-            _ => Vec::new(),
+            Draws::Surfaces | Draws::Boxes => Vec::new(),
         };
         entries.extend(
             pass.reads
@@ -411,7 +335,6 @@ impl<'b> Plan<'b> {
                     Resource::Target(_, view) | Resource::Texture(view) => {
                         Some(Bind::Texture(view))
                     }
-                    Resource::Integers(view) => Some(Bind::Uint(view)),
                     Resource::Storage(buffer) => Some(Bind::Read(buffer)),
                     Resource::Uniform(buffer) => Some(Bind::Uniform(buffer)),
                     Resource::Output => None,
@@ -430,62 +353,47 @@ impl<'b> Plan<'b> {
                     samples = output.samples();
                 }
                 Resource::Storage(buffer) => entries.push(Bind::Write(buffer)),
-                Resource::Texture(_) | Resource::Integers(_) | Resource::Uniform(_) => {}
+                Resource::Texture(_) | Resource::Uniform(_) => {}
             }
         }
-        let mut group = None;
         let work = match pass.draws {
             Draws::Threads(threads) => {
-                let stages = wgpu::ShaderStages::COMPUTE;
-                let bound = group.insert(gpu.bind(&pass.label, stages, &entries));
                 let wgsl = peelnet_shaders::link(shader, &features, &modules)?;
-                let groups = groups_2d(u32::try_from(threads).unwrap_or(u32::MAX));
-                Work::Threads(gpu.compute(shader, &wgsl, bound), groups)
+                let threads = u32::try_from(threads).unwrap_or(u32::MAX);
+                Work::Threads(Kernel::new(gpu, shader, &wgsl, &entries), threads)
             }
-            Draws::Pixels | Draws::Sums => {
+            Draws::Pixels => {
                 let is_full = |target: &Target| target.label == SUMS.label && target.full;
-                let has_full_sums = pass.draws == Draws::Pixels && self.find(is_full).is_some();
-                features.extend(has_full_sums.then_some("full_sums"));
-                let resolve =
-                    FullscreenPass::resolve(gpu, shader, &features, &modules, &entries, output);
-                Work::Pixels(resolve?)
+                features.extend(self.find(is_full).map(|_| "full_sums"));
+                let pass = resolve(gpu, b.frame, shader, &features, &modules, &entries);
+                Work::Pixels(pass?)
             }
             Draws::Surfaces | Draws::Boxes => {
-                if !entries.is_empty() {
-                    let stages = wgpu::ShaderStages::FRAGMENT;
-                    group = Some(gpu.bind(&pass.label, stages, &entries));
-                }
-                if states.is_empty() {
-                    states.push(unwritten());
-                }
                 let geometry = GeometryPass {
                     label: &pass.label,
                     shader,
                     features: &features,
                     extra: &modules,
-                    group: group.as_ref(),
+                    entries: &entries,
                     targets: &states,
                     samples,
                     ..GeometryPass::NONE
                 };
                 if pass.draws == Draws::Boxes {
-                    Work::Boxes(BoxPass::new(gpu, b.scene, b.frame, &geometry)?)
+                    Work::Boxes(BoxPass::new(b.scene, b.frame, &geometry)?)
                 } else {
-                    let half = Surfaces::Transparent;
-                    Work::Surfaces(b.scene.pipelines(gpu, b.frame, half, &geometry)?)
+                    Work::Surfaces(b.scene.pipelines(b.frame, &geometry)?)
                 }
             }
         };
         Ok(PlannedPass {
             label: pass.label.clone(),
             colors,
-            group,
             work,
         })
     }
 }
 
-/// A plan made ready.
 #[derive(Debug)]
 struct Planned {
     passes: Vec<PlannedPass>,
@@ -502,7 +410,6 @@ struct PlannedPass {
     label: String,
     /// What it writes with what that is cleared to; `None` for the output.
     colors: Vec<Option<(wgpu::TextureView, [f64; 4])>>,
-    group: Option<Bound>,
     work: Work,
 }
 
@@ -510,7 +417,7 @@ struct PlannedPass {
 enum Work {
     Surfaces(GeometryPipelines),
     Boxes(BoxPass),
-    Threads(wgpu::ComputePipeline, [u32; 2]),
+    Threads(Kernel, u32),
     Pixels(FullscreenPass),
 }
 
@@ -532,17 +439,13 @@ impl Planned {
             boxes.update(cx.recorder, cx.scene);
         }
         let mut pass = cx.recorder.render(&p.label, &colors, None);
-        if let Some(group) = &p.group {
-            pass.set_bind_group(1, &group.group, &[]);
-        }
         match (&p.work, &self.sorted) {
             (Work::Boxes(boxes), _) => boxes.draw(&mut pass, cx.frame),
             (Work::Surfaces(pipelines), Some(sorted)) => {
                 sorted.draw(&mut pass, cx.scene, cx.frame, pipelines);
             }
             (Work::Surfaces(pipelines), None) => {
-                let half = Surfaces::Transparent;
-                cx.scene.draw(&mut pass, cx.frame, half, pipelines);
+                cx.scene.draw(&mut pass, cx.frame, pipelines);
             }
             (Work::Threads(..) | Work::Pixels(_), _) => {}
         }
@@ -558,15 +461,10 @@ impl Compositor for Planned {
             cx.recorder.encoder().clear_buffer(buffer, 0, None);
         }
         for p in &self.passes {
-            match (&p.work, &p.group) {
-                (Work::Pixels(resolve), _) => cx.resolve(resolve),
-                (Work::Threads(pipeline, [x, y]), Some(group)) => {
-                    let mut pass = cx.recorder.compute(&p.label);
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(0, &group.group, &[]);
-                    pass.dispatch_workgroups(*x, *y, 1);
-                }
-                _ => self.draw_geometry(cx, p),
+            match &p.work {
+                Work::Pixels(resolve) => cx.resolve(resolve),
+                Work::Threads(kernel, threads) => kernel.dispatch(cx.recorder, *threads),
+                Work::Surfaces(_) | Work::Boxes(_) => self.draw_geometry(cx, p),
             }
         }
         Ok(FrameStats {

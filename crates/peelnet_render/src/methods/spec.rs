@@ -5,7 +5,7 @@ use super::{
     method::{Method, Pixel, Promises},
     parameter::{Precision, SCALE},
 };
-use crate::error::RenderError;
+use crate::RenderError;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_model::Model;
 use std::{collections::BTreeMap, fmt, str::FromStr};
@@ -179,10 +179,7 @@ impl MethodSpec {
     }
 
     fn bad(&self, message: String) -> RenderError {
-        RenderError::Parameter {
-            method: self.name().to_owned(),
-            message,
-        }
+        RenderError::WrongValue(format!("method {}: {message}", self.name))
     }
 }
 
@@ -198,10 +195,10 @@ impl FromStr for MethodSpec {
         };
         let Some(method) = METHODS.iter().find(is_named) else {
             let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
-            return Err(RenderError::UnknownMethod {
-                name: name.to_owned(),
-                known: known.join(", "),
-            });
+            return Err(RenderError::WrongValue(format!(
+                "there is no method '{name}'; there are: {}",
+                known.join(", ")
+            )));
         };
         let mut spec = Self {
             name: method.name,

@@ -19,7 +19,6 @@ pub(super) fn layout(spec: &MethodSpec) -> (Colors, u32, Option<&'static str>) {
     }
 }
 
-/// What colours are kept in.
 pub(super) fn colors(spec: &MethodSpec) -> Colors {
     layout(spec).0
 }
