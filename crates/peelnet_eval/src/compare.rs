@@ -60,14 +60,6 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Frames of each method and view: the compared one, and where any are timed one more to warm up.
-    pub const fn frames_of_each(&self) -> usize {
-        match self.frames {
-            0 => 1,
-            n => n as usize + 2,
-        }
-    }
-
     /// How a method is drawn, with its network where it is among those of the plan.
     pub(crate) fn options(&self, method: &MethodSpec) -> MethodOptions {
         let mut learned = self.learned.iter();
@@ -76,7 +68,6 @@ impl<'a> Plan<'a> {
         options.sampled(self.samples).with(learned)
     }
 
-    /// How many views of a scene are drawn.
     pub fn views_of(&self, scene: &Scene) -> usize {
         let all = scene.views.len();
         self.views.map_or(all, |n| n.min(all))
@@ -110,7 +101,6 @@ pub fn image_name(scene: &str, method: &str) -> String {
     format!("{}-{}.png", plain(scene), plain(method))
 }
 
-/// A method ready to draw.
 struct Entry<'a> {
     method: MethodSpec,
     name: String,
@@ -173,13 +163,13 @@ fn prepare<'a>(
         if method.method().cpu_only.is_none() {
             match stage.ready(method, plan.options(method)) {
                 Err(e) if plan.lenient && e.is_too_large() && !entries.is_empty() => {
-                    watch.left_out(scene, &entry.name, e.reason());
+                    watch.left_out(scene, &entry.name, &e.reason());
                     continue;
                 }
                 ready => entry.ready = Some(ready?),
             }
         } else if plan.samples > 1 {
-            let why = "it is composited on the CPU, of one sample a pixel".to_owned();
+            let why = "it is composited on the CPU, of one sample a pixel";
             watch.left_out(scene, &entry.name, why);
             continue;
         }
@@ -213,7 +203,7 @@ fn draw(
         };
         let frame = match drawn {
             Err(e) if plan.lenient && e.is_too_large() && !rows.is_empty() => {
-                watch.left_out(scene, name, e.reason());
+                watch.left_out(scene, name, &e.reason());
                 entries.remove(rows.len());
                 continue;
             }
@@ -227,8 +217,7 @@ fn draw(
         let (against, displayed) = exact
             .as_ref()
             .map_or((&frame.image, &shown), |(image, shown)| (image, shown));
-        let errors = error_image(&against.pixels, &frame.image.pixels)?;
-        let contour_pairs = pairs.as_ref().map(|pairs| pairs.share(&errors));
+        let errors = error_image(&against.pixels, &frame.image.pixels);
         let mut row = Row {
             method: name.clone(),
             scene: scene.clone(),
@@ -237,8 +226,8 @@ fn draw(
             ssim: shown.ssim(displayed),
             flip: Some(shown.flip(displayed)),
             transmittance_error: stacks.error(&entry.method, entry.model),
-            contour_pairs: contour_pairs.transpose()?.flatten(),
-            ..row(&frame, &against.pixels)?
+            contour_pairs: pairs.as_ref().and_then(|pairs| pairs.share(&errors)),
+            ..row(&frame, &against.pixels)
         };
         // Only the exact method knows the fragments of a view for certain.
         if let Some(first) = rows.first() {
@@ -302,12 +291,12 @@ fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
 }
 
 /// What a frame and its differences from the exact image hold.
-fn row(frame: &Frame, exact: &[[f32; 4]]) -> Result<Row, EvalError> {
-    let (d, stats) = (differences(exact, &frame.image.pixels)?, &frame.stats);
+fn row(frame: &Frame, exact: &[[f32; 4]]) -> Row {
+    let (d, stats) = (differences(exact, &frame.image.pixels), &frame.stats);
     let passes = stats.geometry_passes + stats.fullscreen_passes;
     // A method on the CPU has no passes, and no times of its own.
     let drawn = passes > 0;
-    Ok(Row {
+    Row {
         width: frame.image.width,
         height: frame.image.height,
         fragments: stats.fragments,
@@ -329,7 +318,7 @@ fn row(frame: &Frame, exact: &[[f32; 4]]) -> Result<Row, EvalError> {
         passes,
         bytes_per_pixel: drawn.then_some(stats.bytes_per_pixel),
         ..Row::default()
-    })
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
+use peelnet_gpu::GpuError::{OutOfMemory, TooLarge};
+use peelnet_peel::PeelError;
 use peelnet_render::RenderError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What can go wrong when methods are measured.
-#[allow(missing_docs, reason = "the message of each error names its fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum EvalError {
     #[error("{}: cannot {action}: {source}", path.display())]
@@ -17,11 +18,10 @@ pub enum EvalError {
         method: String,
         source: Box<RenderError>,
     },
-    #[cfg(not(target_arch = "wasm32"))]
     #[error("scene '{scene}': {source}")]
     Peel {
         scene: String,
-        source: Box<peelnet_peel::PeelError>,
+        source: Box<PeelError>,
     },
     /// A scene of the suite could not be loaded.
     #[error(transparent)]
@@ -31,22 +31,6 @@ pub enum EvalError {
         method: String,
         source: Box<peelnet_export::ExportError>,
     },
-    /// Two images that should be compared differ in size: a bug of the caller.
-    #[error(
-        "an image of {approximate} pixels was compared with one of {exact} pixels; draw both with the same size"
-    )]
-    Sizes { exact: usize, approximate: usize },
-    #[error(
-        "a path of {frames} frames of {}x{} pixels keeps {needed} bytes, more than {most}; make --size smaller or --frames fewer",
-        size[0], size[1]
-    )]
-    LongPath {
-        frames: u32,
-        size: [u32; 2],
-        needed: u64,
-        most: u64,
-    },
-    #[cfg(not(target_arch = "wasm32"))]
     #[error("the video metric: {0}")]
     Video(#[from] colorvideovdp::Error),
     #[error("{}: cannot resume: {why}", path.display())]
@@ -58,57 +42,37 @@ pub enum EvalError {
         first: PathBuf,
         second: PathBuf,
     },
-    #[error("{}: {what}: {why}", path.display())]
-    Designs {
-        path: PathBuf,
-        what: String,
-        why: String,
-    },
+    /// Anything else that cannot be measured: a path that is too long, a file of designs.
+    #[error("{0}")]
+    Unusable(String),
     /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,
 }
 
 impl EvalError {
-    /// Two images that should be compared differ in size.
-    pub(crate) const fn sizes(exact: usize, approximate: usize) -> Result<(), Self> {
-        if exact == approximate {
-            return Ok(());
-        }
-        Err(Self::Sizes { exact, approximate })
-    }
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-impl EvalError {
     /// For `map_err` on file operations.
-    pub(crate) fn io(
-        path: &std::path::Path,
-        action: &'static str,
-    ) -> impl FnOnce(std::io::Error) -> Self {
-        let path = path.to_owned();
+    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
         move |source| Self::Io {
-            path,
+            path: path.to_owned(),
             action,
             source,
         }
     }
 
     /// For `map_err` on peeling a scene.
-    pub(crate) fn peel(scene: &str) -> impl FnOnce(peelnet_peel::PeelError) -> Self + use<> {
-        let scene = scene.to_owned();
+    pub(crate) fn peel(scene: &str) -> impl FnOnce(PeelError) -> Self {
         move |source| Self::Peel {
-            scene,
+            scene: scene.to_owned(),
             source: Box::new(source),
         }
     }
 
     /// For `map_err` on drawing a scene with a method.
-    pub(crate) fn render(scene: &str, method: &str) -> impl FnOnce(RenderError) -> Self + use<> {
-        let (scene, method) = (scene.to_owned(), method.to_owned());
+    pub(crate) fn render(scene: &str, method: &str) -> impl FnOnce(RenderError) -> Self {
         move |source| Self::Render {
-            scene,
-            method,
+            scene: scene.to_owned(),
+            method: method.to_owned(),
             source: Box::new(source),
         }
     }
@@ -126,7 +90,6 @@ impl EvalError {
         let Self::Render { source, .. } = self else {
             return false;
         };
-        use peelnet_gpu::GpuError::{OutOfMemory, TooLarge};
         matches!(
             **source,
             RenderError::Gpu(TooLarge { .. } | OutOfMemory { .. })

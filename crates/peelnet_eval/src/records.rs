@@ -1,5 +1,4 @@
 //! What is written to the files of results. `docs/results-files.md` says what each field is, and its unit.
-#![allow(missing_docs, reason = "docs/results-files.md says what each field is")]
 
 use crate::{designs::MOTIONS, scaling::Series};
 use peelnet_core::methods::slabs::Kept;
@@ -8,7 +7,7 @@ use peelnet_render::Property;
 use serde::{Deserialize, Serialize};
 
 /// What a result was measured on, and with which version.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     pub os: String,
     pub arch: String,
@@ -70,7 +69,6 @@ const fn one() -> u32 {
     1
 }
 
-/// A comparison of methods.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bench {
     /// Mean load of the machine before and after, see [`crate::load`].
@@ -127,7 +125,6 @@ pub struct Along {
     pub by_frame: Vec<FrameRow>,
 }
 
-/// What one method took in one step of a series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
     pub method: String,
@@ -137,7 +134,6 @@ pub struct Growth {
     pub bytes_per_pixel: f64,
 }
 
-/// A step that a method was not measured in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     pub method: String,
@@ -155,7 +151,6 @@ pub struct Exponent {
     pub bytes: Option<f64>,
 }
 
-/// How time and memory grow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
     pub exponents: Vec<Exponent>,
@@ -163,7 +158,6 @@ pub struct Scaling {
     pub left_out: Vec<LeftOut>,
 }
 
-/// What an effect costs in a scene: the frame as it is, and without the effect.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     pub scene: String,
@@ -209,8 +203,7 @@ pub struct Fill {
     pub ms_all: f64,
 }
 
-/// What effects cost.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effects {
     pub method: String,
     pub size: [u32; 2],
@@ -223,11 +216,9 @@ pub struct Effects {
     pub fills: Vec<Fill>,
 }
 
-/// What became of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// It holds.
     Pass,
     /// It does not, as the method declares.
     Declared,
@@ -248,7 +239,6 @@ pub struct StressRow {
     pub reason: Option<String>,
 }
 
-/// A run over the stress cases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stressed {
     pub rows: Vec<StressRow>,
@@ -266,7 +256,6 @@ pub struct Score {
     pub flicker: [Option<f64>; MOTIONS.len()],
 }
 
-/// A method that designs are compared with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     pub method: String,
@@ -274,7 +263,6 @@ pub struct Reference {
     pub score: Score,
 }
 
-/// A measured design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DesignRow {
     pub design: String,
@@ -295,8 +283,7 @@ pub struct DesignRow {
     pub middle: Score,
 }
 
-/// All designs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Designs {
     pub file: String,
     pub trained_on: Vec<String>,

@@ -22,7 +22,6 @@ use std::{fmt, sync::atomic::AtomicBool};
 /// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
 const PATIENCE_MS: f64 = 3000.0;
 
-/// What grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Series {
@@ -35,7 +34,6 @@ pub enum Series {
 }
 
 impl Series {
-    /// Every series.
     pub const ALL: [Self; 3] = [Self::Fragments, Self::Pixels, Self::Triangles];
 }
 
@@ -45,8 +43,6 @@ impl fmt::Display for Series {
     }
 }
 
-/// One step of a series.
-#[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     series: Series,
     size: [u32; 2],
@@ -88,7 +84,7 @@ pub fn measure(
     gpu: &Gpu,
     plan: &Plan<'_>,
     stop: &AtomicBool,
-    report: &mut dyn FnMut(Progress<'_>),
+    report: &mut dyn FnMut(Progress),
 ) -> Result<Scaling, EvalError> {
     let (mut rows, mut left_out): (Vec<Growth>, Vec<LeftOut>) = (Vec::new(), Vec::new());
     let (steps, frames, methods) = (steps(), plan.frames.max(1), plan.methods);
@@ -201,17 +197,12 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
 pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
     let mut all: Vec<Exponent> = Vec::new();
     for row in rows {
-        let (method, series) = (&row.method, row.series);
-        if all
-            .iter()
-            .any(|e| e.method == *method && e.series == series)
-        {
+        let is_same = |method: &str, series| method == row.method && series == row.series;
+        if all.iter().any(|e| is_same(&e.method, e.series)) {
             continue;
         }
-        let own = rows.iter();
-        let own: Vec<&Growth> = own
-            .filter(|r| r.method == *method && r.series == series)
-            .collect();
+        let own = rows.iter().filter(|r| is_same(&r.method, r.series));
+        let own: Vec<&Growth> = own.collect();
         let upper = &own[own.len() / 2..];
         let fit = |value: &dyn Fn(&Growth) -> f64| {
             slope(upper.iter().map(|r| ((r.value as f64).ln(), value(r).ln())))
@@ -222,8 +213,8 @@ pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
             _ => 1.0,
         };
         all.push(Exponent {
-            method: method.clone(),
-            series,
+            method: row.method.clone(),
+            series: row.series,
             time: fit(&|r| r.time_ms),
             bytes: fit(&|r| r.bytes_per_pixel * pixels(r)),
         });

@@ -18,7 +18,6 @@ use peelnet_scene::{Camera, Scene};
 pub const SHARE: f64 = 0.02;
 
 /// The fragments of a view's sampled pixels.
-#[derive(Debug)]
 pub(crate) struct Stacks {
     /// (linear depth, α), nearest first, pixel by pixel.
     pixels: Vec<Vec<(f32, f32)>>,
@@ -26,7 +25,6 @@ pub(crate) struct Stacks {
 }
 
 /// A scene made ready for peeling.
-#[derive(Debug)]
 pub(crate) struct Peeled<'a> {
     scene: &'a Scene,
     harvester: Harvester,

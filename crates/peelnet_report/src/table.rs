@@ -9,14 +9,11 @@ pub(crate) type Column<'c, R> = (&'c str, &'c dyn Fn(&R) -> String);
 /// Headings, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// One for each column.
     pub headings: Vec<String>,
-    /// The cells of each row.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table.
     pub fn new<H: Into<String>>(
         headings: impl IntoIterator<Item = H>,
         rows: impl IntoIterator<Item = Vec<String>>,
@@ -27,7 +24,6 @@ impl Table {
         }
     }
 
-    /// A table of these columns, a line for each row.
     pub(crate) fn of<'r, R: 'r>(
         rows: impl IntoIterator<Item = &'r R>,
         columns: &[Column<'_, R>],
@@ -35,6 +31,25 @@ impl Table {
         let line = |row: &R| columns.iter().map(|(_, cell)| cell(row)).collect();
         let headings = columns.iter().map(|(heading, _)| *heading);
         Self::new(headings, rows.into_iter().map(line))
+    }
+
+    /// A line for each name; a cell gets its line's name and its column's number.
+    pub(crate) fn matrix(
+        corner: &str,
+        columns: impl IntoIterator<Item = String>,
+        names: &[&str],
+        cell: impl Fn(&str, usize) -> String,
+    ) -> Self {
+        let mut headings = vec![corner.to_owned()];
+        headings.extend(columns);
+        let line = |name: &&str| {
+            let cells = (0..headings.len() - 1).map(|k| cell(name, k));
+            std::iter::once((*name).to_owned()).chain(cells).collect()
+        };
+        Self {
+            rows: names.iter().map(line).collect(),
+            headings,
+        }
     }
 
     /// As Markdown: the first column to the left, the others to the right.

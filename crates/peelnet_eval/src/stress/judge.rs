@@ -161,7 +161,6 @@ fn before_the_camera(a: DVec4, b: DVec4) -> Option<[DVec4; 2]> {
     }
 }
 
-/// From a point to a segment.
 fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     let t = (p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
@@ -265,7 +264,6 @@ impl<'a> View<'a> {
     }
 }
 
-/// The material of an object's triangle.
 fn material(object: &Object, triangle: usize) -> Option<&Material> {
     let mut parts = object.mesh.parts.iter();
     object
@@ -308,7 +306,7 @@ mod tests {
             let Work::Frames(make) = case.work else {
                 continue;
             };
-            for trial in make().unwrap() {
+            for trial in make() {
                 let truth = trial.truth();
                 let count =
                     |is: fn(&Content) -> bool| truth.pixels.iter().filter(|c| is(c)).count();

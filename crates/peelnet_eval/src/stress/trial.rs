@@ -15,7 +15,6 @@ use peelnet_core::{
 use peelnet_scene::{Material, Object, Scene};
 
 /// Layers that cover some pixels of the frame whole.
-#[derive(Clone, Debug)]
 pub struct Stack {
     pub name: String,
     /// Its layers, in the order in which they are drawn.
@@ -34,8 +33,6 @@ impl Stack {
     }
 }
 
-/// A scene of a hard case.
-#[derive(Clone, Debug)]
 pub struct Trial {
     /// What is drawn; every view of it, where it moves.
     pub scene: Scene,
@@ -57,7 +54,6 @@ pub enum Content {
     Unjudged,
 }
 
-/// The fragments of every pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
     pub pixels: Vec<Content>,
@@ -65,7 +61,6 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// The name of what a pixel holds, for messages.
     pub fn name(&self, content: Content) -> &str {
         match content {
             Content::Nothing => "no fragment",

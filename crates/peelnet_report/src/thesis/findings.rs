@@ -37,7 +37,9 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
     if !in_table.is_empty() {
         let r = ratios(&in_table, thesis::WEIGHTED);
         let theirs = in_table.iter().filter_map(|scene| thesis::line(scene));
-        let theirs: Vec<String> = theirs.map(|m| format!("{:.2}", m.ratio())).collect();
+        let theirs: Vec<String> = theirs
+            .map(|[weighted, deep]| format!("{:.2}", deep / weighted))
+            .collect();
         out.push(format!(
             "On the scenes that the thesis measured, its promise {}: the learned weight has {} (learned / analytic: {}; \
              the thesis reports {}).",

@@ -4,19 +4,16 @@ pub(crate) mod findings;
 mod page;
 mod table;
 
-use crate::{Measurement, ReportError, Results, Table};
+use crate::{Files, Measurement, Results, Table};
 use findings::findings;
 use peelnet_chart::Svg;
 use peelnet_eval::{Machine, Row, rows::Rows};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
-/// A step of a run and how long it took.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     /// `extract`, `train`, `export`, `compare`, …
     pub name: String,
-    /// Wall-clock seconds.
     pub seconds: f64,
     /// What it did, in figures.
     pub note: String,
@@ -25,7 +22,6 @@ pub struct Stage {
 /// A network trained as the thesis does, and its comparison with all methods.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ThesisRun {
-    /// The steps, in order.
     pub stages: Vec<Stage>,
     /// Settings that matter, as name and value.
     pub settings: Vec<(String, String)>,
@@ -34,7 +30,6 @@ pub struct ThesisRun {
     /// Scenes among them that the learned method was trained on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trained_on: Vec<String>,
-    /// All rows.
     pub rows: Vec<Row>,
     /// Rows of one more scene, with shipped networks beside the trained one and timed frames.
     #[serde(default)]
@@ -48,18 +43,11 @@ pub struct ThesisRun {
 }
 
 impl Measurement for ThesisRun {
-    const FILES: &[&str] = &["results.json", "table.md", "report.html"];
-
-    fn text(
-        results: &Results<Self>,
-        file: &str,
-        folder: &Path,
-    ) -> Result<Option<String>, ReportError> {
-        Ok(Some(match file {
-            "table.md" => results.markdown(),
-            _ => page::page(results, &folder.join("images"))?,
-        }))
-    }
+    const FILES: Files<Self> = &[
+        ("results.json", Results::json),
+        ("table.md", |r, _| Ok(r.markdown())),
+        ("report.html", page::page),
+    ];
 }
 
 impl Results<ThesisRun> {

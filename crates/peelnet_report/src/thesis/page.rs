@@ -22,8 +22,9 @@ const PICTURE_BUDGET: usize = 9_000_000;
 /// Widths that are tried for the pictures, pixels.
 const WIDTHS: [u32; 5] = [512, 384, 256, 192, 128];
 
-/// The whole page. `images` is the folder with `<scene>-<method>.png`.
-pub(super) fn page(results: &Results<ThesisRun>, images: &Path) -> Result<String, ReportError> {
+/// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
+pub(super) fn page(results: &Results<ThesisRun>, folder: &Path) -> Result<String, ReportError> {
+    let images = &folder.join("images");
     let run = &results.measured;
     let rows = Rows::new(&run.rows);
     let pictures = gallery(&rows, images)?;
@@ -99,7 +100,6 @@ fn stages(stages: &[Stage]) -> Table {
     )
 }
 
-/// Passes, bytes and time of every method, over all scenes.
 fn costs(rows: &Rows<'_>) -> Table {
     let time = |method: &str| {
         let own = rows.of_method(method).0.into_iter();
@@ -168,7 +168,7 @@ fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, ReportError> {
 mod tests {
     use super::*;
     use crate::testing::{machine, row, written};
-    use peelnet_chart::{Line, LineChart, Scale};
+    use peelnet_chart::{Line, Scale, line_chart};
 
     #[test]
     fn a_whole_folder() {
@@ -186,14 +186,9 @@ mod tests {
         let mut results = Results::of_rows(machine(), "peelnet run --out \"a&b\"", rows.clone());
         rows[1].time_ms = Some(3.0);
         results.measured.showcase = rows.split_off(1);
-        let loss = LineChart {
-            lines: &[Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])],
-            x: "epoch",
-            y: "loss",
-            x_scale: Scale::Linear,
-        }
-        .svg();
-        results.measured.loss = Some(loss);
+        let losses = [Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])];
+        let chart = line_chart(&losses, "epoch", "loss", Scale::Linear);
+        results.measured.loss = Some(chart);
         results.measured.dataset_summary = Some("rows <5>".to_owned());
         let page = written(dir.path(), &results);
         assert!(page.contains("data:image/png;base64,iVBOR"));

@@ -31,10 +31,11 @@ pub(super) fn like_the_thesis(rows: &Rows<'_>, trained_on: &[String]) -> Table {
             ("deep / best published", &|s| ratio(s, best)),
             ("thesis: weighted → deep", &|s| match thesis::line(s) {
                 None => "not measured".to_owned(),
-                Some(m) => format!("{:.2} → {:.2}", m.weighted, m.deep),
+                Some([weighted, deep]) => format!("{weighted:.2} → {deep:.2}"),
             }),
             ("thesis: ratio", &|s| {
-                number(thesis::line(s).map(thesis::Measured::ratio), 2)
+                let line = thesis::line(s);
+                number(line.map(|[weighted, deep]| deep / weighted), 2)
             }),
         ],
     )
@@ -44,20 +45,17 @@ pub(super) fn like_the_thesis(rows: &Rows<'_>, trained_on: &[String]) -> Table {
 pub(super) fn all_methods(rows: &Rows<'_>, trained_on: &[String]) -> Table {
     let scenes = rows.scenes();
     let named = scenes.iter().map(|s| scene_heading(s, trained_on));
-    let headings = std::iter::once("method".to_owned()).chain(named);
-    let line = |method: &str| {
-        let cells =
-            scenes.iter().map(
-                |scene| match thesis::error(rows, scene, method, |r| r.mse255) {
-                    None => "–".to_owned(),
-                    Some(0.0) => "0".to_owned(),
-                    Some(v) if v < 0.005 => format!("{v:.1e}"),
-                    Some(v) => format!("{v:.2}"),
-                },
-            );
-        std::iter::once(method.to_owned()).chain(cells).collect()
-    };
-    Table::new(headings, rows.methods().into_iter().map(line))
+    Table::matrix(
+        "method",
+        named,
+        &rows.methods(),
+        |method, k| match thesis::error(rows, scenes[k], method, |r| r.mse255) {
+            None => "–".to_owned(),
+            Some(0.0) => "0".to_owned(),
+            Some(v) if v < 0.005 => format!("{v:.1e}"),
+            Some(v) => format!("{v:.2}"),
+        },
+    )
 }
 
 #[cfg(test)]
@@ -71,25 +69,16 @@ mod tests {
             row("sixteen-050", "wboit-papakostas", 20.0),
             row("sixteen-050", "wboit-eq9", 5.0),
             row("sixteen-050", "deep-thesis", 10.0),
-        ];
-        let table = like_the_thesis(&Rows::new(&rows), &[]);
-        let line = "sixteen-050 20.00 5.00 5.00 10.00 0.50 2.00 16.35 → 10.50 0.64";
-        assert_eq!(table.rows[0].join(" "), line);
-        assert_eq!(table.rows[0].len(), table.headings.len());
-    }
-
-    /// A figure of a scene that the network learned from says so, in both tables.
-    #[test]
-    fn scenes_of_training_are_marked() {
-        let rows = [
-            row("cups", "blended", 1.0),
-            row("cups-held", "blended", 1.0),
+            row("cups", "wboit-eq9", 1.0),
         ];
         let (rows, trained) = (Rows::new(&rows), ["cups".to_owned()]);
         let table = like_the_thesis(&rows, &trained);
-        assert_eq!(table.rows[0][0], "cups (trained on)");
-        assert_eq!(table.rows[1][0], "cups-held");
+        let line = "sixteen-050 20.00 5.00 5.00 10.00 0.50 2.00 16.35 → 10.50 0.64";
+        assert_eq!(table.rows[0].join(" "), line);
+        assert_eq!(table.rows[0].len(), table.headings.len());
+        // A figure of a scene that the network learned from says so, in both tables.
+        assert_eq!(table.rows[1][0], "cups (trained on)");
         let headings = all_methods(&rows, &trained).headings;
-        assert_eq!(headings, ["method", "cups (trained on)", "cups-held"]);
+        assert_eq!(headings, ["method", "sixteen-050", "cups (trained on)"]);
     }
 }
