@@ -10,7 +10,7 @@ use crate::{
     bench::Progress,
     compare::{Plan, method_ms},
     rows::mean,
-    stage::{Ready, Stage, Watch, in_turn, percentile},
+    stage::{Ready, Stage, Watch, camera, in_turn, percentile, quad},
 };
 use glam::Vec3;
 use peelnet_gpu::Gpu;
@@ -164,12 +164,8 @@ fn stack(layers: u32, cells: u32) -> Scene {
         })
         .collect();
     let camera = Camera {
-        position: Vec3::ZERO,
-        target: Vec3::NEG_Z,
-        up: Vec3::Y,
         fov_y_degrees: 60.0,
-        near: 0.1,
-        far: 100.0,
+        ..camera([0.1, 100.0])
     };
     let name = format!("stack of {layers} walls of {cells}×{cells} squares");
     Scene::generated(&name, "the bench", [0.2, 0.3, 0.4], camera, objects)
@@ -184,9 +180,8 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
     };
     let square = |i: u32| {
         let (x, y) = (i % cells, i / cells);
-        let (a, b) = (vertex(x, y), vertex(x + 1, y));
-        let (c, d) = (vertex(x + 1, y + 1), vertex(x, y + 1));
-        [[a, b, c], [a, c, d]]
+        let (right, above) = (x + 1, y + 1);
+        quad([(x, y), (right, y), (right, above), (x, above)].map(|(x, y)| vertex(x, y)))
     };
     let triangles: Vec<[Vec3; 3]> = (0..cells * cells).flat_map(square).collect();
     Object::of_triangles(&format!("wall at {depth}"), &triangles, material)

@@ -1,6 +1,7 @@
 //! Scenes on the GPU and methods that draw them, frames in turn, and what is reported of both.
 
 use crate::{EvalError, compare::EXACT};
+use glam::Vec3;
 use peelnet_gpu::Gpu;
 use peelnet_render::{
     Frame, Image, MethodOptions, MethodSpec, Prepared, Profile, RenderError, Renderer,
@@ -69,6 +70,23 @@ pub(crate) struct Stage<'a> {
 pub(crate) struct Ready {
     pub name: String,
     pub prepared: Prepared,
+}
+
+/// At the origin, looking along −z, 90° high.
+pub(crate) fn camera([near, far]: [f32; 2]) -> Camera {
+    Camera {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y_degrees: 90.0,
+        near,
+        far,
+    }
+}
+
+/// Two triangles.
+pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
+    [[a, b, c], [a, c, d]]
 }
 
 /// The method that judges all others.

@@ -39,7 +39,7 @@ impl<'a> Peeled<'a> {
         sampled: bool,
     ) -> Result<Self, EvalError> {
         let harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, sampled, None)
-            .map_err(EvalError::peel(&scene.name))?;
+            .map_err(EvalError::at(format!("scene '{}'", scene.name)))?;
         Ok(Self { scene, harvester })
     }
 
@@ -74,7 +74,7 @@ impl<'a> Peeled<'a> {
         self.harvester
             .harvest(camera, sample, None, RawTile::default, &mut tile)
             .map(|_| ())
-            .map_err(EvalError::peel(&self.scene.name))
+            .map_err(EvalError::at(format!("scene '{}'", self.scene.name)))
     }
 
     /// The fragments of a view's sampled pixels.

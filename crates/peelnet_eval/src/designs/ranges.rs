@@ -168,17 +168,6 @@ mod tests {
     use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
     use peelnet_scene::Material;
 
-    fn camera() -> Camera {
-        Camera {
-            position: Vec3::ZERO,
-            target: Vec3::new(0.0, 0.0, -5.0),
-            up: Vec3::Y,
-            fov_y_degrees: 90.0,
-            near: 0.1,
-            far: 100.0,
-        }
-    }
-
     fn one(depth: f32) -> Vec<Fragment> {
         vec![Fragment::new(depth, 0.5, [1.0; 3])]
     }
@@ -192,10 +181,11 @@ mod tests {
         });
         let material = Material::unlit([1.0; 3], 0.5);
         let object = peelnet_scene::Object::of_triangles("box", &triangles, material);
-        let scene = Scene::generated("s", "a test", [0.0; 3], camera(), vec![object]);
+        let camera = crate::stage::camera([0.1, 100.0]);
+        let scene = Scene::generated("s", "a test", [0.0; 3], camera, vec![object]);
         let warp = DepthWarp::new(1.0, 8.0);
         let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
-        let found = of_boxes(&view, &scene, &camera(), [3, 3]);
+        let found = of_boxes(&view, &scene, &camera, [3, 3]);
         let margin = f64::from(2.0 * peelnet_scene::BOX_MARGIN);
         let expected = Range::of([2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z)));
         assert_eq!(found, [expected, Range::WHOLE]);

@@ -4,6 +4,7 @@ use super::{
     Case, Work, network,
     trial::{Stack, Trial},
 };
+use crate::stage::quad;
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Source, suite};
@@ -370,18 +371,6 @@ const NARROW: [f32; 2] = [0.1, 100.0];
 
 pub(super) const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
 
-/// At the origin, looking along −z, 90° high.
-pub(super) fn camera([near, far]: [f32; 2]) -> Camera {
-    Camera {
-        position: Vec3::ZERO,
-        target: Vec3::NEG_Z,
-        up: Vec3::Y,
-        fov_y_degrees: 90.0,
-        near,
-        far,
-    }
-}
-
 /// (depth, α) with colours by a rule.
 fn rainbow(layers: &[(f32, f32)]) -> Vec<Fragment> {
     let color = |i: usize| {
@@ -441,10 +430,6 @@ fn sixteen(alpha: f32) -> Trial {
         scene,
         ..Trial::judged("", PLANES, Vec::new())
     }
-}
-
-fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
-    [[a, b, c], [a, c, d]]
 }
 
 fn object<const N: usize>(

@@ -118,10 +118,7 @@ pub fn stress(
                 findings.subject = i;
                 if let Some(network) = &subject.learned {
                     let examined = examine(gpu, network, &mut findings);
-                    examined.map_err(|source| EvalError::Network {
-                        method: names[i].clone(),
-                        source: Box::new(source),
-                    })?;
+                    examined.map_err(EvalError::at(format!("the network of {}", names[i])))?;
                 }
             }
         }

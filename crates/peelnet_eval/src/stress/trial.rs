@@ -1,10 +1,7 @@
 //! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit judge.
 
-use super::{
-    catalogue::{BACKGROUND, camera},
-    judge,
-};
-
+use super::{catalogue::BACKGROUND, judge};
+use crate::stage::{camera, quad};
 use glam::Vec3;
 use peelnet_core::{
     absorbance::absorbance,
@@ -191,9 +188,13 @@ impl Trial {
                 let x = |pixel: u32| (2.0 * pixel as f32 / width - 1.0) * z * width / height;
                 let y = |pixel: u32| (1.0 - 2.0 * pixel as f32 / height) * z;
                 let v = |px: u32, py: u32| Vec3::new(x(px), y(py), -z);
-                let (a, b) = (v(left, top + cover), v(left + cover, top + cover));
-                let (c, d) = (v(left + cover, top), v(left, top));
-                [[a, b, c], [a, c, d]]
+                let (right, bottom) = (left + cover, top + cover);
+                quad([
+                    v(left, bottom),
+                    v(right, bottom),
+                    v(right, top),
+                    v(left, top),
+                ])
             };
             let mut fragments = Vec::new();
             for layer in &stack.layers {
