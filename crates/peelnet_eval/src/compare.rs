@@ -18,10 +18,8 @@ use peelnet_render::{
 use peelnet_scene::Scene;
 use std::path::Path;
 
-/// The method that judges all others.
 pub const EXACT: &str = role::REFERENCE;
 
-/// What is drawn.
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
     /// Width and height of every frame, pixels.

@@ -222,10 +222,7 @@ pub fn measure(
         method: settings.method.to_string(),
         size: settings.size,
         frames: settings.frames,
-        costs: Vec::new(),
-        parts: Vec::new(),
-        layers: Vec::new(),
-        fills: Vec::new(),
+        ..Effects::default()
     };
     let mut watch = Watch::new(0, stop, report);
     let mut next = |scene: &Scene, what: String| {
@@ -280,7 +277,6 @@ pub fn measure(
     Ok(found)
 }
 
-/// The picture of a scene with or without an effect.
 pub fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> PathBuf {
     let state = if on { "on" } else { "off" };
     folder

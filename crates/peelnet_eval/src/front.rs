@@ -13,7 +13,6 @@ pub const BASE: &str = role::HARDWARE_BLENDING;
 /// light. It keeps geometric means and logarithmic axes finite.
 pub const EXACT_MSE: f64 = 1e-10;
 
-/// How errors of several views become one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mean {
     /// Every view counts by its ratio, however small its errors are.

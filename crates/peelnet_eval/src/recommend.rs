@@ -20,7 +20,6 @@ pub struct Budget {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recommendation<'a> {
     pub best: &'a Point,
-    /// What would be taken if that were not there.
     pub runner_up: Option<&'a Point>,
     pub why: String,
 }

@@ -6,7 +6,6 @@ use peelnet_model::PixelLoss;
 use peelnet_render::Property;
 use serde::{Deserialize, Serialize};
 
-/// What a result was measured on, and with which version.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     pub os: String,
@@ -83,7 +82,6 @@ pub struct Bench {
     pub rows: Vec<Row>,
 }
 
-/// A method along a scene's path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathRow {
     pub method: String,
@@ -99,7 +97,6 @@ pub struct PathRow {
     pub jod: Option<f64>,
 }
 
-/// A method in one frame of a scene's path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameRow {
     pub method: String,
@@ -226,7 +223,6 @@ pub enum Outcome {
     Fail,
 }
 
-/// One property of one method in one stress case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StressRow {
     pub method: String,

@@ -167,13 +167,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn geometric_means() {
-        assert!((geometric_mean([1.0, 4.0]).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(geometric_mean([]), None);
-        assert_eq!(geometric_mean([1.0, 0.0]), None);
-    }
-
-    #[test]
     fn bytes_over_views_have_a_mean_a_median_and_a_largest() {
         let rows = [5.0, 1.0, 3.0, 7.0].map(|bytes| Row {
             bytes_per_pixel: Some(bytes),

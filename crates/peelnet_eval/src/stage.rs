@@ -89,7 +89,6 @@ pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// The method that judges all others.
 pub(crate) fn exact_method() -> MethodSpec {
     EXACT.parse().expect("it is in the list of methods")
 }

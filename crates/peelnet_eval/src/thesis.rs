@@ -60,30 +60,3 @@ pub fn best_published<'a>(rows: &Rows<'a>) -> Option<&'a str> {
     });
     Some(errors.min_by(|a, b| a.1.total_cmp(&b.1))?.0)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rows::tests::row;
-
-    #[test]
-    fn means_over_views_and_the_best_weight() {
-        let all = [
-            row("a", 0, "wboit-papakostas", 10.0),
-            row("a", 1, "wboit-papakostas", 30.0),
-            row("a", 0, "wboit-eq9", 4.0),
-            row("a", 1, "wboit-eq9", 6.0),
-            row("a", 0, "deep-thesis", 8.0),
-            row("a", 1, "deep-thesis", 12.0),
-        ];
-        let rows = Rows::new(&all);
-        assert_eq!(best_published(&rows), Some("wboit-eq9"));
-        let errors = ["wboit-papakostas", "wboit-eq9"].map(|m| error(&rows, "a", m, |r| r.mse255));
-        assert_eq!(errors, [Some(20.0), Some(5.0)]);
-        let ratio = |to| ratio(&rows, "a", [DEEP, to], |r| r.mse255);
-        assert_eq!(ratio("wboit-eq9"), Some(2.0));
-        assert_eq!(ratio("nothing"), None);
-        let none = [row("cups", 0, "blended", 1.0)];
-        assert_eq!(best_published(&Rows::new(&none)), None);
-    }
-}

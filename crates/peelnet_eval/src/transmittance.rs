@@ -24,7 +24,6 @@ pub(crate) struct Stacks {
     warp: DepthWarp,
 }
 
-/// A scene made ready for peeling.
 pub(crate) struct Peeled<'a> {
     scene: &'a Scene,
     harvester: Harvester,

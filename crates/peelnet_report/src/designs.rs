@@ -132,46 +132,22 @@ fn significant(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{machine, written};
-    use peelnet_eval::designs::Reference;
 
     #[test]
-    fn files_are_written() {
-        let slab = |end, mean, farthest| Kept {
-            end,
+    fn designs_are_told_in_short() {
+        let slab = |mean, farthest| Kept {
+            end: 0.5,
             mean,
-            nearest: true,
+            nearest: mean,
             farthest,
         };
-        let network = Score {
-            to_moments: Some(0.01),
-            to_kbuffer: Some(0.25),
-            worst_scene: Some("s".into()),
-            worst: Some(0.5),
-            contour_pairs: Some(0.003),
-            flicker: [Some(0.001), None],
-        };
         let row = Row {
-            design: "medium".into(),
-            slabs: vec![slab(0.5, true, true), slab(1.0, false, false)],
+            slabs: vec![slab(true, true), slab(false, false)],
             trained_apart: true,
-            bytes: 22,
-            seconds: 2.5,
-            network: network.clone(),
             ..Row::default()
         };
-        let designs = Designs {
-            references: vec![Reference {
-                method: "mboit4".into(),
-                score: network,
-            }],
-            rows: vec![row],
-            ..Designs::default()
-        };
-        let results = Results::new(machine(), "peelnet bench s --designs d", designs);
-        let dir = tempfile::tempdir().unwrap();
-        let text = written(dir.path(), &results);
-        let line = "| medium | 0.5 1 | MNF N |  |  | one, trained apart | image | 22 |  | 0 | 2.5 | 0.0100 | 0.500 (s) | 0.250 | 0.30 | 0.10 | – | – | – | – | – |";
-        assert!(text.contains(line), "{text}");
+        assert_eq!(joined(&row, kept), "MNF –");
+        assert_eq!(sums(&row), "one, trained apart");
+        assert_eq!([0.01, 0.0, 123.4].map(significant), ["0.0100", "0", "123"]);
     }
 }

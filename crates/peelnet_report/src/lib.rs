@@ -29,4 +29,4 @@ pub use error::ReportError;
 pub use files::{kind_of, write_file};
 pub use results::{Files, Measurement, Results};
 pub use table::Table;
-pub use thesis::{Stage, ThesisRun, findings::findings};
+pub use thesis::{Stage, ThesisRun};

@@ -70,23 +70,21 @@ mod tests {
     use crate::testing::{machine, written};
     use peelnet_eval::scaling::{Growth, exponents};
 
-    fn row(method: &str, series: Series, value: u64, time_ms: f64) -> Growth {
-        Growth {
-            method: method.to_owned(),
-            series,
-            value,
-            time_ms,
-            bytes_per_pixel: 8.0,
-        }
-    }
-
     #[test]
     fn files_are_written() {
-        let rows = vec![
-            row("a", Series::Fragments, 1, 1.0),
-            row("a", Series::Fragments, 2, 2.0),
-            row("b", Series::Pixels, 64, 2.0),
+        let row = |(method, series, value)| Growth {
+            method: str::to_owned(method),
+            series,
+            value,
+            time_ms: value as f64,
+            bytes_per_pixel: 8.0,
+        };
+        let steps = [
+            ("a", Series::Fragments, 1),
+            ("a", Series::Fragments, 2),
+            ("b", Series::Pixels, 64),
         ];
+        let rows = steps.map(row).to_vec();
         let scaling = Scaling {
             exponents: exponents(&rows),
             rows,

@@ -87,7 +87,6 @@ impl Results<Stressed> {
         Table::new(headings, lines)
     }
 
-    /// Failures and declared flaws, those that there are, with a title.
     fn exceptions(&self) -> impl Iterator<Item = (&'static str, Table)> {
         let all = [
             ("Failures", self.failures()),

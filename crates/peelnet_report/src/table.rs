@@ -6,7 +6,6 @@ use peelnet_files::one_line;
 /// A heading, and the cell of a row.
 pub(crate) type Column<'c, R> = (&'c str, &'c dyn Fn(&R) -> String);
 
-/// Headings, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
     pub headings: Vec<String>,

@@ -39,7 +39,6 @@ pub(super) struct Stack {
     exact: [f64; 3],
 }
 
-/// The exact image of a view, and its pairs of pixels.
 struct Shown {
     image: Image,
     pairs: Pairs,

@@ -215,8 +215,7 @@ pub fn measure(
         frames,
         fps: FPS,
         display: DISPLAY_ABOUT.to_owned(),
-        rows: Vec::new(),
-        by_frame: Vec::new(),
+        ..Along::default()
     };
     let total = (scenes.len() * (methods.len() + 2)) as u64 * u64::from(frames);
     let mut watch = Watch::new(total, stop, report);

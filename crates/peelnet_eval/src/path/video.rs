@@ -41,36 +41,3 @@ impl Judge {
         Ok(f64::from(found.jod))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn video(level: impl Fn(usize) -> u8) -> Vec<Image> {
-        let frame = |k| {
-            let image = peelnet_render::Image {
-                width: 32,
-                height: 24,
-                pixels: vec![[peelnet_core::srgb::decode(f32::from(level(k)) / 255.0); 4]; 32 * 24],
-            };
-            super::frame(&Displayed::new(&image)).unwrap().unwrap()
-        };
-        (0..8).map(frame).collect()
-    }
-
-    /// Identical videos have no visible difference. A frame of one colour has no contrast: that it is brighter all the time is not seen, that
-    /// it is brighter and darker in turn is.
-    #[test]
-    fn flicker_is_seen() {
-        let judge = Judge::new().unwrap();
-        let exact = video(|_| 128);
-        assert_eq!(judge.jod(&exact, &exact).unwrap(), 10.0);
-        let steady = judge.jod(&video(|_| 138), &exact).unwrap();
-        let flicker = video(|k| if k % 2 == 0 { 138 } else { 118 });
-        let flicker = judge.jod(&flicker, &exact).unwrap();
-        assert!(
-            flicker < steady - 1.0 && steady <= 10.0,
-            "{flicker} {steady}"
-        );
-    }
-}

@@ -38,7 +38,6 @@ pub fn clip_triangles(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<sca
     triangles
 }
 
-/// A light as the 64-bit shading takes it.
 pub fn light(light: &Light) -> shading::Light {
     shading::Light {
         source: match light.source {
@@ -167,7 +166,6 @@ fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     (p - a - along * t.clamp(0.0, 1.0)).length()
 }
 
-/// A scene as one camera sees it.
 struct View<'a> {
     scene: &'a Scene,
     /// Of every triangle its object's number, and its own in the object's mesh.

@@ -53,7 +53,6 @@ enum Work {
     Network(Examine),
 }
 
-/// Evaluates a network, and notes what it finds.
 type Examine = fn(&Gpu, &(LearnedWeight, Model), &mut Findings) -> Result<(), ExportError>;
 
 impl Case {
@@ -163,7 +162,6 @@ pub fn stress(
     Ok(rows)
 }
 
-/// What became of every property that was looked at.
 fn rows(
     case: &Case,
     subjects: &[&Subject],

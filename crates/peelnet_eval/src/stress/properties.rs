@@ -121,7 +121,6 @@ impl Subject {
     }
 }
 
-/// Judges what one frame shows.
 pub(super) fn judge(
     subject: &Subject,
     case: &str,

@@ -40,12 +40,10 @@ pub struct Trial {
     pub(super) known: Option<Truth>,
 }
 
-/// What is known of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// It holds no fragment and nothing opaque.
     Nothing,
-    /// It is one of [`Truth::kinds`].
     Kind(u32),
     /// It lies on an edge: which fragments it holds depends on how vertices are snapped to the adapter's sub-pixel grid.
     Unjudged,

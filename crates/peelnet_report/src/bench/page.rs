@@ -106,7 +106,6 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
     })
 }
 
-/// A line for every point, with all measures.
 pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
     let ratio = |p: &Point, to| number(rows.error_ratio(&p.method, to), 3);
     let mean = |p: &Point, value: fn(&Row) -> Option<f64>, digits| {
@@ -165,7 +164,6 @@ fn untimed(rows: &Rows<'_>) -> Markup {
     }
 }
 
-/// Where every method's time goes.
 fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
     let line = |p: &Point| {
         let mut times: Vec<(&str, Vec<f64>)> = Vec::new();
@@ -229,7 +227,6 @@ pub(crate) fn gallery<'a>(
     Ok(html! { div.gallery { @for figure in all { (figure) } } })
 }
 
-/// How far every channel is off, magnified.
 fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
     let mut map = other.clone();
     for (d, e) in map.pixels_mut().zip(exact.pixels()) {

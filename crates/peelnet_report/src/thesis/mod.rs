@@ -1,6 +1,6 @@
 //! The files of `peelnet run`: the thesis's table of our scenes, what it says of the thesis's promise, and a page.
 
-pub(crate) mod findings;
+mod findings;
 mod page;
 mod table;
 
@@ -25,7 +25,6 @@ pub struct ThesisRun {
     pub stages: Vec<Stage>,
     /// Settings that matter, as name and value.
     pub settings: Vec<(String, String)>,
-    /// What the rows say, computed from them.
     pub findings: Vec<String>,
     /// Scenes among them that the learned method was trained on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -85,7 +84,6 @@ impl Results<ThesisRun> {
     }
 }
 
-/// What the figures of the table are.
 const EXPLANATION: &str = "Mean squared error against the exact image (`abuffer`), sRGB-encoded, 0–255 scale, not \
 quantised, whole frame, mean over the views. The thesis's meshes and camera are unknown: its absolute figures do not \
 compare with these, the ratios do. At α = 0.85 and with random alphas it reports artifacts and no figures.";

@@ -180,12 +180,16 @@ mod tests {
             .save(images.join(image_name("sixteen-025", "deep-thesis")))
             .unwrap();
         let mut rows = vec![
-            row("sixteen-025", "wboit-papakostas", 10.0),
+            row("sixteen-025", "wboit-papakostas", 5.0),
+            row("sixteen-025", "wboit-papakostas", 15.0),
+            row("sixteen-025", "wboit-eq9", 4.0),
             row("sixteen-025", "deep-thesis", 5.0),
+            row("cups", "wboit-eq9", 1.0),
         ];
         let mut results = Results::of_rows(machine(), "peelnet run --out \"a&b\"", rows.clone());
-        rows[1].time_ms = Some(3.0);
-        results.measured.showcase = rows.split_off(1);
+        results.measured.trained_on = vec!["cups".to_owned()];
+        rows[3].time_ms = Some(3.0);
+        results.measured.showcase = vec![rows.swap_remove(3)];
         let losses = [Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])];
         let chart = line_chart(&losses, "epoch", "loss", Scale::Linear);
         results.measured.loss = Some(chart);
@@ -198,8 +202,11 @@ mod tests {
         // The name of SVG's namespace is no address that is fetched.
         let page = page.replace("http://www.w3.org/2000/svg", "");
         assert!(!page.contains("http") && !page.contains("<?xml"));
-        let table = results.markdown();
-        assert!(table.contains("| sixteen-025 | 10.00 |"), "{table}");
-        assert!(table.contains("15.96 → 11.79"), "{table}");
+        // Means over the views, beside the thesis's own; a figure of a scene that the network learned from says so in both tables.
+        let tables = results.markdown();
+        let line =
+            "| sixteen-025 | 10.00 | 4.00 | 4.00 | 5.00 | 0.50 | 1.25 | 15.96 → 11.79 | 0.74 |";
+        assert!(tables.contains(line), "{tables}");
+        assert_eq!(tables.matches("cups (trained on)").count(), 2, "{tables}");
     }
 }

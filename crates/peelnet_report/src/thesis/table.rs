@@ -57,28 +57,3 @@ pub(super) fn all_methods(rows: &Rows<'_>, trained_on: &[String]) -> Table {
         },
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::row;
-
-    #[test]
-    fn the_thesis_stands_beside_our_figures() {
-        let rows = [
-            row("sixteen-050", "wboit-papakostas", 20.0),
-            row("sixteen-050", "wboit-eq9", 5.0),
-            row("sixteen-050", "deep-thesis", 10.0),
-            row("cups", "wboit-eq9", 1.0),
-        ];
-        let (rows, trained) = (Rows::new(&rows), ["cups".to_owned()]);
-        let table = like_the_thesis(&rows, &trained);
-        let line = "sixteen-050 20.00 5.00 5.00 10.00 0.50 2.00 16.35 → 10.50 0.64";
-        assert_eq!(table.rows[0].join(" "), line);
-        assert_eq!(table.rows[0].len(), table.headings.len());
-        // A figure of a scene that the network learned from says so, in both tables.
-        assert_eq!(table.rows[1][0], "cups (trained on)");
-        let headings = all_methods(&rows, &trained).headings;
-        assert_eq!(headings, ["method", "sixteen-050", "cups (trained on)"]);
-    }
-}
