@@ -151,27 +151,28 @@ fn prepare<'a>(
     let others = plan.methods.iter().filter(|m| **m != exact);
     let mut entries = Vec::new();
     for method in std::iter::once(&exact).chain(others) {
-        let mut models = plan.models.iter();
-        let mut entry = Entry {
-            method: method.clone(),
-            name: method.to_string(),
-            model: models.find(|m| m.meta.recipe.method == method.name()),
-            ready: None,
-        };
+        let name = method.to_string();
+        let mut ready = None;
         if method.method().cpu_only.is_none() {
             match stage.ready(method, plan.options(method)) {
                 Err(e) if plan.lenient && e.is_too_large() && !entries.is_empty() => {
-                    watch.left_out(scene, &entry.name, &e.reason());
+                    watch.left_out(scene, &name, &e.reason());
                     continue;
                 }
-                ready => entry.ready = Some(ready?),
+                prepared => ready = Some(prepared?),
             }
         } else if plan.samples > 1 {
             let why = "it is composited on the CPU, of one sample a pixel";
-            watch.left_out(scene, &entry.name, why);
+            watch.left_out(scene, &name, why);
             continue;
         }
-        entries.push(entry);
+        let mut models = plan.models.iter();
+        entries.push(Entry {
+            method: method.clone(),
+            name,
+            model: models.find(|m| m.meta.recipe.method == method.name()),
+            ready,
+        });
     }
     Ok(entries)
 }

@@ -124,16 +124,15 @@ fn times(
     Ok(frames.iter().map(median).collect())
 }
 
-const fn view_of(highlight: u32) -> LayerView {
-    LayerView {
+/// The view of layers, ready to be drawn.
+fn view_of(stage: &Stage<'_>, highlight: u32, size: [u32; 2]) -> Result<Ready, EvalError> {
+    let view = LayerView {
         highlight,
         increasing: false,
         formula: LayerFormula::Front,
-    }
+    };
+    stage.prepare("layers", |renderer| renderer.layers(view, size))
 }
-
-/// What errors of the view of layers name in place of a method.
-const LAYERS: &str = "layers";
 
 /// Times of the view of layers from a camera: with one layer shaded, and with all.
 fn layer_times(
@@ -144,12 +143,11 @@ fn layer_times(
 ) -> Result<[f64; 2], EvalError> {
     let layers = scene.layers();
     // Of the middle: with layers in front of it and behind.
-    let view = view_of(layers[layers.len() / 2]);
-    let one = scene.layer_view(view.highlight, false)?;
-    let all = scene.layer_view(view.highlight, true)?;
-    let stages = stages(gpu, &[&one, &all], |stage| {
-        stage.prepare(LAYERS, |renderer| renderer.layers(view, settings.size))
-    })?;
+    let highlight = layers[layers.len() / 2];
+    let one = scene.layer_view(highlight, false)?;
+    let all = scene.layer_view(highlight, true)?;
+    let ready = |stage: &Stage<'_>| view_of(stage, highlight, settings.size);
+    let stages = stages(gpu, &[&one, &all], ready)?;
     let ms = times(stages, camera, settings.frames)?;
     Ok([ms[0], ms[1]])
 }
@@ -179,11 +177,10 @@ fn filling(
     filled: f64,
     size: [u32; 2],
 ) -> Result<(Camera, f64), EvalError> {
-    let view = view_of(scene.layers()[0]);
-    let scene = scene.layer_view(view.highlight, false)?;
+    let highlight = scene.layers()[0];
+    let scene = scene.layer_view(highlight, false)?;
     let stage = Stage::new(gpu, &scene)?;
-    let small = size.map(|n| (n / 4).max(1));
-    let mut ready = stage.prepare(LAYERS, |renderer| renderer.layers(view, small))?;
+    let mut ready = view_of(&stage, highlight, size.map(|n| (n / 4).max(1)))?;
     let camera = |fov_y_degrees: f32| Camera {
         fov_y_degrees,
         ..scene.views[0]

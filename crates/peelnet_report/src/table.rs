@@ -115,12 +115,8 @@ pub(crate) fn scene_heading(scene: &str, trained_on: &[String]) -> String {
     marked(scene, trained_on, " (trained on)")
 }
 
-/// The same inside of parentheses.
-pub(crate) fn scene_in_cell(scene: &str, trained_on: &[String]) -> String {
-    marked(scene, trained_on, ", trained on")
-}
-
-fn marked(scene: &str, trained_on: &[String], mark: &str) -> String {
+/// The same with another mark.
+pub(crate) fn marked(scene: &str, trained_on: &[String], mark: &str) -> String {
     let is_trained_on = trained_on.iter().any(|name| name == scene);
     format!("{scene}{}", if is_trained_on { mark } else { "" })
 }

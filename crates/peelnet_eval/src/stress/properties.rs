@@ -4,6 +4,7 @@ use super::{
     subject::Subject,
     trial::{Content, Kind, Trial, Truth},
 };
+use glam::{DVec3, IVec3, Vec3};
 use peelnet_render::{Image, Property};
 use std::collections::BTreeMap;
 
@@ -182,12 +183,11 @@ fn judge_pixel(
     }
     if subject.promises.normalised {
         // What the fragments show is a mean of their colours times the coverage; C_0 shows through the rest.
-        let own: [f64; 3] =
-            std::array::from_fn(|c| p64[c] - (1.0 - p64[3]) * f64::from(kind.background[c]));
+        let behind = Vec3::from(kind.background).as_dvec3();
+        let own = DVec3::new(p64[0], p64[1], p64[2]) - (1.0 - p64[3]) * behind;
         let outside = directions().zip(supports).map(|(d, &[least, most])| {
-            let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let along = dot(d, &own);
-            nan_max(along - p64[3] * most, p64[3] * least - along) / length
+            let along = d.dot(own);
+            nan_max(along - p64[3] * most, p64[3] * least - along) / d.length()
         });
         let outside = outside.fold(f64::NEG_INFINITY, nan_max);
         let shown = p64[..3].iter().fold(kind.scale(), |m, &c| m.max(c));
@@ -283,32 +283,22 @@ fn luminance(c: &[f64]) -> f64 {
     0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
 }
 
-fn dot(d: [f64; 3], c: &[f64]) -> f64 {
-    d[0] * c[0] + d[1] * c[1] + d[2] * c[2]
-}
-
 /// The thirteen axes of a cube through its faces, edges and corners: a hull is tested from both sides of each.
-fn directions() -> impl Iterator<Item = [f64; 3]> {
+fn directions() -> impl Iterator<Item = DVec3> {
     // Half of the 26 directions: those whose number lies above that of none.
-    (14..27).map(|i: i32| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1].map(f64::from))
+    (14..27).map(|i: i32| IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).as_dvec3())
 }
 
 /// Least and largest extent of the colours of a pixel's fragments along every axis; 0 of a pixel of which nothing is covered.
 fn extents(kind: &Kind) -> Vec<[f64; 2]> {
-    let colors = || {
-        let seen = kind.fragments.iter().filter(|f| f.alpha > 0.0);
-        seen.map(|f| f.color)
+    let seen = kind.fragments.iter().filter(|f| f.alpha > 0.0);
+    let colors = seen.map(|f| Vec3::from(f.color).as_dvec3());
+    let extent = |d: DVec3| {
+        let along = colors.clone().map(|c| [d.dot(c); 2]);
+        along.reduce(|[lo, hi], [x, _]| [lo.min(x), hi.max(x)])
     };
-    if colors().next().is_none() {
-        return directions().map(|_| [0.0; 2]).collect();
-    }
     directions()
-        .map(|d| {
-            let along = colors().map(|c| dot(d, &c.map(f64::from)));
-            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| {
-                [lo.min(x), hi.max(x)]
-            })
-        })
+        .map(|d| extent(d).unwrap_or_default())
         .collect()
 }
 
@@ -338,9 +328,9 @@ mod tests {
     fn a_hull_has_thirteen_axes() {
         let all: Vec<_> = directions().collect();
         assert_eq!(all.len(), 13);
-        assert!(all.iter().all(|d| d.iter().any(|x| *x != 0.0)));
+        assert!(!all.contains(&DVec3::ZERO));
         for (i, a) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|b| a != b && *a != b.map(|x| -x)));
+            assert!(all[..i].iter().all(|b| a != b && *a != -*b));
         }
     }
 

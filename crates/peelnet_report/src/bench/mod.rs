@@ -5,7 +5,7 @@ pub(crate) mod page;
 use crate::{
     Files, Measurement, Results, Table,
     files::csv,
-    table::{number, scene_heading, scene_in_cell},
+    table::{marked, number, scene_heading},
 };
 use peelnet_chart::{Bubble, Svg, bubble_chart};
 use peelnet_eval::{
@@ -48,7 +48,7 @@ impl Results<Bench> {
         let point = |method: &str| points.iter().find(|p| p.method == method);
         let worst = |method: &str| {
             let (scene, x) = rows.worst_scene(method)?;
-            let scene = scene_in_cell(scene, &self.measured.trained_on);
+            let scene = marked(scene, &self.measured.trained_on, ", trained on");
             Some(format!("{x:.2} ({scene})"))
         };
         let dash = || "–".to_owned();

@@ -2,12 +2,18 @@
 
 mod findings;
 mod page;
-mod table;
 
-use crate::{Files, Measurement, Results, Table};
+use crate::{
+    Files, Measurement, Results, Table,
+    table::{number, scene_heading},
+};
 use findings::findings;
 use peelnet_chart::Svg;
-use peelnet_eval::{Machine, Row, rows::Rows};
+use peelnet_eval::{
+    Machine, Row,
+    rows::{self, Rows},
+    thesis::{self, DEEP, best_published},
+};
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,13 +68,59 @@ impl Results<ThesisRun> {
 
     /// Weighted and learned weighted blending on every scene, beside the thesis's figures.
     pub fn table(&self) -> Table {
-        let run = &self.measured;
-        table::like_the_thesis(&Rows::new(&run.rows), &run.trained_on)
+        let rows = Rows::new(&self.measured.rows);
+        let trained_on = &self.measured.trained_on;
+        let best = best_published(&rows);
+        let best_heading = best.map_or_else(
+            || "best published".to_owned(),
+            |b| format!("best published: {b}"),
+        );
+        let best = best.unwrap_or_default();
+        let error = |s: &str, m| number(thesis::error(&rows, s, m, |r| r.mse255), 2);
+        let ratio = |s: &str, to| number(thesis::ratio(&rows, s, [DEEP, to], |r| r.mse255), 2);
+        Table::of(
+            &rows.scenes(),
+            &[
+                ("scene", &|s| scene_heading(s, trained_on)),
+                (thesis::WEIGHTED, &|s| error(s, thesis::WEIGHTED)),
+                (rows::WEIGHTED, &|s| error(s, rows::WEIGHTED)),
+                (&best_heading, &|s| error(s, best)),
+                (DEEP, &|s| error(s, DEEP)),
+                ("deep / thesis's weight", &|s| ratio(s, thesis::WEIGHTED)),
+                ("deep / best published", &|s| ratio(s, best)),
+                ("thesis: weighted → deep", &|s| match thesis::line(s) {
+                    None => "not measured".to_owned(),
+                    Some([weighted, deep]) => format!("{weighted:.2} → {deep:.2}"),
+                }),
+                ("thesis: ratio", &|s| {
+                    let line = thesis::line(s);
+                    number(line.map(|[weighted, deep]| deep / weighted), 2)
+                }),
+            ],
+        )
+    }
+
+    /// Every method (a row each) on every scene (a column each), `mse255`.
+    fn all_methods(&self) -> Table {
+        let rows = Rows::new(&self.measured.rows);
+        let trained_on = &self.measured.trained_on;
+        let scenes = rows.scenes();
+        let named = scenes.iter().map(|s| scene_heading(s, trained_on));
+        Table::matrix(
+            "method",
+            named,
+            &rows.methods(),
+            |method, k| match thesis::error(&rows, scenes[k], method, |r| r.mse255) {
+                None => "–".to_owned(),
+                Some(0.0) => "0".to_owned(),
+                Some(v) if v < 0.005 => format!("{v:.1e}"),
+                Some(v) => format!("{v:.2}"),
+            },
+        )
     }
 
     /// `table.md`: the table like the thesis's, the findings, and all methods.
     fn markdown(&self) -> String {
-        let rows = Rows::new(&self.measured.rows);
         let findings = self.measured.findings.iter();
         let findings: String = findings.map(|f| format!("- {f}\n")).collect();
         format!(
@@ -76,7 +128,7 @@ impl Results<ThesisRun> {
              ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
              Measured on {} ({}) with `{}`.\n",
             self.table().markdown(),
-            table::all_methods(&rows, &self.measured.trained_on).markdown(),
+            self.all_methods().markdown(),
             self.machine.adapter,
             self.machine.cpu,
             self.command,

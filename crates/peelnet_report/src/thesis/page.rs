@@ -1,6 +1,6 @@
 //! The page of a run.
 
-use super::{EXPLANATION, Stage, ThesisRun, table};
+use super::{EXPLANATION, Stage, ThesisRun};
 use crate::{
     ReportError, Results, Table, bench, page,
     page::SORT_SCRIPT,
@@ -37,7 +37,7 @@ pub(super) fn page(results: &Results<ThesisRun>, folder: &Path) -> Result<String
         p.note { (EXPLANATION.replace('`', "")) }
         h2 { "All methods" }
         p.note { "Mean squared error (0–255), mean over the views." }
-        (table::all_methods(&rows, &run.trained_on).html("", |_| false))
+        (results.all_methods().html("", |_| false))
         h2 { "Cost" }
         (costs(&rows).html("", |_| false))
         p.note { "One frame per view, without warm-up: an order of magnitude, not a benchmark." }
