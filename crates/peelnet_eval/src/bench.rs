@@ -110,17 +110,13 @@ mod tests {
     /// Rows are found by their scene's name: the second of two would pass for done.
     #[test]
     fn two_scenes_of_one_name_are_refused_with_both_files() {
-        let cups = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/cups.toml");
-        let first = Scene::load(cups).unwrap();
-        let mut second = first.clone();
-        second.source = "b/x.toml".into();
-        let text = check_names(&[first.clone(), second.clone()]).unwrap_err();
-        let text = text.to_string();
-        assert!(
-            text.contains("cups.toml") && text.contains("b/x.toml"),
-            "{text}"
-        );
-        second.name = "other".to_owned();
-        check_names(&[first, second]).unwrap();
+        let cups = peelnet_scene::suite::load("cups").unwrap();
+        let second = Scene {
+            source: "b/x.toml".into(),
+            ..cups.clone()
+        };
+        let text = check_names(&[cups, second]).unwrap_err().to_string();
+        let both = text.contains("cups.toml") && text.contains("b/x.toml");
+        assert!(both, "{text}");
     }
 }

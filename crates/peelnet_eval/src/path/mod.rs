@@ -20,14 +20,14 @@ use crate::{
     rows::mean,
     stage::{Ready, Stage, Watch, exact_method},
 };
-use colorvideovdp::Image as VideoFrame;
+use colorvideovdp::{Cvvdp, Image as VideoFrame};
 use motion::{Moment, moment};
 use peelnet_gpu::Gpu;
 use peelnet_render::{Image, MethodSpec};
 use peelnet_scene::Scene;
 use std::sync::atomic::AtomicBool;
 use strip::Strip;
-use video::{DISPLAY_ABOUT, FPS, Judge};
+use video::{DISPLAY_ABOUT, FPS};
 
 /// Bytes that a path may keep.
 const MAX_PATH_BYTES: u64 = 1 << 31;
@@ -143,7 +143,7 @@ impl Take<'_, '_> {
         &mut self,
         method: &MethodSpec,
         exact: &Exact,
-        judge: &Judge,
+        judge: &Cvvdp,
     ) -> Result<(PathRow, Vec<FrameRow>), EvalError> {
         let (name, scene) = (method.to_string(), self.stage.scene.name.clone());
         let mut strip = Strip::new(self.plan.size, self.moments.len());
@@ -175,7 +175,7 @@ impl Take<'_, '_> {
         })?;
         self.save(&strip, &name)?;
         // Frames that are too small for the metric are no video.
-        let jod = (!video.is_empty()).then(|| judge.jod(&video, &exact.video));
+        let jod = (!video.is_empty()).then(|| video::jod(judge, &video, &exact.video));
         let mse_8bit = squares_8bit / rows.len() as f64;
         Ok((path_row(&rows, mse_8bit, jod.transpose()?), rows))
     }
@@ -208,7 +208,7 @@ pub fn measure(
     }
     let methods = plan.methods.iter().filter(|m| **m != exact_method());
     let methods: Vec<&MethodSpec> = methods.collect();
-    let judge = Judge::new()?;
+    let judge = video::judge()?;
     let mut found = Along {
         size: plan.size,
         samples: plan.samples,
