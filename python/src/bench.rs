@@ -23,11 +23,6 @@ use peelnet::{
 use pyo3::prelude::*;
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
-enum Said {
-    Drawn(u64, u64, String),
-    LeftOut(String),
-}
-
 struct Measure {
     size: [u32; 2],
     samples: u32,
@@ -69,7 +64,7 @@ impl Measure {
         gpu: &Gpu,
         scenes: &[peelnet::Scene],
         stop: &AtomicBool,
-        reporter: &Reporter<Said>,
+        reporter: &Reporter<Progress>,
     ) -> Result<Bench, Failure> {
         let learned = self.compared.weights(gpu)?;
         let plan = Plan {
@@ -84,17 +79,9 @@ impl Measure {
             images: None,
         };
         let partial = Partial::new(None, serde_json::Value::Null);
-        let mut show = |event: Progress<'_>| match event {
-            Progress::Drawn {
-                done,
-                total,
-                scene,
-                method,
-            } => reporter.say(Said::Drawn(done, total, format!("{scene} with {method}"))),
-            Progress::LeftOut { scene, method, why } => {
-                let text = format!("{method} is left out of {scene}: {why}");
-                reporter.ask(Said::LeftOut(text));
-            }
+        let mut show = |event: Progress| match event {
+            Progress::Drawn { .. } => reporter.say(event),
+            Progress::LeftOut(_) => reporter.ask(event),
         };
         let bench = bench_watched(gpu, scenes, &plan, partial, stop, &mut show)?;
         Ok(bench)
@@ -112,9 +99,9 @@ impl Measure {
         let result = watch(
             py,
             |stop, reporter| self.run(&gpu, scenes, stop, reporter),
-            |py, said| match said {
-                Said::Drawn(done, total, text) => bar.set(done, total, &text),
-                Said::LeftOut(text) => warn(py, &text),
+            |py, event| match event {
+                Progress::Drawn { done, total, what } => bar.set(done, total, &what),
+                Progress::LeftOut(what) => warn(py, &what),
             },
         )
         .and_then(|result| result.map_err(raised));

@@ -32,8 +32,9 @@ fn glass() -> Material {
 fn pairs(gpu: &Gpu, objects: Vec<Object>, samples: u32) -> u64 {
     let scene = scene("known", [0.0; 3], objects);
     let renderer = Renderer::new(gpu, &scene).unwrap();
-    let found = Pairs::drawn(&renderer, [SIDE; 2], samples, &scene.views[0]);
-    found.unwrap().count()
+    let mut surfaces = renderer.surfaces([SIDE; 2], samples).unwrap();
+    let frame = renderer.image(&mut surfaces, &scene.views[0]);
+    Pairs::of(&frame.unwrap().image).count()
 }
 
 /// Pairs inside a rectangle of pixels.

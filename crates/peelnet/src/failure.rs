@@ -168,9 +168,8 @@ mod tests {
     /// Errors deep inside others get their flag, wrong values are told from the rest, and nothing is said twice.
     #[test]
     fn errors_are_one_line_with_the_flag_that_helps() {
-        let error = EvalError::Render {
-            scene: "cups".to_owned(),
-            method: "mboit4".to_owned(),
+        let error = EvalError::At {
+            place: "scene 'cups', method 'mboit4'".to_owned(),
             source: Box::new(RenderError::Gpu(GpuError::Lost("gone".to_owned()))),
         };
         let failure = Failure::from(error);

@@ -1,11 +1,9 @@
 //! Bubble charts on logarithmic axes, with the Pareto front drawn through them.
 
-use crate::{Area, Builder, DrawError, SIZE, Svg, name, width};
+use crate::{Area, SIZE, Svg, name, range, width};
 use maud::{Markup, html};
 use plotters::prelude::*;
 
-/// A bubble.
-#[derive(Clone, Debug, PartialEq)]
 pub struct Bubble {
     /// Stands beside it where there is room.
     pub name: String,
@@ -31,42 +29,19 @@ impl Bubble {
     }
 }
 
-/// Bubbles over two logarithmic axes.
-#[derive(Clone, Copy, Debug)]
-pub struct BubbleChart<'a> {
-    /// By x, from left to right.
-    pub bubbles: &'a [Bubble],
-    /// Title of the x axis.
-    pub x: &'a str,
-    /// Title of the y axis.
-    pub y: &'a str,
-    /// Values of y up to this one bear this name.
-    pub floor: (f64, &'a str),
-}
-
-impl BubbleChart<'_> {
-    /// Draws it.
-    pub fn svg(&self) -> Svg {
-        Svg::new(|builder| self.draw(builder))
-    }
-
-    fn range(&self, value: fn(&Bubble) -> f64) -> (f64, f64) {
-        let low = self.bubbles.iter().map(value).reduce(f64::min);
-        let high = self.bubbles.iter().map(value).reduce(f64::max);
-        low.zip(high).unwrap_or((1.0, 10.0))
-    }
-
-    fn draw(&self, builder: &mut Builder<'_, '_>) -> Result<Markup, DrawError> {
-        let (left, right) = self.range(|b| b.x);
-        let (low, high) = self.range(|b| b.y);
-        let (floor, floor_name) = self.floor;
-        let x = (left / 1.3..right * 1.8).log_scale();
-        let y = (low / 3.0..high * 3.0).log_scale();
-        let mut chart = builder.build_cartesian_2d(x, y)?;
+/// Bubbles over two logarithmic axes with these titles, by x from left to right. Values of y up to `floor` bear its name.
+pub fn bubble_chart(bubbles: &[Bubble], x: &str, y: &str, floor: (f64, &str)) -> Svg {
+    let (left, right) = range(bubbles.iter().map(|b| b.x));
+    let (low, high) = range(bubbles.iter().map(|b| b.y));
+    let (floor, floor_name) = floor;
+    let x_range = (left / 1.3..right * 1.8).log_scale();
+    let y_range = (low / 3.0..high * 3.0).log_scale();
+    Svg::new(|builder| {
+        let mut chart = builder.build_cartesian_2d(x_range, y_range)?;
         chart
             .configure_mesh()
-            .x_desc(self.x)
-            .y_desc(self.y)
+            .x_desc(x)
+            .y_desc(y)
             .x_label_formatter(&|x| {
                 let digits = format!("{x:.3}");
                 digits
@@ -84,26 +59,22 @@ impl BubbleChart<'_> {
             .label_style(("sans-serif", 14))
             .light_line_style(TRANSPARENT)
             .draw()?;
-        let front = RGBColor(213, 94, 0).stroke_width(2);
-        chart.draw_series(LineSeries::new(self.stairs(), front))?;
-        let placed = self.bubbles.iter().map(|bubble| {
-            let (x, y) = chart.backend_coord(&(bubble.x, bubble.y));
-            (bubble, x, y)
-        });
-        Ok(overlay(placed.collect()))
-    }
-
-    /// The front: everything to the left of a bubble on it is above it, so it is a staircase.
-    fn stairs(&self) -> Vec<(f64, f64)> {
+        // Everything to the left of a bubble on the front is above it, so it is a staircase.
         let mut stairs: Vec<(f64, f64)> = Vec::new();
-        for b in self.bubbles.iter().filter(|b| b.on_front) {
+        for b in bubbles.iter().filter(|b| b.on_front) {
             if let Some(&(_, y)) = stairs.last() {
                 stairs.push((b.x, y));
             }
             stairs.push((b.x, b.y));
         }
-        stairs
-    }
+        let front = RGBColor(213, 94, 0).stroke_width(2);
+        chart.draw_series(LineSeries::new(stairs, front))?;
+        let placed = bubbles.iter().map(|bubble| {
+            let (x, y) = chart.backend_coord(&(bubble.x, bubble.y));
+            (bubble, x, y)
+        });
+        Ok(overlay(placed.collect()))
+    })
 }
 
 /// The bubbles and their names.
@@ -168,15 +139,7 @@ mod tests {
             weight: 24.0,
             on_front,
         };
-        let draw = |bubbles: &[Bubble]| {
-            BubbleChart {
-                bubbles,
-                x: "time",
-                y: "error",
-                floor: (1e-10, "exact"),
-            }
-            .svg()
-        };
+        let draw = |bubbles: &[Bubble]| bubble_chart(bubbles, "time", "error", (1e-10, "exact"));
         let svg = draw(&[
             bubble("plain", 1.0, 1e-2, true),
             bubble("a<b", 2.0, 1e-4, true),

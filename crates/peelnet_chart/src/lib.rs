@@ -1,20 +1,21 @@
-//! Charts as SVG text: [`LineChart`] and [`BubbleChart`], drawn by plotters.
+//! Charts as SVG text, drawn by plotters: [`line_chart`] and [`bubble_chart`].
 //!
 //! Whatever names and titles hold, they are escaped: an [`Svg`] may stand inside a page.
 //!
 //! ```
-//! use peelnet_chart::{Line, LineChart, Scale};
+//! use peelnet_chart::{Line, Scale, line_chart};
 //!
 //! let line = Line::new("error <of> a method", [(1.0, 0.5), (2.0, 0.25)]);
-//! let svg = LineChart { lines: &[line], x: "passes", y: "error", x_scale: Scale::Linear }.svg();
+//! let svg = line_chart(&[line], "passes", "error", Scale::Linear);
 //! assert!(svg.as_str().contains("error &lt;of&gt; a method"));
 //! ```
+#![allow(missing_docs)]
 
 mod bubbles;
 mod lines;
 
-pub use bubbles::{Bubble, BubbleChart};
-pub use lines::{Line, LineChart, Scale};
+pub use bubbles::{Bubble, bubble_chart};
+pub use lines::{Line, Scale, line_chart};
 
 use maud::{Markup, html};
 use plotters::prelude::*;
@@ -28,8 +29,8 @@ const NAME_HEIGHT: f64 = 12.0;
 /// Says in a file who wrote it.
 const MARK: &str = "<metadata>peelnet</metadata>";
 
-/// What can go wrong inside plotters.
-type DrawError = Box<dyn std::error::Error>;
+/// The elements of our own that are added to what plotters draw.
+type Drawn = Result<Markup, Box<dyn std::error::Error>>;
 
 type Builder<'a, 's> = ChartBuilder<'a, 'a, SVGBackend<'s>>;
 
@@ -39,7 +40,7 @@ pub struct Svg(String);
 
 impl Svg {
     /// What plotters draw, with the elements of our own that `draw` returns at its end.
-    fn new(draw: impl FnOnce(&mut Builder<'_, '_>) -> Result<Markup, DrawError>) -> Self {
+    fn new(draw: impl FnOnce(&mut Builder<'_, '_>) -> Drawn) -> Self {
         let mut text = String::new();
         let drawn = {
             let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
@@ -77,6 +78,12 @@ impl Svg {
         let start = String::from_utf8_lossy(&head[..head.len().min(512)]);
         start.starts_with("<svg") && start.contains(MARK)
     }
+}
+
+/// The smallest and the largest value; 1 and 10 of none.
+fn range(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+    let low = values.clone().reduce(f64::min);
+    low.zip(values.reduce(f64::max)).unwrap_or((1.0, 10.0))
 }
 
 /// Left, top, right and bottom of a name.

@@ -11,23 +11,17 @@ use crate::{
 use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_scene::Scene;
-use std::{collections::BTreeSet, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 /// The scenes that some of the models were trained on.
 pub fn trained_on<'a>(
     scenes: &[Scene],
     models: impl IntoIterator<Item = &'a Model>,
 ) -> Vec<String> {
-    let all: BTreeSet<&str> = models
-        .into_iter()
-        .filter_map(|model| model.meta.dataset.as_ref())
-        .flat_map(|dataset| dataset.scenes.iter().map(String::as_str))
-        .collect();
-    let names = scenes.iter().map(|s| s.name.as_str());
-    names
-        .filter(|n| all.contains(n))
-        .map(str::to_owned)
-        .collect()
+    let datasets = models.into_iter().filter_map(|m| m.meta.dataset.as_ref());
+    let all: Vec<&String> = datasets.flat_map(|dataset| &dataset.scenes).collect();
+    let names = scenes.iter().map(|s| &s.name);
+    names.filter(|name| all.contains(name)).cloned().collect()
 }
 
 /// Compares methods on every view of the scenes and returns the rows.
@@ -81,7 +75,7 @@ pub fn bench_watched(
     plan: &Plan<'_>,
     mut partial: Partial,
     stop: &AtomicBool,
-    report: &mut dyn FnMut(Progress<'_>),
+    report: &mut dyn FnMut(Progress),
 ) -> Result<Bench, EvalError> {
     check_names(scenes)?;
     let load_before = load();
@@ -91,7 +85,12 @@ pub fn bench_watched(
         .sum();
     // The exact method is drawn whether it is in the plan or not.
     let exact = usize::from(!plan.methods.contains(&exact_method()));
-    let total = (views * (plan.methods.len() + exact) * plan.frames_of_each()) as u64;
+    // The compared frame, and where any are timed one more to warm up.
+    let frames_of_each = match plan.frames {
+        0 => 1,
+        n => n as usize + 2,
+    };
+    let total = (views * (plan.methods.len() + exact) * frames_of_each) as u64;
     let mut watch = Watch::new(total, stop, report);
     for scene in scenes {
         compare(gpu, scene, plan, &mut partial, &mut watch)?;
@@ -111,17 +110,13 @@ mod tests {
     /// Rows are found by their scene's name: the second of two would pass for done.
     #[test]
     fn two_scenes_of_one_name_are_refused_with_both_files() {
-        let cups = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/cups.toml");
-        let first = Scene::load(cups).unwrap();
-        let mut second = first.clone();
-        second.source = "b/x.toml".into();
-        let text = check_names(&[first.clone(), second.clone()]).unwrap_err();
-        let text = text.to_string();
-        assert!(
-            text.contains("cups.toml") && text.contains("b/x.toml"),
-            "{text}"
-        );
-        second.name = "other".to_owned();
-        check_names(&[first, second]).unwrap();
+        let cups = peelnet_scene::suite::load("cups").unwrap();
+        let second = Scene {
+            source: "b/x.toml".into(),
+            ..cups.clone()
+        };
+        let text = check_names(&[cups, second]).unwrap_err().to_string();
+        let both = text.contains("cups.toml") && text.contains("b/x.toml");
+        assert!(both, "{text}");
     }
 }

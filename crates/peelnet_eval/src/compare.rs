@@ -18,10 +18,8 @@ use peelnet_render::{
 use peelnet_scene::Scene;
 use std::path::Path;
 
-/// The method that judges all others.
 pub const EXACT: &str = role::REFERENCE;
 
-/// What is drawn.
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
     /// Width and height of every frame, pixels.
@@ -60,14 +58,6 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Frames of each method and view: the compared one, and where any are timed one more to warm up.
-    pub const fn frames_of_each(&self) -> usize {
-        match self.frames {
-            0 => 1,
-            n => n as usize + 2,
-        }
-    }
-
     /// How a method is drawn, with its network where it is among those of the plan.
     pub(crate) fn options(&self, method: &MethodSpec) -> MethodOptions {
         let mut learned = self.learned.iter();
@@ -76,7 +66,6 @@ impl<'a> Plan<'a> {
         options.sampled(self.samples).with(learned)
     }
 
-    /// How many views of a scene are drawn.
     pub fn views_of(&self, scene: &Scene) -> usize {
         let all = scene.views.len();
         self.views.map_or(all, |n| n.min(all))
@@ -110,7 +99,6 @@ pub fn image_name(scene: &str, method: &str) -> String {
     format!("{}-{}.png", plain(scene), plain(method))
 }
 
-/// A method ready to draw.
 struct Entry<'a> {
     method: MethodSpec,
     name: String,
@@ -163,27 +151,28 @@ fn prepare<'a>(
     let others = plan.methods.iter().filter(|m| **m != exact);
     let mut entries = Vec::new();
     for method in std::iter::once(&exact).chain(others) {
-        let mut models = plan.models.iter();
-        let mut entry = Entry {
-            method: method.clone(),
-            name: method.to_string(),
-            model: models.find(|m| m.meta.recipe.method == method.name()),
-            ready: None,
-        };
+        let name = method.to_string();
+        let mut ready = None;
         if method.method().cpu_only.is_none() {
             match stage.ready(method, plan.options(method)) {
                 Err(e) if plan.lenient && e.is_too_large() && !entries.is_empty() => {
-                    watch.left_out(scene, &entry.name, e.reason());
+                    watch.left_out(scene, &name, &e.reason());
                     continue;
                 }
-                ready => entry.ready = Some(ready?),
+                prepared => ready = Some(prepared?),
             }
         } else if plan.samples > 1 {
-            let why = "it is composited on the CPU, of one sample a pixel".to_owned();
-            watch.left_out(scene, &entry.name, why);
+            let why = "it is composited on the CPU, of one sample a pixel";
+            watch.left_out(scene, &name, why);
             continue;
         }
-        entries.push(entry);
+        let mut models = plan.models.iter();
+        entries.push(Entry {
+            method: method.clone(),
+            name,
+            model: models.find(|m| m.meta.recipe.method == method.name()),
+            ready,
+        });
     }
     Ok(entries)
 }
@@ -213,7 +202,7 @@ fn draw(
         };
         let frame = match drawn {
             Err(e) if plan.lenient && e.is_too_large() && !rows.is_empty() => {
-                watch.left_out(scene, name, e.reason());
+                watch.left_out(scene, name, &e.reason());
                 entries.remove(rows.len());
                 continue;
             }
@@ -227,8 +216,7 @@ fn draw(
         let (against, displayed) = exact
             .as_ref()
             .map_or((&frame.image, &shown), |(image, shown)| (image, shown));
-        let errors = error_image(&against.pixels, &frame.image.pixels)?;
-        let contour_pairs = pairs.as_ref().map(|pairs| pairs.share(&errors));
+        let errors = error_image(&against.pixels, &frame.image.pixels);
         let mut row = Row {
             method: name.clone(),
             scene: scene.clone(),
@@ -237,8 +225,8 @@ fn draw(
             ssim: shown.ssim(displayed),
             flip: Some(shown.flip(displayed)),
             transmittance_error: stacks.error(&entry.method, entry.model),
-            contour_pairs: contour_pairs.transpose()?.flatten(),
-            ..row(&frame, &against.pixels)?
+            contour_pairs: pairs.as_ref().and_then(|pairs| pairs.share(&errors)),
+            ..row(&frame, &against.pixels)
         };
         // Only the exact method knows the fragments of a view for certain.
         if let Some(first) = rows.first() {
@@ -302,12 +290,12 @@ fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
 }
 
 /// What a frame and its differences from the exact image hold.
-fn row(frame: &Frame, exact: &[[f32; 4]]) -> Result<Row, EvalError> {
-    let (d, stats) = (differences(exact, &frame.image.pixels)?, &frame.stats);
+fn row(frame: &Frame, exact: &[[f32; 4]]) -> Row {
+    let (d, stats) = (differences(exact, &frame.image.pixels), &frame.stats);
     let passes = stats.geometry_passes + stats.fullscreen_passes;
     // A method on the CPU has no passes, and no times of its own.
     let drawn = passes > 0;
-    Ok(Row {
+    Row {
         width: frame.image.width,
         height: frame.image.height,
         fragments: stats.fragments,
@@ -329,7 +317,7 @@ fn row(frame: &Frame, exact: &[[f32; 4]]) -> Result<Row, EvalError> {
         passes,
         bytes_per_pixel: drawn.then_some(stats.bytes_per_pixel),
         ..Row::default()
-    })
+    }
 }
 
 #[cfg(test)]

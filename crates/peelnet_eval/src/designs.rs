@@ -40,16 +40,12 @@ pub const MOTIONS: [f32; 2] = [0.1, 1.0];
 /// Where the shipped designs lie in the repository.
 pub const DESIGNS: &str = "data/designs.toml";
 
-/// An entry of a file of designs.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Its name.
     pub name: String,
-    /// What is kept of a pixel.
     pub design: Design,
     /// What is cut into slabs. Where the design has no such case, the network learns from the pixel's own range.
     pub source: Source,
-    /// What the network reads.
     pub inputs: &'static [&'static Feature<Between>],
     /// What is trained; its examples may be gathered with the sums apart where the design has one sum.
     pub recipe: Recipe,
@@ -69,7 +65,7 @@ impl Entry {
                 ..self.design
             };
             slabs::composite_on(
-                stack.fragments,
+                stack.fragments(),
                 [0.0; 3],
                 |depth| stack.zeta(self.source, depth),
                 design,
@@ -88,7 +84,6 @@ impl Entry {
 }
 
 impl Row {
-    /// Of an entry with its trained model.
     pub fn new(entry: &Entry, model: &Model, network: Score, middle: Score) -> Self {
         let (design, recipe) = (&entry.design, entry.recipe);
         let trained_apart = match recipe.inputs {

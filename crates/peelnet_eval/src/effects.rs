@@ -11,19 +11,15 @@ use crate::{
 };
 use glam::{Mat4, Vec3};
 use peelnet_gpu::Gpu;
-use peelnet_render::{LayerFormula, LayerView, MethodOptions, MethodSpec, milliseconds};
+use peelnet_render::{LayerFormula, LayerView, MethodOptions, MethodSpec, Profile, milliseconds};
 use peelnet_scene::{Camera, Census, Effect, Scene};
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
 };
 
-/// How effects are measured.
-#[derive(Clone, Debug)]
 pub struct Settings {
-    /// The method.
     pub method: MethodSpec,
-    /// Frame size in pixels.
     pub size: [u32; 2],
     /// Timed frames; one more warms up.
     pub frames: u32,
@@ -32,20 +28,11 @@ pub struct Settings {
 /// Parts of the frame that an object fills in the table of triangles.
 pub const FILLED: [f64; 3] = [0.5, 0.75, 1.0];
 
-/// Times every effect of a scene: the frame as it is and without the effect, drawn in turn.
+/// Times an effect of a scene: the frame as it is and without the effect, drawn in turn. Pictures of both go to the folder.
 ///
 /// # Errors
 /// What drawing meets.
-pub fn costs(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Vec<Cost>, EvalError> {
-    let census = Census::of(scene);
-    let effects = Effect::ALL.into_iter().filter(|e| census.has(*e));
-    effects
-        .map(|effect| cost(gpu, scene, effect, settings, None))
-        .collect()
-}
-
-/// Pictures with and without the effect go to the folder.
-fn cost(
+pub fn cost(
     gpu: &Gpu,
     scene: &Scene,
     effect: Effect,
@@ -55,7 +42,7 @@ fn cost(
     let plain = scene.without(effect);
     let name = format!("{} ({effect})", settings.method);
     let ready = |stage: &Stage<'_>| settings.ready(stage, &name);
-    let mut stages = stages(gpu, [scene, &plain], ready)?;
+    let mut stages = stages(gpu, &[scene, &plain], ready)?;
     let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
     for (k, (stage, ready)) in stages.iter_mut().enumerate() {
         let drawn = stage.image(ready, &scene.views[0])?;
@@ -66,13 +53,13 @@ fn cost(
             drawn.image.save(&file).map_err(stage.failed(&name))?;
         }
     }
-    let [ms_with, ms_without] = times(stages, &scene.views[0], settings.frames)?;
+    let ms = times(stages, &scene.views[0], settings.frames)?;
     Ok(Cost {
         scene: scene.name.clone(),
         effect: effect.name().to_owned(),
-        ms_with,
-        ms_without,
-        ratio: ms_with / ms_without,
+        ms_with: ms[0],
+        ms_without: ms[1],
+        ratio: ms[0] / ms[1],
         passes_with: passes[0],
         passes_without: passes[1],
         bytes_with: bytes[0],
@@ -90,17 +77,15 @@ fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>,
     let (opaque, unlit) = (scene.opaque(), scene.unlit());
     let name = settings.method.to_string();
     let ready = |stage: &Stage<'_>| settings.ready(stage, &name);
-    let stages = stages(gpu, [scene, &opaque, &unlit], ready)?;
-    let [ms_both, ms_shading, ms_transparency] = times(stages, &scene.views[0], settings.frames)?;
+    let stages = stages(gpu, &[scene, &opaque, &unlit], ready)?;
+    let ms = times(stages, &scene.views[0], settings.frames)?;
     Ok(Some(Parts {
         scene: scene.name.clone(),
-        ms_both,
-        ms_shading,
-        ms_transparency,
+        ms_both: ms[0],
+        ms_shading: ms[1],
+        ms_transparency: ms[2],
     }))
 }
-
-type Stages<'s, const N: usize> = [(Stage<'s>, Ready); N];
 
 impl Settings {
     fn ready(&self, stage: &Stage<'_>, name: &str) -> Result<Ready, EvalError> {
@@ -109,52 +94,45 @@ impl Settings {
     }
 }
 
-fn stages<'s, const N: usize>(
+fn stages<'s>(
     gpu: &Gpu,
-    scenes: [&'s Scene; N],
+    scenes: &[&'s Scene],
     prepare: impl Fn(&Stage<'s>) -> Result<Ready, EvalError>,
-) -> Result<Stages<'s, N>, EvalError> {
-    let stage = |scene: &'s Scene| {
+) -> Result<Vec<(Stage<'s>, Ready)>, EvalError> {
+    let stage = |scene: &&'s Scene| {
         let stage = Stage::new(gpu, scene)?;
         let ready = prepare(&stage)?;
         Ok((stage, ready))
     };
-    let stages: Result<Vec<_>, EvalError> = scenes.into_iter().map(stage).collect();
-    let Ok(stages) = stages?.try_into() else {
-        unreachable!("there are as many stages as scenes")
-    };
-    Ok(stages)
+    scenes.iter().map(stage).collect()
 }
 
 /// Median times of frames that are drawn in turn; the first of each warms up.
-fn times<const N: usize>(
-    mut stages: Stages<'_, N>,
+fn times(
+    mut stages: Vec<(Stage<'_>, Ready)>,
     camera: &Camera,
     count: u32,
-) -> Result<[f64; N], EvalError> {
+) -> Result<Vec<f64>, EvalError> {
     let never = AtomicBool::new(false);
-    let mut report = |_: Progress<'_>| {};
+    let mut report = |_: Progress| {};
     let mut unseen = Watch::new(0, &never, &mut report);
-    let mut all = stages.each_mut().map(|(stage, ready)| (&*stage, ready));
-    let frames = in_turn(&mut all, camera, 1, count, &mut unseen)?;
-    Ok(std::array::from_fn(|k| {
-        // The opaque surfaces have effects too.
-        let all = frames[k].iter();
-        let ms = all.map(|f| milliseconds(&f.times).unwrap_or(f.wall_micros / 1e3));
-        percentile(ms, 0.5).unwrap_or_default()
-    }))
+    let all = stages.iter_mut().map(|(stage, ready)| (&*stage, ready));
+    let frames = in_turn(&mut all.collect::<Vec<_>>(), camera, 1, count, &mut unseen)?;
+    // The opaque surfaces have effects too.
+    let ms = |f: &Profile| milliseconds(&f.times).unwrap_or(f.wall_micros / 1e3);
+    let median = |all: &Vec<Profile>| percentile(all.iter().map(ms), 0.5).unwrap_or_default();
+    Ok(frames.iter().map(median).collect())
 }
 
-const fn view_of(highlight: u32) -> LayerView {
-    LayerView {
+/// The view of layers, ready to be drawn.
+fn view_of(stage: &Stage<'_>, highlight: u32, size: [u32; 2]) -> Result<Ready, EvalError> {
+    let view = LayerView {
         highlight,
         increasing: false,
         formula: LayerFormula::Front,
-    }
+    };
+    stage.prepare("layers", |renderer| renderer.layers(view, size))
 }
-
-/// What errors of the view of layers name in place of a method.
-const LAYERS: &str = "layers";
 
 /// Times of the view of layers from a camera: with one layer shaded, and with all.
 fn layer_times(
@@ -165,13 +143,13 @@ fn layer_times(
 ) -> Result<[f64; 2], EvalError> {
     let layers = scene.layers();
     // Of the middle: with layers in front of it and behind.
-    let view = view_of(layers[layers.len() / 2]);
-    let one = scene.layer_view(view.highlight, false)?;
-    let all = scene.layer_view(view.highlight, true)?;
-    let stages = stages(gpu, [&one, &all], |stage| {
-        stage.prepare(LAYERS, |renderer| renderer.layers(view, settings.size))
-    })?;
-    times(stages, camera, settings.frames)
+    let highlight = layers[layers.len() / 2];
+    let one = scene.layer_view(highlight, false)?;
+    let all = scene.layer_view(highlight, true)?;
+    let ready = |stage: &Stage<'_>| view_of(stage, highlight, settings.size);
+    let stages = stages(gpu, &[&one, &all], ready)?;
+    let ms = times(stages, camera, settings.frames)?;
+    Ok([ms[0], ms[1]])
 }
 
 /// The scene with its layers so many times over, each set around the one before.
@@ -199,11 +177,10 @@ fn filling(
     filled: f64,
     size: [u32; 2],
 ) -> Result<(Camera, f64), EvalError> {
-    let view = view_of(scene.layers()[0]);
-    let scene = scene.layer_view(view.highlight, false)?;
+    let highlight = scene.layers()[0];
+    let scene = scene.layer_view(highlight, false)?;
     let stage = Stage::new(gpu, &scene)?;
-    let small = size.map(|n| (n / 4).max(1));
-    let mut ready = stage.prepare(LAYERS, |renderer| renderer.layers(view, small))?;
+    let mut ready = view_of(&stage, highlight, size.map(|n| (n / 4).max(1)))?;
     let camera = |fov_y_degrees: f32| Camera {
         fov_y_degrees,
         ..scene.views[0]
@@ -225,7 +202,7 @@ fn filling(
     Ok((camera(narrow), part(narrow)?))
 }
 
-/// Measures: every effect of every scene, and of those with layers what shading one of them saves.
+/// Measures every effect of every scene, and of those with layers what shading one of them saves.
 ///
 /// # Errors
 /// What drawing meets; [`EvalError::Interrupted`] where `stop` was set.
@@ -235,17 +212,14 @@ pub fn measure(
     settings: &Settings,
     folder: &Path,
     stop: &AtomicBool,
-    report: &mut dyn FnMut(Progress<'_>),
+    report: &mut dyn FnMut(Progress),
 ) -> Result<Effects, EvalError> {
     check_names(scenes)?;
     let mut found = Effects {
         method: settings.method.to_string(),
         size: settings.size,
         frames: settings.frames,
-        costs: Vec::new(),
-        parts: Vec::new(),
-        layers: Vec::new(),
-        fills: Vec::new(),
+        ..Effects::default()
     };
     let mut watch = Watch::new(0, stop, report);
     let mut next = |scene: &Scene, what: String| {
@@ -300,7 +274,6 @@ pub fn measure(
     Ok(found)
 }
 
-/// The picture of a scene with or without an effect.
 pub fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> PathBuf {
     let state = if on { "on" } else { "off" };
     folder

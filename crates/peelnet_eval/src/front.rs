@@ -13,7 +13,6 @@ pub const BASE: &str = role::HARDWARE_BLENDING;
 /// light. It keeps geometric means and logarithmic axes finite.
 pub const EXACT_MSE: f64 = 1e-10;
 
-/// How errors of several views become one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mean {
     /// Every view counts by its ratio, however small its errors are.
@@ -22,18 +21,14 @@ pub enum Mean {
     Arithmetic,
 }
 
-/// A method with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
-    /// The method's name with its parameters.
     pub method: String,
     /// Mean of `mse_linear`, at least [`EXACT_MSE`].
     pub error: f64,
     /// Geometric mean of the frame time as a ratio to [`BASE`]'s; milliseconds where that was not drawn.
     pub time: f64,
-    /// Geometric mean of the frame time, milliseconds.
     pub time_ms: f64,
-    /// Bytes a pixel over the views.
     pub bytes: Bytes,
     /// Whether no other method is both faster and at least as accurate.
     pub on_front: bool,
@@ -150,67 +145,33 @@ mod tests {
         points(&Rows::new(&rows), kind)
     }
 
-    /// On a front of slope −2 in logarithms: a point off it is so many times as slow at its error, and the square as wrong at its time.
+    /// On a front of slope −2 in logarithms: a point off it is so many times as slow at its error, and the square as wrong at its time. From
+    /// the last method with an error to the exact one the front's error is that of the former; from then on there is none.
     #[test]
     fn points_are_measured_against_the_front() {
         let of = [
-            (BASE, 1e-2, 1.0),
-            ("end", 1e-6, 100.0),
-            ("middle", 1e-4, 10.0),
-            ("middle, 3 times as slow", 1e-4, 30.0),
-            ("worse than all", 1.0, 5.0),
-        ];
-        let all = points_of(&of, Mean::Geometric);
-        for (name, time, error) in [
-            (BASE, 1.0, 1.0),
-            ("middle", 1.0, 1.0),
-            ("end", 1.0, 1.0),
-            ("middle, 3 times as slow", 3.0, 9.0),
+            (BASE, 1e-2, 1.0, [1.0, 1.0]),
+            ("middle", 1e-4, 10.0, [1.0, 1.0]),
+            ("as good, slower", 1e-4, 30.0, [3.0, 9.0]),
             // The front's first point has that error, and less.
-            ("worse than all", 5.0, 100.0 * 25.0),
-        ] {
-            let p = all.iter().find(|p| p.method == name).unwrap();
-            assert!((p.time_at_equal_error / time - 1.0).abs() < 1e-9, "{p:?}");
-            assert!((p.error_at_equal_time / error - 1.0).abs() < 1e-9, "{p:?}");
+            ("worse than all", 1.0, 5.0, [5.0, 2500.0]),
+            ("last", 1e-6, 100.0, [1.0, 1.0]),
+            ("before", 3e-6, 990.0, [9.9 * 3f64.sqrt(), 3.0]),
+            ("exact", 0.0, 1000.0, [1.0, 1.0]),
+            ("after", 3e-6, 1010.0, [10.1 * 3f64.sqrt(), f64::INFINITY]),
+            ("exact and slow", 0.0, 2000.0, [2.0, 1.0]),
+        ];
+        let all = points_of(&of.map(|(m, mse, ms, _)| (m, mse, ms)), Mean::Geometric);
+        for (method, mse, ms, ratios) in of {
+            let p = all.iter().find(|p| p.method == method).unwrap();
+            let found = [p.time_at_equal_error, p.error_at_equal_time];
+            for (found, want) in found.into_iter().zip(ratios) {
+                assert!(found == want || (found / want - 1.0).abs() < 1e-9, "{p:?}");
+            }
+            let on_front = [BASE, "middle", "last", "exact"].contains(&method);
+            assert_eq!((p.on_front, p.is_exact()), (on_front, mse == 0.0));
+            assert!((p.time / ms - 1.0).abs() < 1e-12 && (p.time_ms / ms - 3.0).abs() < 1e-12);
         }
-    }
-
-    /// As long as the exact method is slower, the front's error is that of the last method before it; from then on there is none.
-    #[test]
-    fn an_exact_method_ends_the_front() {
-        let of = [
-            (BASE, 1e-2, 1.0),
-            ("last", 1e-4, 10.0),
-            ("exact", 0.0, 100.0),
-            ("before", 3e-4, 99.0),
-            ("after", 3e-4, 101.0),
-            ("exact and slow", 0.0, 200.0),
-        ];
-        let all = points_of(&of, Mean::Geometric);
-        let of = |name: &str| all.iter().find(|p| p.method == name).unwrap();
-        assert!((of("before").error_at_equal_time / 3.0 - 1.0).abs() < 1e-9);
-        assert_eq!(of("after").error_at_equal_time, f64::INFINITY);
-        assert_eq!(of("exact and slow").error_at_equal_time, 1.0);
-        assert!((of("exact and slow").time_at_equal_error / 2.0 - 1.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn the_front_holds_what_nothing_beats() {
-        let of = [
-            ("exact", 0.0, 5.0),
-            (BASE, 1.0, 1.0),
-            ("good", 1e-3, 2.0),
-            ("worse and slower", 1e-2, 3.0),
-            ("as good, slower", 1e-3, 2.5),
-        ];
-        let all = points_of(&of, Mean::Geometric);
-        let front = all.iter().filter(|p| p.on_front);
-        let front: Vec<&str> = front.map(|p| p.method.as_str()).collect();
-        assert_eq!(front, [BASE, "good", "exact"]);
-        let good = all.iter().find(|p| p.method == "good").unwrap();
-        assert!((good.time - 2.0).abs() < 1e-12 && (good.error - 2e-3).abs() < 1e-12);
-        assert!((good.time_ms - 6.0).abs() < 1e-12);
-        assert!(all.last().unwrap().is_exact());
     }
 
     /// Errors 1 and 4 of the two scenes: 2 by ratio, 2.5 by size.

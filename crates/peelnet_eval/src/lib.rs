@@ -16,12 +16,10 @@
 //! error as black.
 //!
 //! In a browser, where nothing may wait and no C++ is compiled, there are only [`metrics`] and [`perceptual`] without ꟻLIP.
+#![allow(missing_docs)]
 
-mod error;
 pub mod metrics;
 pub mod perceptual;
-
-pub use error::EvalError;
 
 cfg_if::cfg_if! {
     if #[cfg(not(target_arch = "wasm32"))] {
@@ -30,6 +28,7 @@ cfg_if::cfg_if! {
         pub mod contours;
         pub mod designs;
         pub mod effects;
+        mod error;
         pub mod front;
         mod machine;
         mod partial;
@@ -44,6 +43,7 @@ cfg_if::cfg_if! {
         mod transmittance;
 
         pub use bench::bench;
+        pub use error::EvalError;
         pub use machine::load;
         pub use partial::{Partial, settings_hash};
         pub use records::{Machine, Row};

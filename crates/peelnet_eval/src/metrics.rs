@@ -7,7 +7,6 @@
 //!
 //! *Covered* pixels are those that hold at least one transparent fragment: coverage above 0 in the exact image.
 
-use crate::EvalError;
 use peelnet_core::srgb::{encode, encode8};
 
 /// The sRGB encoding of a linear value in 64 bits, clamped to 0 … 1 first. What is not a number becomes black, as on
@@ -26,7 +25,6 @@ pub fn srgb_encode(linear: f32) -> f64 {
 /// artefact: a quarter of the range, far beyond what a wrong weight in a smooth place does.
 pub const DARK: f64 = 64.0;
 
-/// All differences of one image from the exact one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Differences {
     /// Mean squared error in linear light over all pixels and channels.
@@ -43,9 +41,7 @@ pub struct Differences {
     pub psnr: Option<f64>,
     /// 99th percentile (nearest rank) of the pixel error: the largest difference of the three channels, 0–255 scale.
     pub p99_error: f64,
-    /// The largest pixel error, 0–255 scale.
     pub max_error: f64,
-    /// Number of covered pixels.
     pub covered_pixels: u64,
     /// Pixels that are brighter than the exact image in no channel and darker by more than [`DARK`] in some channel.
     pub dark_pixels: u64,
@@ -59,18 +55,15 @@ pub const ERROR_ROUNDING: f64 = 12.0 * 255.0 / (1 << 24) as f64;
 
 /// The error image: signed differences of sRGB-encoded values, 0–255. What is not finite counts as black.
 ///
-/// # Errors
-/// [`EvalError::Sizes`] if the images differ in size.
-pub fn error_image(
-    exact: &[[f32; 4]],
-    approximate: &[[f32; 4]],
-) -> Result<Vec<[f32; 3]>, EvalError> {
-    EvalError::sizes(exact.len(), approximate.len())?;
+/// # Panics
+/// If the images differ in size.
+pub fn error_image(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Vec<[f32; 3]> {
+    assert_eq!(exact.len(), approximate.len(), "pixels of the two images");
     let level = |x: f32| 255.0 * encode(if x.is_finite() { x } else { 0.0 });
     let pixels = exact.iter().zip(approximate);
-    Ok(pixels
+    pixels
         .map(|(e, a)| std::array::from_fn(|k| level(a[k]) - level(e[k])))
-        .collect())
+        .collect()
 }
 
 /// Peak signal-to-noise ratio of a mean squared error on the 0–255 scale, dB; `None` where there is no error.
@@ -102,10 +95,10 @@ struct Errors {
 
 /// Compares an image with the exact one, both linear RGB and coverage, row by row.
 ///
-/// # Errors
-/// [`EvalError::Sizes`] if they differ in length.
-pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Differences, EvalError> {
-    EvalError::sizes(exact.len(), approximate.len())?;
+/// # Panics
+/// If they differ in size.
+pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Differences {
+    assert_eq!(exact.len(), approximate.len(), "pixels of the two images");
     let (mut all, mut covered) = (Vec::new(), Vec::new());
     let mut result = Differences::default();
     let mut squares_8bit = 0u64;
@@ -151,7 +144,7 @@ pub fn differences(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Result<Diffe
             *value = all.select_nth_unstable_by(rank, by_error).1.most;
         }
     }
-    Ok(result)
+    result
 }
 
 #[cfg(test)]
@@ -174,7 +167,7 @@ mod tests {
         let exact = [0.5, 0.0, 0.0, 0.0].map(|covered| [1.0, 1.0, 1.0, covered]);
         let mut wrong = exact;
         wrong[0][1] = 0.0;
-        let d = differences(&exact, &wrong).unwrap();
+        let d = differences(&exact, &wrong);
         assert!((d.mse255 - 255.0 * 255.0 / 12.0).abs() < 1e-9);
         assert!((d.mse255_covered.unwrap() - 255.0 * 255.0 / 3.0).abs() < 1e-9);
         assert!((d.mse_linear - 1.0 / 12.0).abs() < 1e-12);
@@ -191,11 +184,11 @@ mod tests {
         let level = |x: f64| peelnet_core::srgb::decode((x / 255.0) as f32);
         let exact = [[level(100.0); 4], [level(200.0); 4]];
         let same = [[level(100.4); 4], [level(199.6); 4]];
-        let d = differences(&exact, &same).unwrap();
+        let d = differences(&exact, &same);
         assert_eq!((d.mse_8bit, d.psnr), (0.0, None));
         assert!((d.mse255 - 0.16).abs() < 1e-3, "{}", d.mse255);
         let next = [[level(100.6); 4], [level(200.4); 4]];
-        let d = differences(&exact, &next).unwrap();
+        let d = differences(&exact, &next);
         assert_eq!(d.mse_8bit, 0.5);
         assert!((d.psnr.unwrap() - 51.141_103_565_318).abs() < 1e-9);
     }
@@ -207,21 +200,20 @@ mod tests {
         // Two of 200 pixels are wrong: 1 %, just beyond the 99th percentile.
         wrong[3][0] = 1.0;
         wrong[77][0] = 1.0;
-        assert_eq!(differences(&exact, &wrong).unwrap().p99_error, 0.0);
+        assert_eq!(differences(&exact, &wrong).p99_error, 0.0);
         wrong[78][0] = 1.0;
-        assert!(differences(&exact, &wrong).unwrap().p99_error > 254.9);
+        assert!(differences(&exact, &wrong).p99_error > 254.9);
     }
 
     #[test]
     fn what_is_not_finite_is_counted_and_black() {
         let exact = [[1.0; 4]];
         let wrong = [[f32::NAN, f32::INFINITY, f32::NAN, 1.0]];
-        let d = differences(&exact, &wrong).unwrap();
+        let d = differences(&exact, &wrong);
         assert_eq!((d.non_finite_pixels, d.dark_pixels), (1, 1));
         assert_eq!(d.mse_linear, 1.0);
-        let errors = error_image(&exact, &wrong).unwrap();
+        let errors = error_image(&exact, &wrong);
         let is_white = |x: &f32| (f64::from(*x) + 255.0).abs() < ERROR_ROUNDING;
         assert!(errors.as_flattened().iter().all(is_white), "{errors:?}");
-        assert!(error_image(&exact, &[]).is_err());
     }
 }

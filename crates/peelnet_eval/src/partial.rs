@@ -31,26 +31,22 @@ struct Stored<K> {
     kept: K,
 }
 
-impl Kept {
-    fn sha256(&self) -> String {
-        sha256(&serde_json::to_vec(self).expect("rows have string keys only"))
-    }
+fn json(value: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(value).expect("rows have string keys only")
+}
+
+fn sha256(value: &impl Serialize) -> String {
+    peelnet_files::hex(&Sha256::digest(json(value)))
 }
 
 /// Hexadecimal hash of settings, by which a finished run is known.
 pub fn settings_hash(settings: &serde_json::Value) -> String {
-    sha256(settings.to_string().as_bytes())
-}
-
-fn sha256(bytes: &[u8]) -> String {
-    peelnet_files::hex(&Sha256::digest(bytes))
+    sha256(settings)
 }
 
 impl Partial {
-    /// Its name in the folder of a run.
     pub const FILE: &str = "partial.json";
 
-    /// By what its file is known.
     pub const KIND: Kind = Kind {
         name: "the rows of an interrupted bench",
         is: |head| head.starts_with(b"{\"sha256\":\""),
@@ -67,7 +63,6 @@ impl Partial {
         }
     }
 
-    /// Whether a run left something in a folder.
     pub fn is_in(folder: &Path) -> bool {
         folder.join(Self::FILE).exists()
     }
@@ -87,7 +82,7 @@ impl Partial {
         };
         let bytes = peelnet_files::read(&path, MAX_BYTES).map_err(EvalError::io(&path, "read"))?;
         let found = serde_json::from_slice(&bytes).map_err(|e| refuse(e.to_string()))?;
-        let Stored::<Kept> { sha256, kept } = found;
+        let Stored::<Kept> { sha256: hash, kept } = found;
         if kept.plan != plan {
             let settings = plan.as_object().into_iter().flatten();
             let others = settings.filter(|(key, value)| kept.plan.get(key) != Some(*value));
@@ -97,7 +92,7 @@ impl Partial {
                 "it was measured with other settings: {names}"
             )));
         }
-        if kept.sha256() != sha256 {
+        if sha256(&kept) != hash {
             let why = "it was changed after it was written: its sha256 differs";
             return Err(refuse(why.to_owned()));
         }
@@ -105,7 +100,6 @@ impl Partial {
         Ok(Self { kept, path })
     }
 
-    /// Views of a scene that are done.
     pub fn done(&self, scene: &str) -> Vec<u32> {
         let own = self.kept.rows.iter().filter(|r| r.scene == scene);
         let mut views: Vec<u32> = own.map(|r| r.view).collect();
@@ -123,11 +117,10 @@ impl Partial {
             return Ok(());
         };
         let stored = Stored {
-            sha256: self.kept.sha256(),
+            sha256: sha256(&self.kept),
             kept: &self.kept,
         };
-        let json = serde_json::to_vec(&stored).expect("rows have string keys only");
-        peelnet_files::write_whole(path, &json).map_err(EvalError::io(path, "write"))
+        peelnet_files::write_whole(path, &json(&stored)).map_err(EvalError::io(path, "write"))
     }
 
     /// All rows. The file stays until they are safe elsewhere: see [`Partial::discard`].

@@ -17,14 +17,10 @@ pub struct Budget {
     pub bytes: Option<f64>,
 }
 
-/// The method to take, the next best, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recommendation<'a> {
-    /// The method.
     pub best: &'a Point,
-    /// What would be taken if that were not there.
     pub runner_up: Option<&'a Point>,
-    /// One sentence.
     pub why: String,
 }
 
@@ -132,51 +128,44 @@ mod tests {
     use super::*;
     use crate::rows::Bytes;
 
-    fn points() -> Vec<Point> {
-        [
+    /// Without a bound the most accurate, with an error the fastest; where nothing is within the budget, the nearest is named.
+    #[test]
+    fn budgets_choose() {
+        let points = [
             ("fast", 1e-2, 1.0, 8.0),
             ("good", 1e-4, 2.0, 24.0),
             ("fat", 1e-5, 2.5, 200.0),
             ("exact", 1e-10, 5.0, 400.0),
-        ]
-        .into_iter()
-        .map(|(method, error, time_ms, bytes)| Point {
+        ];
+        let points = points.map(|(method, error, time_ms, most)| Point {
             method: method.to_owned(),
             error,
             time_ms,
             bytes: Bytes {
-                most: bytes,
+                most,
                 ..Bytes::default()
             },
             ..Point::default()
-        })
-        .collect()
-    }
-
-    #[test]
-    fn budgets_choose() {
-        let points = points();
-        let choose = |ms, error, bytes| {
-            let r = Budget { ms, error, bytes }.choose(&points).unwrap();
-            (r.best.method.clone(), r.runner_up.map(|p| p.method.clone()))
-        };
-        let pair = |a: &str, b: Option<&str>| (a.to_owned(), b.map(str::to_owned));
-        assert_eq!(choose(None, None, None), pair("exact", Some("fat")));
-        assert_eq!(choose(Some(3.0), None, None), pair("fat", Some("good")));
-        assert_eq!(choose(None, Some(1e-3), None), pair("good", Some("fat")));
-        assert_eq!(choose(None, None, Some(50.0)), pair("good", Some("fast")));
-        assert_eq!(choose(Some(1.0), None, None), pair("fast", None));
-    }
-
-    #[test]
-    fn an_empty_budget_names_the_nearest() {
-        let budget = Budget {
-            ms: Some(1.5),
-            error: Some(1e-4),
-            bytes: None,
-        };
-        let e = budget.choose(&points()).unwrap_err();
-        assert!(e.contains("nearest is good"), "{e}");
-        assert!(budget.choose(&[]).unwrap_err().contains("no timed method"));
+        });
+        for (ms, error, bytes, want) in [
+            (None, None, None, Ok(("exact", Some("fat")))),
+            (Some(3.0), None, None, Ok(("fat", Some("good")))),
+            (None, Some(1e-3), None, Ok(("good", Some("fat")))),
+            (None, None, Some(50.0), Ok(("good", Some("fast")))),
+            (Some(1.0), None, None, Ok(("fast", None))),
+            (Some(1.5), Some(1e-4), None, Err("nearest is good")),
+        ] {
+            let chosen = Budget { ms, error, bytes }.choose(&points);
+            match want {
+                Ok(want) => {
+                    let r = chosen.unwrap();
+                    let runner_up = r.runner_up.map(|p| p.method.as_str());
+                    assert_eq!((r.best.method.as_str(), runner_up), want);
+                }
+                Err(text) => assert!(chosen.unwrap_err().contains(text)),
+            }
+        }
+        let none = Budget::default().choose(&[]).unwrap_err();
+        assert!(none.contains("no timed method"));
     }
 }

@@ -1,5 +1,4 @@
 //! What is written to the files of results. `docs/results-files.md` says what each field is, and its unit.
-#![allow(missing_docs, reason = "docs/results-files.md says what each field is")]
 
 use crate::{designs::MOTIONS, scaling::Series};
 use peelnet_core::methods::slabs::Kept;
@@ -7,8 +6,7 @@ use peelnet_model::PixelLoss;
 use peelnet_render::Property;
 use serde::{Deserialize, Serialize};
 
-/// What a result was measured on, and with which version.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     pub os: String,
     pub arch: String,
@@ -70,7 +68,6 @@ const fn one() -> u32 {
     1
 }
 
-/// A comparison of methods.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bench {
     /// Mean load of the machine before and after, see [`crate::load`].
@@ -85,7 +82,6 @@ pub struct Bench {
     pub rows: Vec<Row>,
 }
 
-/// A method along a scene's path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathRow {
     pub method: String,
@@ -101,7 +97,6 @@ pub struct PathRow {
     pub jod: Option<f64>,
 }
 
-/// A method in one frame of a scene's path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameRow {
     pub method: String,
@@ -127,7 +122,6 @@ pub struct Along {
     pub by_frame: Vec<FrameRow>,
 }
 
-/// What one method took in one step of a series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
     pub method: String,
@@ -137,7 +131,6 @@ pub struct Growth {
     pub bytes_per_pixel: f64,
 }
 
-/// A step that a method was not measured in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     pub method: String,
@@ -155,7 +148,6 @@ pub struct Exponent {
     pub bytes: Option<f64>,
 }
 
-/// How time and memory grow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
     pub exponents: Vec<Exponent>,
@@ -163,7 +155,6 @@ pub struct Scaling {
     pub left_out: Vec<LeftOut>,
 }
 
-/// What an effect costs in a scene: the frame as it is, and without the effect.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     pub scene: String,
@@ -209,8 +200,7 @@ pub struct Fill {
     pub ms_all: f64,
 }
 
-/// What effects cost.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effects {
     pub method: String,
     pub size: [u32; 2],
@@ -223,11 +213,9 @@ pub struct Effects {
     pub fills: Vec<Fill>,
 }
 
-/// What became of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// It holds.
     Pass,
     /// It does not, as the method declares.
     Declared,
@@ -235,7 +223,6 @@ pub enum Outcome {
     Fail,
 }
 
-/// One property of one method in one stress case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StressRow {
     pub method: String,
@@ -248,7 +235,6 @@ pub struct StressRow {
     pub reason: Option<String>,
 }
 
-/// A run over the stress cases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stressed {
     pub rows: Vec<StressRow>,
@@ -266,7 +252,6 @@ pub struct Score {
     pub flicker: [Option<f64>; MOTIONS.len()],
 }
 
-/// A method that designs are compared with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     pub method: String,
@@ -274,7 +259,6 @@ pub struct Reference {
     pub score: Score,
 }
 
-/// A measured design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DesignRow {
     pub design: String,
@@ -295,8 +279,7 @@ pub struct DesignRow {
     pub middle: Score,
 }
 
-/// All designs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Designs {
     pub file: String,
     pub trained_on: Vec<String>,

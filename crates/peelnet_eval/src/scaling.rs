@@ -10,7 +10,7 @@ use crate::{
     bench::Progress,
     compare::{Plan, method_ms},
     rows::mean,
-    stage::{Ready, Stage, Watch, in_turn, percentile},
+    stage::{Ready, Stage, Watch, camera, in_turn, percentile, quad},
 };
 use glam::Vec3;
 use peelnet_gpu::Gpu;
@@ -22,7 +22,6 @@ use std::{fmt, sync::atomic::AtomicBool};
 /// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
 const PATIENCE_MS: f64 = 3000.0;
 
-/// What grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Series {
@@ -35,7 +34,6 @@ pub enum Series {
 }
 
 impl Series {
-    /// Every series.
     pub const ALL: [Self; 3] = [Self::Fragments, Self::Pixels, Self::Triangles];
 }
 
@@ -45,8 +43,6 @@ impl fmt::Display for Series {
     }
 }
 
-/// One step of a series.
-#[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     series: Series,
     size: [u32; 2],
@@ -88,7 +84,7 @@ pub fn measure(
     gpu: &Gpu,
     plan: &Plan<'_>,
     stop: &AtomicBool,
-    report: &mut dyn FnMut(Progress<'_>),
+    report: &mut dyn FnMut(Progress),
 ) -> Result<Scaling, EvalError> {
     let (mut rows, mut left_out): (Vec<Growth>, Vec<LeftOut>) = (Vec::new(), Vec::new());
     let (steps, frames, methods) = (steps(), plan.frames.max(1), plan.methods);
@@ -168,12 +164,8 @@ fn stack(layers: u32, cells: u32) -> Scene {
         })
         .collect();
     let camera = Camera {
-        position: Vec3::ZERO,
-        target: Vec3::NEG_Z,
-        up: Vec3::Y,
         fov_y_degrees: 60.0,
-        near: 0.1,
-        far: 100.0,
+        ..camera([0.1, 100.0])
     };
     let name = format!("stack of {layers} walls of {cells}×{cells} squares");
     Scene::generated(&name, "the bench", [0.2, 0.3, 0.4], camera, objects)
@@ -188,9 +180,8 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
     };
     let square = |i: u32| {
         let (x, y) = (i % cells, i / cells);
-        let (a, b) = (vertex(x, y), vertex(x + 1, y));
-        let (c, d) = (vertex(x + 1, y + 1), vertex(x, y + 1));
-        [[a, b, c], [a, c, d]]
+        let (right, above) = (x + 1, y + 1);
+        quad([(x, y), (right, y), (right, above), (x, above)].map(|(x, y)| vertex(x, y)))
     };
     let triangles: Vec<[Vec3; 3]> = (0..cells * cells).flat_map(square).collect();
     Object::of_triangles(&format!("wall at {depth}"), &triangles, material)
@@ -201,17 +192,12 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
 pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
     let mut all: Vec<Exponent> = Vec::new();
     for row in rows {
-        let (method, series) = (&row.method, row.series);
-        if all
-            .iter()
-            .any(|e| e.method == *method && e.series == series)
-        {
+        let is_same = |method: &str, series| method == row.method && series == row.series;
+        if all.iter().any(|e| is_same(&e.method, e.series)) {
             continue;
         }
-        let own = rows.iter();
-        let own: Vec<&Growth> = own
-            .filter(|r| r.method == *method && r.series == series)
-            .collect();
+        let own = rows.iter().filter(|r| is_same(&r.method, r.series));
+        let own: Vec<&Growth> = own.collect();
         let upper = &own[own.len() / 2..];
         let fit = |value: &dyn Fn(&Growth) -> f64| {
             slope(upper.iter().map(|r| ((r.value as f64).ln(), value(r).ln())))
@@ -222,8 +208,8 @@ pub fn exponents(rows: &[Growth]) -> Vec<Exponent> {
             _ => 1.0,
         };
         all.push(Exponent {
-            method: method.clone(),
-            series,
+            method: row.method.clone(),
+            series: row.series,
             time: fit(&|r| r.time_ms),
             bytes: fit(&|r| r.bytes_per_pixel * pixels(r)),
         });

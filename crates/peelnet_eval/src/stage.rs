@@ -1,28 +1,20 @@
 //! Scenes on the GPU and methods that draw them, frames in turn, and what is reported of both.
 
 use crate::{EvalError, compare::EXACT};
+use glam::Vec3;
 use peelnet_gpu::Gpu;
-use peelnet_render::{Frame, MethodOptions, MethodSpec, Prepared, Profile, RenderError, Renderer};
+use peelnet_render::{
+    Frame, Image, MethodOptions, MethodSpec, Prepared, Profile, RenderError, Renderer,
+};
 use peelnet_scene::{Camera, Scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a measurement reports.
-#[allow(missing_docs, reason = "each variant names its fields")]
 #[derive(Debug)]
-pub enum Progress<'a> {
-    /// Frame `done` of at most `total` (0 where that is not known) was drawn.
-    Drawn {
-        done: u64,
-        total: u64,
-        scene: &'a str,
-        method: &'a str,
-    },
-    /// A method needs more than the adapter allows and is left out of a scene from here on, and why.
-    LeftOut {
-        scene: &'a str,
-        method: &'a str,
-        why: String,
-    },
+pub enum Progress {
+    /// Frame `done` of at most `total` (0 where that is not known) was drawn: of which scene, with which method.
+    Drawn { done: u64, total: u64, what: String },
+    /// A method needs more than the adapter allows and is left out of a scene from here on: which, and why.
+    LeftOut(String),
 }
 
 pub(crate) fn check_stop(stop: &AtomicBool) -> Result<(), EvalError> {
@@ -37,11 +29,11 @@ pub(crate) struct Watch<'a> {
     pub done: u64,
     pub total: u64,
     pub stop: &'a AtomicBool,
-    pub report: &'a mut dyn FnMut(Progress<'_>),
+    pub report: &'a mut dyn FnMut(Progress),
 }
 
 impl<'a> Watch<'a> {
-    pub fn new(total: u64, stop: &'a AtomicBool, report: &'a mut dyn FnMut(Progress<'_>)) -> Self {
+    pub fn new(total: u64, stop: &'a AtomicBool, report: &'a mut dyn FnMut(Progress)) -> Self {
         Self {
             done: 0,
             total,
@@ -50,42 +42,53 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// What a loop over frames asks before each.
     pub fn check(&self) -> Result<(), EvalError> {
         check_stop(self.stop)
     }
 
     pub fn drawn(&mut self, scene: &str, method: &str) {
         self.done += 1;
-        let (done, total) = (self.done, self.total);
         (self.report)(Progress::Drawn {
-            done,
-            total,
-            scene,
-            method,
+            done: self.done,
+            total: self.total,
+            what: format!("{scene} with {method}"),
         });
     }
 
-    pub fn left_out(&mut self, scene: &str, method: &str, why: String) {
-        (self.report)(Progress::LeftOut { scene, method, why });
+    pub fn left_out(&mut self, scene: &str, method: &str, why: &str) {
+        let what = format!("{method} is left out of {scene}: {why}");
+        (self.report)(Progress::LeftOut(what));
     }
 }
 
 /// A scene on the GPU. Errors name it and the method.
-#[derive(Debug)]
 pub(crate) struct Stage<'a> {
     pub scene: &'a Scene,
     pub renderer: Renderer,
 }
 
-/// A method ready to draw a scene.
-#[derive(Debug)]
 pub(crate) struct Ready {
     pub name: String,
     pub prepared: Prepared,
 }
 
-/// The method that judges all others.
+/// At the origin, looking along −z, 90° high.
+pub(crate) fn camera([near, far]: [f32; 2]) -> Camera {
+    Camera {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y_degrees: 90.0,
+        near,
+        far,
+    }
+}
+
+/// Two triangles.
+pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
 pub(crate) fn exact_method() -> MethodSpec {
     EXACT.parse().expect("it is in the list of methods")
 }
@@ -99,12 +102,17 @@ impl<'a> Stage<'a> {
         })
     }
 
-    pub fn failed(&self, method: &str) -> impl FnOnce(RenderError) -> EvalError + use<> {
+    pub fn failed(&self, method: &str) -> impl FnOnce(RenderError) -> EvalError {
         EvalError::render(&self.scene.name, method)
     }
 
     pub fn ready(&self, method: &MethodSpec, options: MethodOptions) -> Result<Ready, EvalError> {
         self.prepare(&method.to_string(), |r| r.method(method, options))
+    }
+
+    /// Which surfaces each pixel shows.
+    pub fn surfaces(&self, size: [u32; 2], samples: u32) -> Result<Ready, EvalError> {
+        self.prepare("surfaces", |renderer| renderer.surfaces(size, samples))
     }
 
     /// Something else to draw, with the name that errors give it.
@@ -121,6 +129,17 @@ impl<'a> Stage<'a> {
     pub fn image(&self, ready: &mut Ready, camera: &Camera) -> Result<Frame, EvalError> {
         let frame = self.renderer.image(&mut ready.prepared, camera);
         frame.map_err(self.failed(&ready.name))
+    }
+
+    /// The image of a view by a method that draws nothing else.
+    pub fn draw(
+        &self,
+        method: &MethodSpec,
+        options: MethodOptions,
+        camera: &Camera,
+    ) -> Result<Image, EvalError> {
+        let mut ready = self.ready(method, options)?;
+        Ok(self.image(&mut ready, camera)?.image)
     }
 }
 

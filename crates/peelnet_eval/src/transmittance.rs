@@ -18,15 +18,12 @@ use peelnet_scene::{Camera, Scene};
 pub const SHARE: f64 = 0.02;
 
 /// The fragments of a view's sampled pixels.
-#[derive(Debug)]
 pub(crate) struct Stacks {
     /// (linear depth, α), nearest first, pixel by pixel.
     pixels: Vec<Vec<(f32, f32)>>,
     warp: DepthWarp,
 }
 
-/// A scene made ready for peeling.
-#[derive(Debug)]
 pub(crate) struct Peeled<'a> {
     scene: &'a Scene,
     harvester: Harvester,
@@ -41,7 +38,7 @@ impl<'a> Peeled<'a> {
         sampled: bool,
     ) -> Result<Self, EvalError> {
         let harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, sampled, None)
-            .map_err(EvalError::peel(&scene.name))?;
+            .map_err(EvalError::at(format!("scene '{}'", scene.name)))?;
         Ok(Self { scene, harvester })
     }
 
@@ -76,7 +73,7 @@ impl<'a> Peeled<'a> {
         self.harvester
             .harvest(camera, sample, None, RawTile::default, &mut tile)
             .map(|_| ())
-            .map_err(EvalError::peel(&self.scene.name))
+            .map_err(EvalError::at(format!("scene '{}'", self.scene.name)))
     }
 
     /// The fragments of a view's sampled pixels.

@@ -1,15 +1,13 @@
 //! The files of `peelnet bench --designs`: what designs of slabs are worth.
 
-use crate::{Measurement, ReportError, Results, Table};
+use crate::{Files, Measurement, Results, Table};
 use peelnet_eval::designs::{Designs, Kept, Row, Score};
-use std::path::Path;
 
 impl Measurement for Designs {
-    const FILES: &[&str] = &["designs.json", "designs.md"];
-
-    fn text(results: &Results<Self>, _: &str, _: &Path) -> Result<Option<String>, ReportError> {
-        Ok(Some(results.markdown()))
-    }
+    const FILES: Files<Self> = &[
+        ("designs.json", Results::json),
+        ("designs.md", |r, _| Ok(r.markdown())),
+    ];
 }
 
 impl Results<Designs> {
@@ -134,54 +132,22 @@ fn significant(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{machine, written};
-    use peelnet_eval::designs::Reference;
 
     #[test]
-    fn files_are_written() {
-        let slab = |end, mean, farthest| Kept {
-            end,
+    fn designs_are_told_in_short() {
+        let slab = |mean, farthest| Kept {
+            end: 0.5,
             mean,
-            nearest: true,
+            nearest: mean,
             farthest,
         };
-        let network = Score {
-            to_moments: Some(0.01),
-            to_kbuffer: Some(0.25),
-            worst_scene: Some("s".into()),
-            worst: Some(0.5),
-            contour_pairs: Some(0.003),
-            flicker: [Some(0.001), None],
-        };
         let row = Row {
-            design: "medium".into(),
-            slabs: vec![slab(0.5, true, true), slab(1.0, false, false)],
-            records: "1920x32".into(),
-            range: "pixel".into(),
+            slabs: vec![slab(true, true), slab(false, false)],
             trained_apart: true,
-            bytes: 22,
-            topology: "9-12-1".into(),
-            parameters: 133,
-            seconds: 2.5,
-            network: network.clone(),
             ..Row::default()
         };
-        let designs = Designs {
-            file: "f.toml".into(),
-            trained_on: vec!["t".into()],
-            judged_on: vec!["s".into()],
-            learning_rate: 0.016,
-            epochs: 20,
-            references: vec![Reference {
-                method: "mboit4".into(),
-                score: network,
-            }],
-            rows: vec![row],
-        };
-        let results = Results::new(machine(), "peelnet bench s --designs d", designs);
-        let dir = tempfile::tempdir().unwrap();
-        let text = written(dir.path(), &results);
-        let line = "| medium | 0.5 1 | MNF N | 1920x32 | pixel | one, trained apart | image | 22 | 9-12-1 | 133 | 2.5 | 0.0100 | 0.500 (s) | 0.250 | 0.30 | 0.10 | – | – | – | – | – |";
-        assert!(text.contains(line), "{text}");
+        assert_eq!(joined(&row, kept), "MNF –");
+        assert_eq!(sums(&row), "one, trained apart");
+        assert_eq!([0.01, 0.0, 123.4].map(significant), ["0.0100", "0", "123"]);
     }
 }

@@ -1,12 +1,11 @@
 //! The files of `peelnet bench --effects`: what effects cost, what they look like, and what shading one layer saves.
 
-use crate::{Measurement, ReportError, Results, Table, page, picture::figure_of};
+use crate::{Files, Measurement, ReportError, Results, Table, page, picture::figure_of};
 use maud::{Markup, html};
-use peelnet_chart::{Line, LineChart, Scale, Svg};
+use peelnet_chart::{Line, Scale, Svg, line_chart};
 use peelnet_eval::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
 use std::path::Path;
 
-/// Width of the pictures, pixels.
 const PICTURE_WIDTH: u32 = 320;
 
 /// Title of the table of layers, which has a chart.
@@ -16,29 +15,19 @@ const LAYERS: &str = "One layer shaded, or all";
 type Section = (&'static str, &'static str, Table);
 
 impl Measurement for Effects {
-    const FILES: &[&str] = &[
-        "effects.json",
-        "effects.md",
-        "effects-layers.svg",
-        "report.html",
+    const FILES: Files<Self> = &[
+        ("effects.json", Results::json),
+        ("effects.md", |r, _| Ok(r.markdown())),
+        ("effects-layers.svg", |r, _| {
+            let layers = &r.measured.layers;
+            let chart = (!layers.is_empty()).then(|| r.layer_chart().on_white());
+            Ok(chart.unwrap_or_default())
+        }),
+        ("report.html", Results::page),
     ];
-
-    fn text(
-        results: &Results<Self>,
-        file: &str,
-        folder: &Path,
-    ) -> Result<Option<String>, ReportError> {
-        Ok(match file {
-            "effects.md" => Some(results.markdown()),
-            "effects-layers.svg" if results.measured.layers.is_empty() => None,
-            "effects-layers.svg" => Some(results.layer_chart().on_white()),
-            _ => Some(results.page(folder)?),
-        })
-    }
 }
 
 impl Results<Effects> {
-    /// All tables that have rows.
     pub fn tables(&self) -> Vec<Section> {
         let bytes = |c: &Cost| match (c.bytes_with, c.bytes_without) {
             (with, without) if with == without => format!("{with:.0}"),
@@ -122,7 +111,6 @@ impl Results<Effects> {
         Table::new(headings, fills.chunks(FILLED.len()).map(line))
     }
 
-    /// Frame time against the number of layers.
     fn layer_chart(&self) -> Svg {
         let line = |name: &str, ms: fn(&LayerCost) -> f64| {
             let layers = self.measured.layers.iter();
@@ -132,16 +120,9 @@ impl Results<Effects> {
             line("all layers shaded", |l| l.ms_all),
             line("one layer shaded", |l| l.ms_one),
         ];
-        LineChart {
-            lines: &lines,
-            x: "layers",
-            y: "frame time, ms",
-            x_scale: Scale::Logarithmic,
-        }
-        .svg()
+        line_chart(&lines, "layers", "frame time, ms", Scale::Logarithmic)
     }
 
-    /// Method, size and frames.
     fn settings(&self) -> String {
         let m = &self.measured;
         let [width, height] = m.size;
@@ -188,7 +169,6 @@ fn two(x: f64) -> String {
     format!("{x:.2}")
 }
 
-/// The pictures of a scene with and without an effect.
 fn pair(cost: &Cost, folder: &Path) -> Result<Markup, ReportError> {
     let mut figures = Vec::new();
     for (on, word) in [(true, "with"), (false, "without")] {
@@ -226,9 +206,6 @@ mod tests {
             ..Fill::default()
         };
         let effects = Effects {
-            method: "wboit-eq9".into(),
-            size: [4, 3],
-            frames: 1,
             costs: vec![Cost {
                 ratio: 1.5,
                 bytes_with: 10.0,
@@ -243,6 +220,7 @@ mod tests {
             }],
             layers: vec![layer(3, 2.0, 4.0), layer(6, 3.0, 9.0)],
             fills: vec![fill(0.5, 2.0), fill(0.75, 3.0), fill(1.0, 4.0)],
+            ..Effects::default()
         };
         let results = Results::new(machine(), "peelnet bench --effects", effects);
         let tables = results.tables().into_iter().map(|(.., table)| table);

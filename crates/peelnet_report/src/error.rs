@@ -1,27 +1,24 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// What can go wrong when results are written or read.
-#[allow(missing_docs, reason = "the message of each error names its fields")]
+/// A file of results that could not be written or read.
 #[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// The file system refused.
-    #[error("{}: cannot {action}: {source}", path.display())]
-    Io {
-        path: PathBuf,
-        action: &'static str,
-        source: std::io::Error,
-    },
-    /// A file is not the result that was expected.
-    #[error("{}: not a result of this kind: {source}", path.display())]
-    Format {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
-    /// A picture of a page could not be read or shrunk.
-    #[error("{}: cannot {action} the picture: {source}", path.display())]
-    Picture {
-        path: PathBuf,
-        action: &'static str,
-        source: image::ImageError,
-    },
+#[error("{}: {what}: {source}", path.display())]
+pub struct ReportError {
+    path: PathBuf,
+    what: &'static str,
+    source: Box<dyn std::error::Error + Send + Sync>,
+}
+
+impl ReportError {
+    /// For `map_err`: what failed with a file.
+    pub(crate) fn of<E>(path: &Path, what: &'static str) -> impl FnOnce(E) -> Self
+    where
+        E: std::error::Error + Send + Sync + 'static,
+    {
+        move |source| Self {
+            path: path.to_owned(),
+            what,
+            source: source.into(),
+        }
+    }
 }

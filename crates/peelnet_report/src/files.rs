@@ -2,7 +2,7 @@
 
 use crate::{ReportError, page};
 use peelnet_chart::Svg;
-use peelnet_files::{Kind, printable_json};
+use peelnet_files::Kind;
 use serde::Serialize;
 use std::path::Path;
 
@@ -59,18 +59,8 @@ fn contains(head: &[u8], texts: &[&str]) -> bool {
 /// # Errors
 /// If the folder or the file cannot be written; then nothing is left behind.
 pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), ReportError> {
-    peelnet_files::write_whole(path, bytes.as_ref()).map_err(|source| ReportError::Io {
-        path: path.to_owned(),
-        action: "write",
-        source,
-    })
-}
-
-/// A value as indented JSON.
-pub(crate) fn json(value: &impl Serialize) -> String {
-    let json = serde_json::to_string_pretty(value)
-        .expect("results have string keys only, and floats serialise always");
-    printable_json(&format!("{json}\n")).into_owned()
+    let written = peelnet_files::write_whole(path, bytes.as_ref());
+    written.map_err(ReportError::of(path, "cannot write"))
 }
 
 /// Rows of flat fields as CSV with a header.

@@ -7,6 +7,7 @@
 //! [`Results`] is the one envelope of every kind of measurement. Each kind is a [`Measurement`] with its tables and charts,
 //! which [`Results::write`] writes as a folder of files. Pages are one HTML file each, which needs neither network nor any other
 //! file. They are built with maud, which escapes all text; charts come from `peelnet_chart`, which escapes as well.
+#![allow(missing_docs)]
 
 mod bench;
 mod designs;
@@ -26,6 +27,6 @@ mod thesis;
 
 pub use error::ReportError;
 pub use files::{kind_of, write_file};
-pub use results::{Measurement, Results};
+pub use results::{Files, Measurement, Results};
 pub use table::Table;
-pub use thesis::{Stage, ThesisRun, findings::findings};
+pub use thesis::{Stage, ThesisRun};

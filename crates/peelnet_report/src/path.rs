@@ -1,14 +1,14 @@
 //! The files of `peelnet bench --path`: errors along a path, their change from frame to frame, and how visible the difference is.
 
 use crate::{
-    Measurement, ReportError, Results, Table,
+    Files, Measurement, ReportError, Results, Table,
     files::csv,
     page::{self, SORT_SCRIPT},
     picture::figure_of,
     table::number,
 };
 use maud::{Markup, html};
-use peelnet_chart::{Line, LineChart, Scale, Svg};
+use peelnet_chart::{Line, Scale, Svg, line_chart};
 use peelnet_eval::{
     compare::{EXACT, image_name},
     each_once,
@@ -18,10 +18,8 @@ use peelnet_eval::{
 };
 use std::path::Path;
 
-/// Width of a strip in the page, pixels.
 const STRIP_WIDTH: u32 = 1200;
 
-/// What the columns of the tables and the charts mean.
 const NOTE: &str = "JOD: just-objectionable differences by ColorVideoVDP, 10 for no visible difference. Error: mean absolute difference of \
     sRGB-encoded values from the exact image, 0–255. Change: mean absolute change of that difference from frame to frame, 0–255; an error \
     that is glued to a moving surface changes as well. Worst step: the largest change between two frames. Contour pairs: share of neighbouring \
@@ -29,36 +27,15 @@ const NOTE: &str = "JOD: just-objectionable differences by ColorVideoVDP, 10 for
     in linear light are means over the frames.";
 
 impl Measurement for Along {
-    const FILES: &[&str] = &[
-        "path.json",
-        "path.csv",
-        "path-frames.csv",
-        "path.md",
-        "path-error.svg",
-        "path-change.svg",
-        "report.html",
+    const FILES: Files<Self> = &[
+        ("path.json", Results::json),
+        ("path.csv", |r, _| Ok(csv(&r.measured.rows))),
+        ("path-frames.csv", |r, _| Ok(csv(&r.measured.by_frame))),
+        ("path.md", |r, _| Ok(r.markdown())),
+        ("path-error.svg", |r, _| Ok(r.error_chart().on_white())),
+        ("path-change.svg", |r, _| Ok(r.change_chart().on_white())),
+        ("report.html", Results::page),
     ];
-
-    fn text(
-        results: &Results<Self>,
-        file: &str,
-        folder: &Path,
-    ) -> Result<Option<String>, ReportError> {
-        let [error, change] = results.charts();
-        Ok(Some(match file {
-            "path.csv" => csv(&results.measured.rows),
-            "path-frames.csv" => csv(&results.measured.by_frame),
-            "path.md" => format!(
-                "{}\n{NOTE}\n\n{}. {}\n",
-                results.table().markdown(),
-                results.settings(),
-                results.credit()
-            ),
-            "path-error.svg" => error.on_white(),
-            "path-change.svg" => change.on_white(),
-            _ => results.page(folder)?,
-        }))
-    }
 }
 
 impl Results<Along> {
@@ -123,26 +100,23 @@ impl Results<Along> {
         let mut methods = each_once(rows.map(|r| r.method.as_str()));
         methods.retain(|m| !is_exact(m));
         let lines: Vec<Line> = methods.iter().map(line).collect();
-        LineChart {
-            lines: &lines,
-            x: "frame",
-            y,
-            x_scale: Scale::Linear,
-        }
-        .svg()
+        line_chart(&lines, "frame", y, Scale::Linear)
     }
 
-    fn charts(&self) -> [Svg; 2] {
-        [
-            self.chart("mean absolute error, 0–255", |r| Some(r.error)),
-            self.chart(
-                "mean absolute change since the frame before, 0–255",
-                |r| r.change,
-            ),
-        ]
+    fn error_chart(&self) -> Svg {
+        self.chart("mean absolute error, 0–255", |r| Some(r.error))
     }
 
-    /// Size, frames and display.
+    fn change_chart(&self) -> Svg {
+        let y = "mean absolute change since the frame before, 0–255";
+        self.chart(y, |r| r.change)
+    }
+
+    fn markdown(&self) -> String {
+        let (table, settings) = (self.table().markdown(), self.settings());
+        format!("{table}\n{NOTE}\n\n{settings}. {}\n", self.credit())
+    }
+
     fn settings(&self) -> String {
         let Along {
             size: [width, height],
@@ -165,7 +139,6 @@ impl Results<Along> {
     fn page(&self, folder: &Path) -> Result<String, ReportError> {
         let rows = self.measured.rows.iter();
         let scenes = each_once(rows.map(|r| r.scene.as_str()));
-        let [error, change] = self.charts();
         let by_scene = scenes.iter().map(|scene| self.of_scene(scene, folder));
         let by_scene = by_scene.collect::<Result<Vec<Markup>, _>>()?;
         let body = html! {
@@ -173,8 +146,8 @@ impl Results<Along> {
             h2 { "All scenes" }
             p.note { (NOTE) }
             (self.table().html("sortable", |_| false))
-            (page::chart("curve", &error))
-            (page::chart("curve", &change))
+            (page::chart("curve", &self.error_chart()))
+            (page::chart("curve", &self.change_chart()))
             h2 { "Scene by scene" }
             @for scene in &by_scene { (scene) }
         };
@@ -182,7 +155,6 @@ impl Results<Along> {
         Ok(page::page(self, title, body, &[], Some(SORT_SCRIPT)))
     }
 
-    /// Table and strips of one scene.
     fn of_scene(&self, scene: &str, folder: &Path) -> Result<Markup, ReportError> {
         let table = self.table_of(Some(scene));
         let methods = table.rows.iter().map(|row| row[0].as_str());
@@ -268,7 +240,7 @@ mod tests {
         assert_eq!(page.matches("data:image/png").count(), 2);
         assert!(page.contains("4 samples a pixel") && page.contains("&lt;b&gt;"));
         assert!(!page.contains("<b>"));
-        let [chart, _] = results.charts();
+        let chart = results.error_chart();
         assert!(chart.as_str().contains("wboit-eq9") && !chart.as_str().contains("depth-peel"));
     }
 }

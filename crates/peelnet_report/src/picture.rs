@@ -11,8 +11,9 @@ pub(crate) fn read(path: &Path) -> Result<Option<DynamicImage>, ReportError> {
     if !path.exists() {
         return Ok(None);
     }
-    let picture = image::open(path).map_err(failed(path, "read"))?;
-    Ok(Some(picture))
+    let picture = image::open(path);
+    let failed = ReportError::of(path, "cannot read the picture");
+    picture.map(Some).map_err(failed)
 }
 
 /// A picture as `data:` URI, shrunk to at most `width` pixels; `path` is where it came from, for errors.
@@ -30,14 +31,13 @@ pub(crate) fn data_uri(
     };
     let mut png = Cursor::new(Vec::new());
     let written = picture.to_rgb8().write_to(&mut png, ImageFormat::Png);
-    written.map_err(failed(path, "shrink"))?;
+    written.map_err(ReportError::of(path, "cannot shrink the picture"))?;
     Ok(format!(
         "data:image/png;base64,{}",
         STANDARD.encode(png.get_ref())
     ))
 }
 
-/// A picture with its caption below.
 pub(crate) fn figure(uri: &str, caption: &str) -> Markup {
     html! {
         figure {
@@ -59,13 +59,4 @@ pub(crate) fn figure_of(
     };
     let uri = data_uri(path, &picture, width)?;
     Ok(Some(figure(&uri, caption)))
-}
-
-fn failed(path: &Path, action: &'static str) -> impl FnOnce(image::ImageError) -> ReportError {
-    let path = path.to_owned();
-    move |source| ReportError::Picture {
-        path,
-        action,
-        source,
-    }
 }

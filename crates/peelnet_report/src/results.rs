@@ -1,8 +1,6 @@
-use crate::{
-    ReportError,
-    files::{json, write_file},
-};
+use crate::{ReportError, write_file};
 use peelnet_eval::Machine;
+use peelnet_files::printable_json;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::Path;
 
@@ -14,17 +12,24 @@ const MAX_BYTES: u64 = 1 << 28;
 /// Its JSON is one object: `machine`, `command`, and the fields of `measured` beside them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results<T> {
-    /// What it was measured on.
     pub machine: Machine,
     /// The command line, or what else started the measurement.
     pub command: String,
-    /// What was measured.
     #[serde(flatten)]
     pub measured: T,
 }
 
+/// Names and texts of files, which take pictures from `images/` in their folder.
+pub type Files<T> = &'static [(&'static str, Text<T>)];
+type Text<T> = fn(&Results<T>, &Path) -> Result<String, ReportError>;
+
+/// A measurement that is written as a folder of files.
+pub trait Measurement: Serialize + Sized + 'static {
+    /// One of them is the JSON.
+    const FILES: Files<Self>;
+}
+
 impl<T> Results<T> {
-    /// Puts a measurement into its envelope.
     pub fn new(machine: Machine, command: impl Into<String>, measured: T) -> Self {
         Self {
             machine,
@@ -43,43 +48,32 @@ impl<T> Results<T> {
     }
 }
 
-/// A measurement that is written as a folder of files.
-pub trait Measurement: Serialize {
-    /// The files. The JSON among them is the [`Results`].
-    const FILES: &'static [&'static str];
-
-    /// The text of any other of the files; none where it is left out. Pictures are taken from `images/` in the folder.
-    ///
-    /// # Errors
-    /// If a picture cannot be read.
-    fn text(
-        results: &Results<Self>,
-        file: &str,
-        folder: &Path,
-    ) -> Result<Option<String>, ReportError>
-    where
-        Self: Sized;
-}
-
 impl<T: Measurement> Results<T> {
-    /// The files that [`Self::write`] writes.
-    pub const FILES: &'static [&'static str] = T::FILES;
+    /// Names of the files that [`Self::write`] writes.
+    pub fn files() -> Vec<&'static str> {
+        T::FILES.iter().map(|(name, _)| *name).collect()
+    }
 
-    /// Writes [`Self::FILES`] into a folder; pages show the pictures in `images/` in it.
+    /// Writes the files into a folder; pages show the pictures in `images/` in it.
     ///
     /// # Errors
     /// If a file cannot be written, or a picture not be read.
     pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        for file in Self::FILES {
-            let text = match file.ends_with(".json") {
-                true => Some(json(self)),
-                false => T::text(self, file, folder)?,
-            };
-            if let Some(text) = text {
-                write_file(&folder.join(file), text)?;
+        for (name, text) in T::FILES {
+            let text = text(self, folder)?;
+            // A chart of nothing is left out.
+            if !(text.is_empty() && name.ends_with(".svg")) {
+                write_file(&folder.join(name), text)?;
             }
         }
         Ok(())
+    }
+
+    /// The results as indented JSON.
+    pub(crate) fn json(&self, _: &Path) -> Result<String, ReportError> {
+        let json = serde_json::to_string_pretty(self)
+            .expect("results have string keys only, and floats serialise always");
+        Ok(printable_json(&format!("{json}\n")).into_owned())
     }
 }
 
@@ -89,14 +83,9 @@ impl<T: DeserializeOwned> Results<T> {
     /// # Errors
     /// A file that cannot be read, or that holds something else.
     pub fn read(path: &Path) -> Result<Self, ReportError> {
-        let bytes = peelnet_files::read(path, MAX_BYTES).map_err(|source| ReportError::Io {
-            path: path.to_owned(),
-            action: "read",
-            source,
-        })?;
-        serde_json::from_slice(&bytes).map_err(|source| ReportError::Format {
-            path: path.to_owned(),
-            source,
-        })
+        let bytes = peelnet_files::read(path, MAX_BYTES);
+        let bytes = bytes.map_err(ReportError::of(path, "cannot read"))?;
+        let read = serde_json::from_slice(&bytes);
+        read.map_err(ReportError::of(path, "not a result of this kind"))
     }
 }

@@ -1,54 +1,42 @@
 //! The files of `peelnet bench --scaling`: how time and memory grow.
 
-use crate::{Measurement, ReportError, Results, Table, files::csv, table::number};
-use peelnet_chart::{Line, LineChart, Scale};
+use crate::{Files, Measurement, Results, Table, files::csv, table::number};
+use peelnet_chart::{Line, Scale, line_chart};
 use peelnet_eval::{
     each_once,
-    scaling::{Exponent, Scaling, Series},
+    scaling::{Scaling, Series},
 };
-use std::path::Path;
 
 impl Measurement for Scaling {
-    const FILES: &[&str] = &[
-        "scaling.json",
-        "scaling.csv",
-        "scaling.md",
-        "scaling-fragments.svg",
-        "scaling-pixels.svg",
-        "scaling-triangles.svg",
+    const FILES: Files<Self> = &[
+        ("scaling.json", Results::json),
+        ("scaling.csv", |r, _| Ok(csv(&r.measured.rows))),
+        ("scaling.md", |r, _| Ok(r.markdown())),
+        ("scaling-fragments.svg", |r, _| {
+            Ok(r.chart(Series::Fragments, "fragments per pixel"))
+        }),
+        ("scaling-pixels.svg", |r, _| {
+            Ok(r.chart(Series::Pixels, "pixels"))
+        }),
+        ("scaling-triangles.svg", |r, _| {
+            Ok(r.chart(Series::Triangles, "triangles"))
+        }),
     ];
-
-    fn text(results: &Results<Self>, file: &str, _: &Path) -> Result<Option<String>, ReportError> {
-        Ok(Some(match file {
-            "scaling.csv" => csv(&results.measured.rows),
-            "scaling.md" => results.markdown(),
-            "scaling-fragments.svg" => results.chart(Series::Fragments, "fragments per pixel"),
-            "scaling-pixels.svg" => results.chart(Series::Pixels, "pixels"),
-            _ => results.chart(Series::Triangles, "triangles"),
-        }))
-    }
 }
 
 impl Results<Scaling> {
-    /// The exponents.
     pub fn table(&self) -> Table {
         let exponents = &self.measured.exponents;
-        let of = |method: &str, series: Series, pick: fn(&Exponent) -> Option<f64>| {
+        let headings = |what: &str| Series::ALL.map(|s| format!("{what} ~ {s}^"));
+        let columns = [headings("time"), headings("bytes")].into_iter().flatten();
+        let methods = each_once(exponents.iter().map(|e| e.method.as_str()));
+        Table::matrix("method", columns, &methods, |method, k| {
+            let series = Series::ALL[k % Series::ALL.len()];
             let mut own = exponents.iter();
             let own = own.find(|e| e.method == method && e.series == series);
-            number(own.and_then(pick), 2)
-        };
-        let line = |method: &str| {
-            let times = Series::ALL.map(|s| of(method, s, |e| e.time));
-            let bytes = Series::ALL.map(|s| of(method, s, |e| e.bytes));
-            let name = [method.to_owned()];
-            name.into_iter().chain(times).chain(bytes).collect()
-        };
-        let of = |what: &str| Series::ALL.map(|s| format!("{what} ~ {s}^"));
-        let headings = ["method".to_owned()].into_iter();
-        let headings = headings.chain(of("time")).chain(of("bytes"));
-        let methods = each_once(exponents.iter().map(|e| e.method.as_str()));
-        Table::new(headings, methods.into_iter().map(line))
+            let exponent = own.and_then(|e| [e.time, e.bytes][k / Series::ALL.len()]);
+            number(exponent, 2)
+        })
     }
 
     fn markdown(&self) -> String {
@@ -63,7 +51,6 @@ impl Results<Scaling> {
         )
     }
 
-    /// Frame time of every method against a series.
     fn chart(&self, series: Series, x: &str) -> String {
         let mut lines: Vec<Line> = Vec::new();
         for row in self.measured.rows.iter().filter(|r| r.series == series) {
@@ -73,14 +60,7 @@ impl Results<Scaling> {
                 None => lines.push(Line::new(&row.method, [point])),
             }
         }
-        LineChart {
-            lines: &lines,
-            x,
-            y: "frame time, ms",
-            x_scale: Scale::Logarithmic,
-        }
-        .svg()
-        .on_white()
+        line_chart(&lines, x, "frame time, ms", Scale::Logarithmic).on_white()
     }
 }
 
@@ -90,23 +70,21 @@ mod tests {
     use crate::testing::{machine, written};
     use peelnet_eval::scaling::{Growth, exponents};
 
-    fn row(method: &str, series: Series, value: u64, time_ms: f64) -> Growth {
-        Growth {
-            method: method.to_owned(),
-            series,
-            value,
-            time_ms,
-            bytes_per_pixel: 8.0,
-        }
-    }
-
     #[test]
     fn files_are_written() {
-        let rows = vec![
-            row("a", Series::Fragments, 1, 1.0),
-            row("a", Series::Fragments, 2, 2.0),
-            row("b", Series::Pixels, 64, 2.0),
+        let row = |(method, series, value)| Growth {
+            method: str::to_owned(method),
+            series,
+            value,
+            time_ms: value as f64,
+            bytes_per_pixel: 8.0,
+        };
+        let steps = [
+            ("a", Series::Fragments, 1),
+            ("a", Series::Fragments, 2),
+            ("b", Series::Pixels, 64),
         ];
+        let rows = steps.map(row).to_vec();
         let scaling = Scaling {
             exponents: exponents(&rows),
             rows,

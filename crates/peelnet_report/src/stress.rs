@@ -1,23 +1,20 @@
 //! The files of `peelnet stress`: what holds, what is known not to, and what fails.
 
-use crate::{Measurement, ReportError, Results, Table, files::csv, page};
+use crate::{Files, Measurement, Results, Table, files::csv, page};
 use maud::html;
 use peelnet_eval::{
     each_once,
     stress::{CASES, Outcome, Property, Row, Stressed},
 };
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 
 impl Measurement for Stressed {
-    const FILES: &[&str] = &["stress.json", "stress.csv", "stress.md", "stress.html"];
-
-    fn text(results: &Results<Self>, file: &str, _: &Path) -> Result<Option<String>, ReportError> {
-        Ok(Some(match file {
-            "stress.csv" => csv(&results.measured.rows),
-            "stress.md" => results.markdown(),
-            _ => results.page(),
-        }))
-    }
+    const FILES: Files<Self> = &[
+        ("stress.json", Results::json),
+        ("stress.csv", |r, _| Ok(csv(&r.measured.rows))),
+        ("stress.md", |r, _| Ok(r.markdown())),
+        ("stress.html", |r, _| Ok(r.page())),
+    ];
 }
 
 impl Results<Stressed> {
@@ -29,29 +26,22 @@ impl Results<Stressed> {
         let ids: Vec<&str> = ids
             .filter(|id| rows.iter().any(|r| r.case == *id))
             .collect();
-        let cell = |method: &str, case: &str| {
+        let columns = ids.iter().map(|id| (*id).to_owned());
+        Table::matrix("method", columns, &methods, |method, k| {
             let count = |result| {
                 let of = self.measured.of(result);
-                of.filter(|r| r.method == method && r.case == case).count()
+                of.filter(|r| r.method == method && r.case == ids[k])
+                    .count()
             };
-            let [pass, declared, fail] =
-                [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(count);
-            match (pass, declared, fail) {
-                (0, 0, 0) => String::new(),
-                (_, 0, 0) => "·".to_owned(),
-                (_, n, 0) => format!("d{n}"),
-                (_, _, n) => format!("F{n}"),
+            match [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(count) {
+                [0, 0, 0] => String::new(),
+                [_, 0, 0] => "·".to_owned(),
+                [_, n, 0] => format!("d{n}"),
+                [_, _, n] => format!("F{n}"),
             }
-        };
-        let line = |method: &&str| {
-            let cells = ids.iter().map(|case| cell(method, case));
-            std::iter::once((*method).to_owned()).chain(cells).collect()
-        };
-        let headings = std::iter::once(&"method").chain(&ids);
-        Table::new(headings.copied(), methods.iter().map(line))
+        })
     }
 
-    /// The failures: method, case, property, value, limit, and where.
     pub fn failures(&self) -> Table {
         Table::of(
             self.measured.of(Outcome::Fail),
@@ -97,7 +87,6 @@ impl Results<Stressed> {
         Table::new(headings, lines)
     }
 
-    /// Failures and declared flaws, those that there are, with a title.
     fn exceptions(&self) -> impl Iterator<Item = (&'static str, Table)> {
         let all = [
             ("Failures", self.failures()),

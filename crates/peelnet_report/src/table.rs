@@ -6,17 +6,13 @@ use peelnet_files::one_line;
 /// A heading, and the cell of a row.
 pub(crate) type Column<'c, R> = (&'c str, &'c dyn Fn(&R) -> String);
 
-/// Headings, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// One for each column.
     pub headings: Vec<String>,
-    /// The cells of each row.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table.
     pub fn new<H: Into<String>>(
         headings: impl IntoIterator<Item = H>,
         rows: impl IntoIterator<Item = Vec<String>>,
@@ -27,7 +23,6 @@ impl Table {
         }
     }
 
-    /// A table of these columns, a line for each row.
     pub(crate) fn of<'r, R: 'r>(
         rows: impl IntoIterator<Item = &'r R>,
         columns: &[Column<'_, R>],
@@ -35,6 +30,25 @@ impl Table {
         let line = |row: &R| columns.iter().map(|(_, cell)| cell(row)).collect();
         let headings = columns.iter().map(|(heading, _)| *heading);
         Self::new(headings, rows.into_iter().map(line))
+    }
+
+    /// A line for each name; a cell gets its line's name and its column's number.
+    pub(crate) fn matrix(
+        corner: &str,
+        columns: impl IntoIterator<Item = String>,
+        names: &[&str],
+        cell: impl Fn(&str, usize) -> String,
+    ) -> Self {
+        let mut headings = vec![corner.to_owned()];
+        headings.extend(columns);
+        let line = |name: &&str| {
+            let cells = (0..headings.len() - 1).map(|k| cell(name, k));
+            std::iter::once((*name).to_owned()).chain(cells).collect()
+        };
+        Self {
+            rows: names.iter().map(line).collect(),
+            headings,
+        }
     }
 
     /// As Markdown: the first column to the left, the others to the right.
@@ -101,12 +115,8 @@ pub(crate) fn scene_heading(scene: &str, trained_on: &[String]) -> String {
     marked(scene, trained_on, " (trained on)")
 }
 
-/// The same inside of parentheses.
-pub(crate) fn scene_in_cell(scene: &str, trained_on: &[String]) -> String {
-    marked(scene, trained_on, ", trained on")
-}
-
-fn marked(scene: &str, trained_on: &[String], mark: &str) -> String {
+/// The same with another mark.
+pub(crate) fn marked(scene: &str, trained_on: &[String], mark: &str) -> String {
     let is_trained_on = trained_on.iter().any(|name| name == scene);
     format!("{scene}{}", if is_trained_on { mark } else { "" })
 }

@@ -1,24 +1,15 @@
 //! A machine and rows for tests.
 
 use crate::{Measurement, Results};
-use peelnet_eval::{Machine, Row, metrics};
+use peelnet_eval::{Machine, Row};
 use serde::de::DeserializeOwned;
 use serde_json::json;
 use std::path::Path;
 
 pub(crate) fn machine() -> Machine {
     Machine {
-        os: "linux".into(),
-        arch: "x86_64".into(),
         cpu: "a <fast> one".into(),
-        cores: 2,
-        memory: 8 << 30,
-        adapter: "test".into(),
-        adapter_kind: "software".into(),
-        backend: "vulkan".into(),
-        driver: String::new(),
-        peelnet: "0".into(),
-        build: "debug".into(),
+        ..Machine::default()
     }
 }
 
@@ -27,18 +18,9 @@ pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
     Row {
         method: method.to_owned(),
         scene: scene.to_owned(),
-        width: 4,
-        height: 4,
-        fragments: Some(8),
-        max_layers: Some(2),
         mse_linear: mse255 / 65025.0,
         mse255,
-        mse255_covered: Some(mse255),
-        psnr: metrics::psnr(mse255),
-        covered_pixels: 4,
-        passes: 1,
         bytes_per_pixel: Some(10.0),
-        adapter: "test".to_owned(),
         ..Row::default()
     }
 }
@@ -50,7 +32,8 @@ pub(crate) fn written<T: Measurement + DeserializeOwned>(
     results: &Results<T>,
 ) -> String {
     results.write(folder).expect("writes");
-    let find = |ending: &str| T::FILES.iter().find(|name| name.ends_with(ending));
+    let files = Results::<T>::files();
+    let find = |ending: &str| files.iter().find(|name| name.ends_with(ending));
     let json = folder.join(find(".json").expect("results"));
     let read = Results::<T>::read(&json).expect("reads");
     assert_eq!(json!(read), json!(results));
@@ -63,7 +46,7 @@ pub(crate) fn written<T: Measurement + DeserializeOwned>(
             continue;
         }
         let name = path.file_name().and_then(|n| n.to_str()).expect("a name");
-        assert!(T::FILES.contains(&name), "{name}");
+        assert!(files.contains(&name), "{name}");
         let kind = crate::kind_of(name);
         let standing = kind.standing(&path).expect("stands");
         assert_eq!(standing, peelnet_files::Standing::Replaced, "{name}");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use peelnet_chart::{Line, LineChart, Scale, Svg};
+use peelnet_chart::{Line, Scale, Svg, line_chart};
 
 use peelnet_files::Kind;
 
@@ -90,16 +90,11 @@ pub fn curve_chart(history: &[EpochReport]) -> Svg {
         let points = points.filter_map(|r| Some((r.epoch.into(), loss(r)?.max(floor))));
         Line::new(name, points)
     };
-    LineChart {
-        lines: &[
-            line("training", |r| Some(r.train_loss)),
-            line("held out", |r| r.held_out_loss),
-        ],
-        x: "epoch",
-        y: "mean loss",
-        x_scale: Scale::Linear,
-    }
-    .svg()
+    let lines = [
+        line("training", |r| Some(r.train_loss)),
+        line("held out", |r| r.held_out_loss),
+    ];
+    line_chart(&lines, "epoch", "mean loss", Scale::Linear)
 }
 
 #[cfg(test)]

@@ -101,7 +101,7 @@ async fn point(shot: &Shot, view: &View, judge: &mut Option<Arc<Image>>) -> Fall
     let image = Arc::new(frame.image);
     let exact = Arc::clone(judge.get_or_insert_with(|| Arc::clone(&image)));
     let compared = computed(move || metrics::differences(&exact.pixels, &image.pixels));
-    let differences = compared.await??;
+    let differences = compared.await?;
     let mut times = Vec::new();
     let mut bytes_per_pixel = 0.0;
     for number in 0..FRAMES {

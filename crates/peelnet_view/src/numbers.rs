@@ -5,10 +5,7 @@ use crate::{
     stage::{Stage, View},
     task::{Fallible, Job, computed},
 };
-use peelnet_eval::{
-    EvalError,
-    metrics::{self, Differences},
-};
+use peelnet_eval::metrics::{self, Differences};
 use peelnet_gpu::wgpu;
 use peelnet_render::{FrameStats, Image, MethodOptions, Renderer, role};
 use std::{rc::Rc, sync::Arc};
@@ -80,10 +77,10 @@ async fn measured(
     let image = shot.frame(&view.camera).await?.image;
     let judge = Arc::clone(&exact);
     let compared = computed(move || {
-        let differences = metrics::differences(&judge.pixels, &image.pixels)?;
-        Ok::<_, EvalError>((differences, flip(&judge, &image)))
+        let differences = metrics::differences(&judge.pixels, &image.pixels);
+        (differences, flip(&judge, &image))
     });
-    let (differences, flip) = compared.await??;
+    let (differences, flip) = compared.await?;
     Ok(Numbers {
         differences,
         flip,

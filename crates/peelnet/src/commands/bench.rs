@@ -38,7 +38,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     if args.path {
         return along_path(context, args);
     }
-    let mut outputs = outputs(context, args, Results::<Bench>::FILES)?;
+    let mut outputs = outputs(context, args, &Results::<Bench>::files())?;
     outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
     let results = if args.redraw {
         context.begin(&mut outputs, &[])?;
@@ -87,23 +87,16 @@ fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Ou
 }
 
 /// Shows the frames of a comparison on a bar, and warns of methods that are left out.
-pub(super) fn show<'a>(context: &'a Context<'_>, bar: &'a Bar) -> impl FnMut(Progress<'_>) + 'a {
-    move |event: Progress<'_>| match event {
-        Progress::Drawn {
-            done,
-            total,
-            scene,
-            method,
-        } => bar.set(done, total, format!("{scene} with {method}")),
-        Progress::LeftOut { scene, method, why } => context
-            .console
-            .warn(format!("{method} is left out of {scene}: {why}")),
+pub(super) fn show<'a>(context: &'a Context<'_>, bar: &'a Bar) -> impl FnMut(Progress) + 'a {
+    move |event| match event {
+        Progress::Drawn { done, total, what } => bar.set(done, total, what),
+        Progress::LeftOut(what) => context.console.warn(what),
     }
 }
 
 /// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let mut outputs = outputs(context, args, Results::<Scaling>::FILES)?;
+    let mut outputs = outputs(context, args, &Results::<Scaling>::files())?;
     context.begin(&mut outputs, &[])?;
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
@@ -124,7 +117,7 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
 
 /// What effects cost.
 fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let mut outputs = outputs(context, args, Results::<Effects>::FILES)?;
+    let mut outputs = outputs(context, args, &Results::<Effects>::files())?;
     let scenes = if args.scenes.is_empty() {
         context.shipped(suite::EFFECTS)?
     } else {
@@ -160,7 +153,7 @@ fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if args.frames == 0 {
         return Err(Failure::wrong("--frames 0: a path has at least one frame"));
     }
-    let mut outputs = outputs(context, args, Results::<Along>::FILES)?;
+    let mut outputs = outputs(context, args, &Results::<Along>::files())?;
     let scenes = context.scenes(&args.scenes)?;
     context.begin(&mut outputs, &scenes)?;
     let gpu = context.gpu()?;

@@ -22,10 +22,10 @@ use std::collections::BTreeSet;
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let inputs = args.scenes.iter().chain(&args.designs);
     let mut outputs = context.outputs(inputs.chain(&args.designs_file));
-    context.results(&mut outputs, &args.out, Results::<Designs>::FILES)?;
+    context.results(&mut outputs, &args.out, &Results::<Designs>::files())?;
     let entries = match &args.designs_file {
         Some(path) => designs::read(path)?,
-        None => designs::shipped()?,
+        None => designs::shipped(),
     };
     let configs: Vec<Config> = entries.iter().map(|e| config(e, args)).collect();
     for config in &configs {

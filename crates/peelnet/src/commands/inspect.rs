@@ -150,6 +150,7 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
         let without = shader_bytes(&scene.without(effect)).unwrap_or(shader);
         (effect.name(), shader as i64 - without as i64)
     });
+    let census = Census::of(&scene);
     let mut costs = Vec::new();
     if time {
         let settings = Settings {
@@ -157,11 +158,14 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             size: TIMED_AT,
             frames: TIMED_FRAMES,
         };
-        costs = effects::costs(&context.gpu()?, &scene, &settings)?;
+        let gpu = context.gpu()?;
+        for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
+            costs.push(effects::cost(&gpu, &scene, effect, &settings, None)?);
+        }
     }
     context.check_interrupt()?;
     let known = Known {
-        census: Census::of(&scene),
+        census,
         scene,
         triangles,
         counted: counted.ok(),

@@ -51,7 +51,7 @@ const SUMMARY: [&str; 2] = ["dataset-summary.json", "dataset-summary.txt"];
 /// Everything that a run writes but its dataset, which has its own way.
 fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
     let mut outputs = context.outputs(&args.scenes);
-    context.results(&mut outputs, &args.out, Results::<ThesisRun>::FILES)?;
+    context.results(&mut outputs, &args.out, &Results::<ThesisRun>::files())?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
     let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
     let networks = [

@@ -17,7 +17,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     let cases = cases(&args.cases)?;
     let mut outputs = context.outputs(&args.models);
     if let Some(out) = &args.out {
-        context.results(&mut outputs, out, Results::<Stressed>::FILES)?;
+        context.results(&mut outputs, out, &Results::<Stressed>::files())?;
         context.begin(&mut outputs, &[])?;
     }
     let gpu = context.gpu()?;

@@ -54,17 +54,12 @@ struct RawDesign {
 }
 
 /// The designs that ship, `data/designs.toml`.
-///
-/// # Errors
-/// None: a test reads them.
-pub fn shipped() -> Result<Vec<Entry>, EvalError> {
-    parse(peelnet_data::DESIGNS, Path::new(DESIGNS))
+pub fn shipped() -> Vec<Entry> {
+    parse(peelnet_data::DESIGNS, Path::new(DESIGNS)).expect("a test reads them")
 }
 
-/// Reads a file of designs.
-///
 /// # Errors
-/// A file that cannot be read, or [`EvalError::Designs`] with the entry that cannot be used.
+/// A file that cannot be read, or that holds an entry that cannot be used.
 pub fn read(path: &Path) -> Result<Vec<Entry>, EvalError> {
     let bytes = peelnet_files::read(path, MAX_BYTES).map_err(EvalError::io(path, "read"))?;
     let text = String::from_utf8(bytes)
@@ -73,11 +68,7 @@ pub fn read(path: &Path) -> Result<Vec<Entry>, EvalError> {
 }
 
 fn failed(path: &Path, what: &str, why: &str) -> EvalError {
-    EvalError::Designs {
-        path: path.to_owned(),
-        what: what.to_owned(),
-        why: why.to_owned(),
-    }
+    EvalError::Unusable(format!("{}: {what}: {why}", path.display()))
 }
 
 /// Parses the text of a file of designs; `path` only serves messages.
@@ -85,7 +76,7 @@ fn failed(path: &Path, what: &str, why: &str) -> EvalError {
 /// Recipes live as long as the program: each call leaks a few hundred bytes a design.
 ///
 /// # Errors
-/// [`EvalError::Designs`] with the entry that cannot be used.
+/// The entry that cannot be used.
 pub fn parse(text: &str, path: &Path) -> Result<Vec<Entry>, EvalError> {
     let file: RawFile =
         toml::from_str(text).map_err(|e| failed(path, "not understood", &e.to_string()))?;
@@ -317,7 +308,7 @@ seed = 7
 
     #[test]
     fn the_shipped_designs_are_read() {
-        let entries = shipped().unwrap();
+        let entries = shipped();
         for (name, design) in [
             ("small", Design::SMALL),
             ("medium", Design::MEDIUM),

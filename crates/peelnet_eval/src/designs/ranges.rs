@@ -78,16 +78,19 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
             Range::of(zetas)
         }
     };
-    let places: Vec<usize> = view.places().collect();
-    places.into_par_iter().map(of_place).collect()
+    let stacks = view.stacks.par_iter();
+    stacks.map(|stack| of_place(stack.place)).collect()
 }
 
 /// The range of the frame before at each pixel of a view that has fragments.
 pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -> Vec<Range> {
     // The nearest and the farthest depth, spread along rows, then along columns.
     let mut ends = vec![[f32::INFINITY, f32::NEG_INFINITY]; width * height];
-    for (place, depths) in before.ends() {
-        ends[place] = depths;
+    for stack in &before.stacks {
+        let [first, last] = [stack.fragments.first(), stack.fragments.last()];
+        if let (Some(first), Some(last)) = (first, last) {
+            ends[stack.place] = [first.depth, last.depth];
+        }
     }
     let spread =
         |from: &[[f32; 2]], count: usize, step: usize, of_pixel: &dyn Fn(usize) -> usize| {
@@ -107,14 +110,14 @@ pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -
         [low, high] if low <= high => Range::of([low, high].map(|z| view.warp.apply(z.into()))),
         _ => Range::WHOLE,
     };
-    view.places().map(of_place).collect()
+    let stacks = view.stacks.iter();
+    stacks.map(|stack| of_place(stack.place)).collect()
 }
 
 /// Bins of the distribution of a frame's absorbance over depth.
 const BINS: usize = 256;
 
 /// A scale of depth half way to the distribution of the frame's absorbance.
-#[derive(Clone, Debug)]
 pub(super) struct Quantiles {
     /// The share of the absorbance in front of each bin, and 1.
     before: Vec<f64>,
@@ -123,7 +126,7 @@ pub(super) struct Quantiles {
 impl Quantiles {
     pub fn of(view: &View) -> Self {
         let mut bins = vec![0.0; BINS];
-        for f in view.all() {
+        for f in view.stacks.iter().flat_map(|stack| &stack.fragments) {
             let t = 0.5 + 0.5 * view.warp.apply(f.depth.into());
             bins[((t * BINS as f64) as usize).min(BINS - 1)] += absorbance(f.alpha);
         }
@@ -165,17 +168,6 @@ mod tests {
     use peelnet_core::{absorbance::DepthWarp, fragment::Fragment};
     use peelnet_scene::Material;
 
-    fn camera() -> Camera {
-        Camera {
-            position: Vec3::ZERO,
-            target: Vec3::new(0.0, 0.0, -5.0),
-            up: Vec3::Y,
-            fov_y_degrees: 90.0,
-            near: 0.1,
-            far: 100.0,
-        }
-    }
-
     fn one(depth: f32) -> Vec<Fragment> {
         vec![Fragment::new(depth, 0.5, [1.0; 3])]
     }
@@ -189,10 +181,11 @@ mod tests {
         });
         let material = Material::unlit([1.0; 3], 0.5);
         let object = peelnet_scene::Object::of_triangles("box", &triangles, material);
-        let scene = Scene::generated("s", "a test", [0.0; 3], camera(), vec![object]);
+        let camera = crate::stage::camera([0.1, 100.0]);
+        let scene = Scene::generated("s", "a test", [0.0; 3], camera, vec![object]);
         let warp = DepthWarp::new(1.0, 8.0);
         let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
-        let found = of_boxes(&view, &scene, &camera(), [3, 3]);
+        let found = of_boxes(&view, &scene, &camera, [3, 3]);
         let margin = f64::from(2.0 * peelnet_scene::BOX_MARGIN);
         let expected = Range::of([2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z)));
         assert_eq!(found, [expected, Range::WHOLE]);

@@ -3,7 +3,6 @@ use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     fragment::Fragment,
     methods::over,
-    random::Random,
 };
 use std::path::Path;
 
@@ -16,38 +15,6 @@ fn entry(text: &str) -> Entry {
 fn view(lists: [Vec<Fragment>; 2]) -> View {
     let [a, b] = lists;
     View::new("s", DepthWarp::new(1.0, 100.0), 4, [(0, a), (3, b)])
-}
-
-fn random_view(layers: usize) -> View {
-    let mut random = Random::new(3, &[]);
-    let lists = [0, 1].map(|_| {
-        let mut list: Vec<Fragment> = (0..layers)
-            .map(|_| {
-                let depth = random.between(2.0, 60.0);
-                Fragment::new(depth, random.between(0.1, 0.9), random.color())
-            })
-            .collect();
-        peelnet_core::fragment::sort_front_to_back(&mut list);
-        list
-    });
-    view(lists)
-}
-
-const FOUR: &str = "ends = [0.2, 0.5, 0.8, 1.0]
-means = [true, true, true, true]
-farthest = [true, true, true, false]\n";
-
-/// Sums of 16 bits err by 2⁻¹¹ of a value, so that the squared error of a colour is 1e−6 at most.
-#[test]
-fn a_list_of_two_layers_is_exact() {
-    for text in [FOUR, "ends = [1.0]\nmeans = [false]\nfarthest = [true]\n"] {
-        let error = entry(text).measure(&random_view(2), None).mse_linear;
-        assert!(error < 1e-6, "{error}");
-    }
-    // Nothing is known of three but absorbance and mean.
-    let none = "ends = [1.0]\nmeans = [true]\nnearest = [false]\nfarthest = [false]\n";
-    let error = entry(none).measure(&random_view(3), None).mse_linear;
-    assert!(error > 1e-4, "{error}");
 }
 
 /// One slab without records: half of the others' absorbance lies in front of each fragment.

@@ -19,7 +19,7 @@ use peelnet_core::{
     fragment::Fragment,
     methods::{
         over,
-        slabs::{Extent, Range as DepthRange},
+        slabs::{Extent, Range},
     },
 };
 use peelnet_gpu::Gpu;
@@ -27,62 +27,56 @@ use peelnet_model::Model;
 use peelnet_render::{Image, MethodOptions, MethodSpec, PixelSample, methods::Pixel};
 use peelnet_scene::{Camera, Scene};
 use rayon::prelude::*;
-use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
+use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
 /// A pixel with transparent fragments.
-#[derive(Clone, Debug)]
-struct Stack {
+pub(super) struct Stack {
     /// Its place in the frame, row by row.
-    place: usize,
-    /// Its fragments, nearest first.
-    fragments: Range<usize>,
+    pub place: usize,
+    /// Nearest first.
+    pub fragments: Vec<Fragment>,
     /// Their exact composite over black.
     exact: [f64; 3],
 }
 
-/// The exact image of a view, and its pairs of pixels.
-#[derive(Clone, Debug)]
 struct Shown {
     image: Image,
     pairs: Pairs,
 }
 
 /// All transparent fragments of a view.
-#[derive(Clone, Debug)]
 pub struct View {
     scene: String,
-    /// The warp of the view's depths.
     pub warp: DepthWarp,
     /// Pixels of the frame.
     frame: usize,
-    stacks: Vec<Stack>,
-    fragments: Vec<Fragment>,
+    pub(super) stacks: Vec<Stack>,
     /// None where the surfaces need more memory than there is.
     shown: Option<Shown>,
     /// Of each pixel with fragments, the ranges of depth that boxes and the last frame give it. Empty of a view of lists.
-    boxes: Vec<DepthRange>,
-    last: Vec<DepthRange>,
+    boxes: Vec<Range>,
+    last: Vec<Range>,
     quantiles: Option<Quantiles>,
     /// The same view after each of [`MOTIONS`]; empty of a view of lists.
     after: Vec<View>,
 }
 
-/// A pixel to composite.
-#[derive(Clone, Copy, Debug)]
 pub struct Stacked<'a> {
     view: &'a View,
     number: usize,
-    /// Its fragments, nearest first.
-    pub fragments: &'a [Fragment],
 }
 
 impl Stacked<'_> {
+    /// Nearest first.
+    pub fn fragments(&self) -> &[Fragment] {
+        &self.view.stacks[self.number].fragments
+    }
+
     /// What is cut into slabs, and the scale of its depths.
     pub(super) fn extent(&self, source: Source) -> Extent {
-        let given = |found: &[DepthRange]| {
-            found
-                .get(self.number)
-                .map_or(Extent::Frame, |&r| Extent::Given(r))
+        let given = |found: &[Range]| {
+            let found = found.get(self.number);
+            found.map_or(Extent::Frame, |&range| Extent::Given(range))
         };
         match source {
             Source::Pixel => Extent::Pixel,
@@ -102,7 +96,6 @@ impl Stacked<'_> {
     }
 }
 
-/// The error of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Mean squared error of the whole frame, linear light.
@@ -126,7 +119,6 @@ impl View {
             warp,
             frame,
             stacks: Vec::new(),
-            fragments: Vec::new(),
             shown: None,
             boxes: Vec::new(),
             last: Vec::new(),
@@ -139,42 +131,14 @@ impl View {
         view
     }
 
-    fn push(&mut self, place: usize, list: impl IntoIterator<Item = Fragment>) {
-        let first = self.fragments.len();
-        self.fragments.extend(list);
-        let fragments = first..self.fragments.len();
+    fn push(&mut self, place: usize, fragments: Vec<Fragment>) {
         if !fragments.is_empty() {
-            let exact = over::composite_f64(&self.fragments[fragments.clone()], [0.0; 3]);
             self.stacks.push(Stack {
                 place,
+                exact: over::composite_f64(&fragments, [0.0; 3]),
                 fragments,
-                exact,
             });
         }
-    }
-
-    /// The places of pixels with fragments.
-    pub(super) fn places(&self) -> impl Iterator<Item = usize> {
-        self.stacks.iter().map(|stack| stack.place)
-    }
-
-    /// The places of pixels with fragments, and their nearest and farthest depth.
-    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, [f32; 2])> {
-        self.stacks.iter().map(|stack| {
-            let Range { start, end } = stack.fragments;
-            let depth = |i: usize| self.fragments[i].depth;
-            (stack.place, [depth(start), depth(end - 1)])
-        })
-    }
-
-    /// All fragments.
-    pub(super) fn all(&self) -> &[Fragment] {
-        &self.fragments
-    }
-
-    /// Number of fragments.
-    pub const fn fragments(&self) -> usize {
-        self.fragments.len()
     }
 
     /// The error of what gives a pixel's colour over black. Components that are not finite count as black.
@@ -209,7 +173,7 @@ impl View {
         let mse_linear = squares.sum::<f64>() / (3 * self.frame).max(1) as f64;
         let errors = self.errors(colors);
         let contour_pairs = match (&self.shown, &errors) {
-            (Some(shown), Some(errors)) => shown.pairs.share(errors).ok().flatten(),
+            (Some(shown), Some(errors)) => shown.pairs.share(errors),
             _ => None,
         };
         let measured = Measured {
@@ -221,15 +185,11 @@ impl View {
     }
 
     fn colors(&self, composite: &(impl Fn(&Stacked<'_>) -> [f32; 3] + Sync)) -> Vec<[f64; 3]> {
-        let of = |(number, stack): (usize, &Stack)| {
-            let color = composite(&Stacked {
-                view: self,
-                number,
-                fragments: &self.fragments[stack.fragments.clone()],
-            });
+        let of = |number| {
+            let color = composite(&Stacked { view: self, number });
             color.map(|c| if c.is_finite() { f64::from(c) } else { 0.0 })
         };
-        self.stacks.par_iter().enumerate().map(of).collect()
+        (0..self.stacks.len()).into_par_iter().map(of).collect()
     }
 
     /// The error image of the frame; `None` of a view without an image.
@@ -241,14 +201,14 @@ impl View {
                 *shown += (color[k] - stack.exact[k]) as f32;
             }
         }
-        error_image(&shown.image.pixels, &image).ok()
+        Some(error_image(&shown.image.pixels, &image))
     }
 
     /// The error of a method's CPU twin. What has none, or lacks its network, leaves pixels black.
     pub fn measure_method(&self, method: &MethodSpec, model: Option<&Model>) -> Measured {
         self.measure_moving(|stack| {
             let pixel = Pixel {
-                fragments: stack.fragments,
+                fragments: stack.fragments(),
                 background: [0.0; 3],
                 warp: stack.view.warp,
                 position: [0; 2],
@@ -310,17 +270,16 @@ fn peel_one(
 ) -> Result<View, EvalError> {
     let frame = size[0] as usize * size[1] as usize;
     let mut view = View::new(&stage.scene.name, peeled.depth_warp(camera), frame, []);
-    peeled.each_pixel(camera, PixelSample::ALL, |pixel, fragments| {
+    peeled.each_pixel(camera, PixelSample::ALL, |pixel, mut fragments| {
         // They are in order already: no method asks for the triangle.
-        let nearest_first = fragments.into_iter();
-        view.push(pixel, nearest_first.map(|f| Fragment { triangle: 0, ..f }));
+        fragments.iter_mut().for_each(|f| f.triangle = 0);
+        view.push(pixel, fragments);
     })?;
     if let Some(pairs) = Pairs::where_they_fit(stage, size, 1, camera)? {
-        let exact = stage.ready(&exact_method(), MethodOptions::sized(size));
-        match exact.and_then(|mut exact| stage.image(&mut exact, camera)) {
+        match stage.draw(&exact_method(), MethodOptions::sized(size), camera) {
             Err(e) if e.is_too_large() => {}
-            frame => {
-                let image = frame?.image;
+            image => {
+                let image = image?;
                 view.shown = Some(Shown { image, pairs });
             }
         }

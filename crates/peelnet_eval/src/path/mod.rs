@@ -1,16 +1,12 @@
 //! Methods along a path: errors of every frame, how they change from frame to frame, and how visible that is in the video.
 //!
 //! A method with a small error may still pop (painters, where the order of objects changes) or swim (noise and stripes that stay on the
-//! screen while surfaces move). The *error image* of a frame is the difference of its sRGB-encoded values, on the 0–255 scale and not
-//! rounded, from those of the exact image; its *change* is the mean absolute difference from the frame before, over pixels and channels.
-//! An error that is glued to its surface changes as well, by as much as the surface moves: compare methods of like errors. Borders that the
-//! error image has inside surfaces are counted as [`contours`](crate::contours).
-//!
-//! The exact frames of a scene are kept, and the frames of one method at a time: 45 bytes a pixel.
+//! screen while surfaces move). The *change* of an error image is its mean absolute difference from that of the frame before. An error that
+//! is glued to its surface changes as well, by as much as the surface moves: compare methods of like errors.
 
-pub mod motion;
+mod motion;
 mod strip;
-pub mod video;
+mod video;
 
 pub use crate::records::{Along, FrameRow, PathRow};
 
@@ -18,20 +14,20 @@ use crate::{
     EvalError,
     bench::{Progress, check_names},
     compare::{EXACT, Plan, image_name},
-    contours::{Pairs, SURFACES},
-    metrics::{Differences, differences, error_image, psnr},
+    contours::Pairs,
+    metrics::{differences, error_image, psnr},
     perceptual::Displayed,
     rows::mean,
     stage::{Ready, Stage, Watch, exact_method},
 };
-use colorvideovdp::Image as VideoFrame;
+use colorvideovdp::{Cvvdp, Image as VideoFrame};
 use motion::{Moment, moment};
 use peelnet_gpu::Gpu;
-use peelnet_render::{Image, MethodSpec, Renderer};
+use peelnet_render::{Image, MethodSpec};
 use peelnet_scene::Scene;
 use std::sync::atomic::AtomicBool;
 use strip::Strip;
-use video::{FPS, Judge};
+use video::{DISPLAY_ABOUT, FPS};
 
 /// Bytes that a path may keep.
 const MAX_PATH_BYTES: u64 = 1 << 31;
@@ -40,26 +36,8 @@ const MAX_PATH_BYTES: u64 = 1 << 31;
 /// method's frame as the metric sees it (12), and which of its neighbours show the same surfaces (1).
 const BYTES_PER_PIXEL: u64 = 45;
 
-/// # Errors
-/// All frames of two videos that do not fit.
-fn check_length(size: [u32; 2], frames: u32) -> Result<(), EvalError> {
-    let factors = [size[0], size[1], frames].map(u64::from);
-    let needed = factors
-        .into_iter()
-        .fold(BYTES_PER_PIXEL, u64::saturating_mul);
-    if needed > MAX_PATH_BYTES {
-        return Err(EvalError::LongPath {
-            frames,
-            size,
-            needed,
-            most: MAX_PATH_BYTES,
-        });
-    }
-    Ok(())
-}
-
 /// Mean absolute value over pixels and channels.
-pub fn mean_absolute(image: &[[f32; 3]]) -> f64 {
+fn mean_absolute(image: &[[f32; 3]]) -> f64 {
     let all = image.as_flattened();
     let sum: f64 = all.iter().map(|&x| f64::from(x.abs())).sum();
     sum / all.len().max(1) as f64
@@ -73,67 +51,31 @@ fn change_of(before: &[[f32; 3]], after: &[[f32; 3]]) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// Takes a method's frames one after the other.
-struct Video<'a> {
-    method: &'a str,
-    scene: &'a str,
-    rows: Vec<FrameRow>,
-    squares_8bit: f64,
-    before: Option<Vec<[f32; 3]>>,
-}
-
-impl Video<'_> {
-    /// Adds the next frame, with its ꟻLIP and its share of contour pairs. Returns its error image and how that changed.
-    fn add(
-        &mut self,
-        errors: Vec<[f32; 3]>,
-        found: &Differences,
-        flip: f64,
-        contour_pairs: Option<f64>,
-    ) -> (&[[f32; 3]], Option<Vec<[f32; 3]>>) {
-        let change = self
-            .before
-            .as_ref()
-            .map(|before| change_of(before, &errors));
-        self.squares_8bit += found.mse_8bit;
-        self.rows.push(FrameRow {
-            method: self.method.to_owned(),
-            scene: self.scene.to_owned(),
-            frame: self.rows.len() as u32,
-            mse_linear: found.mse_linear,
-            psnr: found.psnr,
-            flip,
-            error: mean_absolute(&errors),
-            change: change.as_deref().map(mean_absolute),
-            contour_pairs,
-        });
-        (self.before.insert(errors), change)
-    }
-
-    fn row(&self, jod: Option<f64>) -> PathRow {
-        let values = |value: fn(&FrameRow) -> Option<f64>| self.rows.iter().filter_map(value);
-        let all = |value| mean(values(value)).unwrap_or_default();
-        PathRow {
-            method: self.method.to_owned(),
-            scene: self.scene.to_owned(),
-            frames: self.rows.len() as u32,
-            mse_linear: all(|r| Some(r.mse_linear)),
-            psnr: psnr(self.squares_8bit / self.rows.len().max(1) as f64),
-            flip: all(|r| Some(r.flip)),
-            error: all(|r| Some(r.error)),
-            change: mean(values(|r| r.change)),
-            change_max: values(|r| r.change).reduce(f64::max),
-            contour_pairs: mean(values(|r| r.contour_pairs)),
-            jod,
-        }
+/// Means over the frames of a method; `mse_8bit` is that of all frames.
+fn path_row(frames: &[FrameRow], mse_8bit: f64, jod: Option<f64>) -> PathRow {
+    let values = |value: fn(&FrameRow) -> Option<f64>| frames.iter().filter_map(value);
+    let all = |value| mean(values(value)).unwrap_or_default();
+    PathRow {
+        method: frames[0].method.clone(),
+        scene: frames[0].scene.clone(),
+        frames: frames.len() as u32,
+        mse_linear: all(|r| Some(r.mse_linear)),
+        psnr: psnr(mse_8bit),
+        flip: all(|r| Some(r.flip)),
+        error: all(|r| Some(r.error)),
+        change: mean(values(|r| r.change)),
+        change_max: values(|r| r.change).reduce(f64::max),
+        contour_pairs: mean(values(|r| r.contour_pairs)),
+        jod,
     }
 }
 
-/// The exact frame and what it is compared as.
+/// The exact frames, and what they are compared as.
+#[derive(Default)]
 struct Exact {
-    image: Image,
-    shown: Displayed,
-    pairs: Pairs,
+    frames: Vec<(Image, Displayed)>,
+    pairs: Vec<Pairs>,
+    video: Vec<VideoFrame>,
 }
 
 /// A scene's path under measurement.
@@ -162,39 +104,29 @@ impl Take<'_, '_> {
                 moved.map_err(self.stage.failed(&ready.name))?;
             }
             take(k, self.stage.image(&mut ready, &moment.camera)?.image)?;
-            if ready.name != SURFACES {
-                self.watch.drawn(&self.stage.scene.name, &ready.name);
-            }
+            self.watch.drawn(&self.stage.scene.name, &ready.name);
         }
         Ok(())
     }
 
-    /// Draws all frames exactly, and finds which neighbours show the same surfaces. Returns them with the frames of the video.
-    fn draw_exact(&mut self) -> Result<(Vec<Exact>, Vec<VideoFrame>), EvalError> {
-        let Plan { size, samples, .. } = *self.plan;
-        let surfaces = |r: &Renderer| r.surfaces(size, samples);
-        let surfaces = self.stage.prepare(SURFACES, surfaces)?;
-        let mut pairs = Vec::with_capacity(self.moments.len());
+    /// Draws all frames exactly, and finds which neighbours show the same surfaces.
+    fn draw_exact(&mut self) -> Result<Exact, EvalError> {
+        let mut exact = Exact::default();
+        let surfaces = self.stage.surfaces(self.plan.size, self.plan.samples)?;
         self.draw(surfaces, &mut |_, image| {
-            pairs.push(Pairs::of(&image));
+            exact.pairs.push(Pairs::of(&image));
             Ok(())
         })?;
-        let (mut exact, mut reference) = (Vec::new(), Vec::new());
-        let mut strip = Strip::new(size, pairs.len());
-        let mut pairs = pairs.into_iter();
+        let mut strip = Strip::new(self.plan.size, self.moments.len());
         self.draw(self.ready(&exact_method())?, &mut |k, image| {
             let shown = Displayed::new(&image);
             strip.add_frame(k, &image);
-            reference.extend(video::frame(&shown)?);
-            exact.extend(pairs.next().map(|pairs| Exact {
-                image,
-                shown,
-                pairs,
-            }));
+            exact.video.extend(video::frame(&shown)?);
+            exact.frames.push((image, shown));
             Ok(())
         })?;
         self.save(&strip, EXACT)?;
-        Ok((exact, reference))
+        Ok(exact)
     }
 
     fn save(&self, strip: &Strip, method: &str) -> Result<(), EvalError> {
@@ -210,40 +142,42 @@ impl Take<'_, '_> {
     fn measure(
         &mut self,
         method: &MethodSpec,
-        exact: &[Exact],
-        reference: &[VideoFrame],
-        judge: &Judge,
+        exact: &Exact,
+        judge: &Cvvdp,
     ) -> Result<(PathRow, Vec<FrameRow>), EvalError> {
-        let name = method.to_string();
-        let mut all = Video {
-            method: &name,
-            scene: &self.stage.scene.name,
-            rows: Vec::new(),
-            squares_8bit: 0.0,
-            before: None,
-        };
-        let mut strip = Strip::new(self.plan.size, exact.len());
-        let mut video = Vec::with_capacity(reference.len());
+        let (name, scene) = (method.to_string(), self.stage.scene.name.clone());
+        let mut strip = Strip::new(self.plan.size, self.moments.len());
+        let mut video = Vec::with_capacity(exact.video.len());
+        let (mut rows, mut squares_8bit) = (Vec::new(), 0.0);
+        let mut before: Option<Vec<[f32; 3]>> = None;
         self.draw(self.ready(method)?, &mut |k, image| {
-            let against = &exact[k];
+            let (reference, reference_shown) = &exact.frames[k];
             let shown = Displayed::new(&image);
-            let found = differences(&against.image.pixels, &image.pixels)?;
-            let errors = error_image(&against.image.pixels, &image.pixels)?;
-            let contours = against.pairs.share(&errors)?;
-            let flip = shown.flip(&against.shown);
-            let (errors, change) = all.add(errors, &found, flip, contours);
-            strip.add_errors(k, errors, change.as_deref());
-            if !reference.is_empty() {
-                video.extend(video::frame(&shown)?);
-            }
+            let found = differences(&reference.pixels, &image.pixels);
+            let errors = error_image(&reference.pixels, &image.pixels);
+            let change = before.as_ref().map(|before| change_of(before, &errors));
+            squares_8bit += found.mse_8bit;
+            rows.push(FrameRow {
+                method: name.clone(),
+                scene: scene.clone(),
+                frame: k as u32,
+                mse_linear: found.mse_linear,
+                psnr: found.psnr,
+                flip: shown.flip(reference_shown),
+                error: mean_absolute(&errors),
+                change: change.as_deref().map(mean_absolute),
+                contour_pairs: exact.pairs[k].share(&errors),
+            });
+            strip.add_errors(k, &errors, change.as_deref());
+            before = Some(errors);
+            video.extend(video::frame(&shown)?);
             Ok(())
         })?;
         self.save(&strip, &name)?;
-        let jod = match reference {
-            [] => None,
-            reference => Some(judge.jod(&video, reference)?),
-        };
-        Ok((all.row(jod), all.rows))
+        // Frames that are too small for the metric are no video.
+        let jod = (!video.is_empty()).then(|| video::jod(judge, &video, &exact.video));
+        let mse_8bit = squares_8bit / rows.len() as f64;
+        Ok((path_row(&rows, mse_8bit, jod.transpose()?), rows))
     }
 }
 
@@ -257,27 +191,33 @@ pub fn measure(
     scenes: &[Scene],
     plan: &Plan<'_>,
     stop: &AtomicBool,
-    report: &mut dyn FnMut(Progress<'_>),
+    report: &mut dyn FnMut(Progress),
 ) -> Result<Along, EvalError> {
     check_names(scenes)?;
-    check_length(plan.size, plan.frames)?;
+    let ([width, height], frames) = (plan.size, plan.frames.max(1));
+    let factors = [width, height, frames].map(u64::from);
+    let needed = (factors.into_iter()).fold(BYTES_PER_PIXEL, u64::saturating_mul);
+    if needed > MAX_PATH_BYTES {
+        return Err(EvalError::Unusable(format!(
+            "a path of {frames} frames of {width}x{height} pixels keeps {needed} bytes, more than {MAX_PATH_BYTES}; make --size smaller or \
+             --frames fewer"
+        )));
+    }
     if let Some(folder) = plan.images {
         std::fs::create_dir_all(folder).map_err(EvalError::io(folder, "create the folder"))?;
     }
-    let frames = plan.frames;
     let methods = plan.methods.iter().filter(|m| **m != exact_method());
     let methods: Vec<&MethodSpec> = methods.collect();
-    let judge = Judge::new()?;
+    let judge = video::judge()?;
     let mut found = Along {
         size: plan.size,
         samples: plan.samples,
         frames,
         fps: FPS,
-        display: Judge::display(),
-        rows: Vec::new(),
-        by_frame: Vec::new(),
+        display: DISPLAY_ABOUT.to_owned(),
+        ..Along::default()
     };
-    let total = (scenes.len() * (methods.len() + 1)) as u64 * u64::from(frames);
+    let total = (scenes.len() * (methods.len() + 2)) as u64 * u64::from(frames);
     let mut watch = Watch::new(total, stop, report);
     for scene in scenes {
         let moments = (0..frames).map(|k| moment(scene, k as f32 / frames as f32));
@@ -287,11 +227,11 @@ pub fn measure(
             moments: moments.collect(),
             watch: &mut watch,
         };
-        let (exact, reference) = take.draw_exact()?;
+        let exact = take.draw_exact()?;
         for method in &methods {
             let why = match method.method().cpu_only {
                 Some(why) if plan.lenient => why.to_owned(),
-                _ => match take.measure(method, &exact, &reference, &judge) {
+                _ => match take.measure(method, &exact, &judge) {
                     Err(e) if plan.lenient && e.is_too_large() => e.reason(),
                     measured => {
                         let (row, by_frame) = measured?;
@@ -302,7 +242,7 @@ pub fn measure(
                 },
             };
             let name = method.to_string();
-            take.watch.left_out(&scene.name, &name, why);
+            take.watch.left_out(&scene.name, &name, &why);
         }
     }
     Ok(found)
@@ -311,42 +251,22 @@ pub fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::ERROR_ROUNDING;
-    use peelnet_core::srgb;
-
-    fn gray(level: f32) -> Vec<[f32; 4]> {
-        vec![[srgb::decode(level / 255.0); 4]; 6]
-    }
-
-    /// A video of one exact grey and of these levels.
-    fn row_of(exact: &[f32], levels: &[f32]) -> PathRow {
-        let mut video = Video {
-            method: "m",
-            scene: "s",
-            rows: Vec::new(),
-            squares_8bit: 0.0,
-            before: None,
-        };
-        for (&exact, &level) in exact.iter().zip(levels) {
-            let errors = error_image(&gray(exact), &gray(level)).unwrap();
-            let found = differences(&gray(exact), &gray(level)).unwrap();
-            let frame = video.rows.len();
-            let contour_pairs = (frame > 0).then_some(frame as f64 / 8.0);
-            video.add(errors, &found, 0.0, contour_pairs);
-        }
-        video.row(None)
-    }
 
     /// Errors of 10, −10, 10 and 4 levels: the mean error is 8.5, the changes are 20, 20 and 6, and PSNR is of the mean of their squares, 79.
     #[test]
     fn changes_of_a_known_sequence() {
-        let row = row_of(&[100.0; 4], &[110.0, 90.0, 110.0, 104.0]);
-        assert!((row.error - 8.5).abs() < ERROR_ROUNDING, "{}", row.error);
-        assert!((row.change.unwrap() - 46.0 / 3.0).abs() < 2.0 * ERROR_ROUNDING);
-        assert!((row.change_max.unwrap() - 20.0).abs() < 2.0 * ERROR_ROUNDING);
-        let want = 10.0 * (255.0f64 * 255.0 / 79.0).log10();
-        assert!((row.psnr.unwrap() - want).abs() < 1e-9);
-        assert_eq!(row.frames, 4);
+        let images = [10.0, -10.0, 10.0, 4.0].map(|level: f32| vec![[level; 3]; 6]);
+        let frame = |k: usize| FrameRow {
+            error: mean_absolute(&images[k]),
+            change: (k > 0).then(|| mean_absolute(&change_of(&images[k - 1], &images[k]))),
+            contour_pairs: (k > 0).then_some(k as f64 / 8.0),
+            ..FrameRow::default()
+        };
+        let frames = [0, 1, 2, 3].map(frame);
+        let row = path_row(&frames, 79.0, None);
+        assert_eq!((row.frames, row.error), (4, 8.5));
+        assert_eq!((row.change, row.change_max), (Some(46.0 / 3.0), Some(20.0)));
+        assert_eq!(row.psnr, psnr(79.0));
         // Of 1/8, 2/8 and 3/8; the first frame has no pairs.
         assert_eq!(row.contour_pairs, Some(0.25));
     }

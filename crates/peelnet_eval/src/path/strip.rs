@@ -1,6 +1,7 @@
 //! A few frames of a path side by side, as a picture.
 
 use super::mean_absolute;
+use image::{Rgba, Rgba32FImage, imageops};
 use peelnet_core::srgb;
 use peelnet_render::Image;
 
@@ -11,32 +12,25 @@ const FRAMES: usize = 6;
 const WIDTH: u32 = 240;
 
 /// Factor of errors and changes in a strip.
-pub(crate) const MAGNIFIED: f32 = 8.0;
+const MAGNIFIED: f32 = 8.0;
 
 /// Frames at even distances: of the exact video the frames, of a method the error image and, below it, its change since the frame before,
 /// both magnified by 8. Of a method, the frame of the largest change stands at the end: what pops does so between two frames.
-#[derive(Debug)]
 pub(crate) struct Strip {
     /// Size of a frame.
     size: [u32; 2],
-    /// Pixels of a side that become one.
-    shrunk: u32,
     /// Frames of the video.
     frames: usize,
-    /// From left to right.
-    columns: Vec<Column>,
+    /// From left to right, in linear light.
+    columns: Vec<Rgba32FImage>,
     /// The largest change and its column.
-    worst: Option<(f64, Column)>,
+    worst: Option<(f64, Rgba32FImage)>,
 }
-
-/// Rows from above: sRGB-encoded values, 0–255.
-type Column = Vec<Vec<[f32; 3]>>;
 
 impl Strip {
     pub fn new(size: [u32; 2], frames: usize) -> Self {
         Self {
             size,
-            shrunk: size[0].div_ceil(WIDTH).max(1),
             frames,
             columns: Vec::new(),
             worst: None,
@@ -56,8 +50,7 @@ impl Strip {
             let levels: Vec<[f32; 3]> = levels
                 .map(|p| [p[0], p[1], p[2]].map(|c| 255.0 * srgb::encode(c)))
                 .collect();
-            let small = self.small(&levels, |x| x);
-            self.columns.push(vec![small]);
+            self.columns.push(self.shrunk(&[&levels], |x| x));
         }
     }
 
@@ -68,10 +61,9 @@ impl Strip {
         if !(self.shows(number) || is_worst) {
             return;
         }
-        let magnified = |x: f32| (x.abs() * MAGNIFIED).min(255.0);
         let none = vec![[0.0; 3]; errors.len()];
-        let rows = [errors, change.unwrap_or(&none)];
-        let column: Column = rows.map(|levels| self.small(levels, magnified)).into();
+        let magnified = |x: f32| (x.abs() * MAGNIFIED).min(255.0);
+        let column = self.shrunk(&[errors, change.unwrap_or(&none)], magnified);
         if is_worst {
             self.worst = Some((amount, column.clone()));
         }
@@ -80,60 +72,41 @@ impl Strip {
         }
     }
 
-    /// Size of a frame in the strip.
-    fn small_size(&self) -> [u32; 2] {
-        self.size.map(|n| (n / self.shrunk).max(1))
-    }
-
-    /// Means of `value` over squares of pixels.
-    fn small(&self, levels: &[[f32; 3]], value: impl Fn(f32) -> f32) -> Vec<[f32; 3]> {
-        let [width, height] = self.small_size();
-        let n = self.shrunk;
-        let mean = |x: u32, y: u32| {
-            let mut sum = [0.0f32; 3];
-            let mut count = 0.0f32;
-            for dy in 0..n.min(self.size[1]) {
-                for dx in 0..n.min(self.size[0]) {
-                    let place = (y * n + dy) * self.size[0] + x * n + dx;
-                    let level = levels[place as usize];
-                    for (s, l) in sum.iter_mut().zip(level) {
-                        *s += value(l);
+    /// Images one below the other, as means of `value` over squares of pixels; both are sRGB-encoded, 0–255.
+    fn shrunk(&self, images: &[&[[f32; 3]]], value: impl Fn(f32) -> f32) -> Rgba32FImage {
+        let [width, height] = self.size;
+        let side = width.div_ceil(WIDTH).max(1);
+        let [columns, rows] = self.size.map(|n| (n / side).max(1));
+        Rgba32FImage::from_fn(columns, rows * images.len() as u32, |x, y| {
+            let levels = images[(y / rows) as usize];
+            let (mut sum, mut count) = ([0.0f32; 3], 0.0f32);
+            for dy in 0..side.min(height) {
+                for dx in 0..side.min(width) {
+                    let place = (y % rows * side + dy) * width + x * side + dx;
+                    for (s, &level) in sum.iter_mut().zip(&levels[place as usize]) {
+                        *s += value(level);
                     }
                     count += 1.0;
                 }
             }
-            sum.map(|s| s / count)
-        };
-        let rows = 0..height;
-        rows.flat_map(|y| (0..width).map(move |x| (x, y)))
-            .map(|(x, y)| mean(x, y))
-            .collect()
+            let [r, g, b] = sum.map(|s| srgb::decode(s / count / 255.0));
+            Rgba([r, g, b, 1.0])
+        })
     }
 
     /// The picture, with the same bytes as what was added.
     pub fn image(&self) -> Image {
-        let [width, height] = self.small_size();
         let worst = self.worst.iter().map(|(_, column)| column);
-        let columns: Vec<&Column> = self.columns.iter().chain(worst).collect();
-        let rows = columns.first().map_or(0, |column| column.len());
-        let mut pixels = Vec::new();
-        for row in 0..rows {
-            for y in 0..height as usize {
-                for column in &columns {
-                    let begin = y * width as usize;
-                    let line = &column[row][begin..begin + width as usize];
-                    let linear = |level: f32| srgb::decode(level / 255.0);
-                    pixels.extend(line.iter().map(|p| {
-                        let [r, g, b] = p.map(linear);
-                        [r, g, b, 1.0]
-                    }));
-                }
-            }
+        let columns: Vec<_> = self.columns.iter().chain(worst).collect();
+        let (width, height) = columns.first().map_or((0, 0), |c| c.dimensions());
+        let mut strip = Rgba32FImage::new(width * columns.len() as u32, height);
+        for (column, k) in columns.into_iter().zip(0..) {
+            imageops::replace(&mut strip, column, k * i64::from(width), 0);
         }
         Image {
-            width: width * columns.len() as u32,
-            height: height * rows as u32,
-            pixels,
+            width: strip.width(),
+            height,
+            pixels: strip.pixels().map(|p| p.0).collect(),
         }
     }
 }

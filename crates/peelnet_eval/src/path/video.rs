@@ -4,19 +4,18 @@ use crate::{EvalError, perceptual::Displayed};
 use colorvideovdp::{Color, Cvvdp, DisplayModel, Image, Options};
 
 /// Frames a second that the path is shown at.
-pub const FPS: f32 = 30.0;
+pub(super) const FPS: f32 = 30.0;
 
-/// The display that it is shown on: one of the metric's own models, described in [`Judge::display`].
+/// The display that it is shown on: one of the metric's own models, and what that is.
 const DISPLAY: &str = "standard_fhd";
+pub(super) const DISPLAY_ABOUT: &str =
+    "24-inch 1920x1080 monitor, 200 cd/m², in an office of 250 lux, seen from 0.6 m";
 
 /// The smallest side that the metric takes, pixels.
 const LEAST_SIDE: u32 = 4;
 
 /// What the metric sees of a frame: 8-bit sRGB. `None` of a frame that is too small for it.
-///
-/// # Errors
-/// What the metric does not take.
-pub fn frame(shown: &Displayed) -> Result<Option<Image>, EvalError> {
+pub(super) fn frame(shown: &Displayed) -> Result<Option<Image>, EvalError> {
     let (size, bytes) = shown.rgb8();
     if size.iter().any(|&n| n < LEAST_SIDE) {
         return Ok(None);
@@ -27,63 +26,13 @@ pub fn frame(shown: &Displayed) -> Result<Option<Image>, EvalError> {
 }
 
 /// The metric (Mantiuk et al. 2024) on its display, with all settings as published.
-#[derive(Debug)]
-pub struct Judge(Cvvdp);
-
-impl Judge {
-    /// Loads its calibration.
-    ///
-    /// # Errors
-    /// A display that the crate does not know.
-    pub fn new() -> Result<Self, EvalError> {
-        let display = DisplayModel::from_name(DISPLAY)?;
-        Ok(Self(Cvvdp::new(display, Options::default())?))
-    }
-
-    /// The display that is assumed, in words.
-    pub fn display() -> String {
-        "24-inch 1920x1080 monitor, 200 cd/m², in an office of 250 lux, seen from 0.6 m".to_owned()
-    }
-
-    /// Just-objectionable differences between a video and the exact one, 10 for no visible difference and less for worse.
-    ///
-    /// # Errors
-    /// Videos of different shapes: a bug of the caller's.
-    pub fn jod(&self, video: &[Image], exact: &[Image]) -> Result<f64, EvalError> {
-        let found = self.0.predict_video(video, exact, FPS, Color::Srgb)?;
-        Ok(f64::from(found.jod))
-    }
+pub(super) fn judge() -> Result<Cvvdp, EvalError> {
+    let display = DisplayModel::from_name(DISPLAY)?;
+    Ok(Cvvdp::new(display, Options::default())?)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn video(level: impl Fn(usize) -> u8) -> Vec<Image> {
-        let frame = |k| {
-            let image = peelnet_render::Image {
-                width: 32,
-                height: 24,
-                pixels: vec![[peelnet_core::srgb::decode(f32::from(level(k)) / 255.0); 4]; 32 * 24],
-            };
-            super::frame(&Displayed::new(&image)).unwrap().unwrap()
-        };
-        (0..8).map(frame).collect()
-    }
-
-    /// Identical videos have no visible difference. A frame of one colour has no contrast: that it is brighter all the time is not seen, that
-    /// it is brighter and darker in turn is.
-    #[test]
-    fn flicker_is_seen() {
-        let judge = Judge::new().unwrap();
-        let exact = video(|_| 128);
-        assert_eq!(judge.jod(&exact, &exact).unwrap(), 10.0);
-        let steady = judge.jod(&video(|_| 138), &exact).unwrap();
-        let flicker = video(|k| if k % 2 == 0 { 138 } else { 118 });
-        let flicker = judge.jod(&flicker, &exact).unwrap();
-        assert!(
-            flicker < steady - 1.0 && steady <= 10.0,
-            "{flicker} {steady}"
-        );
-    }
+/// Just-objectionable differences between a video and the exact one, 10 for no visible difference and less for worse.
+pub(super) fn jod(judge: &Cvvdp, video: &[Image], exact: &[Image]) -> Result<f64, EvalError> {
+    let found = judge.predict_video(video, exact, FPS, Color::Srgb)?;
+    Ok(f64::from(found.jod))
 }

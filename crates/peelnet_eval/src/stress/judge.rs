@@ -38,7 +38,6 @@ pub fn clip_triangles(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<sca
     triangles
 }
 
-/// A light as the 64-bit shading takes it.
 pub fn light(light: &Light) -> shading::Light {
     shading::Light {
         source: match light.source {
@@ -159,14 +158,12 @@ fn before_the_camera(a: DVec4, b: DVec4) -> Option<[DVec4; 2]> {
     }
 }
 
-/// From a point to a segment.
 fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     let t = (p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
     (p - a - along * t.clamp(0.0, 1.0)).length()
 }
 
-/// A scene as one camera sees it.
 struct View<'a> {
     scene: &'a Scene,
     /// Of every triangle its object's number, and its own in the object's mesh.
@@ -263,7 +260,6 @@ impl<'a> View<'a> {
     }
 }
 
-/// The material of an object's triangle.
 fn material(object: &Object, triangle: usize) -> Option<&Material> {
     let mut parts = object.mesh.parts.iter();
     object
@@ -306,7 +302,7 @@ mod tests {
             let Work::Frames(make) = case.work else {
                 continue;
             };
-            for trial in make().unwrap() {
+            for trial in make() {
                 let truth = trial.truth();
                 let count =
                     |is: fn(&Content) -> bool| truth.pixels.iter().filter(|c| is(c)).count();

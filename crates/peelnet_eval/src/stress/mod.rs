@@ -25,46 +25,37 @@ pub use crate::records::{Outcome, StressRow as Row, Stressed};
 use crate::{
     EvalError,
     compare::{EXACT, image_name},
-    stage::{Ready, Stage, exact_method},
+    stage::{Stage, exact_method},
 };
 use peelnet_export::ExportError;
 use peelnet_files::counted;
 use peelnet_gpu::{Gpu, wgpu::AdapterInfo};
 use peelnet_model::Model;
 use peelnet_render::{Flaw, Image, LearnedWeight, MethodOptions, MethodSpec, Submission};
-use peelnet_scene::{Camera, Scene};
-use properties::Finding;
-use std::{collections::BTreeMap, path::Path};
+use peelnet_scene::Scene;
+use properties::Findings;
+use std::path::Path;
 use trial::{Content, Trial, Truth};
 
-/// One hard case.
-#[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Its name.
     pub id: &'static str,
-    /// What is drawn.
     pub what: &'static str,
     /// What is known to break there.
     pub breaks: &'static str,
     work: Work,
 }
 
-/// What a case consists of.
-#[derive(Clone, Copy, Debug)]
 enum Work {
-    /// Scenes are drawn.
-    Frames(fn() -> Result<Vec<Trial>, EvalError>),
+    Frames(fn() -> Vec<Trial>),
     /// Scenes are drawn, by exact methods that take a fixed number of passes.
-    Deep(fn() -> Result<Vec<Trial>, EvalError>),
+    Deep(fn() -> Vec<Trial>),
     /// The network itself is evaluated, of learned methods only.
     Network(Examine),
 }
 
-/// Evaluates a network, and notes what it finds.
-type Examine = fn(&Gpu, &(LearnedWeight, Model), &mut Note<'_>) -> Result<(), ExportError>;
+type Examine = fn(&Gpu, &(LearnedWeight, Model), &mut Findings) -> Result<(), ExportError>;
 
 impl Case {
-    /// Whether a method takes part.
     pub fn judges(&self, method: &MethodSpec) -> bool {
         match self.work {
             Work::Frames(_) => true,
@@ -75,12 +66,10 @@ impl Case {
 }
 
 impl Stressed {
-    /// Rows of one outcome.
     pub fn of(&self, result: Outcome) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |r| r.result == result)
     }
 
-    /// How many rows there are of each outcome.
     pub fn summary(&self) -> String {
         let count = |outcome| self.of(outcome).count() as u64;
         let pass = match count(Outcome::Pass) {
@@ -99,16 +88,12 @@ const ORDERS: [Submission; 2] = [Submission::Reversed, Submission::Shuffled(7)];
 /// Factors of [`Property::Scale`].
 const SCALES: [f32; 2] = [1e-3, 1e3];
 
-/// What a case found of every subject and property.
-type Findings = BTreeMap<(usize, Property), Finding>;
-
 /// Draws a case with every subject and judges what is seen; `notify` gets the name of every subject before it is drawn, and may end the
 /// run. With `strict`, a flaw that is declared for this adapter and does not occur is a failure: meant for shipped networks, not for
-/// a user's own. Pictures of what fails are
-/// saved in the folder `images`, beside the exact ones.
+/// a user's own. Pictures of what fails are saved in the folder `images`, beside the exact ones.
 ///
 /// # Errors
-/// If a scene cannot be made, a method cannot draw, or a picture cannot be written.
+/// If a method cannot draw, or a picture cannot be written.
 pub fn stress(
     gpu: &Gpu,
     case: &Case,
@@ -117,62 +102,49 @@ pub fn stress(
     images: Option<&Path>,
     notify: &mut dyn FnMut(&str) -> Result<(), EvalError>,
 ) -> Result<Vec<Row>, EvalError> {
-    let mut findings = Findings::new();
+    let judged = subjects.iter().filter(|s| case.judges(&s.method));
+    let subjects: Vec<&Subject> = judged.collect();
+    let mut findings = Findings::default();
     // Of every trial its name, the exact image, and every subject's.
     let mut drawn: Vec<(String, Vec<Image>)> = Vec::new();
     let names: Vec<String> = subjects.iter().map(|s| s.method.to_string()).collect();
     let mut trials = Vec::new();
     match case.work {
-        Work::Frames(make) | Work::Deep(make) => trials = make()?,
+        Work::Frames(make) | Work::Deep(make) => trials = make(),
         Work::Network(examine) => {
             for (i, subject) in subjects.iter().enumerate() {
                 notify(&names[i])?;
+                findings.subject = i;
                 if let Some(network) = &subject.learned {
-                    examine(gpu, network, &mut |property, value, limit, place| {
-                        let finding: &mut Finding = findings.entry((i, property)).or_default();
-                        finding.worsen(value, limit, place);
-                    })
-                    .map_err(|source| EvalError::Network {
-                        method: names[i].clone(),
-                        source: Box::new(source),
-                    })?;
+                    let examined = examine(gpu, network, &mut findings);
+                    examined.map_err(EvalError::at(format!("the network of {}", names[i])))?;
                 }
             }
         }
     }
-    let has_network = |s: &Subject| s.learned.is_some() && case.judges(&s.method);
-    let with_networks = subjects.iter().any(has_network);
+    let with_networks = subjects.iter().any(|s| s.learned.is_some());
     for (trial, number) in trials.iter().zip(0..) {
         let scales = SCALES.iter().filter(|_| with_networks);
         let scaled: Vec<Scene> = scales.map(|&s| trial.scene.scaled(s)).collect();
         let mut stand = Stand::new(gpu, trial, &scaled)?;
-        let exact = exact_images(&stand.stage, trial.size, &trial.scene.views)?;
         let scene = format!("{}-{number}-{}", case.id, trial.scene.name);
-        let mut frames = vec![exact[0].clone()];
+        findings.scene = format!("{}: ", trial.scene.name);
+        let mut frames = vec![stand.exact[0].clone()];
         for (i, subject) in subjects.iter().enumerate() {
-            if !case.judges(&subject.method) {
-                frames.push(exact[0].clone());
-                continue;
-            }
             notify(&names[i])?;
-            let mut note = |property, value, limit, place: &dyn Fn() -> String| {
-                let finding: &mut Finding = findings.entry((i, property)).or_default();
-                finding.worsen(value, limit, || {
-                    format!("{}: {}", trial.scene.name, place())
-                });
-            };
-            let image = stand.draw(subject, case, &exact, &mut note)?;
+            findings.subject = i;
+            let image = stand.draw(subject, case, &mut findings)?;
             // Trials that move are a sequence.
             let moves = trial.moves && subject.promises.per_pixel;
             if let (true, Some((_, before))) = (moves, drawn.last()) {
                 let moved = [&before[1 + i], &image];
-                properties::compare_frames(moved, [&before[0], &exact[0]], &mut note);
+                properties::compare_frames(moved, [&before[0], &stand.exact[0]], &mut findings);
             }
             frames.push(image);
         }
         drawn.push((scene, frames));
     }
-    let rows = rows(case, subjects, &findings, strict, &gpu.info);
+    let rows = rows(case, &subjects, &findings, strict, &gpu.info);
     let Some(folder) = images else {
         return Ok(rows);
     };
@@ -190,55 +162,39 @@ pub fn stress(
     Ok(rows)
 }
 
-/// What became of every property that was looked at.
 fn rows(
     case: &Case,
-    subjects: &[Subject],
+    subjects: &[&Subject],
     findings: &Findings,
     strict: bool,
     adapter: &AdapterInfo,
 ) -> Vec<Row> {
-    findings
-        .iter()
-        .map(|(&(i, property), finding)| {
-            let method = &subjects[i].method;
-            let flaw = Flaw::declared(method, case.id, property, adapter);
-            let (result, reason) = match (finding.holds(), flaw) {
-                (true, None) => (Outcome::Pass, None),
-                (true, Some(flaw)) if strict => (
-                    Outcome::Fail,
-                    Some(format!("holds, but is declared as a flaw: {}", flaw.reason)),
-                ),
-                (true, Some(_)) => (Outcome::Pass, None),
-                (false, Some(flaw)) => (Outcome::Declared, Some(flaw.reason.to_owned())),
-                (false, None) => (Outcome::Fail, None),
-            };
-            Row {
-                method: method.to_string(),
-                case: case.id.to_owned(),
-                property,
-                result,
-                value: finding.value.is_finite().then_some(finding.value),
-                limit: finding.limit,
-                place: finding.place.clone(),
-                reason,
-            }
-        })
-        .collect()
-}
-
-/// The text of a property's value, its limit and its place.
-type Note<'n> = dyn FnMut(Property, f64, f64, &dyn Fn() -> String) + 'n;
-
-/// The exact image of every view.
-fn exact_images(
-    stage: &Stage<'_>,
-    size: [u32; 2],
-    views: &[Camera],
-) -> Result<Vec<Image>, EvalError> {
-    let mut exact = stage.ready(&exact_method(), MethodOptions::sized(size))?;
-    let mut draw = |camera| Ok(stage.image(&mut exact, camera)?.image);
-    views.iter().map(&mut draw).collect()
+    let all = findings.all.iter();
+    all.map(|(&(i, property), finding)| {
+        let method = &subjects[i].method;
+        let flaw = Flaw::declared(method, case.id, property, adapter);
+        let (result, reason) = match (finding.holds(), flaw) {
+            (true, None) => (Outcome::Pass, None),
+            (true, Some(flaw)) if strict => (
+                Outcome::Fail,
+                Some(format!("holds, but is declared as a flaw: {}", flaw.reason)),
+            ),
+            (true, Some(_)) => (Outcome::Pass, None),
+            (false, Some(flaw)) => (Outcome::Declared, Some(flaw.reason.to_owned())),
+            (false, None) => (Outcome::Fail, None),
+        };
+        Row {
+            method: method.to_string(),
+            case: case.id.to_owned(),
+            property,
+            result,
+            value: finding.value.is_finite().then_some(finding.value),
+            limit: finding.limit,
+            place: finding.place.clone(),
+            reason,
+        }
+    })
+    .collect()
 }
 
 /// A trial made ready to be drawn with any method.
@@ -246,6 +202,8 @@ struct Stand<'a> {
     trial: &'a Trial,
     truth: Truth,
     stage: Stage<'a>,
+    /// Of every view.
+    exact: Vec<Image>,
     /// The scene at other scales, with the exact image.
     scaled: Vec<(Stage<'a>, Image)>,
     gpu: &'a Gpu,
@@ -253,22 +211,26 @@ struct Stand<'a> {
 
 impl<'a> Stand<'a> {
     fn new(gpu: &'a Gpu, trial: &'a Trial, scaled: &'a [Scene]) -> Result<Self, EvalError> {
+        let options = MethodOptions::sized(trial.size);
         let scaled = scaled.iter().map(|scene| {
             let stage = Stage::new(gpu, scene)?;
-            let mut exact = exact_images(&stage, trial.size, &scene.views[..1])?;
-            Ok((stage, exact.swap_remove(0)))
+            let exact = stage.draw(&exact_method(), options.clone(), &scene.views[0])?;
+            Ok((stage, exact))
         });
+        let scaled = scaled.collect::<Result<_, EvalError>>()?;
+        let stage = Stage::new(gpu, &trial.scene)?;
+        let mut ready = stage.ready(&exact_method(), options)?;
+        let exact = trial.scene.views.iter();
+        let exact = exact.map(|camera| Ok(stage.image(&mut ready, camera)?.image));
+        let exact = exact.collect::<Result<_, EvalError>>()?;
         Ok(Self {
             truth: trial.truth(),
-            stage: Stage::new(gpu, &trial.scene)?,
-            scaled: scaled.collect::<Result<_, EvalError>>()?,
+            exact,
+            stage,
+            scaled,
             trial,
             gpu,
         })
-    }
-
-    fn ready(&self, stage: &Stage<'_>, subject: &Subject) -> Result<Ready, EvalError> {
-        stage.ready(&subject.method, self.options(subject))
     }
 
     fn options(&self, subject: &Subject) -> MethodOptions {
@@ -281,19 +243,19 @@ impl<'a> Stand<'a> {
         &mut self,
         subject: &Subject,
         case: &Case,
-        exact: &[Image],
-        note: &mut Note<'_>,
+        findings: &mut Findings,
     ) -> Result<Image, EvalError> {
         let views = &self.trial.scene.views;
-        let mut ready = self.ready(&self.stage, subject)?;
+        let (method, options) = (&subject.method, self.options(subject));
+        let mut ready = self.stage.ready(method, options.clone())?;
         let first = self.stage.image(&mut ready, &views[0])?.image;
-        properties::judge(subject, case.id, self.trial, &self.truth, &first, note);
+        properties::judge(subject, case.id, self.trial, &self.truth, &first, findings);
         let mut last = first.clone();
         for (k, camera) in views.iter().enumerate().skip(1) {
             let next = self.stage.image(&mut ready, camera)?.image;
             if subject.promises.per_pixel {
-                let exact = [&exact[k - 1], &exact[k]];
-                properties::compare_frames([&last, &next], exact, note);
+                let exact = [&self.exact[k - 1], &self.exact[k]];
+                properties::compare_frames([&last, &next], exact, findings);
             }
             last = next;
         }
@@ -301,18 +263,18 @@ impl<'a> Stand<'a> {
             for order in ORDERS {
                 self.stage.renderer.submit(order);
                 let other = self.stage.image(&mut ready, &views[0])?.image;
-                properties::compare_orders(subject, &self.truth, [&first, &other], note);
+                properties::compare_orders(subject, &self.truth, [&first, &other], findings);
             }
             self.stage.renderer.submit(Submission::Listed);
         }
         if subject.learned.is_some() {
             for (stage, exact_scaled) in &self.scaled {
-                let mut ready = self.ready(stage, subject)?;
-                let other = stage.image(&mut ready, &stage.scene.views[0])?.image;
-                properties::compare_scales([&first, &other], [&exact[0], exact_scaled], note);
+                let other = stage.draw(method, options.clone(), &stage.scene.views[0])?;
+                let exact = [&self.exact[0], exact_scaled];
+                properties::compare_scales([&first, &other], exact, findings);
             }
         }
-        self.transmittance(subject, case, note)?;
+        self.transmittance(subject, case, findings)?;
         Ok(first)
     }
 
@@ -322,7 +284,7 @@ impl<'a> Stand<'a> {
         &self,
         subject: &Subject,
         case: &Case,
-        note: &mut Note<'_>,
+        findings: &mut Findings,
     ) -> Result<(), EvalError> {
         let limit = properties::transmittance_limit(case.id, subject);
         let is_estimate = subject.method.method().transmittances.is_some();
@@ -333,8 +295,7 @@ impl<'a> Stand<'a> {
         let stage = Stage::new(self.gpu, &scene)?;
         let mut options = self.options(subject);
         options.shows = peelnet_render::methods::views::Shows::Sums;
-        let mut ready = stage.ready(&subject.method, options)?;
-        let sums = stage.image(&mut ready, &scene.views[0])?.image;
+        let sums = stage.draw(&subject.method, options, &scene.views[0])?;
         for (content, sum) in self.truth.pixels.iter().zip(&sums.pixels) {
             let Content::Kind(k) = *content else {
                 continue;
@@ -344,7 +305,7 @@ impl<'a> Stand<'a> {
                 let Some(i) = *i else { continue };
                 let found = f64::from(*sum) / f64::from(kind.fragments[i].alpha);
                 let error = (found - kind.transmittance_at(i, subject.promises.own_share)).abs();
-                note(Property::Transmittance, error, limit, &|| {
+                findings.note(Property::Transmittance, error, limit, || {
                     format!("{}, at depth {}", kind.name, kind.fragments[i].depth)
                 });
             }

@@ -1,6 +1,6 @@
 //! Cases that evaluate a network without drawing.
 
-use super::{Note, Property};
+use super::{Property, properties::Findings};
 use peelnet_core::{random::Random, tolerance::EXPORT_F16};
 use peelnet_export::ExportError;
 use peelnet_gpu::Gpu;
@@ -14,7 +14,7 @@ const RANDOM: usize = 16_384;
 pub(super) fn in_half_floats(
     _: &Gpu,
     (_, model): &(LearnedWeight, Model),
-    note: &mut Note<'_>,
+    findings: &mut Findings,
 ) -> Result<(), ExportError> {
     let mut random = Random::new(5, &[]);
     for _ in 0..RANDOM {
@@ -27,10 +27,9 @@ pub(super) fn in_half_floats(
         let exact = model.mlp.forward(&wide);
         let place = || format!("inputs {raw:?}");
         for (half, exact) in model.mlp.forward_half(&normalised).iter().zip(exact) {
-            let finite = half.is_finite();
-            note(Property::Finite, f64::from(u8::from(!finite)), 0.0, &place);
+            findings.forbid(Property::Finite, !half.is_finite(), place);
             let error = (f64::from(*half) - exact).abs();
-            note(Property::Half, error, limit, &place);
+            findings.note(Property::Half, error, limit, place);
         }
     }
     Ok(())
@@ -40,7 +39,7 @@ pub(super) fn in_half_floats(
 pub(super) fn on_hostile_inputs(
     gpu: &Gpu,
     (text, model): &(LearnedWeight, Model),
-    note: &mut Note<'_>,
+    findings: &mut Findings,
 ) -> Result<(), ExportError> {
     let count = model.meta.inputs.len();
     let mut random = Random::new(6, &[]);
@@ -80,7 +79,7 @@ pub(super) fn on_hostile_inputs(
     for (sample, answer) in samples.iter().zip(answers) {
         // Transmittances and colours: a little more than 1 is a matter of rounding.
         let good = answer.iter().all(|x| (0.0..=1.0 + 1e-5).contains(x));
-        note(Property::Finite, f64::from(u8::from(!good)), 0.0, &|| {
+        findings.forbid(Property::Finite, !good, || {
             format!("inputs {sample:?} give {answer:?}")
         });
     }

@@ -1,41 +1,63 @@
 //! What must hold of a frame, each property with its limit and the reason for it.
 
 use super::{
-    Note,
     subject::Subject,
     trial::{Content, Kind, Trial, Truth},
 };
+use glam::{DVec3, IVec3, Vec3};
 use peelnet_render::{Image, Property};
+use std::collections::BTreeMap;
 
 /// What was found of one property: the value that comes nearest to its limit, or goes farthest beyond it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Finding {
+#[derive(Clone, Debug, Default)]
+pub(super) struct Finding {
     /// The value; infinite where it is not a number.
     pub value: f64,
-    /// The largest that passes.
     pub limit: f64,
-    /// Where it is.
     pub place: String,
 }
 
 impl Finding {
-    /// Whether the property holds.
     pub fn holds(&self) -> bool {
         self.value <= self.limit
     }
+}
 
-    /// Keeps the worse of two.
-    pub(super) fn worsen(&mut self, value: f64, limit: f64, place: impl FnOnce() -> String) {
+/// What a case found of every subject and property.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub all: BTreeMap<(usize, Property), Finding>,
+    /// The number of the subject that is judged.
+    pub subject: usize,
+    /// What every place begins with.
+    pub scene: String,
+}
+
+impl Findings {
+    /// Notes a value of a property, the largest that passes, and where it is; the worst is kept.
+    pub fn note(
+        &mut self,
+        property: Property,
+        value: f64,
+        limit: f64,
+        place: impl FnOnce() -> String,
+    ) {
         // A NaN is beyond any limit.
         let value = if value.is_nan() { f64::INFINITY } else { value };
         let excess = |value: f64, limit| if value <= 0.0 { 0.0 } else { value / limit };
-        if self.place.is_empty() || excess(value, limit) > excess(self.value, self.limit) {
-            *self = Self {
+        let found = self.all.entry((self.subject, property)).or_default();
+        if found.place.is_empty() || excess(value, limit) > excess(found.value, found.limit) {
+            *found = Finding {
                 value,
                 limit,
-                place: place(),
+                place: format!("{}{}", self.scene, place()),
             };
         }
+    }
+
+    /// Notes whether something is there that must not be.
+    pub fn forbid(&mut self, property: Property, is_there: bool, place: impl FnOnce() -> String) {
+        self.note(property, f64::from(u8::from(is_there)), 0.0, place);
     }
 }
 
@@ -100,14 +122,13 @@ impl Subject {
     }
 }
 
-/// Judges what one frame shows.
 pub(super) fn judge(
     subject: &Subject,
     case: &str,
     trial: &Trial,
     truth: &Truth,
     image: &Image,
-    note: &mut Note<'_>,
+    findings: &mut Findings,
 ) {
     let width = image.width as usize;
     let supports: Vec<Vec<[f64; 2]>> = truth.kinds.iter().map(extents).collect();
@@ -116,8 +137,8 @@ pub(super) fn judge(
             let (x, y) = (i % width, i / width);
             format!("{}, pixel ({x}, {y})", truth.name(*content))
         };
-        let finite = p.iter().all(|c| c.is_finite());
-        note(Property::Finite, f64::from(u8::from(!finite)), 0.0, &place);
+        let is_finite = p.iter().all(|c| c.is_finite());
+        findings.forbid(Property::Finite, !is_finite, place);
         if !subject.promises.per_pixel {
             continue;
         }
@@ -125,66 +146,63 @@ pub(super) fn judge(
             Content::Unjudged => {}
             Content::Nothing => {
                 let same = p[..3] == trial.scene.background && p[3] == 0.0;
-                let differs = f64::from(u8::from(!same));
-                note(Property::Background, differs, 0.0, &place);
+                findings.forbid(Property::Background, !same, place);
             }
             Content::Kind(k) => {
                 let k = k as usize;
-                judge_pixel(subject, case, &truth.kinds[k], &supports[k], p, &mut |at| {
-                    note(at.0, at.1, at.2, &place);
-                });
+                let kind = (&truth.kinds[k], supports[k].as_slice());
+                judge_pixel(subject, case, kind, p, &place, findings);
             }
         }
     }
 }
 
 /// Judges a pixel that holds fragments, each on the scale of what it shows: a bright fragment elsewhere, or one of little opacity,
-/// widens no limit. `supports` are the extents of its fragments' colours; `note` gets a property, its value and its limit.
+/// widens no limit. `supports` are the extents of its fragments' colours.
 fn judge_pixel(
     subject: &Subject,
     case: &str,
-    kind: &Kind,
-    supports: &[[f64; 2]],
+    (kind, supports): (&Kind, &[[f64; 2]]),
     p: &[f32; 4],
-    note: &mut dyn FnMut((Property, f64, f64)),
+    place: &dyn Fn() -> String,
+    findings: &mut Findings,
 ) {
     let p64 = p.map(f64::from);
     let covered = 1.0 - kind.transmittance;
     let limit = subject.coverage_limit(kind);
-    note((Property::Background, (p64[3] - covered).abs(), limit));
+    findings.note(Property::Background, (p64[3] - covered).abs(), limit, place);
     let error = (0..3).fold(0.0, |e: f64, c| nan_max(e, (p64[c] - kind.exact[c]).abs()));
     if subject.promises.exact {
         let limit = peelnet_core::tolerance::EXACT * kind.scale() + kind.uncertainty;
-        note((Property::Exact, error, limit));
+        findings.note(Property::Exact, error, limit, place);
     }
     if kind.fragments.len() == 1 {
         // Two sums and a transmittance, each rounded once by the shader and once by the target.
         let limit = (SINGLE + 6.0 * subject.rounding()) * kind.scale() + kind.uncertainty;
-        note((Property::Single, error, limit));
+        findings.note(Property::Single, error, limit, place);
     }
     if subject.promises.normalised {
         // What the fragments show is a mean of their colours times the coverage; C_0 shows through the rest.
-        let own: [f64; 3] =
-            std::array::from_fn(|c| p64[c] - (1.0 - p64[3]) * f64::from(kind.background[c]));
+        let behind = Vec3::from(kind.background).as_dvec3();
+        let own = DVec3::new(p64[0], p64[1], p64[2]) - (1.0 - p64[3]) * behind;
         let outside = directions().zip(supports).map(|(d, &[least, most])| {
-            let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let along = dot(d, &own);
-            nan_max(along - p64[3] * most, p64[3] * least - along) / length
+            let along = d.dot(own);
+            nan_max(along - p64[3] * most, p64[3] * least - along) / d.length()
         });
         let outside = outside.fold(f64::NEG_INFINITY, nan_max);
         let shown = p64[..3].iter().fold(kind.scale(), |m, &c| m.max(c));
         let limit = STEP * shown + kind.uncertainty;
-        note((Property::Hull, outside, limit));
+        findings.note(Property::Hull, outside, limit, place);
     }
     let colors = kind.fragments.iter().map(|f| f.color);
     let luminances = colors.chain([kind.background]);
     let luminances = luminances.map(|c| luminance(&c.map(f64::from)));
     let darkest = luminances.fold(f64::INFINITY, f64::min);
     let limit = STEP * darkest.max(1.0) + kind.uncertainty;
-    note((Property::Dark, darkest - luminance(&p64), limit));
+    findings.note(Property::Dark, darkest - luminance(&p64), limit, place);
     if case == "alpha-near-one" {
         let steps = (0..3).map(|c| (display(p[c]) - display(kind.exact[c] as f32)).abs());
-        note((Property::Opaque, steps.fold(0.0, nan_max), 1.0));
+        findings.note(Property::Opaque, steps.fold(0.0, nan_max), 1.0, place);
     }
 }
 
@@ -193,7 +211,7 @@ pub(super) fn compare_orders(
     subject: &Subject,
     truth: &Truth,
     images: [&Image; 2],
-    note: &mut Note<'_>,
+    findings: &mut Findings,
 ) {
     for (i, &content) in truth.pixels.iter().enumerate() {
         let [a, b] = images.map(|image| image.pixels[i]);
@@ -208,25 +226,25 @@ pub(super) fn compare_orders(
         // Differences are those of 32-bit numbers.
         let difference = |c: usize| f64::from((a[c] - b[c]).abs());
         let change = (0..3).fold(0.0, |d, c| nan_max(d, difference(c)));
-        note(Property::Order, change, color, &place);
-        note(Property::Order, difference(3), coverage, &place);
+        findings.note(Property::Order, change, color, place);
+        findings.note(Property::Order, difference(3), coverage, place);
     }
 }
 
 /// What another scale changed, where the exact image is the same in both.
-pub(super) fn compare_scales(images: [&Image; 2], exact: [&Image; 2], note: &mut Note<'_>) {
+pub(super) fn compare_scales(images: [&Image; 2], exact: [&Image; 2], findings: &mut Findings) {
     for i in 0..images[0].pixels.len() {
         // At a silhouette a scaled triangle may miss a pixel's centre.
         if change(exact, i, display) <= 0.1 {
             let steps = change(images, i, display);
-            note(Property::Scale, steps, 1.0, &|| format!("pixel {i}"));
+            findings.note(Property::Scale, steps, 1.0, || format!("pixel {i}"));
         }
     }
 }
 
 /// How much more a frame's pixels jump than the exact image's, on average over those that hold the same surfaces before and
 /// after: their exact coverage shows it. Popping is a jump of many pixels at once, where the exact image changes along a line only.
-pub(super) fn compare_frames(frames: [&Image; 2], exact: [&Image; 2], note: &mut Note<'_>) {
+pub(super) fn compare_frames(frames: [&Image; 2], exact: [&Image; 2], findings: &mut Findings) {
     let (mut excess, mut pixels) = (0.0, 0);
     for i in 0..frames[0].pixels.len() {
         let [was, is] = exact.map(|image| image.pixels[i][3]);
@@ -236,7 +254,7 @@ pub(super) fn compare_frames(frames: [&Image; 2], exact: [&Image; 2], note: &mut
         }
     }
     let mean = excess / f64::from(pixels.max(1));
-    note(Property::Steady, mean, STEP, &|| format!("{pixels} pixels"));
+    findings.note(Property::Steady, mean, STEP, || format!("{pixels} pixels"));
 }
 
 /// The largest change of a channel of a pixel.
@@ -265,32 +283,22 @@ fn luminance(c: &[f64]) -> f64 {
     0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
 }
 
-fn dot(d: [f64; 3], c: &[f64]) -> f64 {
-    d[0] * c[0] + d[1] * c[1] + d[2] * c[2]
-}
-
 /// The thirteen axes of a cube through its faces, edges and corners: a hull is tested from both sides of each.
-fn directions() -> impl Iterator<Item = [f64; 3]> {
+fn directions() -> impl Iterator<Item = DVec3> {
     // Half of the 26 directions: those whose number lies above that of none.
-    (14..27).map(|i: i32| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1].map(f64::from))
+    (14..27).map(|i: i32| IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).as_dvec3())
 }
 
 /// Least and largest extent of the colours of a pixel's fragments along every axis; 0 of a pixel of which nothing is covered.
 fn extents(kind: &Kind) -> Vec<[f64; 2]> {
-    let colors = || {
-        let seen = kind.fragments.iter().filter(|f| f.alpha > 0.0);
-        seen.map(|f| f.color)
+    let seen = kind.fragments.iter().filter(|f| f.alpha > 0.0);
+    let colors = seen.map(|f| Vec3::from(f.color).as_dvec3());
+    let extent = |d: DVec3| {
+        let along = colors.clone().map(|c| [d.dot(c); 2]);
+        along.reduce(|[lo, hi], [x, _]| [lo.min(x), hi.max(x)])
     };
-    if colors().next().is_none() {
-        return directions().map(|_| [0.0; 2]).collect();
-    }
     directions()
-        .map(|d| {
-            let along = colors().map(|c| dot(d, &c.map(f64::from)));
-            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| {
-                [lo.min(x), hi.max(x)]
-            })
-        })
+        .map(|d| extent(d).unwrap_or_default())
         .collect()
 }
 
@@ -320,26 +328,28 @@ mod tests {
     fn a_hull_has_thirteen_axes() {
         let all: Vec<_> = directions().collect();
         assert_eq!(all.len(), 13);
-        assert!(all.iter().all(|d| d.iter().any(|x| *x != 0.0)));
+        assert!(!all.contains(&DVec3::ZERO));
         for (i, a) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|b| a != b && *a != b.map(|x| -x)));
+            assert!(all[..i].iter().all(|b| a != b && *a != -*b));
         }
     }
 
     #[test]
     fn the_worst_is_kept_and_a_nan_is_worst() {
-        let mut f = Finding::default();
-        f.worsen(0.0, 0.0, || "a".into());
-        assert!(f.holds() && f.place == "a");
-        f.worsen(0.5, 1.0, || "b".into());
-        f.worsen(0.2, 1.0, || "c".into());
-        assert!(f.holds() && f.place == "b");
-        f.worsen(f64::NAN, 1.0, || "d".into());
-        f.worsen(3.0, 1.0, || "e".into());
-        assert!(!f.holds() && f.place == "d");
-        assert_eq!(f.value, f64::INFINITY);
-        let mut none_allowed = Finding::default();
-        none_allowed.worsen(1e-9, 0.0, || "a".into());
-        assert!(!none_allowed.holds());
+        let mut findings = Findings::default();
+        let mut worst = |value, limit, place: &str| {
+            findings.note(Property::Hull, value, limit, || place.to_owned());
+            let found = &findings.all[&(0, Property::Hull)];
+            (found.holds(), found.place.clone(), found.value)
+        };
+        assert_eq!(worst(0.0, 0.0, "a"), (true, "a".to_owned(), 0.0));
+        assert_eq!(worst(0.5, 1.0, "b"), (true, "b".to_owned(), 0.5));
+        assert_eq!(worst(0.2, 1.0, "c"), (true, "b".to_owned(), 0.5));
+        let nan = (false, "d".to_owned(), f64::INFINITY);
+        assert_eq!(worst(f64::NAN, 1.0, "d"), nan);
+        assert_eq!(worst(3.0, 1.0, "e"), nan);
+        findings.subject = 1;
+        findings.note(Property::Hull, 1e-9, 0.0, || "none allowed".to_owned());
+        assert!(!findings.all[&(1, Property::Hull)].holds());
     }
 }

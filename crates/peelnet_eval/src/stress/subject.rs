@@ -9,7 +9,6 @@ use peelnet_render::{
 /// A method with the network it draws with.
 #[derive(Clone, Debug)]
 pub struct Subject {
-    /// The method with its parameters.
     pub method: MethodSpec,
     /// The network's text and itself, for learned methods.
     pub learned: Option<(LearnedWeight, Model)>,
@@ -20,7 +19,6 @@ pub struct Subject {
 const KEPT: [&str; 2] = ["colors=", "cell="];
 
 impl Subject {
-    /// A method as it is drawn.
     pub fn new(method: MethodSpec, learned: Option<(LearnedWeight, Model)>) -> Self {
         Self {
             promises: method.promises(),

@@ -1,10 +1,7 @@
 //! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit judge.
 
-use super::{
-    catalogue::{BACKGROUND, camera},
-    judge,
-};
-
+use super::{catalogue::BACKGROUND, judge};
+use crate::stage::{camera, quad};
 use glam::Vec3;
 use peelnet_core::{
     absorbance::absorbance,
@@ -15,7 +12,6 @@ use peelnet_core::{
 use peelnet_scene::{Material, Object, Scene};
 
 /// Layers that cover some pixels of the frame whole.
-#[derive(Clone, Debug)]
 pub struct Stack {
     pub name: String,
     /// Its layers, in the order in which they are drawn.
@@ -34,8 +30,6 @@ impl Stack {
     }
 }
 
-/// A scene of a hard case.
-#[derive(Clone, Debug)]
 pub struct Trial {
     /// What is drawn; every view of it, where it moves.
     pub scene: Scene,
@@ -46,18 +40,15 @@ pub struct Trial {
     pub(super) known: Option<Truth>,
 }
 
-/// What is known of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// It holds no fragment and nothing opaque.
     Nothing,
-    /// It is one of [`Truth::kinds`].
     Kind(u32),
     /// It lies on an edge: which fragments it holds depends on how vertices are snapped to the adapter's sub-pixel grid.
     Unjudged,
 }
 
-/// The fragments of every pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
     pub pixels: Vec<Content>,
@@ -65,7 +56,6 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// The name of what a pixel holds, for messages.
     pub fn name(&self, content: Content) -> &str {
         match content {
             Content::Nothing => "no fragment",
@@ -196,9 +186,13 @@ impl Trial {
                 let x = |pixel: u32| (2.0 * pixel as f32 / width - 1.0) * z * width / height;
                 let y = |pixel: u32| (1.0 - 2.0 * pixel as f32 / height) * z;
                 let v = |px: u32, py: u32| Vec3::new(x(px), y(py), -z);
-                let (a, b) = (v(left, top + cover), v(left + cover, top + cover));
-                let (c, d) = (v(left + cover, top), v(left, top));
-                [[a, b, c], [a, c, d]]
+                let (right, bottom) = (left + cover, top + cover);
+                quad([
+                    v(left, bottom),
+                    v(right, bottom),
+                    v(right, top),
+                    v(left, top),
+                ])
             };
             let mut fragments = Vec::new();
             for layer in &stack.layers {

@@ -3,17 +3,16 @@
 pub(crate) mod page;
 
 use crate::{
-    Measurement, ReportError, Results, Table,
+    Files, Measurement, Results, Table,
     files::csv,
-    table::{number, scene_heading, scene_in_cell},
+    table::{marked, number, scene_heading},
 };
-use peelnet_chart::{Bubble, BubbleChart, Svg};
+use peelnet_chart::{Bubble, Svg, bubble_chart};
 use peelnet_eval::{
     bench::Bench,
     front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
     rows::{Bytes, MOMENTS, Rows, WEIGHTED},
 };
-use std::path::Path;
 
 /// Headings of errors over those of [`WEIGHTED`] and [`MOMENTS`], and of times over those of [`BASE`].
 const TO_WEIGHTED: &str = "/ wboit-eq9";
@@ -25,33 +24,23 @@ const TIME_TO_FRONT: &str = "time / front at equal error";
 const ERROR_TO_FRONT: &str = "error / front at equal time";
 
 impl Measurement for Bench {
-    const FILES: &[&str] = &[
-        "pareto.svg",
-        "pareto-mean.svg",
-        "report.html",
-        "results.json",
-        "results.csv",
-        "table.md",
+    const FILES: Files<Self> = &[
+        ("pareto.svg", |r, _| Ok(r.chart(Mean::Geometric).on_white())),
+        ("pareto-mean.svg", |r, _| {
+            Ok(r.chart(Mean::Arithmetic).on_white())
+        }),
+        ("report.html", page::page),
+        ("results.json", Results::json),
+        ("results.csv", |r, _| Ok(csv(&r.measured.rows))),
+        ("table.md", |r, _| Ok(r.markdown())),
     ];
-
-    fn text(
-        results: &Results<Self>,
-        file: &str,
-        folder: &Path,
-    ) -> Result<Option<String>, ReportError> {
-        let rows = &results.measured.rows;
-        let chart = |mean| chart(&front::points(&Rows::new(rows), mean)).on_white();
-        Ok(Some(match file {
-            "pareto.svg" => chart(Mean::Geometric),
-            "pareto-mean.svg" => chart(Mean::Arithmetic),
-            "report.html" => page::page(results, &folder.join("images"))?,
-            "results.csv" => csv(rows),
-            _ => results.markdown(),
-        }))
-    }
 }
 
 impl Results<Bench> {
+    fn chart(&self, mean: Mean) -> Svg {
+        chart(&front::points(&Rows::new(&self.measured.rows), mean))
+    }
+
     /// Every method as ratios to the reference methods.
     pub fn table(&self) -> Table {
         let rows = Rows::new(&self.measured.rows);
@@ -59,7 +48,7 @@ impl Results<Bench> {
         let point = |method: &str| points.iter().find(|p| p.method == method);
         let worst = |method: &str| {
             let (scene, x) = rows.worst_scene(method)?;
-            let scene = scene_in_cell(scene, &self.measured.trained_on);
+            let scene = marked(scene, &self.measured.trained_on, ", trained on");
             Some(format!("{x:.2} ({scene})"))
         };
         let dash = || "–".to_owned();
@@ -104,19 +93,15 @@ impl Results<Bench> {
             first.unwrap_or_else(|| "–".to_owned())
         });
         let first = std::iter::once("the fastest exact one".to_owned());
-        let mut lines: Vec<Vec<String>> = vec![first.chain(exact).collect()];
-        lines.extend(rows.methods().into_iter().map(|method| {
-            let times = points.iter().map(|all| {
-                let own = all.iter().find(|p| p.method == method);
-                number(own.map(|p| p.time), 2)
-            });
-            std::iter::once(method.to_owned()).chain(times).collect()
-        }));
-        let named = scenes
-            .iter()
-            .map(|s| scene_heading(s, &self.measured.trained_on));
-        let headings = std::iter::once(TO_BASE.to_owned()).chain(named);
-        Table::new(headings, lines)
+        let first = first.chain(exact).collect();
+        let trained_on = &self.measured.trained_on;
+        let named = scenes.iter().map(|s| scene_heading(s, trained_on));
+        let mut table = Table::matrix(TO_BASE, named, &rows.methods(), |method, k| {
+            let own = points[k].iter().find(|p| p.method == method);
+            number(own.map(|p| p.time), 2)
+        });
+        table.rows.insert(0, first);
+        table
     }
 
     fn markdown(&self) -> String {
@@ -172,43 +157,11 @@ pub(crate) fn chart(points: &[Point]) -> Svg {
         }
     };
     let bubbles: Vec<Bubble> = points.iter().map(bubble).collect();
-    BubbleChart {
-        bubbles: &bubbles,
-        x: if points.iter().any(|p| p.method == BASE) {
-            "time, times hardware blending without sorting"
-        } else {
-            "time, milliseconds"
-        },
-        y: "mean squared error, linear light",
-        floor: (EXACT_MSE, "exact"),
-    }
-    .svg()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{machine, row};
-
-    /// The worst scene is marked like a heading where a network was trained on it, and only there.
-    #[test]
-    fn the_worst_scene_says_that_it_was_trained_on() {
-        let mut rows = Vec::new();
-        for (scene, error) in [("cups", 8.0), ("panes", 2.0)] {
-            rows.push(row(scene, MOMENTS, 4.0));
-            rows.push(row(scene, "wboit-eq9", error));
-        }
-        for (trained_on, expected) in [
-            ("cups", "2.00 (cups, trained on)"),
-            ("panes", "2.00 (cups)"),
-        ] {
-            let measured = Bench {
-                trained_on: vec![trained_on.to_owned()],
-                rows: rows.clone(),
-                ..Bench::default()
-            };
-            let table = Results::new(machine(), "peelnet bench", measured).table();
-            assert_eq!(table.rows[1][4], expected);
-        }
-    }
+    let x = if points.iter().any(|p| p.method == BASE) {
+        "time, times hardware blending without sorting"
+    } else {
+        "time, milliseconds"
+    };
+    let y = "mean squared error, linear light";
+    bubble_chart(&bubbles, x, y, (EXACT_MSE, "exact"))
 }

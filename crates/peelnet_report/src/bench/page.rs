@@ -18,14 +18,13 @@ use peelnet_eval::{
 };
 use std::path::Path;
 
-/// Width of the pictures, pixels.
 const PICTURE_WIDTH: u32 = 256;
 
-/// Factor of the difference maps.
 const MAGNIFIED: u16 = 8;
 
-/// The whole page. `images` is the folder with `<scene>-<method>.png`.
-pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, ReportError> {
+/// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
+pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, ReportError> {
+    let images = &folder.join("images");
     let rows = &Rows::new(&results.measured.rows);
     let scenes = rows.scenes();
     let all = front::points(rows, Mean::Geometric);
@@ -81,7 +80,6 @@ pub(super) fn page(results: &Results<Bench>, images: &Path) -> Result<String, Re
     Ok(page::page(results, title, body, &more, Some(SORT_SCRIPT)))
 }
 
-/// Chart, table and pictures of one scene.
 fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportError> {
     let own = Rows::new(&bench.rows).of_scene(scene);
     let points = front::points(&own, Mean::Geometric);
@@ -108,7 +106,6 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
     })
 }
 
-/// A line for every point, with all measures.
 pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
     let ratio = |p: &Point, to| number(rows.error_ratio(&p.method, to), 3);
     let mean = |p: &Point, value: fn(&Row) -> Option<f64>, digits| {
@@ -167,7 +164,6 @@ fn untimed(rows: &Rows<'_>) -> Markup {
     }
 }
 
-/// Where every method's time goes.
 fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
     let line = |p: &Point| {
         let mut times: Vec<(&str, Vec<f64>)> = Vec::new();
@@ -231,7 +227,6 @@ pub(crate) fn gallery<'a>(
     Ok(html! { div.gallery { @for figure in all { (figure) } } })
 }
 
-/// How far every channel is off, magnified.
 fn difference(exact: &RgbImage, other: &RgbImage) -> RgbImage {
     let mut map = other.clone();
     for (d, e) in map.pixels_mut().zip(exact.pixels()) {
@@ -255,6 +250,7 @@ mod tests {
         let mut rows = Vec::new();
         for (method, mse, ms) in [
             (EXACT, 0.0, 9.0),
+            (MOMENTS, 25.0, 3.0),
             (WEIGHTED, 50.0, 2.0),
             (front::BASE, 90.0, 1.0),
         ] {
@@ -269,14 +265,16 @@ mod tests {
         }
         let bench = Bench {
             load: [Some(0.5), None],
+            trained_on: vec!["s<1>".to_owned()],
             rows,
             ..Bench::default()
         };
         let results = Results::new(machine(), "peelnet bench \"a&b\"", bench);
         let page = written(dir.path(), &results);
-        // All scenes in two means and one scene, three bubbles each; the difference of two pictures beside each.
-        assert_eq!(page.matches("<circle class=\"point\"").count(), 9);
-        assert_eq!(page.matches("data:image/png").count(), 5);
+        // All scenes in two means and one scene, four bubbles each; beside each picture its difference from the exact one.
+        assert_eq!(page.matches("<circle class=\"point\"").count(), 12);
+        assert_eq!(page.matches("data:image/png").count(), 7);
+        assert_eq!(results.table().rows[2][4], "2.00 (s<1>, trained on)");
         assert!(
             page.contains("s&lt;1&gt;")
                 && page.contains("a&amp;b")

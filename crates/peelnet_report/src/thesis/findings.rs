@@ -9,8 +9,7 @@ use peelnet_eval::{
     thesis::{self, DEEP, best_published, ratio},
 };
 
-/// One finding after the other, each a sentence or two.
-pub fn findings(rows: &[Row]) -> Vec<String> {
+pub(super) fn findings<'a>(rows: &'a [Row]) -> Vec<String> {
     let rows = &Rows::new(rows);
     let mut out = Vec::new();
     let both = |scene: &&str| {
@@ -27,33 +26,27 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
                 .to_owned(),
         ];
     }
-    let ratios = |scenes: &[&str], reference: &str| -> Vec<(String, f64)> {
+    let ratios = |scenes: &[&'a str], reference: &str| -> Vec<(&'a str, f64)> {
         let ratio = |scene| ratio(rows, scene, [DEEP, reference], |r| r.mse255);
         let scenes = scenes.iter();
-        scenes
-            .filter_map(|&scene| Some((scene.to_owned(), ratio(scene)?)))
-            .collect()
+        scenes.filter_map(|&s| Some((s, ratio(s)?))).collect()
     };
     if !in_table.is_empty() {
-        let r = ratios(&in_table, thesis::WEIGHTED);
+        let (verdict, counted, list) = summary(&ratios(&in_table, thesis::WEIGHTED));
         let theirs = in_table.iter().filter_map(|scene| thesis::line(scene));
-        let theirs: Vec<String> = theirs.map(|m| format!("{:.2}", m.ratio())).collect();
+        let theirs: Vec<String> = theirs
+            .map(|[weighted, deep]| format!("{:.2}", deep / weighted))
+            .collect();
         out.push(format!(
-            "On the scenes that the thesis measured, its promise {}: the learned weight has {} (learned / analytic: {}; \
+            "On the scenes that the thesis measured, its promise {verdict}: the learned weight has {counted} (learned / analytic: {list}; \
              the thesis reports {}).",
-            verdict(&r),
-            counted(&r),
-            list(&r),
             theirs.join(", "),
         ));
     }
     if !beyond.is_empty() {
-        let r = ratios(&beyond, thesis::WEIGHTED);
+        let (verdict, counted, list) = summary(&ratios(&beyond, thesis::WEIGHTED));
         out.push(format!(
-            "On the scenes that the thesis did not measure, the promise {}: the learned weight has {} ({}).",
-            verdict(&r),
-            counted(&r),
-            list(&r),
+            "On the scenes that the thesis did not measure, the promise {verdict}: the learned weight has {counted} ({list})."
         ));
     }
     let all = [in_table, beyond].concat();
@@ -65,7 +58,7 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
             out.push(format!(
                 "Against the best published weight on these scenes ({best}), the learned weight has {}; geometric mean \
                  of the ratios {mean:.2} on the 0–255 scale{}.",
-                counted(&r),
+                summary(&r).1,
                 linear.map_or_else(String::new, |l| format!(", {l:.2} in linear light")),
             ));
         }
@@ -74,28 +67,17 @@ pub fn findings(rows: &[Row]) -> Vec<String> {
     out
 }
 
-fn verdict(ratios: &[(String, f64)]) -> &'static str {
+/// Whether the promise is kept, on how many scenes the error is lower, and the ratio of each scene.
+fn summary(ratios: &[(&str, f64)]) -> (&'static str, String, String) {
     let kept = ratios.iter().filter(|r| r.1 < 1.0).count();
-    if kept == ratios.len() {
-        "is kept"
-    } else if kept == 0 {
-        "is not kept"
-    } else {
-        "is kept in part"
-    }
-}
-
-fn counted(ratios: &[(String, f64)]) -> String {
-    let kept = ratios.iter().filter(|r| r.1 < 1.0).count();
-    format!("the lower error on {kept} of {} scenes", ratios.len())
-}
-
-fn list(ratios: &[(String, f64)]) -> String {
-    let texts: Vec<String> = ratios
-        .iter()
-        .map(|(scene, r)| format!("{scene} {r:.2}"))
-        .collect();
-    texts.join(", ")
+    let verdict = match kept {
+        n if n == ratios.len() => "is kept",
+        0 => "is not kept",
+        _ => "is kept in part",
+    };
+    let counted = format!("the lower error on {kept} of {} scenes", ratios.len());
+    let list: Vec<String> = ratios.iter().map(|(s, r)| format!("{s} {r:.2}")).collect();
+    (verdict, counted, list.join(", "))
 }
 
 /// Dark and non-finite pixels of the learned method, the thesis's "black artifacts".

@@ -1,22 +1,25 @@
 //! The files of `peelnet run`: the thesis's table of our scenes, what it says of the thesis's promise, and a page.
 
-pub(crate) mod findings;
+mod findings;
 mod page;
-mod table;
 
-use crate::{Measurement, ReportError, Results, Table};
+use crate::{
+    Files, Measurement, Results, Table,
+    table::{number, scene_heading},
+};
 use findings::findings;
 use peelnet_chart::Svg;
-use peelnet_eval::{Machine, Row, rows::Rows};
+use peelnet_eval::{
+    Machine, Row,
+    rows::{self, Rows},
+    thesis::{self, DEEP, best_published},
+};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
-/// A step of a run and how long it took.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     /// `extract`, `train`, `export`, `compare`, …
     pub name: String,
-    /// Wall-clock seconds.
     pub seconds: f64,
     /// What it did, in figures.
     pub note: String,
@@ -25,16 +28,13 @@ pub struct Stage {
 /// A network trained as the thesis does, and its comparison with all methods.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ThesisRun {
-    /// The steps, in order.
     pub stages: Vec<Stage>,
     /// Settings that matter, as name and value.
     pub settings: Vec<(String, String)>,
-    /// What the rows say, computed from them.
     pub findings: Vec<String>,
     /// Scenes among them that the learned method was trained on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trained_on: Vec<String>,
-    /// All rows.
     pub rows: Vec<Row>,
     /// Rows of one more scene, with shipped networks beside the trained one and timed frames.
     #[serde(default)]
@@ -48,18 +48,11 @@ pub struct ThesisRun {
 }
 
 impl Measurement for ThesisRun {
-    const FILES: &[&str] = &["results.json", "table.md", "report.html"];
-
-    fn text(
-        results: &Results<Self>,
-        file: &str,
-        folder: &Path,
-    ) -> Result<Option<String>, ReportError> {
-        Ok(Some(match file {
-            "table.md" => results.markdown(),
-            _ => page::page(results, &folder.join("images"))?,
-        }))
-    }
+    const FILES: Files<Self> = &[
+        ("results.json", Results::json),
+        ("table.md", |r, _| Ok(r.markdown())),
+        ("report.html", page::page),
+    ];
 }
 
 impl Results<ThesisRun> {
@@ -75,13 +68,59 @@ impl Results<ThesisRun> {
 
     /// Weighted and learned weighted blending on every scene, beside the thesis's figures.
     pub fn table(&self) -> Table {
-        let run = &self.measured;
-        table::like_the_thesis(&Rows::new(&run.rows), &run.trained_on)
+        let rows = Rows::new(&self.measured.rows);
+        let trained_on = &self.measured.trained_on;
+        let best = best_published(&rows);
+        let best_heading = best.map_or_else(
+            || "best published".to_owned(),
+            |b| format!("best published: {b}"),
+        );
+        let best = best.unwrap_or_default();
+        let error = |s: &str, m| number(thesis::error(&rows, s, m, |r| r.mse255), 2);
+        let ratio = |s: &str, to| number(thesis::ratio(&rows, s, [DEEP, to], |r| r.mse255), 2);
+        Table::of(
+            &rows.scenes(),
+            &[
+                ("scene", &|s| scene_heading(s, trained_on)),
+                (thesis::WEIGHTED, &|s| error(s, thesis::WEIGHTED)),
+                (rows::WEIGHTED, &|s| error(s, rows::WEIGHTED)),
+                (&best_heading, &|s| error(s, best)),
+                (DEEP, &|s| error(s, DEEP)),
+                ("deep / thesis's weight", &|s| ratio(s, thesis::WEIGHTED)),
+                ("deep / best published", &|s| ratio(s, best)),
+                ("thesis: weighted → deep", &|s| match thesis::line(s) {
+                    None => "not measured".to_owned(),
+                    Some([weighted, deep]) => format!("{weighted:.2} → {deep:.2}"),
+                }),
+                ("thesis: ratio", &|s| {
+                    let line = thesis::line(s);
+                    number(line.map(|[weighted, deep]| deep / weighted), 2)
+                }),
+            ],
+        )
+    }
+
+    /// Every method (a row each) on every scene (a column each), `mse255`.
+    fn all_methods(&self) -> Table {
+        let rows = Rows::new(&self.measured.rows);
+        let trained_on = &self.measured.trained_on;
+        let scenes = rows.scenes();
+        let named = scenes.iter().map(|s| scene_heading(s, trained_on));
+        Table::matrix(
+            "method",
+            named,
+            &rows.methods(),
+            |method, k| match thesis::error(&rows, scenes[k], method, |r| r.mse255) {
+                None => "–".to_owned(),
+                Some(0.0) => "0".to_owned(),
+                Some(v) if v < 0.005 => format!("{v:.1e}"),
+                Some(v) => format!("{v:.2}"),
+            },
+        )
     }
 
     /// `table.md`: the table like the thesis's, the findings, and all methods.
     fn markdown(&self) -> String {
-        let rows = Rows::new(&self.measured.rows);
         let findings = self.measured.findings.iter();
         let findings: String = findings.map(|f| format!("- {f}\n")).collect();
         format!(
@@ -89,7 +128,7 @@ impl Results<ThesisRun> {
              ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
              Measured on {} ({}) with `{}`.\n",
             self.table().markdown(),
-            table::all_methods(&rows, &self.measured.trained_on).markdown(),
+            self.all_methods().markdown(),
             self.machine.adapter,
             self.machine.cpu,
             self.command,
@@ -97,7 +136,6 @@ impl Results<ThesisRun> {
     }
 }
 
-/// What the figures of the table are.
 const EXPLANATION: &str = "Mean squared error against the exact image (`abuffer`), sRGB-encoded, 0–255 scale, not \
 quantised, whole frame, mean over the views. The thesis's meshes and camera are unknown: its absolute figures do not \
 compare with these, the ratios do. At α = 0.85 and with random alphas it reports artifacts and no figures.";

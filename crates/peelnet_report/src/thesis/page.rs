@@ -1,6 +1,6 @@
 //! The page of a run.
 
-use super::{EXPLANATION, Stage, ThesisRun, table};
+use super::{EXPLANATION, Stage, ThesisRun};
 use crate::{
     ReportError, Results, Table, bench, page,
     page::SORT_SCRIPT,
@@ -22,8 +22,9 @@ const PICTURE_BUDGET: usize = 9_000_000;
 /// Widths that are tried for the pictures, pixels.
 const WIDTHS: [u32; 5] = [512, 384, 256, 192, 128];
 
-/// The whole page. `images` is the folder with `<scene>-<method>.png`.
-pub(super) fn page(results: &Results<ThesisRun>, images: &Path) -> Result<String, ReportError> {
+/// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
+pub(super) fn page(results: &Results<ThesisRun>, folder: &Path) -> Result<String, ReportError> {
+    let images = &folder.join("images");
     let run = &results.measured;
     let rows = Rows::new(&run.rows);
     let pictures = gallery(&rows, images)?;
@@ -36,7 +37,7 @@ pub(super) fn page(results: &Results<ThesisRun>, images: &Path) -> Result<String
         p.note { (EXPLANATION.replace('`', "")) }
         h2 { "All methods" }
         p.note { "Mean squared error (0–255), mean over the views." }
-        (table::all_methods(&rows, &run.trained_on).html("", |_| false))
+        (results.all_methods().html("", |_| false))
         h2 { "Cost" }
         (costs(&rows).html("", |_| false))
         p.note { "One frame per view, without warm-up: an order of magnitude, not a benchmark." }
@@ -99,7 +100,6 @@ fn stages(stages: &[Stage]) -> Table {
     )
 }
 
-/// Passes, bytes and time of every method, over all scenes.
 fn costs(rows: &Rows<'_>) -> Table {
     let time = |method: &str| {
         let own = rows.of_method(method).0.into_iter();
@@ -168,7 +168,7 @@ fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, ReportError> {
 mod tests {
     use super::*;
     use crate::testing::{machine, row, written};
-    use peelnet_chart::{Line, LineChart, Scale};
+    use peelnet_chart::{Line, Scale, line_chart};
 
     #[test]
     fn a_whole_folder() {
@@ -180,20 +180,19 @@ mod tests {
             .save(images.join(image_name("sixteen-025", "deep-thesis")))
             .unwrap();
         let mut rows = vec![
-            row("sixteen-025", "wboit-papakostas", 10.0),
+            row("sixteen-025", "wboit-papakostas", 5.0),
+            row("sixteen-025", "wboit-papakostas", 15.0),
+            row("sixteen-025", "wboit-eq9", 4.0),
             row("sixteen-025", "deep-thesis", 5.0),
+            row("cups", "wboit-eq9", 1.0),
         ];
         let mut results = Results::of_rows(machine(), "peelnet run --out \"a&b\"", rows.clone());
-        rows[1].time_ms = Some(3.0);
-        results.measured.showcase = rows.split_off(1);
-        let loss = LineChart {
-            lines: &[Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])],
-            x: "epoch",
-            y: "loss",
-            x_scale: Scale::Linear,
-        }
-        .svg();
-        results.measured.loss = Some(loss);
+        results.measured.trained_on = vec!["cups".to_owned()];
+        rows[3].time_ms = Some(3.0);
+        results.measured.showcase = vec![rows.swap_remove(3)];
+        let losses = [Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])];
+        let chart = line_chart(&losses, "epoch", "loss", Scale::Linear);
+        results.measured.loss = Some(chart);
         results.measured.dataset_summary = Some("rows <5>".to_owned());
         let page = written(dir.path(), &results);
         assert!(page.contains("data:image/png;base64,iVBOR"));
@@ -203,8 +202,11 @@ mod tests {
         // The name of SVG's namespace is no address that is fetched.
         let page = page.replace("http://www.w3.org/2000/svg", "");
         assert!(!page.contains("http") && !page.contains("<?xml"));
-        let table = results.markdown();
-        assert!(table.contains("| sixteen-025 | 10.00 |"), "{table}");
-        assert!(table.contains("15.96 → 11.79"), "{table}");
+        // Means over the views, beside the thesis's own; a figure of a scene that the network learned from says so in both tables.
+        let tables = results.markdown();
+        let line =
+            "| sixteen-025 | 10.00 | 4.00 | 4.00 | 5.00 | 0.50 | 1.25 | 15.96 → 11.79 | 0.74 |";
+        assert!(tables.contains(line), "{tables}");
+        assert_eq!(tables.matches("cups (trained on)").count(), 2, "{tables}");
     }
 }
