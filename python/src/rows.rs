@@ -284,7 +284,7 @@ fn in_memory(
     reporter: &Reporter<Progress>,
 ) -> PyResult<Rows> {
     let start = Instant::now();
-    let all = items::items(scenes, options.views, options.augment).map_err(raised)?;
+    let all = items::items(scenes, options).map_err(raised)?;
     let all = all.iter().map(|item| item.index);
     let mine: Vec<u32> = all
         .filter(|&i| options.shard.is_none_or(|s| s.contains(i)))

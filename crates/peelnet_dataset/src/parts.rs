@@ -4,12 +4,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use peelnet_files::printable;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
 use crate::folder;
-use crate::formats::in_parallel;
-use crate::manifest::{Manifest, Part, SCHEMA_VERSION, read_json, to_json};
+use crate::manifest::{EXTRACT_AGAIN, Manifest, Part, SCHEMA_VERSION, read_json, to_json};
 use crate::plan::Plan;
 use crate::store::{FRAGMENTS, MANIFEST, PARTS, Store, open_store, store_at};
 
@@ -41,12 +42,13 @@ impl PartRecord {
 
     /// The name of a part's record.
     pub(crate) fn name(index: u32) -> String {
-        format!("{PARTS}{index:05}.json")
+        format!("{PARTS}/{index:05}.json")
     }
 
     /// The part whose record has this name.
     pub(crate) fn index(name: &str) -> Option<u32> {
         let digits = name.strip_prefix(PARTS)?.strip_suffix(".json")?;
+        let digits = digits.strip_prefix('/')?;
         digits.parse().ok().filter(|&k| Self::name(k) == name)
     }
 
@@ -56,36 +58,24 @@ impl PartRecord {
         index: u32,
         plan: Option<&Plan>,
     ) -> Result<Option<Self>, DatasetError> {
-        let name = Self::name(index);
-        let wrong = |reason: String| {
-            let fix = "remove this record and finish the part with `peelnet extract --resume`";
-            DatasetError::invalid(
-                &store.shown(&name),
-                format!("part {index}: {reason}; {fix}"),
-            )
-        };
-        let Some(record) = read_json::<Self>(store, &name, "record", wrong)? else {
-            return Ok(None);
-        };
-        let worker = peelnet_files::printable(&record.worker);
-        if record.part.index != index {
-            return Err(wrong(format!(
-                "the record of worker {worker} is of part {}, so it was copied or renamed",
-                record.part.index
-            )));
-        }
-        if let Some(plan) = plan.filter(|p| p.hash != record.plan) {
-            let start = |hash: &str| -> String {
-                let hash = peelnet_files::printable(hash);
-                hash.chars().take(12).collect()
+        let fix = "remove this record and finish the part with `peelnet extract --resume`";
+        read_json(store, &Self::name(index), "record", fix, |record: &Self| {
+            let (worker, other) = (printable(&record.worker), record.part.index);
+            if other != index {
+                return Err(format!(
+                    "part {index}: the record of worker {worker} is of part {other}, so it was copied or renamed"
+                ));
+            }
+            let Some(plan) = plan.filter(|p| p.hash != record.plan) else {
+                return Ok(());
             };
-            return Err(wrong(format!(
-                "worker {worker} wrote it by another plan ({}) than the dataset's ({}): another version, size, seed, flag or adapter",
+            let start = |hash: &str| -> String { printable(hash).chars().take(12).collect() };
+            Err(format!(
+                "part {index}: worker {worker} wrote it by another plan ({}) than the dataset's ({}): another version, size, seed, flag or adapter",
                 start(&record.plan),
                 start(&plan.hash)
-            )));
-        }
-        Ok(Some(record))
+            ))
+        })
     }
 
     /// Makes this the part's record. Where there is one already, it must be of the same bytes.
@@ -124,7 +114,7 @@ pub(crate) fn part_of_file(name: &str) -> Option<u32> {
 /// The work items of a plan that have a record.
 pub(crate) fn recorded(store: &dyn Store, plan: &Plan) -> Result<BTreeSet<u32>, DatasetError> {
     let names = store.list(PARTS)?.into_keys();
-    let parts = names.filter_map(|name| PartRecord::index(&format!("{PARTS}{name}")));
+    let parts = names.filter_map(|name| PartRecord::index(&format!("{PARTS}/{name}")));
     Ok(parts.filter(|k| *k < plan.header.work_items).collect())
 }
 
@@ -188,10 +178,13 @@ pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, Data
 
 /// Writes the manifest if every part is there and it is not, and returns it; `None` if parts are missing.
 pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, DatasetError> {
-    let wrong = |reason: &str| DatasetError::manifest(&store.shown(MANIFEST), reason);
+    let wrong = |name: &str, reason: &str| {
+        let reason = format!("{reason}; {EXTRACT_AGAIN}");
+        Err(DatasetError::invalid(&store.shown(name), reason))
+    };
     if let Some(manifest) = Manifest::read(store)? {
         if manifest.plan != plan.hash {
-            return Err(wrong("the manifest is of another plan than plan.json"));
+            return wrong(MANIFEST, "the manifest is of another plan than plan.json");
         }
         check_files(store, &manifest, true)?;
         return Ok(Some(manifest));
@@ -201,19 +194,26 @@ pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, 
         return Ok(None);
     }
     let read = |index| Ok(PartRecord::read(store, index, Some(plan))?.map(|r| r.part));
-    let parts = in_parallel(READERS, recorded, read).into_iter();
-    let Some(parts) = parts.collect::<Result<Option<Vec<Part>>, DatasetError>>()? else {
+    let readers = rayon::ThreadPoolBuilder::new().num_threads(READERS).build();
+    let readers = readers.map_err(std::io::Error::other);
+    let readers = readers.map_err(DatasetError::io(store.path(), "start to read"))?;
+    let parts: Vec<Option<Part>> = readers.install(|| {
+        let parts = recorded.into_par_iter().map(read);
+        parts.collect::<Result<_, DatasetError>>()
+    })?;
+    let Some(parts) = parts.into_iter().collect::<Option<Vec<Part>>>() else {
         return Ok(None);
     };
     let manifest = plan.manifest(parts);
     check_files(store, &manifest, true)?;
-    let checked = manifest.check();
-    checked.map_err(|reason| DatasetError::manifest(&store.shown(PARTS), reason))?;
-    if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())? {
-        // Another writer came to its end at the same time.
-        if Manifest::read(store)?.as_ref() != Some(&manifest) {
-            return Err(wrong("the manifest that is there is of other parts"));
-        }
+    if let Err(reason) = manifest.check() {
+        return wrong(PARTS, &reason);
+    }
+    // Another writer may come to its end at the same time.
+    if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())?
+        && Manifest::read(store)?.as_ref() != Some(&manifest)
+    {
+        return wrong(MANIFEST, "the manifest that is there is of other parts");
     }
     Ok(Some(manifest))
 }

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::DatasetError;
 use crate::formats::{Format, sha256};
 use crate::manifest::{
-    MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns, hash_of_parts, read_json,
-    to_json,
+    EXTRACT_AGAIN, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns,
+    hash_of_parts, read_json, to_json,
 };
 use crate::store::{PLAN, Store};
 
@@ -59,15 +59,15 @@ pub struct Header {
 impl Header {
     /// Refuses what no dataset has.
     pub(crate) fn check(&self, folder: &Path) -> Result<(), DatasetError> {
-        if self.work_items > MAX_WORK_ITEMS {
-            return Err(DatasetError::TooManyItems {
-                items: self.work_items.into(),
-            });
-        }
-        let reason = if self.scenes.is_empty() || self.work_items == 0 {
-            "a dataset needs at least one scene and one view"
+        let items = self.work_items;
+        let reason = if items > MAX_WORK_ITEMS {
+            format!(
+                "{items} work items (scenes × copies × views) are too many: at most {MAX_WORK_ITEMS}"
+            )
+        } else if self.scenes.is_empty() || items == 0 {
+            "a dataset needs at least one scene and one view".to_owned()
         } else if !(self.pixels_fraction > 0.0 && self.pixels_fraction <= 1.0) {
-            "the fraction of pixels must be above 0 and at most 1"
+            "the fraction of pixels must be above 0 and at most 1".to_owned()
         } else {
             return Ok(());
         };
@@ -143,22 +143,18 @@ impl Plan {
 
     /// Reads and checks a dataset's plan; `None` where there is none.
     pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let wrong = |reason: String| DatasetError::manifest(&store.shown(PLAN), reason);
-        let Some(plan) = read_json::<Self>(store, PLAN, "plan", wrong)? else {
-            return Ok(None);
-        };
-        let items = plan.header.work_items;
-        if items == 0 || items > MAX_WORK_ITEMS {
-            return Err(wrong(format!(
-                "{items} work items, and from 1 to {MAX_WORK_ITEMS} are read"
-            )));
-        }
-        if plan.hash != plan.computed_hash() {
-            return Err(wrong(
-                "`hash` does not fit the plan: it was edited".to_owned(),
-            ));
-        }
-        Ok(Some(plan))
+        read_json(store, PLAN, "plan", EXTRACT_AGAIN, |plan: &Self| {
+            let items = plan.header.work_items;
+            if !(1..=MAX_WORK_ITEMS).contains(&items) {
+                return Err(format!(
+                    "{items} work items, and from 1 to {MAX_WORK_ITEMS} are read"
+                ));
+            }
+            match plan.hash == plan.computed_hash() {
+                true => Ok(()),
+                false => Err("`hash` does not fit the plan: it was edited".to_owned()),
+            }
+        })
     }
 
     /// Makes this the dataset's plan, or checks that the one that is there is the same; the error names the first difference. Returns the

@@ -2,18 +2,19 @@
 //! writer that finishes the last part seals the dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLockReadGuard};
+
+use rayon::prelude::*;
 
 use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
-use crate::folder::{self, MadeFolders, Partial};
-use crate::formats::{PartSink, hash_file, in_parallel};
+use crate::folder::{self, Partial};
+use crate::formats::{PartSink, hash_file};
 use crate::manifest::{FileEntry, Manifest, Part};
 use crate::parts::{self, PartRecord};
 use crate::plan::{Header, Plan};
-use crate::store::{FRAGMENTS, Folder, META, PLAN, Store, store_at};
+use crate::store::{FRAGMENTS, Folder, PLAN, Store, store_at};
 
 /// Writes a dataset, or some parts of it.
 ///
@@ -31,13 +32,10 @@ pub struct DatasetWriter {
     replaces: bool,
     /// Work items that were finished when this writer began.
     done: BTreeSet<u32>,
-    threads: usize,
     /// Parts that this writer finished.
     parts: Mutex<Vec<Part>>,
     /// Where parts are written before they are the dataset's.
     scratch: Partial,
-    /// Dropped last.
-    _made: Option<MadeFolders>,
 }
 
 impl DatasetWriter {
@@ -52,20 +50,14 @@ impl DatasetWriter {
         header.check(path)?;
         let mut store = store_at(path)?;
         let joins = header.resume || header.shard.is_some();
-        let (mut replaces, mut made) = (false, None);
+        let mut replaces = false;
         let scratch = match store.folder().map(Path::to_owned) {
             Some(path) => {
-                made = Some(MadeFolders::create(&path)?);
                 replaces = folder::prepare(&path, joins)?;
-                let meta = path.join(META);
-                std::fs::create_dir_all(&meta)
-                    .map_err(DatasetError::io(&meta, "create the folder"))?;
-                let scratch = Partial::create(&meta)?;
-                store = Arc::new(Folder {
-                    path,
-                    scratch: Some(scratch.path.clone()),
-                });
-                scratch
+                let partial = Partial::in_dataset(&path)?;
+                let scratch = Some(partial.path.clone());
+                store = Arc::new(Folder { path, scratch });
+                partial
             }
             None => {
                 let mut names = store.list("")?.into_keys();
@@ -74,7 +66,7 @@ impl DatasetWriter {
                     let reason = "a dataset is there already, and one in an object store is not replaced; complete it with `--resume`, or choose another prefix";
                     return Err(DatasetError::invalid(path, reason));
                 }
-                Partial::create(&std::env::temp_dir())?
+                Partial::temporary()?
             }
         };
         let mine = Plan::new(&header);
@@ -93,17 +85,9 @@ impl DatasetWriter {
             plan_is_new,
             replaces,
             done,
-            threads: std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
             parts: Mutex::new(Vec::new()),
             scratch,
-            _made: made,
         })
-    }
-
-    /// Sets the number of threads that encode one part; the bytes are the same with any.
-    pub fn with_threads(mut self, threads: usize) -> Self {
-        self.threads = threads.max(1);
-        self
     }
 
     /// Whether a work item is for this writer to do: it is of its shard, and was not finished when the writer began.
@@ -137,7 +121,7 @@ impl DatasetWriter {
         let names = header.format.file_names(&stem);
         let files = names.iter().map(|name| self.scratch.path.join(name));
         // A second part of the same work item fails here, because its files exist.
-        let sink = header.format.sink(files.collect(), self.threads)?;
+        let sink = header.format.sink(files.collect())?;
         Ok(PartWriter {
             name: PathBuf::from(&stem),
             dataset: self,
@@ -192,9 +176,8 @@ impl DatasetWriter {
     }
 
     /// While it lives, a process that ends waits; but not for a network.
-    fn moving(&self) -> Option<peelnet_files::Moving> {
-        let folder = self.store.folder();
-        folder.map(|_| peelnet_files::Moving::begin())
+    fn moving(&self) -> Option<RwLockReadGuard<'static, ()>> {
+        self.store.folder().map(|_| peelnet_files::moving())
     }
 
     /// Ends this writer. Where every part of the dataset is finished now, the dataset is sealed, and its manifest is returned; otherwise a
@@ -299,7 +282,7 @@ impl PartWriter<'_> {
     pub fn finish(self, lost_fragments: u64, coplanar_ties: u64) -> Result<(), DatasetError> {
         self.sink.finish(self.part.rows)?;
         let dataset = self.dataset;
-        let hashed = in_parallel(dataset.threads, self.names, |name| {
+        let hashed = self.names.into_par_iter().map(|name| {
             let path = dataset.scratch.path.join(&name);
             let (bytes, sha256) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
             Ok(FileEntry {
@@ -312,7 +295,7 @@ impl PartWriter<'_> {
             lost_fragments,
             coplanar_ties,
             row_groups: dataset.header.format.row_groups(self.part.rows),
-            files: hashed.into_iter().collect::<Result<_, DatasetError>>()?,
+            files: hashed.collect::<Result<_, DatasetError>>()?,
             ..self.part
         };
         if !dataset.replaces {

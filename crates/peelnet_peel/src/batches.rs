@@ -2,7 +2,8 @@
 
 use crate::{
     ExtractOptions, PeelError,
-    extract::{Event, Outbox, peel, stream, work},
+    extract::{Outbox, peel, stream},
+    items::items,
 };
 use peelnet_dataset::FragmentBatch;
 use peelnet_gpu::Gpu;
@@ -41,19 +42,22 @@ pub fn batches(
     scenes: &[Scene],
     options: &ExtractOptions,
 ) -> Result<Batches, PeelError> {
-    let (_, mine) = work(scenes, options)?;
+    let mut mine = items(scenes, options)?;
+    mine.retain(|part| options.shard.is_none_or(|s| s.contains(part.index)));
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
     let (send, rows) = sync_channel(1);
     let peeling = std::thread::spawn(move || {
-        let make = |outbox: &Outbox| peel(&gpu, &scenes, &options, &mine, outbox);
-        let received = stream(make, |event| match event {
-            Event::Rows(rows) => {
-                let sent = send.send(Ok(rows.clone()));
-                sent.map_err(|_| PeelError::Interrupted)
+        let make = |outbox: &Outbox| peel(&gpu, &scenes, &options, mine, outbox);
+        let peeled = stream(make, |mut feed| {
+            while let Some(part) = feed.part() {
+                feed.rows(&part, |rows| {
+                    let sent = send.send(Ok(rows.clone()));
+                    sent.map_err(|_| PeelError::Interrupted)
+                })?;
             }
-            Event::Begin(_) | Event::End(..) => Ok(()),
+            Ok(())
         });
-        if let Err(error) = received {
+        if let Err(error) = peeled {
             // Nobody may ask any more.
             let _ = send.send(Err(error));
         }

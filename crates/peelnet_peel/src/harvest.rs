@@ -65,19 +65,15 @@ struct Step {
     pad: [u32; 2],
 }
 
+/// Passes that find layers, for the ways that do not store and sort.
 #[derive(Debug)]
 enum Peeler {
-    SBuffer,
     Dual(DualPeel),
     Single(SinglePeel),
 }
 
 /// Kernels that put peeled layers into runs; made anew when storage grows.
-#[derive(Debug)]
-struct Collector {
-    pipeline: wgpu::ComputePipeline,
-    groups: [Bound; 2],
-}
+type Collector = (wgpu::ComputePipeline, [Bound; 2]);
 
 /// A scene made ready for peeling at one frame size.
 #[derive(Debug)]
@@ -87,10 +83,12 @@ pub struct Harvester {
     frame: FrameTargets,
     opaque: Option<GeometryPipelines>,
     sbuffer: SBuffer,
-    peeler: Peeler,
+    peeler: Option<Peeler>,
     collector: Option<Collector>,
     step: wgpu::Buffer,
     with_triangles: bool,
+    /// Its memory is used again.
+    tile: RawTile,
 }
 
 /// What was found in one view.
@@ -119,20 +117,22 @@ impl Harvester {
         sampled: bool,
         budget: Option<u64>,
     ) -> Result<Self, PeelError> {
-        let features: &[&str] = if sampled {
-            &["dataset", "sampled"]
-        } else {
-            &["dataset"]
-        };
+        let features = &["dataset", "sampled"][..1 + usize::from(sampled)];
         let scene = SceneBuffers::new(gpu, scene)?;
         if scene.tinted {
             return Err(PeelError::Tinted);
         }
         let frame = scene.targets(gpu, size, Output::Image, None)?;
         let peeler = match peel {
-            Peel::SBuffer => Peeler::SBuffer,
-            Peel::Dual => Peeler::Dual(DualPeel::new(gpu, &scene, &frame, features, None)?),
-            Peel::Single => Peeler::Single(SinglePeel::new(gpu, &scene, &frame, features)?),
+            Peel::SBuffer => None,
+            Peel::Dual => {
+                let dual = DualPeel::new(gpu, &scene, &frame, features, None)?;
+                Some(Peeler::Dual(dual))
+            }
+            Peel::Single => {
+                let single = SinglePeel::new(gpu, &scene, &frame, features)?;
+                Some(Peeler::Single(single))
+            }
         };
         Ok(Self {
             opaque: scene.opaque_pipelines(gpu, &frame)?,
@@ -140,6 +140,7 @@ impl Harvester {
             step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
             collector: None,
             with_triangles: false,
+            tile: RawTile::default(),
             gpu: gpu.clone(),
             scene,
             frame,
@@ -149,7 +150,7 @@ impl Harvester {
 
     /// Whether tiles hold the triangles of their fragments, which [`Peel::SBuffer`] alone keeps.
     pub const fn keep_triangles(&mut self, keep: bool) {
-        self.with_triangles = keep && matches!(self.peeler, Peeler::SBuffer);
+        self.with_triangles = keep && self.peeler.is_none();
     }
 
     /// The warp that methods take a view's depths through.
@@ -157,8 +158,8 @@ impl Harvester {
         self.scene.depth_warp(camera)
     }
 
-    /// Finds a view's fragments and hands each tile over. `next` gives an empty tile to fill (so that memory is used
-    /// again), `ready` takes the full one and may end the harvest by an error.
+    /// Finds a view's fragments and hands each tile over. `ready` may take it, and leave another whose memory is used, and it may end the
+    /// harvest by an error.
     ///
     /// # Errors
     /// A lost device, a pixel beyond the budget, or what `ready` returns.
@@ -167,54 +168,41 @@ impl Harvester {
         camera: &Camera,
         sample: PixelSample,
         max_passes: Option<u32>,
-        mut next: impl FnMut() -> RawTile,
-        mut ready: impl FnMut(RawTile) -> Result<(), PeelError>,
+        mut ready: impl FnMut(&mut RawTile) -> Result<(), PeelError>,
     ) -> Result<Harvest, PeelError> {
-        // A handle, so that storage can be planned while it records.
-        let gpu = &self.gpu.clone();
+        // Handles, so that storage can be planned while it records.
+        let (gpu, mut raw) = (&self.gpu.clone(), std::mem::take(&mut self.tile));
         let (mut encoder, mut timer) = (gpu.encoder(), Timer::new(gpu));
         let mut recorder = Recorder::new(gpu, &mut encoder, Some(&mut timer));
-        self.scene.set_view(
-            &mut recorder,
-            camera,
-            &self.frame,
-            sample,
-            SamplePoint::MIDDLE,
-        );
-        self.scene
-            .draw_background(&mut recorder, &self.frame, self.opaque.as_ref(), None, true);
-        let found = self
-            .sbuffer
-            .count
-            .run(&mut recorder, &self.scene, &self.frame)?;
+        let (scene, frame) = (&self.scene, &self.frame);
+        scene.set_view(&mut recorder, camera, frame, sample, SamplePoint::MIDDLE);
+        scene.draw_background(&mut recorder, frame, self.opaque.as_ref(), None, true);
+        let found = self.sbuffer.count.run(&mut recorder, scene, frame)?;
         let needed = match self.peeler {
-            Peeler::SBuffer => found,
+            None => found,
             // They come sorted.
-            Peeler::Dual(_) | Peeler::Single(_) => FragmentCount { most: 0, ..found },
+            Some(_) => FragmentCount { most: 0, ..found },
         };
-        let (tiles, grown) = self
-            .sbuffer
-            .plan_counted(gpu, &self.scene, &self.frame, needed)?;
+        let (tiles, grown) = self.sbuffer.plan_counted(gpu, scene, frame, needed)?;
         if grown {
             self.collector = self.collector()?;
         }
+        let passes = max_passes.unwrap_or(u32::MAX);
         for tile in &tiles {
             match &self.peeler {
-                Peeler::SBuffer => {
-                    self.sbuffer
-                        .store_and_sort(&mut recorder, &self.scene, &self.frame, tile);
+                None => {
+                    let sbuffer = &self.sbuffer;
+                    sbuffer.store_and_sort(&mut recorder, scene, frame, tile);
                 }
-                Peeler::Dual(_) | Peeler::Single(_) => {
-                    self.peel(&mut recorder, tile, found.most, max_passes);
-                }
+                Some(peeler) => self.peel(peeler, &mut recorder, tile, found.most, passes),
             }
             recorder.submit();
-            let mut raw = next();
             self.read(tile, &mut raw)?;
             if !raw.depths.is_empty() {
-                ready(raw)?;
+                ready(&mut raw)?;
             }
         }
+        self.tile = raw;
         let faults = gpu.read(&self.sbuffer.count.faults, Faults::BYTES)?;
         Faults::check(&faults, self.frame.size[0])?;
         let times = timer.finish(gpu, &mut encoder);
@@ -228,121 +216,108 @@ impl Harvester {
         })
     }
 
-    /// Peels the whole frame and keeps what lies in `tile`.
-    fn peel(&self, recorder: &mut Recorder<'_>, tile: &Tile, layers: u32, cap: Option<u32>) {
-        let (Some(collector), Some(storage)) = (&self.collector, self.sbuffer.storage()) else {
+    /// Peels the whole frame of so many layers and keeps what lies in `tile`.
+    fn peel(
+        &self,
+        peeler: &Peeler,
+        recorder: &mut Recorder<'_>,
+        tile: &Tile,
+        layers: u32,
+        most_passes: u32,
+    ) {
+        let (Some((pipeline, groups)), Some(storage)) = (&self.collector, self.sbuffer.storage())
+        else {
             return;
         };
         recorder.write(self.sbuffer.tile_buffer(), &[*tile]);
         // A depth of 0 marks a slot that no pass fills.
         recorder.encoder().clear_buffer(&storage.depths, 0, None);
-        let passes = match &self.peeler {
+        let (scene, frame) = (&self.scene, &self.frame);
+        let passes = match peeler {
             Peeler::Dual(dual) => {
-                dual.init(recorder, &self.scene, &self.frame);
+                dual.init(recorder, scene, frame);
                 layers.div_ceil(2)
             }
             Peeler::Single(single) => {
                 single.init(recorder);
                 layers
             }
-            Peeler::SBuffer => 0,
         };
-        for pass_index in 0..passes.min(cap.unwrap_or(u32::MAX)) {
-            match &self.peeler {
-                Peeler::Dual(dual) => {
-                    dual.peel(recorder, &self.scene, &self.frame, pass_index, false);
-                }
-                Peeler::Single(single) => {
-                    single.peel(recorder, &self.scene, &self.frame, pass_index);
-                }
-                Peeler::SBuffer => {}
+        for pass_index in 0..passes.min(most_passes) {
+            match peeler {
+                Peeler::Dual(dual) => dual.peel(recorder, scene, frame, pass_index, false),
+                Peeler::Single(single) => single.peel(recorder, scene, frame, pass_index),
             }
             let step = Step {
                 pass_index,
-                width: self.frame.size[0],
+                width: frame.size[0],
                 pad: [0; 2],
             };
             recorder.write(&self.step, &[step]);
-            {
-                let mut pass = recorder.compute("collect");
-                pass.set_pipeline(&collector.pipeline);
-                pass.set_bind_group(0, &collector.groups[(pass_index % 2) as usize].group, &[]);
-                let [x, y] = tile.dispatch();
-                pass.dispatch_workgroups(x, y, 1);
-            }
+            let mut pass = recorder.compute("collect");
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &groups[(pass_index % 2) as usize].group, &[]);
+            let [x, y] = tile.dispatch();
+            pass.dispatch_workgroups(x, y, 1);
         }
     }
 
     fn collector(&self) -> Result<Option<Collector>, PeelError> {
-        let Some(storage) = self.sbuffer.storage() else {
+        let (Some(peeler), Some(storage)) = (&self.peeler, self.sbuffer.storage()) else {
             return Ok(None);
         };
-        let common = [
-            Bind::Uniform(self.sbuffer.tile_buffer()),
-            Bind::Uniform(&self.step),
-            Bind::Read(&self.sbuffer.count.offsets),
-            Bind::Write(&storage.depths),
-            Bind::Write(&storage.colors),
-        ];
-        let bound = |textures: &[Bind<'_>]| {
-            let entries = [&common, textures].concat();
-            self.gpu
-                .bind("collect", wgpu::ShaderStages::COMPUTE, &entries)
+        let (shader, textures) = match peeler {
+            Peeler::Dual(dual) => {
+                let [front, back] = [&dual.front, &dual.back].map(Bind::Texture);
+                let bind = |range| vec![Bind::Texture(range), front, back];
+                ("peel::collect_dual", dual.ranges.each_ref().map(bind))
+            }
+            Peeler::Single(single) => {
+                let [first, second] = single.keys.each_ref();
+                let bind = |key| vec![Bind::Uint(key), Bind::Texture(&single.layer)];
+                ("peel::collect_single", [second, first].map(bind))
+            }
         };
-        let (shader, groups) = match &self.peeler {
-            Peeler::SBuffer => return Ok(None),
-            Peeler::Dual(dual) => (
-                "peel::collect_dual",
-                [0, 1].map(|from: usize| {
-                    bound(&[
-                        Bind::Texture(&dual.ranges[from]),
-                        Bind::Texture(&dual.front),
-                        Bind::Texture(&dual.back),
-                    ])
-                }),
-            ),
-            Peeler::Single(single) => (
-                "peel::collect_single",
-                [0, 1].map(|from: usize| {
-                    bound(&[
-                        Bind::Uint(&single.keys[1 - from]),
-                        Bind::Texture(&single.layer),
-                    ])
-                }),
-            ),
-        };
+        let groups = textures.map(|textures| {
+            let mut entries = vec![
+                Bind::Uniform(self.sbuffer.tile_buffer()),
+                Bind::Uniform(&self.step),
+                Bind::Read(&self.sbuffer.count.offsets),
+                Bind::Write(&storage.depths),
+                Bind::Write(&storage.colors),
+            ];
+            entries.extend(textures);
+            let stages = wgpu::ShaderStages::COMPUTE;
+            self.gpu.bind("collect", stages, &entries)
+        });
         let wgsl = peelnet_shaders::link(shader, &[], &[])?;
-        Ok(Some(Collector {
-            pipeline: self.gpu.compute(shader, &wgsl, &groups[0]),
-            groups,
-        }))
+        Ok(Some((self.gpu.compute(shader, &wgsl, &groups[0]), groups)))
     }
 
     /// Reads a tile's runs back.
     fn read(&self, tile: &Tile, raw: &mut RawTile) -> Result<(), PeelError> {
-        let gpu = &self.gpu;
+        let (gpu, offsets) = (&self.gpu, &mut raw.offsets);
         raw.first_pixel = tile.begin;
         let pixels = u64::from(tile.begin) * 4..u64::from(tile.end) * 4 + 4;
-        gpu.read_into(&self.sbuffer.count.offsets, pixels, &mut raw.offsets)?;
-        let base = raw.offsets.first().copied().unwrap_or(0);
-        for offset in &mut raw.offsets {
-            *offset -= base;
+        gpu.read_into(&self.sbuffer.count.offsets, pixels, offsets)?;
+        let base = offsets.first().copied().unwrap_or(0);
+        offsets.iter_mut().for_each(|offset| *offset -= base);
+        let fragments = u64::from(offsets.last().copied().unwrap_or(0));
+        let Some(storage) = self.sbuffer.storage() else {
+            return Ok(());
+        };
+        gpu.read_into(&storage.depths, 0..fragments * 4, &mut raw.depths)?;
+        gpu.read_into(&storage.colors, 0..fragments * 16, &mut raw.colors)?;
+        if self.with_triangles {
+            gpu.read_into(&storage.triangles, 0..fragments * 4, &mut raw.triangles)?;
         }
-        let fragments = u64::from(raw.offsets.last().copied().unwrap_or(0));
-        if let Some(storage) = self.sbuffer.storage() {
-            gpu.read_into(&storage.depths, 0..fragments * 4, &mut raw.depths)?;
-            gpu.read_into(&storage.colors, 0..fragments * 16, &mut raw.colors)?;
+        // Long runs are sorted by the numbers of their slots.
+        if let Some(long) = self.sbuffer.long_runs() {
+            let order: Vec<u32> = gpu.read(&long.order, 0..fragments * 4)?;
+            put_in_order(&mut raw.depths, &order);
+            put_in_order(&mut raw.colors, &order);
             if self.with_triangles {
-                gpu.read_into(&storage.triangles, 0..fragments * 4, &mut raw.triangles)?;
-            }
-            // Long runs are sorted by the numbers of their slots.
-            if let Some(long) = self.sbuffer.long_runs() {
-                let order: Vec<u32> = gpu.read(&long.order, 0..fragments * 4)?;
-                put_in_order(&mut raw.depths, &order);
-                put_in_order(&mut raw.colors, &order);
-                if self.with_triangles {
-                    put_in_order(&mut raw.triangles, &order);
-                }
+                put_in_order(&mut raw.triangles, &order);
             }
         }
         Ok(())

@@ -77,9 +77,7 @@ impl PartSink for NpySink {
 }
 
 /// Reads a part from NPY arrays.
-pub(super) struct NpySource {
-    columns: Vec<OpenColumn>,
-}
+pub(super) struct NpySource(Vec<OpenColumn>);
 
 struct OpenColumn {
     column: Column,
@@ -101,7 +99,7 @@ impl NpySource {
             );
             return Err(DatasetError::invalid(&other.path, reason));
         }
-        Ok(Self { columns })
+        Ok(Self(columns))
     }
 }
 
@@ -158,9 +156,9 @@ impl OpenColumn {
 
 impl PartSource for NpySource {
     fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError> {
-        let left = self.columns.first().map_or(0, |c| c.left);
+        let left = self.0.first().map_or(0, |c| c.left);
         let count = usize::try_from(left).map_or(max, |left| left.min(max));
-        for column in &mut self.columns {
+        for column in &mut self.0 {
             column.read(count, rows.column_mut(column.column))?;
         }
         Ok(count)

@@ -26,7 +26,9 @@ use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
-use super::{PartSink, PartSource, ROW_GROUP_ROWS, check_names, in_parallel};
+use rayon::prelude::*;
+
+use super::{PartSink, PartSource, ROW_GROUP_ROWS, check_names};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
@@ -80,17 +82,15 @@ pub(super) struct ParquetSink {
     writer: SerializedFileWriter<File>,
     /// Rows that do not fill a row group yet.
     pending: FragmentBatch,
-    threads: usize,
 }
 
 impl ParquetSink {
-    pub(super) fn new((path, file): (PathBuf, File), threads: usize) -> Result<Self, DatasetError> {
+    pub(super) fn new((path, file): (PathBuf, File)) -> Result<Self, DatasetError> {
         let writer = SerializedFileWriter::new(file, schema(), properties());
         Ok(Self {
             writer: writer.map_err(|e| write_error(&path, e))?,
             path,
             pending: FragmentBatch::default(),
-            threads,
         })
     }
 
@@ -99,14 +99,14 @@ impl ParquetSink {
         let mut rows = std::mem::take(&mut self.pending);
         let descriptors = self.writer.schema_descr().columns().to_vec();
         let properties = self.writer.properties().clone();
-        let encoded = in_parallel(self.threads, Column::ALL, |column| {
+        let encoded = Column::ALL.into_par_iter().map(|column| {
             let descriptor = &descriptors[column.index()];
             encode(descriptor, &properties, rows.column(column))
         });
         let append = || -> Result<(), ParquetError> {
+            let encoded: Vec<_> = encoded.collect::<Result<_, _>>()?;
             let mut group = self.writer.next_row_group()?;
-            for column in encoded {
-                let (bytes, close) = column?;
+            for (bytes, close) in encoded {
                 group.append_column(&bytes, close)?;
             }
             group.close().map(|_| ())

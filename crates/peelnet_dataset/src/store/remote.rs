@@ -154,18 +154,14 @@ impl Store for Remote {
         let shown = self.shown(name);
         let get = async || {
             let found = self.store.get(&key).await?;
-            if found.meta.size > most {
-                return Ok(Err(found.meta.size));
+            match peelnet_files::check_size(found.meta.size, most) {
+                Ok(()) => found.bytes().await.map(Ok),
+                Err(larger) => Ok(Err(larger)),
             }
-            found.bytes().await.map(Ok)
         };
         match self.retried(get) {
             Ok(Ok(bytes)) => Ok(Some(bytes.into())),
-            Ok(Err(size)) => {
-                let checked = peelnet_files::check_size(size, most);
-                let larger = checked.map(|()| None);
-                larger.map_err(DatasetError::io(&shown, "read"))
-            }
+            Ok(Err(larger)) => Err(DatasetError::io(&shown, "read")(larger)),
             Err(e @ object_store::Error::NotFound { .. }) if !lacks_bucket(&e) => Ok(None),
             Err(e) => Err(fault(&shown, "read", &e)),
         }
@@ -213,14 +209,7 @@ impl Store for Remote {
 
 /// The whole text of an error and its sources: to look for codes in it, never to print it.
 fn secret_text(error: &object_store::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = std::error::Error::source(error);
-    while let Some(next) = source {
-        text.push('\n');
-        text.push_str(&next.to_string());
-        source = next.source();
-    }
-    text
+    peelnet_files::error_line(error)
 }
 
 /// The server's code of an error: letters, such as `NoSuchBucket`.
