@@ -101,22 +101,16 @@ impl DatasetWriter {
     /// If the work item is not this dataset's (or shard's), was begun before, or its files cannot be created.
     pub fn begin(&self, part: Part) -> Result<PartWriter<'_>, DatasetError> {
         let (index, header) = (part.index, &self.header);
-        let usage = |reason: &str| {
-            let reason = format!("work item {index}{reason}");
-            Err(DatasetError::invalid(self.store.path(), reason))
+        let is_mine = header.shard.is_none_or(|s| s.contains(index));
+        let is_new = self.parts().iter().all(|p| p.index != index);
+        let scene = header.scenes.get(part.scene as usize);
+        let Some(scene) = scene.filter(|_| index < header.work_items && is_mine && is_new) else {
+            let reason = format!(
+                "work item {index} of {} (scene {}) is not one of this writer's, or was written before",
+                header.work_items, part.scene
+            );
+            return Err(DatasetError::invalid(self.store.path(), reason));
         };
-        let Some(scene) = header.scenes.get(part.scene as usize) else {
-            return usage(&format!(": scene {} is not listed", part.scene));
-        };
-        if index >= header.work_items {
-            return usage(&format!(" of {}", header.work_items));
-        }
-        if let Some(shard) = header.shard.filter(|s| !s.contains(index)) {
-            return usage(&format!(" does not belong to shard {shard}"));
-        }
-        if self.parts().iter().any(|p| p.index == index) {
-            return usage(" was written before");
-        }
         let stem = part.stem(&scene.name);
         let names = header.format.file_names(&stem);
         let files = names.iter().map(|name| self.scratch.path.join(name));

@@ -37,27 +37,26 @@ use crate::store::Fetched;
 const PAGE_ROWS: usize = 1 << 17;
 
 fn schema() -> TypePtr {
-    let fields = Column::ALL
-        .into_iter()
-        .map(|column| {
-            let (physical, logical) = match column.kind() {
-                ColumnKind::F32 => (PhysicalType::FLOAT, None),
-                ColumnKind::U32 => (PhysicalType::INT32, Some(LogicalType::integer(32, false))),
-            };
-            let field = Type::primitive_type_builder(column.name(), physical)
-                .with_repetition(Repetition::REQUIRED)
-                .with_logical_type(logical)
-                .build()
-                .expect("a plain field is valid");
-            Arc::new(field)
-        })
-        .collect();
-    Arc::new(
-        Type::group_type_builder("fragments")
-            .with_fields(fields)
-            .build()
-            .expect("a flat group is valid"),
-    )
+    let fields = Column::ALL.map(|column| {
+        let logical = match column.kind() {
+            ColumnKind::F32 => None,
+            ColumnKind::U32 => Some(LogicalType::integer(32, false)),
+        };
+        let field = Type::primitive_type_builder(column.name(), physical_type(column))
+            .with_repetition(Repetition::REQUIRED)
+            .with_logical_type(logical)
+            .build();
+        Arc::new(field.expect("a plain field is valid"))
+    });
+    let group = Type::group_type_builder("fragments").with_fields(fields.into());
+    Arc::new(group.build().expect("a flat group is valid"))
+}
+
+const fn physical_type(column: Column) -> PhysicalType {
+    match column.kind() {
+        ColumnKind::F32 => PhysicalType::FLOAT,
+        ColumnKind::U32 => PhysicalType::INT32,
+    }
 }
 
 fn properties() -> WriterPropertiesPtr {
@@ -133,12 +132,7 @@ fn encode(
         }
         (ColumnWriter::Int32ColumnWriter(w), ColumnSlice::U32(v)) => {
             // Parquet stores unsigned integers as the signed ones with the same bits.
-            let mut signed = Vec::with_capacity(PAGE_ROWS);
-            for chunk in v.chunks(PAGE_ROWS) {
-                signed.clear();
-                signed.extend(chunk.iter().map(|&x| x.cast_signed()));
-                w.write_batch(&signed, None, None)?;
-            }
+            w.write_batch(bytemuck::cast_slice(v), None, None)?;
         }
         _ => unreachable!("the schema is made from the columns' types"),
     }
@@ -206,10 +200,7 @@ impl ParquetSource {
         let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
         check_names(&path, "schema", &names)?;
         for (descriptor, column) in found.iter().zip(Column::ALL) {
-            let expected = match column.kind() {
-                ColumnKind::F32 => PhysicalType::FLOAT,
-                ColumnKind::U32 => PhysicalType::INT32,
-            };
+            let expected = physical_type(column);
             if descriptor.physical_type() != expected || descriptor.max_def_level() != 0 {
                 let reason = format!(
                     "column {column} is {} (definition level {}), expected a required {expected}",
@@ -236,19 +227,15 @@ impl ParquetSource {
         if self.next_group == self.file.num_row_groups() {
             return Ok(false);
         }
-        let group = self
-            .file
-            .get_row_group(self.next_group)
-            .map_err(|e| read_error(&self.path, e))?;
+        let group = self.file.get_row_group(self.next_group);
+        let group = group.map_err(|e| read_error(&self.path, e))?;
         self.left = usize::try_from(group.metadata().num_rows()).map_err(|_| {
             DatasetError::invalid(&self.path, "a row group has a negative number of rows")
         })?;
-        self.readers = self
-            .columns
-            .iter()
-            .map(|c| group.get_column_reader(c.index()))
-            .collect::<Result<_, _>>()
-            .map_err(|e| read_error(&self.path, e))?;
+        let columns = self.columns.iter();
+        let readers = columns.map(|c| group.get_column_reader(c.index()));
+        let readers = readers.collect::<Result<_, _>>();
+        self.readers = readers.map_err(|e| read_error(&self.path, e))?;
         self.next_group += 1;
         Ok(true)
     }
@@ -282,14 +269,13 @@ fn check_places(
 ) -> Result<(), DatasetError> {
     for group in file.metadata().row_groups() {
         for column in group.columns() {
-            let first = column
-                .dictionary_page_offset()
-                .unwrap_or_else(|| column.data_page_offset());
-            let end = u64::try_from(first)
-                .ok()
-                .zip(u64::try_from(column.compressed_size()).ok())
-                .and_then(|(first, bytes)| first.checked_add(bytes));
-            if end.is_none_or(|end| end > length) {
+            let first = column.dictionary_page_offset();
+            let first = first.unwrap_or_else(|| column.data_page_offset());
+            let bytes = column.compressed_size();
+            let end = first
+                .checked_add(bytes)
+                .filter(|_| first >= 0 && bytes >= 0);
+            if end.is_none_or(|end| end as u64 > length) {
                 let column = column.column_path().string();
                 let reason = format!(
                     "the footer says that column {column} lies outside of the file; write the dataset again"

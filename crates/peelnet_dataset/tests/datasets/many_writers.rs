@@ -146,37 +146,6 @@ fn writers_together_write_the_whole() {
     assert_eq!("2/4".parse::<Shard>().unwrap().to_string(), "2/4");
 }
 
-/// What the command line cannot change; the rest is tested with it.
-#[test]
-fn another_plan_is_refused_with_its_first_difference() {
-    let folder = temporary();
-    let folder = folder.path();
-    killed(folder, by("node-a", Format::Csv), &[0]);
-    let before = contents(folder);
-    type Change = fn(&mut Header);
-    let cases: [(&str, Change); 3] = [
-        ("peelnet version is 0.1.0", |h| {
-            h.tool_version = "0.2.0".to_owned()
-        }),
-        ("max passes is nothing", |h| {
-            h.settings.insert("max passes".to_owned(), "3".to_owned());
-        }),
-        ("scene 1 is smoke in a box with sha256 abab", |h| {
-            h.scenes[1].sha256 = "cd".repeat(32);
-        }),
-    ];
-    for (words, change) in cases {
-        let mut header = joining("node-b", Format::Csv, None);
-        change(&mut header);
-        let error = write_by(folder, header, 1000).unwrap_err();
-        has(&error, &[words, "node-a", "node-b", "same command"]);
-    }
-    assert_eq!(contents(folder), before);
-    let mut header = joining("node-b", Format::Csv, None);
-    header.adapter = "another name".to_owned();
-    assert!(write_by(folder, header, 1000).unwrap().is_whole());
-}
-
 #[test]
 fn two_writers_of_one_part() {
     let folder = temporary();
