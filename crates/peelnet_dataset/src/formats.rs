@@ -105,16 +105,17 @@ impl Format {
         })
     }
 
-    /// Opens a part for reading the given columns, from [`Format::files_of`] them.
+    /// Opens a part of so many rows for reading the given columns, from [`Format::files_of`] them.
     pub(crate) fn source(
         self,
         files: &[Fetched],
         columns: &[Column],
+        rows: u64,
     ) -> Result<Box<dyn PartSource>, DatasetError> {
         Ok(match self {
             Self::Csv => Box::new(csv::CsvSource::open(&files[0], columns)?),
             Self::Parquet => Box::new(parquet::ParquetSource::open(&files[0], columns)?),
-            Self::Npy => Box::new(npy::NpySource::open(files, columns)?),
+            Self::Npy => Box::new(npy::NpySource::open(files, columns, rows)?),
         })
     }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
 use crate::folder;
-use crate::manifest::{EXTRACT_AGAIN, Manifest, Part, SCHEMA_VERSION, read_json, to_json};
+use crate::manifest::{EXTRACT_AGAIN, Manifest, Part, read_json, to_json};
 use crate::plan::Plan;
 use crate::store::{FRAGMENTS, MANIFEST, PARTS, Store, open_store, store_at};
 
@@ -20,10 +20,10 @@ const READERS: usize = 32;
 /// A finished part. It is the dataset's once this record is there. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PartRecord {
-    /// [`SCHEMA_VERSION`] of the writer.
-    schema: u32,
+    /// [`SCHEMA_VERSION`](crate::SCHEMA_VERSION) of the writer.
+    pub schema: u32,
     /// Hash of the plan that the writer followed.
-    plan: String,
+    pub plan: String,
     /// The writer's name.
     pub worker: String,
     /// The part, as it will be in the manifest.
@@ -31,15 +31,6 @@ pub(crate) struct PartRecord {
 }
 
 impl PartRecord {
-    pub(crate) fn new(plan: &Plan, worker: &str, part: Part) -> Self {
-        Self {
-            schema: SCHEMA_VERSION,
-            plan: plan.hash.clone(),
-            worker: worker.to_owned(),
-            part,
-        }
-    }
-
     /// The name of a part's record.
     pub(crate) fn name(index: u32) -> String {
         format!("{PARTS}/{index:05}.json")
@@ -76,19 +67,6 @@ impl PartRecord {
                 start(&plan.hash)
             ))
         })
-    }
-
-    /// Makes this the part's record. Where there is one already, it must be of the same bytes.
-    pub(crate) fn commit(&self, store: &dyn Store, plan: &Plan) -> Result<(), DatasetError> {
-        let index = self.part.index;
-        if store.put_if_absent(&Self::name(index), to_json(self).as_bytes())? {
-            return Ok(());
-        }
-        match Self::read(store, index, Some(plan))? {
-            Some(there) => self.check_same(store, &there),
-            // Gone again: somebody removes records while this works.
-            None => Err(DatasetError::busy(store.path())),
-        }
     }
 
     /// An error if another record of this part is of other bytes.
@@ -128,7 +106,7 @@ pub fn seal(path: impl AsRef<Path>) -> Result<Manifest, DatasetError> {
     let store = open_store(path.as_ref())?;
     let plan = Plan::read(&*store)?.ok_or_else(|| no_manifest(path.as_ref()))?;
     let Some(manifest) = whole(&*store, &plan)? else {
-        return Err(unsealed(&*store, &plan));
+        return Err(unsealed(&*store, &plan)?);
     };
     if let Some(folder) = store.folder() {
         folder::remove_abandoned(folder)?;
@@ -143,11 +121,8 @@ pub(crate) fn no_manifest(path: &Path) -> DatasetError {
 }
 
 /// The error of a dataset that lacks parts, or lacks its seal alone.
-pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> DatasetError {
-    let recorded = match recorded(store, plan) {
-        Ok(recorded) => recorded,
-        Err(error) => return error,
-    };
+pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> Result<DatasetError, DatasetError> {
+    let recorded = recorded(store, plan)?;
     let of = plan.header.work_items;
     let reason = match (0..of).find(|k| !recorded.contains(k)) {
         Some(first) => format!(
@@ -158,7 +133,7 @@ pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> DatasetError {
             "all {of} parts are there, but the dataset is not sealed; run `peelnet seal` on it"
         ),
     };
-    DatasetError::invalid(store.path(), reason)
+    Ok(DatasetError::invalid(store.path(), reason))
 }
 
 /// How many parts of a dataset that is not sealed are finished, and how many it will have; `None` if it is sealed, or none.

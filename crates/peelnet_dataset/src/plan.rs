@@ -129,16 +129,24 @@ impl Plan {
         sha256(lines.as_bytes())
     }
 
-    /// The first field in which two plans differ, with both values.
-    fn difference(&self, other: &Self) -> Option<(String, String, String)> {
-        let (mine, others) = (self.fields(), other.fields());
+    /// An error where another plan differs, with the first field and both values.
+    fn check_same(&self, store: &dyn Store, there: &Self) -> Result<(), DatasetError> {
+        let (mine, theirs) = (self.fields(), there.fields());
         let value = |fields: &[(String, String)], name: &str| {
             let found = fields.iter().find(|(n, _)| n == name);
             found.map_or("nothing".to_owned(), |(_, value)| value.clone())
         };
-        let names = mine.iter().chain(&others).map(|(name, _)| name);
-        let mut values = names.map(|n| (n.clone(), value(&mine, n), value(&others, n)));
-        values.find(|(_, mine, others)| mine != others)
+        for (field, _) in mine.iter().chain(&theirs) {
+            let (mine, theirs) = (value(&mine, field), value(&theirs, field));
+            if mine != theirs {
+                let reason = format!(
+                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder",
+                    there.header.worker, self.header.worker
+                );
+                return Err(DatasetError::invalid(store.path(), reason));
+            }
+        }
+        Ok(())
     }
 
     /// Reads and checks a dataset's plan; `None` where there is none.
@@ -171,16 +179,8 @@ impl Plan {
         let Some(there) = there else {
             return Err(DatasetError::busy(store.path()));
         };
-        match self.difference(&there) {
-            None => Ok((there, false)),
-            Some((field, mine, theirs)) => Err(DatasetError::invalid(
-                store.path(),
-                format!(
-                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder",
-                    there.header.worker, self.header.worker
-                ),
-            )),
-        }
+        self.check_same(store, &there)?;
+        Ok((there, false))
     }
 
     /// The manifest of these parts.

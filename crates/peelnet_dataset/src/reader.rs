@@ -39,7 +39,7 @@ impl Dataset {
         let store = open_store(path)?;
         let Some(manifest) = Manifest::read(&*store)? else {
             return Err(match Plan::read(&*store)? {
-                Some(plan) => parts::unsealed(&*store, &plan),
+                Some(plan) => parts::unsealed(&*store, &plan)?,
                 None => parts::no_manifest(path),
             });
         };
@@ -205,7 +205,7 @@ impl OpenPart {
             index: part.index,
             expected: part.rows,
             columns: columns.to_vec(),
-            source: format.source(&files, columns)?,
+            source: format.source(&files, columns, part.rows)?,
             files,
             rows: 0,
         };

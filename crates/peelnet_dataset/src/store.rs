@@ -113,7 +113,7 @@ impl Store for Folder {
                 Ok(metadata) if metadata.is_dir() => {}
                 Ok(metadata) => drop(all.insert(name, metadata.len())),
                 // Another writer's, gone between the two looks.
-                Err(e) if e.kind() == ErrorKind::NotFound => {}
+                Err(e) if is_absent(&e) => {}
                 Err(e) => return Err(DatasetError::io(&folder, "list")(e)),
             }
         }

@@ -11,7 +11,7 @@ use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
 use crate::folder::{self, Partial};
 use crate::formats::{PartSink, hash_file};
-use crate::manifest::{FileEntry, Manifest, Part};
+use crate::manifest::{FileEntry, Manifest, Part, to_json};
 use crate::parts::{self, PartRecord};
 use crate::plan::{Header, Plan};
 use crate::store::{FRAGMENTS, Folder, PLAN, Store, store_at};
@@ -133,8 +133,14 @@ impl DatasetWriter {
     /// Makes a part the dataset's: its files first, then its record.
     fn commit(&self, part: &Part) -> Result<(), DatasetError> {
         let store = &*self.store;
-        let record = PartRecord::new(&self.plan, &self.header.worker, part.clone());
-        let recorded = || PartRecord::read(store, part.index, Some(&self.plan));
+        let (index, worker) = (part.index, &self.header.worker);
+        let record = PartRecord {
+            schema: self.plan.schema,
+            plan: self.plan.hash.clone(),
+            worker: worker.clone(),
+            part: part.clone(),
+        };
+        let recorded = || PartRecord::read(store, index, Some(&self.plan));
         if let Some(there) = recorded()? {
             record.check_same(store, &there)?;
         }
@@ -146,22 +152,22 @@ impl DatasetWriter {
                 continue;
             }
             // The one whose file it is may have come to its end meanwhile.
-            return Err(match recorded()? {
-                Some(there) => {
-                    record.check_same(store, &there)?;
-                    let reason = "was changed after it was written";
-                    parts::damaged(store, part.index, &file.name, reason)
-                }
-                None => DatasetError::invalid(
-                    &store.shown(&file.name),
-                    format!(
-                        "part {}: worker {} computed other bytes than this file has, and no record says whose it is; if no other extraction is running, remove the file and resume",
-                        part.index, self.header.worker
-                    ),
-                ),
-            });
+            if let Some(there) = recorded()? {
+                record.check_same(store, &there)?;
+                let reason = "was changed after it was written";
+                return Err(parts::damaged(store, index, &file.name, reason));
+            }
+            let reason = format!(
+                "part {index}: worker {worker} computed other bytes than this file has, and no record says whose it is; if no other extraction is running, remove the file and resume"
+            );
+            return Err(DatasetError::invalid(&store.shown(&file.name), reason));
         }
-        record.commit(store, &self.plan)?;
+        let name = PartRecord::name(index);
+        if !store.put_if_absent(&name, to_json(&record).as_bytes())? {
+            // Gone again where somebody removes records while this works.
+            let there = recorded()?.ok_or_else(|| DatasetError::busy(store.path()))?;
+            record.check_same(store, &there)?;
+        }
         for file in &part.files {
             // It is linked, moved or sent: what stays here goes with the folder.
             let _ = std::fs::remove_file(self.scratch.path.join(&file.name));

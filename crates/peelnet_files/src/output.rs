@@ -445,17 +445,14 @@ impl Outputs {
         ending: &str,
         kind: Kind,
     ) -> Result<(), Refused> {
-        check_is_folder(setting, folder)?;
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut names: Vec<PathBuf> = entries.map(|e| e.path()).collect();
-        names.retain(|path| {
-            path.extension()
+        let mut names: Vec<PathBuf> = entries.map(|e| e.file_name().into()).collect();
+        names.retain(|name| {
+            name.extension()
                 .is_some_and(|e| e.eq_ignore_ascii_case(ending))
         });
         names.sort();
-        for path in &names {
-            self.file(setting, path, kind)?;
-        }
+        self.folder(setting, folder, names.iter().map(|name| (name, kind)))?;
         let found = || {
             let path = absolute(local(folder)?)?;
             Ok(Output {
@@ -602,22 +599,18 @@ mod tests {
 
     /// What a file or a link holds, by path, and its permissions.
     fn everything(folder: &Path) -> BTreeMap<PathBuf, (String, bool)> {
-        let entries = fs::read_dir(folder).expect("lists");
-        let paths = entries.map(|entry| entry.expect("an entry").path());
         let mut found = BTreeMap::new();
-        for path in paths {
+        for entry in fs::read_dir(folder).expect("lists") {
+            let path = entry.expect("an entry").path();
             let metadata = fs::symlink_metadata(&path).expect("stands");
-            let text = if metadata.is_symlink() {
-                let target = fs::read_link(&path).expect("a link");
-                target.to_string_lossy().into_owned()
+            let mut text = String::new();
+            if metadata.is_symlink() {
+                text = format!("{:?}", fs::read_link(&path).expect("a link"));
             } else if metadata.is_file() {
-                fs::read_to_string(&path).expect("reads")
-            } else {
-                if metadata.is_dir() {
-                    found.extend(everything(&path));
-                }
-                String::new()
-            };
+                text = fs::read_to_string(&path).expect("reads");
+            } else if metadata.is_dir() {
+                found.extend(everything(&path));
+            }
             found.insert(path, (text, metadata.permissions().readonly()));
         }
         found

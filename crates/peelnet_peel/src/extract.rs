@@ -3,7 +3,7 @@
 use crate::{
     PeelError,
     harvest::{Harvest, Harvester, Peel},
-    items::{Views, camera_info, items},
+    items::{camera_info, items},
     rows::{RawTile, RowCounts, make_rows},
 };
 use peelnet_dataset::{
@@ -37,8 +37,8 @@ pub struct ExtractOptions {
     pub out: PathBuf,
     /// Frame width and height in pixels.
     pub size: [u32; 2],
-    /// Views of each scene.
-    pub views: Views,
+    /// The first n views of each scene, which must have so many; `None` takes all.
+    pub views: Option<u32>,
     /// File format.
     pub format: Format,
     /// How fragments are found.
@@ -65,7 +65,7 @@ impl ExtractOptions {
         Self {
             out: out.into(),
             size: [1024, 768],
-            views: Views::All,
+            views: None,
             format: Format::Parquet,
             peel: Peel::SBuffer,
             max_passes: None,

@@ -94,8 +94,6 @@ pub struct Harvester {
 /// What was found in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Harvest {
-    /// Fragments of the view.
-    pub fragments: u64,
     /// Fragments of its fullest pixel.
     pub max_layers: u32,
     /// Tiles it took.
@@ -209,7 +207,6 @@ impl Harvester {
         gpu.queue.submit([encoder.finish()]);
         let times = gpu.block_on(times.read())?;
         Ok(Harvest {
-            fragments: found.total,
             max_layers: found.most,
             tiles: tiles.len() as u32,
             gpu_micros: times.iter().map(|t| t.micros).sum(),

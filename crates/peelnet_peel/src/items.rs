@@ -4,16 +4,6 @@ use crate::{ExtractOptions, PeelError};
 use peelnet_dataset::{CameraInfo, MAX_WORK_ITEMS, Part};
 use peelnet_scene::{Camera, Scene};
 
-/// How many views of each scene are taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Views {
-    /// The first n; asking for more than a scene has is an error.
-    First(u32),
-    /// All of them.
-    #[default]
-    All,
-}
-
 /// All work items of a dataset, whatever the shard, as parts without rows: scene by scene, copy by copy, view by view. Cameras are the
 /// scenes' own.
 ///
@@ -39,10 +29,7 @@ pub fn items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Part>, Pe
             );
             return Err(PeelError::setting("scenes", reason));
         }
-        let views = match options.views {
-            Views::All => scene.views.len(),
-            Views::First(n) => n as usize,
-        };
+        let views = options.views.map_or(scene.views.len(), |n| n as usize);
         let Some(views) = scene.views.get(..views) else {
             let reason = format!(
                 "scene {} has {} of the {views} views that were asked for: ask for fewer, or add [orbit] or [[view]]",

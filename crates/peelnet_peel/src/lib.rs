@@ -18,4 +18,3 @@ pub use batches::{Batches, batches};
 pub use error::PeelError;
 pub use extract::{ExtractOptions, ExtractReport, Progress, extract};
 pub use harvest::Peel;
-pub use items::Views;

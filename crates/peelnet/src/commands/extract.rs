@@ -7,7 +7,7 @@ use peelnet::Failure;
 use peelnet_dataset::is_remote;
 use peelnet_files::{check_is_folder, counted, printable, shown, thousands};
 use peelnet_gpu::Gpu;
-use peelnet_peel::{ExtractOptions, ExtractReport, Progress, Views, extract, synthetic::synthetic};
+use peelnet_peel::{ExtractOptions, ExtractReport, Progress, extract, synthetic::synthetic};
 use peelnet_scene::Scene;
 use serde_json::json;
 use std::path::Path;
@@ -98,7 +98,7 @@ fn finished(folder: &Path) -> (u32, u32) {
 fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Failure> {
     let options = ExtractOptions {
         size: args.size,
-        views: args.views.map_or(Views::All, Views::First),
+        views: args.views,
         format: args.format,
         peel: args.peel,
         max_passes: args.max_passes,

@@ -18,6 +18,8 @@ use object_store::{
 };
 use tokio::runtime::Runtime;
 
+use peelnet_files::error_line;
+
 use super::{Fetched, Store};
 use crate::error::DatasetError;
 
@@ -91,9 +93,8 @@ impl Remote {
     }
 
     fn key(&self, name: &str) -> Key {
-        let name = name.trim_end_matches('/').split('/');
-        name.filter(|part| !part.is_empty())
-            .fold(self.prefix.clone(), |key, part| key.join(part))
+        let parts = name.split('/').filter(|part| !part.is_empty());
+        parts.fold(self.prefix.clone(), |key, part| key.join(part))
     }
 
     /// Does a request, again where its connection was cut.
@@ -207,12 +208,7 @@ impl Store for Remote {
     }
 }
 
-/// The whole text of an error and its sources: to look for codes in it, never to print it.
-fn secret_text(error: &object_store::Error) -> String {
-    peelnet_files::error_line(error)
-}
-
-/// The server's code of an error: letters, such as `NoSuchBucket`.
+/// The server's code of an error, whose text is never printed: letters, such as `NoSuchBucket`.
 fn code(text: &str) -> Option<&str> {
     let xml = text
         .split_once("<Code>")
@@ -229,7 +225,7 @@ fn status(text: &str) -> Option<&str> {
 }
 
 fn lacks_bucket(error: &object_store::Error) -> bool {
-    let text = secret_text(error);
+    let text = error_line(error);
     matches!(code(&text), Some("NoSuchBucket" | "ContainerNotFound"))
 }
 
@@ -238,13 +234,13 @@ fn is_cut(error: &object_store::Error) -> bool {
     let object_store::Error::Generic { .. } = error else {
         return false;
     };
-    let text = secret_text(error);
+    let text = error_line(error);
     status(&text).is_none() && text.contains("HTTP error")
 }
 
 /// An error in our own words.
 fn fault(path: &Path, action: &'static str, error: &object_store::Error) -> DatasetError {
-    let text = secret_text(error);
+    let text = error_line(error);
     let code = code(&text);
     let status = status(&text);
     let cut = format!(
