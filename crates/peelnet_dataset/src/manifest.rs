@@ -310,13 +310,11 @@ pub(crate) fn read_json<T: DeserializeOwned>(
     read().map(Some).map_err(wrong)
 }
 
-/// The text of a manifest, plan or record.
 pub(crate) fn to_json(value: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(value);
     text.expect("string keys and finite numbers only") + "\n"
 }
 
-/// The columns of every dataset.
 pub(crate) fn columns() -> Vec<ColumnEntry> {
     let entry = |column: Column| ColumnEntry {
         name: column.name().to_owned(),

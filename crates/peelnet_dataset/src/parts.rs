@@ -38,8 +38,7 @@ impl PartRecord {
 
     /// The part whose record has this name.
     pub(crate) fn index(name: &str) -> Option<u32> {
-        let digits = name.strip_prefix(PARTS)?.strip_suffix(".json")?;
-        let digits = digits.strip_prefix('/')?;
+        let (_, digits) = name.strip_suffix(".json")?.rsplit_once('/')?;
         digits.parse().ok().filter(|&k| Self::name(k) == name)
     }
 

@@ -257,13 +257,10 @@ impl fmt::Display for Shard {
 
 /// The machine's name, as the system says it.
 pub(crate) fn host() -> String {
-    let file = || std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
-    let variable = || {
-        ["HOSTNAME", "COMPUTERNAME"]
-            .iter()
-            .find_map(|name| std::env::var(name).ok())
-    };
-    let name = file().or_else(variable).unwrap_or_default();
+    let file = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let variable = |name| std::env::var(name).ok();
+    let name = file.or_else(|| variable("HOSTNAME").or_else(|| variable("COMPUTERNAME")));
+    let name = name.unwrap_or_default();
     match peelnet_files::printable(name.trim()) {
         name if name.is_empty() => "host".to_owned(),
         name => name.into_owned(),

@@ -55,7 +55,6 @@ impl Fetched {
 
 /// A folder, or a prefix of a bucket. Names are relative, with `/`.
 pub(crate) trait Store: fmt::Debug + Send + Sync {
-    /// The dataset's path, for messages.
     fn path(&self) -> &Path;
 
     /// The folder of this machine that it is, where it is one: its files are replaced, and what writers that died left there is removed.
@@ -87,7 +86,6 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     }
 }
 
-/// A folder.
 #[derive(Clone, Debug)]
 pub(crate) struct Folder {
     pub path: PathBuf,
@@ -254,13 +252,11 @@ fn object(path: &Path) -> Result<(Arc<dyn Store>, String), DatasetError> {
     Ok((store, name.to_owned()))
 }
 
-/// A store of another machine.
 #[cfg(feature = "object-store")]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
     remote::Remote::open(url)
 }
 
-/// A store of another machine.
 #[cfg(not(feature = "object-store"))]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
     let scheme = url.split_once("://").map_or("", |(scheme, _)| scheme);

@@ -16,7 +16,7 @@ use std::{
 /// The rows of some scenes, batch by batch, while other threads peel. Dropping it ends the peeling.
 #[derive(Debug)]
 pub struct Batches {
-    /// `None` once nobody asks any more.
+    /// `None` once this is dropped.
     rows: Option<Receiver<Result<FragmentBatch, PeelError>>>,
     peeling: Option<JoinHandle<()>>,
 }
@@ -68,21 +68,13 @@ pub fn batches(
     })
 }
 
-impl Batches {
-    /// Ends the peeling, which finds nobody to send to.
-    fn end(&mut self) -> std::thread::Result<()> {
-        self.rows = None;
-        self.peeling.take().map_or(Ok(()), JoinHandle::join)
-    }
-}
-
 impl Iterator for Batches {
     type Item = Result<FragmentBatch, PeelError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let next = self.rows.as_ref()?.recv().ok();
         if next.is_none()
-            && let Err(panic) = self.end()
+            && let Some(Err(panic)) = self.peeling.take().map(JoinHandle::join)
         {
             std::panic::resume_unwind(panic);
         }
@@ -92,7 +84,8 @@ impl Iterator for Batches {
 
 impl Drop for Batches {
     fn drop(&mut self) {
-        // Whatever it came to, nobody asks any more.
-        let _ = self.end();
+        // The peeling finds nobody to send to, and ends.
+        self.rows = None;
+        let _ = self.peeling.take().map(JoinHandle::join);
     }
 }

@@ -15,7 +15,6 @@ use crate::store::Fetched;
 /// Rows that are formatted into one buffer before it is written: about 2 MB of text.
 const ROWS_A_BUFFER: usize = 1 << 14;
 
-/// Writes a part as CSV.
 pub(super) struct CsvSink {
     path: PathBuf,
     file: File,
@@ -92,7 +91,6 @@ const BUFFER: usize = 1 << 18;
 /// Bytes of a line that are read: the reader keeps a whole line in memory.
 const MAX_LINE: usize = 1 << 16;
 
-/// Reads a part from CSV.
 pub(super) struct CsvSource {
     path: PathBuf,
     reader: csv::Reader<Lines>,

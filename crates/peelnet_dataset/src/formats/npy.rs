@@ -36,7 +36,6 @@ fn header(kind: ColumnKind, rows: u64) -> Vec<u8> {
     header
 }
 
-/// Writes a part as NPY arrays, one for each column.
 pub(super) struct NpySink(Vec<(Column, PathBuf, BufWriter<File>)>);
 
 impl NpySink {
@@ -76,7 +75,6 @@ impl PartSink for NpySink {
     }
 }
 
-/// Reads a part from NPY arrays.
 pub(super) struct NpySource {
     columns: Vec<(Column, PathBuf, BufReader<File>)>,
     left: u64,

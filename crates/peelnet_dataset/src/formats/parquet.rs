@@ -75,7 +75,6 @@ fn properties() -> WriterPropertiesPtr {
     )
 }
 
-/// Writes a part as Parquet.
 pub(super) struct ParquetSink {
     path: PathBuf,
     writer: SerializedFileWriter<File>,
@@ -221,24 +220,6 @@ impl ParquetSource {
             signed: Vec::new(),
         })
     }
-
-    /// Moves to the next row group; false at the end.
-    fn advance(&mut self) -> Result<bool, DatasetError> {
-        if self.next_group == self.file.num_row_groups() {
-            return Ok(false);
-        }
-        let group = self.file.get_row_group(self.next_group);
-        let group = group.map_err(|e| read_error(&self.path, e))?;
-        self.left = usize::try_from(group.metadata().num_rows()).map_err(|_| {
-            DatasetError::invalid(&self.path, "a row group has a negative number of rows")
-        })?;
-        let columns = self.columns.iter();
-        let readers = columns.map(|c| group.get_column_reader(c.index()));
-        let readers = readers.collect::<Result<_, _>>();
-        self.readers = readers.map_err(|e| read_error(&self.path, e))?;
-        self.next_group += 1;
-        Ok(true)
-    }
 }
 
 /// Bytes of a footer that are read: enough for 10¹⁰ rows. Its lists take a hundred times that in memory.
@@ -295,9 +276,20 @@ fn read_error(path: &Path, what: impl fmt::Display) -> DatasetError {
 impl PartSource for ParquetSource {
     fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError> {
         while self.left == 0 {
-            if !self.advance()? {
+            if self.next_group == self.file.num_row_groups() {
                 return Ok(0);
             }
+            let group = self.file.get_row_group(self.next_group);
+            let group = group.map_err(|e| read_error(&self.path, e))?;
+            let rows = usize::try_from(group.metadata().num_rows());
+            self.left = rows.map_err(|_| {
+                DatasetError::invalid(&self.path, "a row group has a negative number of rows")
+            })?;
+            let columns = self.columns.iter();
+            let readers = columns.map(|c| group.get_column_reader(c.index()));
+            let readers = readers.collect::<Result<_, _>>();
+            self.readers = readers.map_err(|e| read_error(&self.path, e))?;
+            self.next_group += 1;
         }
         let count = self.left.min(max);
         for (reader, &column) in self.readers.iter_mut().zip(&self.columns) {

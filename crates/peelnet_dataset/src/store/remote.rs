@@ -217,7 +217,6 @@ fn code(text: &str) -> Option<&str> {
     xml.filter(|c| c.len() < 64 && c.bytes().all(|b| b.is_ascii_alphanumeric()))
 }
 
-/// The status of the server's answer.
 fn status(text: &str) -> Option<&str> {
     let (_, rest) = text.split_once("status code: ")?;
     rest.get(..3)
@@ -238,7 +237,6 @@ fn is_cut(error: &object_store::Error) -> bool {
     status(&text).is_none() && text.contains("HTTP error")
 }
 
-/// An error in our own words.
 fn fault(path: &Path, action: &'static str, error: &object_store::Error) -> DatasetError {
     let text = error_line(error);
     let code = code(&text);

@@ -324,14 +324,9 @@ fn files_that_no_manifest_lists_are_never_removed() {
 #[test]
 fn pipes_and_devices_are_no_files_of_a_dataset() {
     let folder = temporary();
-    let path = folder.path().join(MANIFEST);
-    fs::create_dir(folder.path().join("_peelnet")).unwrap();
-    std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
-    opening_fails(folder.path(), &["manifest.json", "regular"]);
-    fs::remove_file(&path).unwrap();
     let mut manifest = write(folder.path(), Format::Csv).unwrap();
     let empty = manifest.parts[3].files[0].name.clone();
-    let part = folder.path().join(&empty);
+    let (part, path) = (folder.path().join(&empty), folder.path().join(MANIFEST));
     fs::remove_file(&part).unwrap();
     let made = std::process::Command::new("mkfifo").arg(&part).status();
     assert!(made.unwrap().success());
@@ -342,4 +337,7 @@ fn pipes_and_devices_are_no_files_of_a_dataset() {
     let dataset = Dataset::open(folder.path()).unwrap();
     let error = dataset.batches_where(9, |p| p.index == 3).next().unwrap();
     has(&error.unwrap_err(), &[&empty, "regular"]);
+    fs::remove_file(&path).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+    opening_fails(folder.path(), &["manifest.json", "regular"]);
 }
